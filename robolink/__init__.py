@@ -1,0 +1,141 @@
+"""ROS 2 nodes from `pip install`: rclpy's API over Eclipse Zenoh.
+
+    import robolink as rclpy
+
+Everything is imported when it is first used, so that ``import robolink`` costs next to nothing.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from robolink.clock import Clock
+    from robolink.context import Context
+    from robolink.duration import Duration
+    from robolink.exceptions import ExternalShutdownException, RobolinkError
+    from robolink.message import Message
+    from robolink.node import Node
+    from robolink.parameter import Parameter
+    from robolink.qos import QoSProfile
+    from robolink.spinning import (
+        create_node,
+        get_global_executor,
+        init,
+        shutdown,
+        spin,
+        spin_once,
+        spin_until_future_complete,
+        try_shutdown,
+    )
+    from robolink.task import Future
+    from robolink.time import Time
+    from robolink.timebase import VirtualTime
+    from robolink.utilities import get_default_context, ok
+
+_HOMES = {
+    "Clock": "clock",
+    "Context": "context",
+    "Duration": "duration",
+    "ExternalShutdownException": "exceptions",
+    "Future": "task",
+    "Message": "message",
+    "Node": "node",
+    "Parameter": "parameter",
+    "QoSProfile": "qos",
+    "RobolinkError": "exceptions",
+    "Time": "time",
+    "VirtualTime": "timebase",
+    "create_node": "spinning",
+    "get_default_context": "utilities",
+    "get_global_executor": "spinning",
+    "init": "spinning",
+    "ok": "utilities",
+    "shutdown": "spinning",
+    "spin": "spinning",
+    "spin_once": "spinning",
+    "spin_until_future_complete": "spinning",
+    "try_shutdown": "spinning",
+}
+"""Each public name and the module that it lives in."""
+
+_ROOMS = frozenset(
+    [
+        "callback_groups",
+        "client",
+        "clock",
+        "clock_type",
+        "constants",
+        "context",
+        "duration",
+        "exceptions",
+        "executors",
+        "expand_topic_name",
+        "guard_condition",
+        "logging",
+        "node",
+        "parameter",
+        "publisher",
+        "qos",
+        "service",
+        "signals",
+        "subscription",
+        "task",
+        "time",
+        "time_source",
+        "timer",
+        "topic_or_service_is_hidden",
+        "utilities",
+        "validate_full_topic_name",
+        "validate_namespace",
+        "validate_node_name",
+        "validate_parameter_name",
+        "validate_topic_name",
+    ]
+)
+"""Modules that a bare ``import robolink as rclpy`` gives as attributes: programs rely on ``rclpy.qos`` and the like."""
+
+__all__ = [
+    "Clock",
+    "Context",
+    "Duration",
+    "ExternalShutdownException",
+    "Future",
+    "Message",
+    "Node",
+    "Parameter",
+    "QoSProfile",
+    "RobolinkError",
+    "Time",
+    "VirtualTime",
+    "create_node",
+    "get_default_context",
+    "get_global_executor",
+    "init",
+    "ok",
+    "shutdown",
+    "spin",
+    "spin_once",
+    "spin_until_future_complete",
+    "try_shutdown",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        value = getattr(importlib.import_module(f"robolink.{_HOMES[name]}"), name)
+    elif name in _ROOMS:
+        value = importlib.import_module(f"robolink.{name}")
+    elif name == "__version__":
+        from importlib.metadata import version
+
+        value = version("robolink")
+    else:
+        raise AttributeError(f"module 'robolink' has no attribute '{name}'")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__, *_ROOMS})

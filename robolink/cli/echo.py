@@ -1,0 +1,91 @@
+"""What `robolink topic echo` does."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robolink.cli import show
+from robolink.cli.session import node_of, opened, say, tell
+from robolink.context import Context
+from robolink.executors import SingleThreadedExecutor
+from robolink.interfaces import find
+from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from robolink.task import Future
+from robolink.wire import EndpointKind, EndpointToken
+
+if TYPE_CHECKING:
+    from robolink.node import Node
+
+PATIENCE = 1.0
+"""Seconds of silence after which the reason is given."""
+
+
+class Format(NamedTuple):
+    """How messages are shown."""
+
+    field: str
+    json: bool
+    full_length: bool
+
+    def text(self, message: Any) -> str:
+        """Give a message as it is shown."""
+        value = show.field_of(message, self.field) if self.field else message
+        if self.json:
+            return show.as_json(value)
+        return show.as_yaml(value, None if self.full_length else show.LONGEST) + "\n---"
+
+
+def run(topic: str, type_: str, *, once: bool, form: Format) -> None:
+    """Show what is published on a topic; one message if `once`, else until Ctrl-C."""
+    with opened() as context:
+        node = node_of(context)
+        name = node.resolve_topic_name(topic)
+        wanted = find(type_) if type_ else None
+        publisher = _publisher(context, name) if wanted is None else None
+        msg_type = wanted or find((publisher or _first_publisher(context, name)).type_name)
+        _show(node, name, msg_type, once, form)
+
+
+def _show(node: Node, name: str, msg_type: type[Any], once: bool, form: Format) -> None:
+    done: Future[None] = Future()
+
+    def on_message(message: Any) -> None:
+        if done.done():
+            return
+        say(form.text(message))
+        if once:
+            done.set_result(None)
+
+    node.create_subscription(msg_type, name, on_message, _matching_qos(node.context, name))
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    executor.spin_until_future_complete(done)
+
+
+def _publisher(context: Context, name: str) -> EndpointToken | None:
+    found = context.graph.endpoints(EndpointKind.PUBLISHER, name=name)
+    return found[0] if found else None
+
+
+def _first_publisher(context: Context, name: str) -> EndpointToken:
+    """Wait for a publisher; say so when that takes long."""
+    graph = context.graph
+    if not graph.wait_for(lambda: _publisher(context, name) is not None or not context.ok(), PATIENCE):
+        tell(f"waiting for a publisher of {name}: nobody publishes it on domain {context.get_domain_id()} yet")
+        graph.wait_for(lambda: _publisher(context, name) is not None or not context.ok(), None)
+    found = _publisher(context, name)
+    if found is None:
+        raise KeyboardInterrupt
+    return found
+
+
+def _matching_qos(context: Context, name: str) -> QoSProfile:
+    """Ask for what the publishers offer: what they kept, if they keep something."""
+    offered = [each.qos for each in context.graph.endpoints(EndpointKind.PUBLISHER, name=name)]
+    latched = bool(offered) and all(each.durability is DurabilityPolicy.TRANSIENT_LOCAL for each in offered)
+    reliable = all(each.reliability is not ReliabilityPolicy.BEST_EFFORT for each in offered)
+    return QoSProfile(
+        depth=max((each.depth for each in offered), default=10) if latched else 10,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+    )

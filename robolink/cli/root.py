@@ -1,0 +1,87 @@
+"""The root of the command line: a table of commands, each imported when it is used."""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+
+import typer
+import typer.core
+import typer.main
+
+from robolink.exceptions import nearest
+
+if TYPE_CHECKING:
+    Context = Any  # typer's own moved with its copy of click
+
+
+class Entry(NamedTuple):
+    """Where a command lives and what it does; `verb` picks one command out of a noun's."""
+
+    module: str
+    help: str
+    verb: str = ""
+
+
+COMMANDS = {
+    "run": Entry("robolink.cli.run", "Run a node."),
+    "launch": Entry("robolink.cli.launch", "Run a system of nodes that a file describes."),
+    "pub": Entry("robolink.cli.topic", "Publish messages: short for topic pub.", "pub"),
+    "topic": Entry("robolink.cli.topic", "See and send what nodes publish."),
+    "node": Entry("robolink.cli.node", "See which nodes there are."),
+}
+
+
+class Root(typer.core.TyperGroup):
+    """A group that knows its commands by name, and imports only the one that is asked for."""
+
+    def list_commands(self, ctx: Context) -> list[str]:
+        """Give the names in the order of the table."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: Context, cmd_name: str) -> Any:
+        """Import a command; None for an unknown name."""
+        entry = COMMANDS.get(cmd_name)
+        if entry is None:
+            return None
+        app: typer.Typer = importlib.import_module(entry.module).app
+        app.rich_markup_mode = None  # plain help: rich takes longer to import than most commands to run
+        app._add_completion = False
+        found = typer.main.get_command(app)
+        return found.get_command(ctx, entry.verb) if entry.verb else found  # type: ignore[attr-defined]
+
+    def resolve_command(self, ctx: Context, args: list[str]) -> Any:
+        """Find the command; the nearest name is told for an unknown one."""
+        if args[0] not in COMMANDS:
+            ctx.fail(f"no command named '{args[0]}'{nearest(args[0], COMMANDS)}")
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: Context, formatter: Any) -> None:
+        """List the commands without importing any."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, entry.help) for name, entry in COMMANDS.items()])
+
+
+app = typer.Typer(cls=Root, rich_markup_mode=None, no_args_is_help=True, pretty_exceptions_enable=False)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"robolink {version('robolink')}")
+        raise typer.Exit
+
+
+@app.callback()
+def root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """ROS 2 nodes from pip install: run them, launch them, see and send what they publish."""
+
+
+def command() -> Any:
+    """Give the root command."""
+    return typer.main.get_command(app)

@@ -1,0 +1,217 @@
+"""A context: the transport, the clock, the domain and the arguments that its nodes share."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import sys
+import threading
+import weakref
+from collections.abc import Callable
+from types import MethodType
+from typing import TYPE_CHECKING, Any
+
+from robolink import signals
+from robolink.arguments import Arguments, parse_arguments
+from robolink.exceptions import NotInitializedException, RobolinkError
+from robolink.inbox import Inbox, Sweeper
+from robolink.timebase import SystemTime, TimeBase
+
+if TYPE_CHECKING:
+    from robolink.graph import Graph
+    from robolink.transport.base import Transport
+
+LAST_DOMAIN = 232
+"""ROS 2's domain ids end here."""
+
+
+class ContextError(RobolinkError, RuntimeError):
+    """A context was initialized twice, shut down too early, or given an impossible domain."""
+
+
+class Context:
+    """What belongs together: the nodes of one context share a session on the network and a clock.
+
+    `transport` is ``zenoh`` (the default; also set by ROBOLINK_TRANSPORT), ``memory`` or a transport that exists
+    already; `time` is the system's time by default, or a VirtualTime.
+    """
+
+    def __init__(self, *, transport: str | Transport | None = None, time: TimeBase | None = None) -> None:
+        self.time: TimeBase = time or SystemTime()
+        self.arguments = Arguments()
+        self.interrupted = False
+        """Whether a signal ended this context."""
+        self.inbox = Inbox()
+        """Where arrivals wait for entities that no executor has."""
+        self._wanted = transport
+        self._transport: Transport | None = None
+        self._graph: Graph | None = None
+        self._sweeper = Sweeper()
+        self._ids = itertools.count()
+        self._lock = threading.RLock()
+        self._initialized = self._ok = self._closed = False
+        self._domain_id = 0
+        self._callbacks: list[Callable[[], Any]] = []
+        self._nodes: weakref.WeakSet[Any] = weakref.WeakSet()
+
+    def init(
+        self, args: list[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
+    ) -> None:
+        """Make it ok. `args` are a command line, sys.argv by default; the domain comes from ROS_DOMAIN_ID.
+
+        Raises ContextError (a RuntimeError) the second time or for a domain id that cannot be, and what
+        `parse_arguments` raises.
+        """
+        with self._lock:
+            if self._initialized:
+                raise ContextError("Context.init() must only be called once")
+            self._domain_id = _domain_id(domain_id)
+            self.arguments = parse_arguments(sys.argv if args is None else args)
+            if initialize_logging:
+                self._set_log_levels()
+            self._initialized = self._ok = True
+        signals.watch(self)
+
+    def _set_log_levels(self) -> None:
+        from robolink import logging
+
+        logging.initialize()
+        for name, level in self.arguments.log_levels:
+            logging.set_logger_level(name, level)
+
+    # What nodes share
+
+    @property
+    def transport(self) -> Transport:
+        """The session on the network, opened when it is first needed. Raises TransportError when that fails."""
+        with self._lock:
+            if self._closed or not self._initialized:
+                raise NotInitializedException()
+            if self._transport is None:
+                from robolink.transport import connect
+
+                wanted = self._wanted or os.environ.get("ROBOLINK_TRANSPORT") or "zenoh"
+                self._transport = connect(wanted, self._domain_id)
+                self._sweeper.add(self.inbox)
+            return self._transport
+
+    @property
+    def graph(self) -> Graph:
+        """What everybody on this domain announces."""
+        with self._lock:
+            if self._graph is None:
+                from robolink.graph import Graph
+
+                self._graph = Graph(self.transport, self._domain_id)
+                self.on_shutdown(self._graph.wake)
+            return self._graph
+
+    def next_id(self) -> int:
+        """Give a number for a node or endpoint; they share one counter on the wire."""
+        return next(self._ids)
+
+    def look_after(self, inbox: Inbox) -> None:
+        """See to it that nothing piles up in an inbox while its owner is busy."""
+        if self.transport.threaded:
+            self._sweeper.add(inbox)
+
+    def let_go(self, inbox: Inbox) -> None:
+        """Look after it no longer."""
+        self._sweeper.remove(inbox)
+
+    def get_domain_id(self) -> int:
+        """Give the domain: 0 to 232."""
+        if not self._initialized:
+            raise NotInitializedException()
+        return self._domain_id
+
+    def track_node(self, node: Any) -> None:
+        """Remember a node, to destroy it when the context ends."""
+        self._nodes.add(node)
+
+    def untrack_node(self, node: Any) -> None:
+        """Forget it."""
+        self._nodes.discard(node)
+
+    # The end
+
+    def ok(self) -> bool:
+        """Whether it is initialized and has not ended."""
+        return self._ok
+
+    def interrupt(self) -> None:
+        """End the spinning, as Ctrl-C does, but stay connected: a program may still send its last words."""
+        if not self._ok:
+            return
+        self.interrupted = True
+        self._ok = False
+        self._tell()
+
+    def shutdown(self) -> None:
+        """End it: spinning stops and the network is left. Raises ContextError (RuntimeError) when it is not there."""
+        with self._lock:
+            if not self._initialized or self._closed:
+                raise ContextError("Context must be initialized before it can be shutdown")
+            was_ok, self._ok, self._closed = self._ok, False, True
+        if was_ok:
+            self._tell()
+        self._close()
+
+    def try_shutdown(self) -> None:
+        """End it, if it has not ended yet."""
+        if self._initialized and not self._closed:
+            self.shutdown()
+
+    def destroy(self) -> None:
+        """Leave the network, whatever the state."""
+        self.try_shutdown()
+
+    def _tell(self) -> None:
+        with self._lock:
+            callbacks, self._callbacks = self._callbacks, []
+        for callback in callbacks:
+            method = callback() if isinstance(callback, weakref.WeakMethod) else callback
+            if method is not None:
+                method()
+
+    def _close(self) -> None:
+        for node in list(self._nodes):
+            node.destroy_node()
+        with self._lock:
+            transport, self._transport = self._transport, None
+        self._sweeper.close()
+        if transport is not None:
+            transport.close()
+
+    def on_shutdown(self, callback: Callable[[], Any]) -> None:
+        """Call `callback()` when the context ends; a bound method is held weakly."""
+        if not callable(callback):
+            raise TypeError("callback should be a callable")
+        with self._lock:
+            held = weakref.WeakMethod(callback) if isinstance(callback, MethodType) else callback
+            self._callbacks = [*filter(_lives, self._callbacks), held]
+
+    def __enter__(self) -> Context:
+        if not self._initialized:
+            self.init()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.try_shutdown()
+
+
+def _lives(callback: Callable[[], Any]) -> bool:
+    return not isinstance(callback, weakref.WeakMethod) or callback() is not None
+
+
+def _domain_id(given: int | None) -> int:
+    if given is not None and given < 0:
+        raise ContextError(f"Domain id ({given}) should not be lower than zero.")
+    text = os.environ.get("ROS_DOMAIN_ID", "0") if given is None else str(given)
+    try:
+        domain_id = int(text or "0")
+    except ValueError:
+        raise ContextError(f"ROS_DOMAIN_ID: expected a number from 0 to {LAST_DOMAIN}, got '{text}'") from None
+    if not 0 <= domain_id <= LAST_DOMAIN:
+        raise ContextError(f"domain id: expected a number from 0 to {LAST_DOMAIN}, got {domain_id}")
+    return domain_id

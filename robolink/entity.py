@@ -1,0 +1,89 @@
+"""What an executor runs: the base of subscriptions, services, timers and the rest."""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING, Any
+
+from robolink.callback_groups import CallbackGroup, ReentrantCallbackGroup
+from robolink.inbox import Inbox, Mailbox
+
+if TYPE_CHECKING:
+    from robolink.executors import Executor
+
+NOTHING: Any = object()
+"""What `take` gives when there is nothing to do after all."""
+
+ANY_TIME = ReentrantCallbackGroup()
+
+
+class Entity:
+    """Something that becomes ready, is taken, and then executed. At most one executor has it at a time."""
+
+    serves = False
+    """Whether it goes on while a callback waits for an answer: services and clients do."""
+
+    def __init__(self, callback_group: CallbackGroup | None = None) -> None:
+        self.callback_group: CallbackGroup = callback_group or ANY_TIME
+        self.executor: Executor | None = None
+        if callback_group is not None:
+            callback_group.add_entity(self)
+
+    def attach(self, executor: Executor, queued: int = 0) -> None:
+        """Belong to this executor from now on; it is `queued` times among what is ready there already."""
+        self.executor = executor
+
+    def detach(self) -> None:
+        """Belong to none."""
+        self.executor = None
+
+    def take(self) -> Any:
+        """Give what is to be executed, or NOTHING; called under the inbox's lock."""
+        raise NotImplementedError
+
+    def execute(self, taken: Any) -> Any:
+        """Run the user's callback; a coroutine that it returns is run by the executor."""
+        raise NotImplementedError
+
+
+class Receiver(Entity):
+    """An entity that a transport delivers to: it has a mailbox, and a sink that leads to whoever spins it."""
+
+    def __init__(self, parking: Inbox, depth: int, callback_group: CallbackGroup | None = None) -> None:
+        super().__init__(callback_group)
+        self._parking = parking
+        self.mailbox = Mailbox(depth)
+        self.sink: functools.partial[Any] = parking.sink(self)
+
+    def attach(self, executor: Executor, queued: int = 0) -> None:
+        """Belong to this executor, which holds its lock: what arrives goes to its inbox, what waited is ready."""
+        self._move(self._parking, executor.inbox)
+        super().attach(executor, queued)
+        executor.ready.extend([self] * (len(self.mailbox) - queued))
+
+    def detach(self) -> None:
+        """Belong to none: what arrives waits in the context's inbox."""
+        executor = self.executor
+        if executor is not None:
+            with executor.inbox.lock:
+                self._move(executor.inbox, self._parking)
+                super().detach()
+
+    def _move(self, before: Inbox, after: Inbox) -> None:
+        # Both locks, so that nothing is delivered or taken meanwhile; the executor's always first.
+        with self._parking.lock:
+            self.redirect(after)
+            before.sweep()  # nothing of ours stays behind
+
+    def redirect(self, inbox: Inbox) -> None:
+        """Have what comes from now on arrive in this inbox."""
+        inbox.take_over(self.sink)
+
+    def deliver(self, arrived: Any) -> None:
+        """Keep what arrived; be ready once more if that is one more than before."""
+        if self.mailbox.put(arrived) and self.executor is not None:
+            self.executor.ready.append(self)
+
+    def take(self) -> Any:
+        """Give the oldest of what waits."""
+        return self.mailbox.take() if self.mailbox.waiting else NOTHING

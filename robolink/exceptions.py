@@ -1,0 +1,212 @@
+"""Every error that robolink raises: one root, each also a subclass of the stdlib class one would catch.
+
+RobolinkError
+├─ DocumentError (ValueError)            a YAML file or text that is not what it should be
+├─ MessageError (ValueError)             a message type or value
+│   ├─ EncodeError (TypeError)           a field that does not fit its type
+│   └─ DecodeError                       bytes that are no message of this type
+├─ WireError (ValueError)                a key, token or attachment that is not rmw_zenoh's
+├─ TransportError (ConnectionError)      the network below
+│   └─ TransportClosedError              used after close
+├─ NotFoundError (LookupError)           a node, config, type or topic that is not there
+└─ rclpy's own, by their own names
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class RobolinkError(Exception):
+    """The root of all errors of robolink."""
+
+
+class DocumentError(RobolinkError, ValueError):
+    """A YAML document is malformed or says what it cannot say; the text begins with file:line:column."""
+
+
+class MessageError(RobolinkError, ValueError):
+    """A message type or a message's value is not what it should be."""
+
+
+class EncodeError(MessageError, TypeError):
+    """A field's value does not fit its type; the text names the field."""
+
+
+class DecodeError(MessageError):
+    """Bytes that are not a message of the type at hand."""
+
+
+class WireError(RobolinkError, ValueError):
+    """A key, token or attachment that does not follow rmw_zenoh."""
+
+
+class TransportError(RobolinkError, ConnectionError):
+    """The network below failed; the text says which address or key."""
+
+
+class TransportClosedError(TransportError):
+    """A transport was used after it had been closed."""
+
+
+class NotFoundError(RobolinkError, LookupError):
+    """Something was asked for by name and is not there; the text names what is near."""
+
+    def __init__(self, kind: str, name: str, known: Iterable[str] = (), where: str = "") -> None:
+        self.kind, self.name = kind, name
+        place = f" in {where}" if where else ""
+        super().__init__(f"no {kind} named '{name}'{place}{nearest(name, known)}")
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Give `` (did you mean 'x'?)`` for the known name closest to `name`, or nothing.
+
+    >>> nearest("wandr", ["wander", "follow"])
+    " (did you mean 'wander'?)"
+    """
+    names = list(known)
+    close = difflib.get_close_matches(name, names, n=1) or [each for each in names if each.lower() == name.lower()]
+    return f" (did you mean '{close[0]}'?)" if close else ""
+
+
+class NotInitializedException(RobolinkError, RuntimeError):
+    """robolink was used before `init()` or after `shutdown()`."""
+
+    def __init__(self, *args: object) -> None:
+        super().__init__("robolink.init() has not been called", *args)
+
+
+class NoTypeSupportImportedException(RobolinkError, TypeError):
+    """A class that is no message class was given where one is needed."""
+
+
+class InvalidHandle(RobolinkError, RuntimeError):  # noqa: N818 - rclpy's name
+    """An entity was used after it had been destroyed."""
+
+
+class NameValidationException(RobolinkError, ValueError):
+    """A name of a node, topic, service or namespace breaks ROS 2's rules."""
+
+    def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int) -> None:
+        self.name_type, self.name, self.error_msg, self.invalid_index = (
+            name_type,
+            name,
+            error_msg,
+            invalid_index,
+        )
+        shown = name if len(name) <= 200 else name[:200] + "…"
+        super().__init__(f"Invalid {name_type}: {error_msg}:\n  '{shown}'\n   {' ' * min(invalid_index, 200)}^")
+
+
+class InvalidNamespaceException(NameValidationException):
+    """A namespace breaks ROS 2's rules."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("namespace", name, error_msg, invalid_index)
+
+
+class InvalidNodeNameException(NameValidationException):
+    """A node name breaks ROS 2's rules."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("node name", name, error_msg, invalid_index)
+
+
+class InvalidTopicNameException(NameValidationException):
+    """A topic name breaks ROS 2's rules."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("topic name", name, error_msg, invalid_index)
+
+
+class InvalidServiceNameException(NameValidationException):
+    """A service name breaks ROS 2's rules."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("service name", name, error_msg, invalid_index)
+
+
+class ParameterException(RobolinkError):
+    """The root of the errors about parameters."""
+
+    def __init__(self, error_msg: str, parameters: str | Iterable[str], *args: object) -> None:
+        self.parameters = parameters
+        super().__init__(f"{error_msg}: {parameters}", *args)
+
+
+class ParameterNotDeclaredException(ParameterException, LookupError):
+    """A parameter was read or set before it was declared; of those `known`, the text names the nearest."""
+
+    def __init__(self, parameters: str | Iterable[str], *args: object, known: Iterable[str] = ()) -> None:
+        names = [parameters] if isinstance(parameters, str) else list(parameters)
+        shown = ", ".join(name + nearest(name, known) for name in names)
+        super().__init__("Parameter not declared", shown, *args)
+        self.parameters = parameters if isinstance(parameters, str) else names
+
+
+class ParameterAlreadyDeclaredException(ParameterException):
+    """A parameter was declared twice."""
+
+    def __init__(self, parameters: str | Iterable[str], *args: object) -> None:
+        super().__init__("Parameter(s) already declared", parameters, *args)
+
+
+class InvalidParameterException(ParameterException, ValueError):
+    """A parameter's name breaks ROS 2's rules."""
+
+    def __init__(self, parameter: str, *args: object) -> None:
+        super().__init__("Invalid parameter name", parameter, *args)
+
+
+class InvalidParameterTypeException(ParameterException, TypeError):
+    """A parameter was given a value of another type than it was declared with."""
+
+    def __init__(self, desired_parameter: object, expected_type: str, *args: object) -> None:
+        name = getattr(desired_parameter, "name", str(desired_parameter))
+        value = getattr(desired_parameter, "value", None)
+        found = getattr(getattr(desired_parameter, "type_", None), "name", type(value).__name__)
+        RobolinkError.__init__(
+            self,
+            f"Trying to set parameter '{name}' to '{value}' of type '{found}', expecting type '{expected_type}'",
+            *args,
+        )
+        self.param_name, self.parameters = name, name
+
+
+class InvalidParameterValueException(ParameterException, ValueError):
+    """A parameter's value was refused by its range or by a callback."""
+
+    def __init__(self, parameter: str, value: object, reason: str, *args: object) -> None:
+        message = f"Invalid parameter value ({value}) for parameter"
+        super().__init__(f"{message}. Reason: {reason}" if reason else message, parameter, *args)
+
+
+class ParameterImmutableException(ParameterException):
+    """A read-only parameter was set."""
+
+    def __init__(self, parameter: str, *args: object) -> None:
+        super().__init__("Attempted to modify read-only parameter", parameter, *args)
+
+
+class ParameterUninitializedException(ParameterException, ValueError):
+    """A statically typed parameter was read before it had a value."""
+
+    def __init__(self, parameter: str, *args: object) -> None:
+        super().__init__("The parameter is not initialized", parameter, *args)
+
+
+class ExternalShutdownException(RobolinkError):
+    """The context was shut down by something other than the program's own flow."""
+
+
+class InterruptedByUser(KeyboardInterrupt, ExternalShutdownException):
+    """Ctrl-C or SIGTERM. Programs written for Humble catch the first parent, programs for Jazzy the second."""
+
+
+class ROSInterruptException(RobolinkError):
+    """A wait was ended because its context shut down."""
+
+
+class ServiceError(RobolinkError, RuntimeError):
+    """A service call got no answer: nobody serves it, or the server went away."""

@@ -1,0 +1,1 @@
+"""What the public modules of the same names build on, placed where rclpy has it."""

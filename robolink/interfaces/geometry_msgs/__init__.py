@@ -1,0 +1,1 @@
+"""ROS 2's geometry_msgs: points, poses, velocities and forces in space."""

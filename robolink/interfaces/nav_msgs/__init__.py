@@ -1,0 +1,1 @@
+"""ROS 2's nav_msgs: odometry, paths and maps."""

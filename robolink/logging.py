@@ -1,0 +1,101 @@
+"""Logging as rclpy has it: named loggers with levels, on the console and wherever else handlers take it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from robolink.impl.log_levels import levels
+from robolink.impl.log_output import Console, Handler, Record, output
+from robolink.impl.logging_severity import LoggingSeverity, get_logging_severity_from_string
+from robolink.impl.rcutils_logger import RcutilsLogger
+
+__all__ = [
+    "LoggingSeverity",
+    "RcutilsLogger",
+    "Record",
+    "add_handler",
+    "clear_config",
+    "get_logger",
+    "get_logger_effective_level",
+    "get_logger_level",
+    "get_logging_directory",
+    "get_logging_severity_from_string",
+    "initialize",
+    "remove_handler",
+    "set_console_handler",
+    "set_logger_level",
+    "set_time_source",
+    "shutdown",
+]
+
+_root_logger = RcutilsLogger()
+
+
+def get_logger(name: str) -> RcutilsLogger:
+    """Give a new logger of that name; levels belong to names, filters to the logger object."""
+    if not name:
+        raise ValueError("Logger name must not be empty.")
+    return _root_logger.get_child(name)
+
+
+def initialize() -> None:
+    """Read the environment's settings again for the console."""
+    if isinstance(output.console, Console):
+        output.console = Console()
+
+
+def shutdown() -> None:
+    """Forget all levels. Logging goes on working."""
+    levels.clear()
+
+
+def clear_config() -> None:
+    """Forget all levels and read the environment's settings again."""
+    shutdown()
+    initialize()
+
+
+def set_logger_level(name: str, level: int | LoggingSeverity, detailed_error: bool = False) -> None:
+    """Set the level of the logger called `name`, whether it exists or not; '' is the root.
+
+    Raises `ValueError` for a number that is no severity. `detailed_error` is rclpy's and changes nothing.
+    """
+    levels.set(name, LoggingSeverity(level))
+
+
+def get_logger_effective_level(name: str) -> LoggingSeverity:
+    """Give the level that counts for a name: its own, or its nearest ancestor's."""
+    return levels.effective(name)
+
+
+def get_logger_level(name: str) -> LoggingSeverity:
+    """Give the level that was set for a name, UNSET where it inherits."""
+    return levels.get(name)
+
+
+def get_logging_directory() -> Path:
+    """Give the folder for log files: $ROS_LOG_DIR, or $ROS_HOME/log, or ~/.ros/log."""
+    chosen = os.environ.get("ROS_LOG_DIR")
+    return (Path(chosen) if chosen else Path(os.environ.get("ROS_HOME") or "~/.ros", "log")).expanduser()
+
+
+def add_handler(handler: Handler) -> None:
+    """Give every log line to `handler(record)` too, in the thread that logs."""
+    output.add(handler)
+
+
+def remove_handler(handler: Handler) -> None:
+    """Stop giving log lines to a handler; one that was never added is no error."""
+    output.remove(handler)
+
+
+def set_console_handler(handler: Handler | None) -> None:
+    """Put another handler in the console's place, or silence it with None."""
+    output.console = handler
+
+
+def set_time_source(now: Callable[[], int]) -> None:
+    """Stamp log lines with `now()`, nanoseconds, such as a virtual clock's."""
+    output.now = now

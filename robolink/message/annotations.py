@@ -1,0 +1,164 @@
+"""ROS's field types as Python annotations, and what an annotation means on the wire.
+
+x: float64                                      float64 x
+ranges: Sequence[float32]                       float32[] ranges
+covariance: Annotated[Sequence[float64], Size(36)]    float64[36] covariance
+names: Annotated[Sequence[string], AtMost(4)]   string[<=4] names
+key: Annotated[string, AtMost(8)]               string<=8 key
+LEFT: ClassVar[uint8] = 1                       uint8 LEFT=1
+"""
+
+from __future__ import annotations
+
+import collections.abc
+import types
+import typing
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+import msgspec
+
+from robolink.exceptions import MessageError
+
+if TYPE_CHECKING:
+    from collections.abc import MutableSequence as Sequence
+
+    from robolink.message.base import Message
+else:
+    Sequence = collections.abc.MutableSequence
+
+
+class Primitive(msgspec.Struct, frozen=True):
+    """Marks an annotation as one of ROS's primitive types."""
+
+    name: str
+
+
+class Size(msgspec.Struct, frozen=True):
+    """A sequence of exactly `length` elements."""
+
+    length: int
+
+
+class AtMost(msgspec.Struct, frozen=True):
+    """A sequence of at most `length` elements, or a string of at most `length` bytes."""
+
+    length: int
+
+
+int8 = Annotated[int, Primitive("int8")]
+uint8 = Annotated[int, Primitive("uint8")]
+int16 = Annotated[int, Primitive("int16")]
+uint16 = Annotated[int, Primitive("uint16")]
+int32 = Annotated[int, Primitive("int32")]
+uint32 = Annotated[int, Primitive("uint32")]
+int64 = Annotated[int, Primitive("int64")]
+uint64 = Annotated[int, Primitive("uint64")]
+float32 = Annotated[float, Primitive("float32")]
+float64 = Annotated[float, Primitive("float64")]
+boolean = Annotated[bool, Primitive("bool")]
+byte = Annotated[bytes, Primitive("byte")]
+char = Annotated[int, Primitive("char")]
+string = Annotated[str, Primitive("string")]
+wstring = Annotated[str, Primitive("wstring")]
+
+PLAIN = {bool: "bool", int: "int64", float: "float64", str: "string", bytes: "byte"}
+"""What Python's own types stand for when they are used as they are."""
+
+NUMERIC = {
+    "int8": "b",
+    "uint8": "B",
+    "char": "B",
+    "int16": "h",
+    "uint16": "H",
+    "int32": "i",
+    "uint32": "I",
+    "int64": "q",
+    "uint64": "Q",
+    "float32": "f",
+    "float64": "d",
+}
+"""Primitive name to the type code that `struct` and `array` share; their sequences are array.array."""
+
+
+class FieldType(msgspec.Struct, frozen=True):
+    """What one field is on the wire."""
+
+    base: str
+    """A primitive's name, or the type name of a message such as ``geometry_msgs/msg/Point``."""
+    message: type[Message] | None = None
+    string_bound: int = 0
+    shape: str = "one"
+    """``one``, ``array`` (fixed size), ``bounded`` or ``sequence``."""
+    size: int = 0
+    """The number of elements of an array, the most that a bounded sequence takes."""
+
+    @property
+    def code(self) -> str | None:
+        """The `array` type code where the elements are numbers, else None."""
+        return NUMERIC.get(self.base)
+
+    def __str__(self) -> str:
+        """As a .msg file would say it."""
+        text = f"{self.base}<={self.string_bound}" if self.string_bound else self.base.replace("/msg/", "/")
+        brackets = {"one": "", "array": f"[{self.size}]", "bounded": f"[<={self.size}]", "sequence": "[]"}
+        return text + brackets[self.shape]
+
+
+def field_type(annotation: Any, where: str) -> FieldType:
+    """Read an annotation. Raises MessageError that names `where` when it is no ROS type."""
+    marks, plain = _split(annotation)
+    if typing.get_origin(plain) in (collections.abc.MutableSequence, collections.abc.Sequence, list):
+        (element,) = typing.get_args(plain)
+        inner = field_type(element, where)
+        if inner.shape != "one":
+            raise MessageError(f"{where}: ROS has no sequences of sequences")
+        return _with_shape(inner, marks)
+    base = next((mark.name for mark in marks if isinstance(mark, Primitive)), None)
+    bound = next((mark.length for mark in marks if isinstance(mark, AtMost)), 0)
+    if base is None and hasattr(plain, "__ros_fields__"):
+        return FieldType(base=plain.__ros_type__, message=plain)
+    base = base or PLAIN.get(plain)
+    if base is None:
+        raise MessageError(f"{where}: {annotation!r} is no ROS type (use float64, string, Sequence[...] ...)")
+    return FieldType(base=base, string_bound=bound)
+
+
+def _split(annotation: Any) -> tuple[tuple[Any, ...], Any]:
+    if typing.get_origin(annotation) is Annotated:
+        plain, *marks = typing.get_args(annotation)
+        return tuple(marks), plain
+    return (), annotation
+
+
+def _with_shape(element: FieldType, marks: tuple[Any, ...]) -> FieldType:
+    for mark in marks:
+        if isinstance(mark, (Size, AtMost)):
+            shape = "array" if isinstance(mark, Size) else "bounded"
+            return msgspec.structs.replace(element, shape=shape, size=mark.length)
+    return msgspec.structs.replace(element, shape="sequence")
+
+
+def constant_type(annotation: Any) -> Any | None:
+    """The type inside ClassVar[...], or None when the annotation is a field's."""
+    if annotation is ClassVar:
+        return Any
+    if typing.get_origin(annotation) is ClassVar:
+        return typing.get_args(annotation)[0]
+    return None
+
+
+def evaluate(annotations: dict[str, Any], module: str, frame: types.FrameType | None) -> dict[str, Any]:
+    """Evaluate annotations that ``from __future__ import annotations`` left as text.
+
+    Names are looked up where the class stands: its function's locals, then its module.
+    """
+    import sys
+
+    if not any(isinstance(each, str) for each in annotations.values()):
+        return annotations
+    scope: dict[str, Any] = dict(vars(sys.modules[module])) if module in sys.modules else {}
+    local = dict(frame.f_locals) if frame is not None else {}
+    return {
+        name: eval(each, scope, local) if isinstance(each, str) else each  # noqa: S307 - as typing does
+        for name, each in annotations.items()
+    }

@@ -1,0 +1,95 @@
+"""The CDR codec: for each message type, code generated once that packs and unpacks it.
+
+The wire is XCDR1 as ROS 2 has it: four bytes of encapsulation header, then each primitive aligned to its own size,
+counted from the byte after the header. Neighbouring primitives are packed by one `struct.Struct`. Behind a string or
+a sequence the alignment is only known at run time, so there is one such Struct for each of the eight phases.
+"""
+
+from __future__ import annotations
+
+import functools
+import struct
+from collections.abc import Callable
+from typing import Any
+
+from robolink.exceptions import DecodeError, EncodeError, MessageError
+from robolink.message.base import Message, message_type
+from robolink.message.cdr_reader import ReaderSource
+from robolink.message.cdr_writer import WriterSource
+from robolink.message.check import explain
+
+LITTLE, BIG = b"\x00\x01\x00\x00", b"\x00\x00"
+TRAILING = 3
+"""Bytes of padding that may follow a message: some writers fill up to a multiple of four."""
+
+
+@functools.cache
+def encoder(cls: type[Message]) -> Callable[[Any], bytes]:
+    """Give the function that turns a message of this class into bytes.
+
+    It raises EncodeError, whose text names the field, for a value that does not fit.
+    """
+    source = WriterSource(message_type(cls))
+    text = source.text()
+    names = {**source.constants, "HEAD": LITTLE, "fail": functools.partial(_encode_error, cls)}
+    return _compile(text, names, f"<encode {cls.__ros_type__}>")
+
+
+@functools.cache
+def decoder(cls: type[Message]) -> Callable[[bytes], Any]:
+    """Give the function that turns bytes into a message of this class. It raises DecodeError, and nothing else."""
+    return _reader(message_type(cls), "<", functools.partial(_decode_other, cls))
+
+
+@functools.cache
+def _big_endian_decoder(cls: type[Message]) -> Callable[[bytes], Any]:
+    return _reader(cls, ">", functools.partial(_no_header, cls))
+
+
+def _reader(cls: type[Message], order: str, other: Callable[[bytes], Any]) -> Callable[[bytes], Any]:
+    source = ReaderSource(cls, order)
+    names = {
+        **source.constants,
+        "TRAILING": TRAILING,
+        "other": other,
+        "fail": functools.partial(_decode_error, cls),
+    }
+    return _compile(source.text(), names, f"<decode {cls.__ros_type__} {order}>")
+
+
+def _decode_other(cls: type[Message], data: bytes) -> Any:
+    return _big_endian_decoder(cls)(data) if data[:2] == BIG else _no_header(cls, data)
+
+
+def _no_header(cls: type[Message], data: bytes) -> Any:
+    raise MessageError(f"no CDR encapsulation header (00 01 00 00), found {data[:4].hex(' ')}")
+
+
+def _compile(text: str, names: dict[str, Any], name: str) -> Callable[[Any], Any]:
+    exec(compile(text, name, "exec"), names)  # noqa: S102 - our own text, made of type descriptions checked before
+    made: Callable[[Any], Any] = names["run"]
+    return made
+
+
+def encode(message: Message) -> bytes:
+    """Turn a message into bytes. Raises EncodeError that names the field which does not fit."""
+    return encoder(type(message))(message)
+
+
+def decode(cls: type[Message], data: bytes) -> Any:
+    """Turn bytes, little- or big-endian, into a message. Raises DecodeError, and nothing else."""
+    return decoder(cls)(bytes(data))
+
+
+def _encode_error(cls: type[Message], message: Any, error: Exception) -> EncodeError:
+    if not isinstance(error, (struct.error, TypeError, ValueError, AttributeError, OverflowError)):
+        return EncodeError(f"{cls.__ros_type__}: {error!r}")
+    return EncodeError(explain(cls, message) or f"{cls.__ros_type__}: {error}")
+
+
+def _decode_error(cls: type[Message], data: bytes, error: Exception) -> DecodeError:
+    if isinstance(error, DecodeError):
+        return error
+    if isinstance(error, MessageError) and not isinstance(error, EncodeError):
+        return DecodeError(f"{cls.__ros_type__}: {error} ({len(data)} bytes)")
+    return DecodeError(f"{cls.__ros_type__}: {len(data)} bytes end in the middle of a field")

@@ -1,0 +1,216 @@
+"""Generates the function that unpacks a message: one `struct` call a run, one copy for each array."""
+
+from __future__ import annotations
+
+import struct
+import sys
+from array import array
+from typing import Any
+
+from robolink.exceptions import MessageError
+from robolink.message.annotations import FieldType
+from robolink.message.base import DTYPES, Message
+from robolink.message.cdr_layout import CODES, SIZES, Lines, padded, phases
+
+VIEW_FROM = 65536
+"""A uint8[] of at least so many bytes arrives as a read-only view of the bytes received: no copy of an image."""
+
+
+class ReaderSource:
+    """The text of ``run(data) -> message``. ``i`` is the index in the data; the body's phase is ``i - 4``."""
+
+    def __init__(self, cls: type[Message], order: str) -> None:
+        self.out = Lines()
+        self.constants: dict[str, Any] = self.out.constants
+        self.constants.update(MessageError=MessageError)
+        self.order = order
+        self.swap = (order == "<") != (sys.byteorder == "little")
+        self.at: int | None = 4
+        self.fixed = _is_fixed(cls)
+        self.headed = False
+        """Whether the first run of primitives has read the encapsulation header along with it."""
+        self.run: list[tuple[str, str]] = []
+        made = self._message(cls)
+        self._flush()
+        if not self.fixed:
+            self._end("end - i")
+        self.out.add(f"return {made}")
+
+    def text(self) -> str:
+        """The whole function."""
+        start = ["def run(data):", "    try:"]
+        if not self.headed:
+            start.append(f"        if data[0] or data[1] != {int(self.order == '<')}: return other(data)")
+        end = ["    except Exception as error:", "        raise fail(data, error) from None"]
+        return "\n".join([*start, *self.out.lines, *end])
+
+    def _message(self, cls: type[Message]) -> str:
+        """Read all fields; give the expression that makes the message of them."""
+        if not cls.__ros_fields__:
+            self.run.append(("B", self.out.fresh("_")))
+        parts = [self._field(kind) for kind in cls.__ros_fields__.values()]  # by position: twice as fast as by name
+        return f"{self.out.constant('C', cls)}({', '.join(parts)})"
+
+    def _field(self, kind: FieldType) -> str:
+        if kind.shape != "one":
+            return self._sequence(kind)
+        if kind.message is not None:
+            return self._message(kind.message)
+        if kind.base in ("string", "wstring"):
+            return self._string(kind)
+        name = self.out.fresh("x")
+        self.run.append((CODES[kind.base], name))
+        return name
+
+    def _string(self, kind: FieldType) -> str:
+        count, name = self.out.fresh("k"), self.out.fresh("s")
+        self.run.append(("I", count))
+        self._flush()
+        self._here()
+        wide = kind.base == "wstring"
+        self._span(f"{count} * 4" if wide else count)
+        if wide:
+            self.constants["narrow"] = narrow
+            self.out.add(f"{name} = narrow(data[i:j], {self.order!r}); i = j")
+        else:  # as rclpy, what is no UTF-8 is replaced, not refused
+            self.out.add(f"try: {name} = data[i:j - 1].decode() if {count} else ''")
+            self.out.add(f"except UnicodeDecodeError: {name} = data[i:j - 1].decode('utf-8', 'replace')")
+            self.out.add("i = j")
+        if kind.string_bound:
+            self.out.add(f"if {count} > {kind.string_bound + (not wide)}: raise MessageError('over the bound')")
+        return name
+
+    def _sequence(self, kind: FieldType) -> str:
+        count = str(kind.size)
+        if kind.shape != "array":
+            count = self.out.fresh("k")
+            self.run.append(("I", count))
+        self._flush()
+        self._here()
+        if kind.shape == "bounded":
+            self.out.add(f"if {count} > {kind.size}: raise MessageError('over the bound')")
+        if kind.code:
+            return self._numbers(kind, count)
+        return self._bools(count) if kind.base == "bool" else self._elements(kind, count)
+
+    def _numbers(self, kind: FieldType, count: str) -> str:
+        name, code = self.out.fresh("v"), kind.code or "d"
+        size = SIZES[code]
+        if kind.shape == "array":
+            self._align(size, known_to=1)
+            self._span(f"{size} * {count}")
+            self._fixed(name, code, count)
+            return name
+        empty = self.out.constant("E", array(code))  # to copy an empty array is four times as fast as to make one
+        self.out.add(f"{name} = {empty}[:]")
+        self.out.add(f"if {count}:")
+        self.out.depth += 1
+        self._align(size, known_to=4)
+        self._span(f"{size} * {count}" if size > 1 else count)
+        if code == "B":
+            self.out.add(f"if {count} >= {VIEW_FROM}: {name} = memoryview(data)[i:j]")
+            self.out.add(f"else: {name}.frombytes(data[i:j])")
+        else:
+            self.out.add(f"{name}.frombytes(data[i:j])")
+        if self.swap and size > 1:
+            self.out.add(f"{name}.byteswap()")
+        self.out.add("i = j")
+        self.out.depth -= 1
+        return name
+
+    def _align(self, size: int, known_to: int) -> None:
+        if size > known_to:
+            self.out.add(f"i += 4 - i & {size - 1}")
+
+    def _span(self, length: str) -> None:
+        """Find the end, ``j``, of what begins at ``i``."""
+        self.out.add(f"j = i + {length}")
+        self.out.add("if j > end: raise MessageError('cut off')")
+
+    def _fixed(self, name: str, code: str, count: str) -> None:
+        import numpy as np
+
+        native = np.dtype(DTYPES[code])
+        wire = self.out.constant("D", native.newbyteorder() if self.swap else native)
+        self.constants["frombuffer"] = np.frombuffer
+        copied = f"astype({self.out.constant('D', native)})" if self.swap else "copy()"
+        self.out.add(f"{name} = frombuffer(data, {wire}, {count}, i).{copied}; i = j")
+
+    def _bools(self, count: str) -> str:
+        name = self.out.fresh("v")
+        self._span(count)
+        self.out.add(f"{name} = [b != 0 for b in data[i:j]]; i = j")
+        return name
+
+    def _elements(self, kind: FieldType, count: str) -> str:
+        """One element after the other; each takes a byte at least, so a count beyond the data is refused at once."""
+        name = self.out.fresh("v")
+        self.out.add(f"if {count} > end - i: raise MessageError('cut off')")
+        self.out.add(f"{name} = []")
+        self.out.add(f"for _ in range({count}):")
+        self.out.depth += 1
+        one = FieldType(base=kind.base, message=kind.message, string_bound=kind.string_bound)
+        made = self._field(one)
+        self._flush()
+        self._here()
+        self.out.add(f"{name}.append({made})")
+        self.out.depth -= 1
+        return name
+
+    def _first(self, codes: list[str], names: str) -> None:
+        """Read the header and the first run at once, a message of fixed size in one call."""
+        body = padded(codes, 0, self.order)
+        reader = struct.Struct(f"{self.order}H2x{body.format[1:]}")
+        self.headed, self.at = True, reader.size
+        whole, part = self.out.constant("W", reader.unpack), self.out.constant("U", reader.unpack_from)
+        self.constants["StructError"] = struct.error
+        if self.fixed:
+            self.out.add(f"try: head, {names}, = {whole}(data)")
+            self.out.add("except StructError:")
+            self.out.depth += 1
+            self._end(f"len(data) - {self.at}")
+        self.out.add(f"head, {names}, = {part}(data)")
+        self.out.depth = 2
+        self.out.add(f"if head != {256 if self.order == '<' else 0}: return other(data)")
+
+    def _end(self, left: str) -> None:
+        self.out.add(f"if {left} > TRAILING: raise MessageError('more bytes than the type has')")
+
+    def _here(self) -> None:
+        """From here the index is only known at run time, in ``i``."""
+        if self.at is not None:
+            self.out.add(f"i = {self.at}; end = len(data)")
+            self.at = None
+
+    def _flush(self) -> None:
+        if not self.run:
+            return
+        codes, names = [code for code, _ in self.run], ", ".join(name for _, name in self.run)
+        self.run = []
+        if self.at == 4:
+            self._first(codes, names)
+        elif self.at is not None:
+            reader = padded(codes, (self.at - 4) % 8, self.order)
+            self.out.add(f"{names}, = {self.out.constant('U', reader.unpack_from)}(data, {self.at})")
+            self.at += reader.size
+        else:
+            structs = phases(codes, self.order, shift=4)
+            table = self.out.constant("T", tuple((each.unpack_from, each.size) for each in structs))
+            self.out.add(f"unpack, n = {table}[i & 7]; {names}, = unpack(data, i); i += n")
+
+
+def _is_fixed(cls: type[Message]) -> bool:
+    """Whether all messages of the class have the same size, all of it primitives."""
+    return all(
+        kind.shape == "one"
+        and kind.base not in ("string", "wstring")
+        and (kind.message is None or _is_fixed(kind.message))
+        for kind in cls.__ros_fields__.values()
+    )
+
+
+def narrow(units: bytes, order: str) -> str:
+    """Read a wstring's characters; see `wide`."""
+    name = "little" if order == "<" else "big"
+    codes = (int.from_bytes(units[k : k + 4], name) & 0xFFFF for k in range(0, len(units), 4))  # type: ignore[arg-type]
+    return b"".join(code.to_bytes(2, "little") for code in codes).decode("utf-16-le", "replace")

@@ -1,0 +1,81 @@
+"""Messages to and from plain dicts and lists, as YAML and JSON have them."""
+
+from __future__ import annotations
+
+from array import array
+from typing import Any
+
+from robolink.exceptions import EncodeError, nearest
+from robolink.message.annotations import FieldType
+from robolink.message.base import Message
+from robolink.message.check import explain
+
+
+def from_builtins(cls: type[Message], data: Any) -> Any:
+    """Make a message of a mapping; what the mapping leaves out keeps its default.
+
+    Raises EncodeError that names the field, for an unknown one with the nearest that exists.
+
+    >>> from_builtins(Twist, {"linear": {"x": 0.3}}).linear.x
+    0.3
+    """
+    message = cls()
+    _fill(message, data if data is not None else {}, cls.__ros_type__.rpartition("/")[2])
+    wrong = explain(cls, message)
+    if wrong:
+        raise EncodeError(wrong)
+    return message
+
+
+def _fill(message: Message, data: Any, path: str) -> None:
+    if not isinstance(data, dict):
+        wanted = ", ".join(message.__ros_fields__) or "nothing"
+        raise EncodeError(f"{path}: expected a mapping of {wanted}, got {data!r:.60}")
+    for name, value in data.items():
+        kind = message.__ros_fields__.get(name)
+        if kind is None:
+            known = list(message.__ros_fields__)
+            raise EncodeError(f"{path}: no field '{name}'{nearest(str(name), known)}; it has {', '.join(known)}")
+        setattr(message, name, _value(kind, value, f"{path}.{name}"))
+
+
+def _value(kind: FieldType, value: Any, path: str) -> Any:
+    if kind.message is None:
+        if kind.base == "byte":
+            return _octets(kind, value)
+        return value
+    if kind.shape == "one":
+        return _nested(kind.message, value, path)
+    if not isinstance(value, (list, tuple)):
+        raise EncodeError(f"{path}: expected {kind}, got {value!r:.60}")
+    return [_nested(kind.message, each, f"{path}[{index}]") for index, each in enumerate(value)]
+
+
+def _nested(cls: type[Message], value: Any, path: str) -> Message:
+    message = cls()
+    _fill(message, value, path)
+    return message
+
+
+def _octets(kind: FieldType, value: Any) -> Any:
+    """A byte is written as a number in YAML and is a bytes object of length one in a message."""
+    if kind.shape == "one":
+        return bytes((value,)) if isinstance(value, int) and 0 <= value < 256 else value
+    return [bytes((each,)) if isinstance(each, int) and 0 <= each < 256 else each for each in value]
+
+
+def to_builtins(message: Message) -> dict[str, Any]:
+    """Turn a message into dicts, lists, strings and numbers, fields in their order."""
+    return {name: _plain(getattr(message, name)) for name in message.__ros_fields__}
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(type(value), "__ros_fields__"):
+        return to_builtins(value)
+    if isinstance(value, (array, memoryview)) or hasattr(value, "__array_interface__"):
+        return value.tolist()
+    if isinstance(value, bytes):
+        return value[0] if len(value) == 1 else list(value)
+    if isinstance(value, (list, tuple)):
+        return [_plain(each) for each in value]
+    return value

@@ -1,0 +1,119 @@
+"""What a type is, as data: its description, the RIHS01 hash of it, and its .msg text.
+
+The description's form and the hash are REP 2016's: SHA-256 of the description as JSON in rosidl's spelling.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+from typing import Any
+
+import msgspec
+
+from robolink.message.annotations import FieldType
+from robolink.message.base import Message
+
+TYPE_IDS = {
+    "int8": 2,
+    "uint8": 3,
+    "char": 3,  # a .msg file's char is an unsigned byte
+    "int16": 4,
+    "uint16": 5,
+    "int32": 6,
+    "uint32": 7,
+    "int64": 8,
+    "uint64": 9,
+    "float32": 10,
+    "float64": 11,
+    "bool": 15,
+    "byte": 16,
+    "string": 17,
+    "wstring": 18,
+}
+NESTED, BOUNDED_STRING = 1, 4
+SHAPES = {"one": 0, "array": 48, "bounded": 96, "sequence": 144}
+PLACEHOLDER = "structure_needs_at_least_one_member"
+"""The field that rosidl gives to an empty message, since C has no empty structs."""
+
+
+class FieldDescription(msgspec.Struct, frozen=True):
+    """One field of a described type; the ids are type_description_interfaces/msg/FieldType's."""
+
+    name: str
+    type_id: int
+    capacity: int = 0
+    string_capacity: int = 0
+    nested_type_name: str = ""
+
+
+class TypeDescription(msgspec.Struct, frozen=True):
+    """One type and, by name, the types that it is made of."""
+
+    type_name: str
+    fields: tuple[FieldDescription, ...]
+    referenced: tuple[TypeDescription, ...] = ()
+    """All types reached from this one, sorted by name; each without references of its own."""
+
+
+@functools.cache
+def describe(cls: type[Message]) -> TypeDescription:
+    """Describe a message class."""
+    reached: dict[str, TypeDescription] = {}
+    for kind in cls.__ros_fields__.values():
+        if kind.message is not None:
+            nested = describe(kind.message)
+            reached.update({each.type_name: each for each in nested.referenced})
+            reached[nested.type_name] = msgspec.structs.replace(nested, referenced=())
+    fields = tuple(_field(name, kind) for name, kind in cls.__ros_fields__.items())
+    fields = fields or (FieldDescription(PLACEHOLDER, TYPE_IDS["uint8"]),)
+    return TypeDescription(cls.__ros_type__, fields, tuple(reached[name] for name in sorted(reached)))
+
+
+def _field(name: str, kind: FieldType) -> FieldDescription:
+    nested = kind.message.__ros_type__ if kind.message is not None else ""
+    type_id = NESTED if nested else TYPE_IDS[kind.base]
+    if kind.string_bound:
+        type_id += BOUNDED_STRING
+    return FieldDescription(name, type_id + SHAPES[kind.shape], kind.size, kind.string_bound, nested)
+
+
+def combine(type_name: str, parts: dict[str, type[Message]]) -> TypeDescription:
+    """Describe a service or action: a type whose fields are the messages it is made of."""
+    reached: dict[str, TypeDescription] = {}
+    for cls in parts.values():
+        part = describe(cls)
+        reached.update({each.type_name: each for each in part.referenced})
+        reached[part.type_name] = msgspec.structs.replace(part, referenced=())
+    fields = tuple(FieldDescription(name, NESTED, nested_type_name=cls.__ros_type__) for name, cls in parts.items())
+    return TypeDescription(type_name, fields, tuple(reached[name] for name in sorted(reached)))
+
+
+def hash_of(description: TypeDescription) -> str:
+    """``RIHS01_`` and 64 hex digits."""
+    data = {
+        "type_description": _plain(description),
+        "referenced_type_descriptions": [_plain(each) for each in description.referenced],
+    }
+    text = json.dumps(data, separators=(", ", ": "))
+    return "RIHS01_" + hashlib.sha256(text.encode()).hexdigest()
+
+
+def _plain(description: TypeDescription) -> dict[str, Any]:
+    fields = []
+    for field in description.fields:
+        kind = {name: getattr(field, name) for name in field.__struct_fields__ if name != "name"}
+        fields.append({"name": field.name, "type": kind})
+    return {"type_name": description.type_name, "fields": fields}
+
+
+@functools.cache
+def type_hash(cls: type[Any]) -> str:
+    """The RIHS01 hash of a message or service class."""
+    return hash_of(cls.describe() if hasattr(cls, "describe") else describe(cls))
+
+
+def type_name(cls: type[Any]) -> str:
+    """``geometry_msgs/msg/Twist`` for the class Twist."""
+    return str(cls.__ros_type__)

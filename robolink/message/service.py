@@ -1,0 +1,92 @@
+"""The base class of service types: a request and a response message.
+
+class SetBool(Service):
+    class Request(Message):
+        data: boolean
+
+    class Response(Message):
+        success: boolean
+        message: string
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+from robolink.exceptions import MessageError
+from robolink.message.annotations import AtMost, Sequence
+from robolink.message.base import Message, MessageMeta
+from robolink.message.description import TypeDescription, combine
+
+
+class _EventOfService:
+    """`SetBool.Event`, made when it is first asked for: it needs a type of the packages above."""
+
+    def __get__(self, _: object, owner: type[Service]) -> type[Message]:
+        if "_event" not in owner.__dict__:
+            owner._event = _event_type(owner)
+        return owner._event
+
+
+def _event_type(service: type[Service]) -> type[Message]:
+    info = importlib.import_module("robolink.interfaces.service_msgs.msg").ServiceEventInfo
+    annotations = {
+        "info": info,
+        "request": Annotated[Sequence[service.Request], AtMost(1)],  # type: ignore[name-defined]
+        "response": Annotated[Sequence[service.Response], AtMost(1)],  # type: ignore[name-defined]
+    }
+    body = {
+        "__module__": service.__module__,
+        "__qualname__": f"{service.__qualname__}.Event",
+        "__doc__": f"What service introspection publishes of {service.__name__}.",
+        "__annotations__": annotations,
+    }
+    made: type[Message] = MessageMeta("Event", (Message,), body, type_name=f"{service.__ros_type__}_Event")
+    return made
+
+
+class Service:
+    """A service type; a subclass has the message classes `Request` and `Response`."""
+
+    __ros_type__: ClassVar[str]
+    _event: ClassVar[type[Message]]
+
+    if TYPE_CHECKING:
+
+        class Request(Message):
+            """What a client asks."""
+
+        class Response(Message):
+            """What a server answers."""
+
+        class Event(Message):
+            """What service introspection publishes."""
+
+    else:
+        Event = _EventOfService()
+
+    def __init_subclass__(cls) -> None:
+        for part in ("Request", "Response"):
+            found: Any = cls.__dict__.get(part)
+            if not hasattr(found, "__ros_fields__"):
+                raise MessageError(f"service {cls.__name__} needs a message class {part}")
+        request_name = cls.Request.__ros_type__
+        if not request_name.endswith("_Request"):
+            raise MessageError(f"service {cls.__name__}: Request must be a class inside it, got {request_name}")
+        cls.__ros_type__ = request_name.removesuffix("_Request").replace("/msg/", "/srv/")
+        cls.Request.__ros_type__ = f"{cls.__ros_type__}_Request"
+        cls.Response.__ros_type__ = f"{cls.__ros_type__}_Response"
+
+    @classmethod
+    def describe(cls) -> TypeDescription:
+        """Describe the service as rosidl does: request, response and event message."""
+        parts = {"request_message": cls.Request, "response_message": cls.Response, "event_message": cls.Event}
+        return combine(cls.__ros_type__, parts)
+
+
+def service_type(cls: Any) -> type[Service]:
+    """Give `cls` back if it is a service class. Raises MessageError otherwise."""
+    if isinstance(cls, type) and issubclass(cls, Service):
+        return cls
+    raise MessageError(f"{cls!r} is no service class")

@@ -1,0 +1,90 @@
+"""ROS 2's rules for names, and how a node's name and namespace are put together.
+
+A rule is a pattern of what must not be, so that every complaint knows the index of the bad character.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+MAX_NODE_NAME = 255
+MAX_TOPIC_NAME = 247
+"""rmw's limit: 255 less 8 that are kept for the prefixes of services and actions."""
+MAX_NAMESPACE = 245
+
+
+class Problem(NamedTuple):
+    """What is wrong with a name, and the index of the character where it is."""
+
+    message: str
+    invalid_index: int
+
+
+class Rule(NamedTuple):
+    """A pattern that no good name contains; its group, where it has one, is the bad character."""
+
+    pattern: re.Pattern[str]
+    message: str
+
+
+def _rules(*pairs: tuple[str, str]) -> tuple[Rule, ...]:
+    return tuple(Rule(re.compile(pattern), message) for pattern, message in pairs)
+
+
+_EMPTY = (r"\A\Z", "must not be empty")
+_TRAILING_SLASH = (r"/\Z", "must not end with '/'")
+_TOKEN_NUMBER = (r"(?:\A|/)([0-9])", "must not start with a number in any of its tokens")
+
+NODE_NAME_RULES = _rules(
+    _EMPTY,
+    (r"[^A-Za-z0-9_]", "must not contain characters other than letters, digits and '_'"),
+    (r"\A[0-9]", "must not start with a number"),
+)
+
+FULL_NAME_RULES = _rules(
+    _EMPTY,
+    (r"\A[^/]", "must be absolute: begin with '/'"),
+    _TRAILING_SLASH,
+    (r"[^A-Za-z0-9_/]", "must not contain characters other than letters, digits, '_' and '/'"),
+    (r"/(/)", "must not contain '//'"),
+    _TOKEN_NUMBER,
+)
+
+TOPIC_NAME_RULES = _rules(
+    _EMPTY,
+    _TRAILING_SLASH,
+    (
+        r"[^A-Za-z0-9_/~{}]",
+        "must not contain characters other than letters, digits, '_', '/', '~', '{' and '}'",
+    ),
+    (r"\{([0-9])", "must not start with a number in a substitution"),
+    (r"\{[A-Za-z0-9_]*([/~{])", "must not contain '/', '~' or '{' within a substitution"),
+    (r"(?:\A|\})[^{}]*(\})", "must not contain '}' without a '{' before it"),
+    (r"\{(?![^{}]*\})", "must not contain '{' without a '}' after it"),
+    (r"(?<=.)~", "must not contain '~' except as the first character"),
+    (r"\A~([^/])", "must have '/' after '~'"),
+    _TOKEN_NUMBER,
+)
+
+
+def find_problem(name: str, rules: Sequence[Rule], longest: int | None = None) -> Problem | None:
+    """Give the first rule that the name breaks and where; None for a good name of at most `longest` characters."""
+    for pattern, message in rules:
+        match = pattern.search(name)
+        if match is not None:
+            return Problem(message, match.start(match.lastindex or 0))
+    if longest is not None and len(name) > longest:
+        return Problem(f"must not be longer than {longest} characters, got {len(name)}", longest - 1)
+    return None
+
+
+def absolute_namespace(namespace: str) -> str:
+    """Give a namespace its leading '/', as a node's constructor does; '' is '/'."""
+    return namespace if namespace.startswith("/") else f"/{namespace}"
+
+
+def join(namespace: str, name: str) -> str:
+    """Put a relative name into an absolute namespace: ('/', 'a') is '/a', ('/ns', 'a') is '/ns/a'."""
+    return f"{namespace.rstrip('/')}/{name}"

@@ -1,0 +1,207 @@
+"""A parameter of a node: its name, its type and its value, and how they travel in messages and files."""
+
+from __future__ import annotations
+
+import array
+import os
+from collections.abc import Sequence
+from enum import IntEnum
+from typing import Any, Generic, TypeAlias, TypeVar, cast, overload
+
+from robolink.exceptions import DocumentError, nearest
+from robolink.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
+from robolink.interfaces.rcl_interfaces.msg import ParameterType, ParameterValue
+
+PARAMETER_SEPARATOR_STRING = "."
+
+AllowableParameterValue: TypeAlias = Any
+"""None, bool, int, float, str, or a list, tuple or array of one of: bytes (of length 1), bool, int, float, str."""
+
+AllowableParameterValueT = TypeVar("AllowableParameterValueT")
+
+
+class Parameter(Generic[AllowableParameterValueT]):
+    """A name and a value, which do not change: `Parameter("speed", value=0.3)`.
+
+    The type follows from the value. Where both are given they must agree (`ValueError` otherwise); a value of no
+    parameter type, or a `type_` that is no `Parameter.Type`, is a `TypeError`.
+    """
+
+    class Type(IntEnum):
+        """What a parameter can hold, numbered as in rcl_interfaces/msg/ParameterType."""
+
+        NOT_SET = ParameterType.PARAMETER_NOT_SET
+        BOOL = ParameterType.PARAMETER_BOOL
+        INTEGER = ParameterType.PARAMETER_INTEGER
+        DOUBLE = ParameterType.PARAMETER_DOUBLE
+        STRING = ParameterType.PARAMETER_STRING
+        BYTE_ARRAY = ParameterType.PARAMETER_BYTE_ARRAY
+        BOOL_ARRAY = ParameterType.PARAMETER_BOOL_ARRAY
+        INTEGER_ARRAY = ParameterType.PARAMETER_INTEGER_ARRAY
+        DOUBLE_ARRAY = ParameterType.PARAMETER_DOUBLE_ARRAY
+        STRING_ARRAY = ParameterType.PARAMETER_STRING_ARRAY
+
+        @classmethod
+        def from_parameter_value(cls, parameter_value: AllowableParameterValue) -> Parameter.Type:
+            """Give the type of a value; an empty list counts as BYTE_ARRAY. Raises `TypeError` for all else."""
+            if parameter_value is None:
+                return cls.NOT_SET
+            is_list = isinstance(parameter_value, _ARRAYS)
+            for name, item in (_ITEMS if is_list else _SCALARS).items():
+                if _all_are(parameter_value, item) if is_list else isinstance(parameter_value, item):
+                    return cls[name]
+            what = "a list of one of the allowed types" if is_list else "one of the allowed types"
+            raise TypeError(f"the given value is not {what}: {parameter_value!r}")
+
+        def check(self, parameter_value: AllowableParameterValue) -> bool:
+            """Say whether the value fits this type; an int is no DOUBLE, but a bool is an INTEGER, as in rclpy."""
+            if self is Parameter.Type.NOT_SET:
+                return parameter_value is None
+            if self.name in _SCALARS:
+                return isinstance(parameter_value, _SCALARS[self.name])
+            item = _ITEMS[self.name]
+            kinds = _ARRAYS if item in (int, float) else _LISTS
+            if not isinstance(parameter_value, kinds) or not _all_are(parameter_value, item):
+                return False
+            return item is not bytes or all(len(each) == 1 for each in parameter_value)
+
+    @overload
+    def __init__(self, name: str, type_: Parameter.Type | None = None) -> None: ...
+
+    @overload
+    def __init__(self, name: str, type_: Parameter.Type, value: AllowableParameterValueT) -> None: ...
+
+    @overload
+    def __init__(self, name: str, *, value: AllowableParameterValueT) -> None: ...
+
+    def __init__(self, name: str, type_: Parameter.Type | None = None, value: AllowableParameterValue = None) -> None:
+        if type_ is None:
+            type_ = Parameter.Type.from_parameter_value(value)
+        if not isinstance(type_, Parameter.Type):
+            raise TypeError(f"type_ must be a Parameter.Type, got {type_!r}")
+        if not type_.check(value):
+            raise ValueError(f"parameter '{name}': the type {type_.name} and the value {value!r} do not agree")
+        self._name, self._type, self._value = name, type_, value
+
+    @property
+    def name(self) -> str:
+        """The parameter's name; dots nest."""
+        return self._name
+
+    @property
+    def type_(self) -> Parameter.Type:
+        """The value's type."""
+        return self._type
+
+    @property
+    def value(self) -> AllowableParameterValueT:
+        """The value as it was given."""
+        return cast("AllowableParameterValueT", self._value)
+
+    def __repr__(self) -> str:
+        return f"Parameter(name={self._name!r}, type_={self._type.name}, value={self._value!r})"
+
+    @classmethod
+    def from_parameter_msg(cls, param_msg: ParameterMsg) -> Parameter[AllowableParameterValueT]:
+        """Read an rcl_interfaces/msg/Parameter; raises `ValueError` for an unknown type code."""
+        type_ = Parameter.Type(param_msg.value.type)
+        if type_ is Parameter.Type.NOT_SET:
+            return cls(param_msg.name, type_)
+        return cls(param_msg.name, type_, getattr(param_msg.value, _field(type_)))
+
+    def get_parameter_value(self) -> ParameterValue:
+        """Give the rcl_interfaces/msg/ParameterValue."""
+        message = ParameterValue(type=self._type.value)
+        if self._type is not Parameter.Type.NOT_SET:
+            setattr(message, _field(self._type), self._value)
+        return message
+
+    def to_parameter_msg(self) -> ParameterMsg:
+        """Give the rcl_interfaces/msg/Parameter."""
+        return ParameterMsg(name=self._name, value=self.get_parameter_value())
+
+
+_LISTS = (list, tuple)
+_ARRAYS = (*_LISTS, array.array)
+# In the order in which a value is tried: every bool is an int.
+_SCALARS = {"BOOL": bool, "INTEGER": int, "DOUBLE": float, "STRING": str}
+_ITEMS = {
+    "BYTE_ARRAY": bytes,
+    "BOOL_ARRAY": bool,
+    "INTEGER_ARRAY": int,
+    "DOUBLE_ARRAY": float,
+    "STRING_ARRAY": str,
+}
+
+
+def _all_are(values: Sequence[object], item: type) -> bool:
+    return all(isinstance(each, item) for each in values)
+
+
+def _field(type_: Parameter.Type) -> str:
+    return f"{type_.name.lower()}_value"
+
+
+def get_parameter_value(string_value: str) -> ParameterValue:
+    """Guess a value from text, as a command line gives it; what is no single YAML value stays a string.
+
+    >>> get_parameter_value("[1, 2]").type == ParameterType.PARAMETER_INTEGER_ARRAY
+    True
+    """
+    from robolink.parameter_file import parse_parameter_value
+
+    value: AllowableParameterValue
+    try:
+        value = parse_parameter_value(string_value)
+    except DocumentError:
+        value = string_value
+    return Parameter("", value=value).get_parameter_value()
+
+
+def parameter_value_to_python(parameter_value: ParameterValue) -> AllowableParameterValue:
+    """Give the plain value of an rcl_interfaces/msg/ParameterValue: None when it is not set, arrays as lists.
+
+    Raises `RuntimeError` for an unknown type code.
+    """
+    try:
+        type_ = Parameter.Type(parameter_value.type)
+    except ValueError:
+        raise RuntimeError(f"unexpected parameter type {parameter_value.type}") from None
+    if type_ is Parameter.Type.NOT_SET:
+        return None
+    value = getattr(parameter_value, _field(type_))
+    return list(value) if type_.name in _ITEMS else value
+
+
+def parameter_dict_from_yaml_file(
+    parameter_file: str | os.PathLike[str],
+    use_wildcard: bool = False,
+    target_nodes: Sequence[str] | None = None,
+    namespace: str = "",
+) -> dict[str, ParameterMsg]:
+    """Read the parameters of all nodes in a ROS parameter file, or of the target nodes only, by name.
+
+    `use_wildcard` adds those of the section `/**`, which the others override; `namespace` is prepended to each
+    name as it is. Raises `FileNotFoundError`, and `RuntimeError` (a `ParameterFileError`) for a file that is no
+    ROS parameter file or has no section for a target node.
+    """
+    from robolink.parameter_file import ParameterFileError, read_parameter_file
+
+    overrides = read_parameter_file(parameter_file)
+    sections = list(dict.fromkeys(each.pattern for each in overrides))
+    wanted = _wanted_sections(sections, use_wildcard, target_nodes)
+    for section in wanted:
+        if section not in sections:
+            hint = nearest(section, sections) or f": it has {', '.join(sections) or 'none'}"
+            raise ParameterFileError(f"{parameter_file}:1:1: no parameters for node '{section}'{hint}")
+    if not wanted:
+        raise ParameterFileError(f"{parameter_file}:1:1: no parameters for the nodes asked for")
+    values = {namespace + each.name: each.value for part in wanted for each in overrides if each.pattern == part}
+    return {name: Parameter(name, value=value).to_parameter_msg() for name, value in values.items()}
+
+
+def _wanted_sections(sections: Sequence[str], use_wildcard: bool, target_nodes: Sequence[str] | None) -> list[str]:
+    wildcard = [each for each in sections if use_wildcard and each == "/**"]
+    if target_nodes:
+        return wildcard + [f"/{node.strip('/')}" for node in target_nodes]
+    return wildcard + [each for each in sections if each != "/**"]

@@ -1,0 +1,138 @@
+"""Services: the serving side."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Coroutine
+from typing import Any, NamedTuple
+
+from robolink.callback_groups import CallbackGroup
+from robolink.endpoint import Endpoint, Owner
+from robolink.entity import Receiver
+from robolink.exceptions import DecodeError, WireError
+from robolink.logging import get_logger
+from robolink.message import Message, decoder, encoder, service_type
+from robolink.qos import QoSProfile
+from robolink.transport.base import Query
+from robolink.wire import EndpointKind, pack_attachment, unpack_attachment
+
+MOST_WAITING = 1000
+"""Requests that may wait for the executor; more than that, and the oldest callers are told that there is no answer."""
+
+
+class RequestHeader(NamedTuple):
+    """What an answer needs to find its asker."""
+
+    query: Query
+    sequence_number: int
+    client_gid: bytes
+
+
+class Service(Receiver):
+    """Answers requests of one type under one name; made by `Node.create_service`."""
+
+    serves = True
+
+    def __init__(
+        self,
+        owner: Owner,
+        srv_type: type[Any],
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+    ) -> None:
+        super().__init__(owner.context.inbox, MOST_WAITING, callback_group)
+        self.srv_type = service_type(srv_type)
+        self.srv_name = srv_name
+        self.callback = callback
+        self.qos_profile = qos_profile
+        self.malformed = 0
+        """How many requests could not be decoded."""
+        self._decode = decoder(srv_type.Request)
+        self._encode = encoder(srv_type.Response)
+        self._endpoint = Endpoint(owner, EndpointKind.SERVICE, srv_name, srv_type, qos_profile)
+        self._transport = self._endpoint.transport
+        self._destroyed = False
+        self._handle = self._transport.serve(self._endpoint.key, self.sink)
+        self._endpoint.announce()
+
+    def deliver(self, arrived: Any) -> None:
+        """Keep a request; the one that must give way ends without an answer."""
+        waiting = self.mailbox.waiting
+        if len(waiting) == MOST_WAITING:
+            self._transport.accept(waiting[0]).close()
+        super().deliver(arrived)
+
+    def execute(self, taken: Any) -> Any:
+        """Decode the request, call the callback, answer. A request that cannot be decoded ends without an answer."""
+        query = self._transport.accept(taken)
+        try:
+            request = self._decode(query.payload)
+            asker = unpack_attachment(query.attachment)
+        except (DecodeError, WireError) as error:
+            self._refuse(error)
+            query.close()
+            return None
+        header = RequestHeader(query, asker.sequence, asker.gid)
+        try:
+            response = self.callback(request, self.srv_type.Response())
+            if inspect.iscoroutine(response):
+                return self._answer_later(response, header)
+            self.send_response(response, header)
+        except BaseException:
+            query.close()
+            raise
+        return None
+
+    async def _answer_later(self, response: Coroutine[Any, Any, Any], header: RequestHeader) -> None:
+        try:
+            self.send_response(await response, header)
+        finally:
+            header.query.close()
+
+    def send_response(self, response: Message, header: RequestHeader) -> None:
+        """Answer. Raises TypeError for a response of another type, EncodeError for a field that does not fit."""
+        if not isinstance(response, self.srv_type.Response):
+            raise TypeError(
+                f"the callback of service {self.srv_name} must return a {self.srv_type.__name__}.Response,"
+                f" got {response!r:.80}"
+            )
+        now = self._endpoint.context.time.now()
+        header.query.reply(self._encode(response), pack_attachment(header.sequence_number, now, header.client_gid))
+        header.query.close()
+
+    def _refuse(self, error: Exception) -> None:
+        self.malformed += 1
+        if self.malformed == 1:
+            get_logger(self.logger_name).warning(
+                f"{self.srv_name}: refused a request that is no {self._endpoint.type_name}: {error}"
+                " (the next ones are only counted)"
+            )
+
+    @property
+    def service_name(self) -> str:
+        """The service's fully qualified name."""
+        return self.srv_name
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the logger that belongs to the node."""
+        return self._endpoint.logger_name
+
+    def destroy(self) -> None:
+        """Serve no more; whoever waits is told so. Safe to call twice."""
+        if self._destroyed:
+            return
+        self._destroyed = True
+        self._handle.close()
+        self._endpoint.close()
+        self.detach()
+        while len(self.mailbox):
+            self._transport.accept(self.mailbox.take()).close()
+
+    def __enter__(self) -> Service:
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.destroy()

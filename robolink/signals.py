@@ -1,0 +1,110 @@
+"""Ctrl-C and SIGTERM: they end every context that is ok, and whoever spins; quietly."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+import weakref
+from enum import IntFlag
+from types import FrameType, TracebackType
+from typing import TYPE_CHECKING, Any
+
+from robolink.exceptions import ExternalShutdownException, InterruptedByUser, ROSInterruptException
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+
+
+class SignalHandlerOptions(IntFlag):
+    """Which signals are handled; the numbers are rclpy's."""
+
+    NO = 0
+    SIGINT = 1
+    SIGTERM = 2
+    ALL = 3
+
+
+_contexts: weakref.WeakSet[Context] = weakref.WeakSet()
+_before: dict[int, Any] = {}
+_received = 0
+_quiet = False
+
+_NUMBERS = {SignalHandlerOptions.SIGINT: [signal.SIGINT], SignalHandlerOptions.SIGTERM: [signal.SIGTERM]}
+if sys.platform == "win32":
+    _NUMBERS[SignalHandlerOptions.SIGINT].append(signal.SIGBREAK)  # what a launcher can send to a process of its own
+
+_ENDS = (ExternalShutdownException, ROSInterruptException)
+"""What a program meets when it is told to end; InterruptedByUser is one of the first kind."""
+
+
+def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
+    """Handle these signals from now on. Only Python's main thread can: elsewhere nothing happens."""
+    if threading.current_thread() is not threading.main_thread():
+        return
+    for flag, numbers in _NUMBERS.items():
+        for number in numbers:
+            if flag in options and number not in _before:
+                _before[number] = signal.signal(number, _on_signal)
+    if options:
+        _end_quietly()
+
+
+def uninstall_signal_handlers() -> None:
+    """Give the signals back to whom they belonged before."""
+    if threading.current_thread() is not threading.main_thread():
+        return
+    while _before:
+        number, handler = _before.popitem()
+        signal.signal(number, handler if handler is not None else signal.SIG_DFL)
+
+
+def get_current_signal_handlers_options() -> SignalHandlerOptions:
+    """Say which signals are handled now."""
+    found = SignalHandlerOptions.NO
+    if signal.SIGINT in _before:
+        found |= SignalHandlerOptions.SIGINT
+    if signal.SIGTERM in _before:
+        found |= SignalHandlerOptions.SIGTERM
+    return found
+
+
+def watch(context: Context) -> None:
+    """Tell this context when a signal comes."""
+    _contexts.add(context)
+
+
+def _on_signal(number: int, frame: FrameType | None) -> None:
+    """End the contexts, and break into what the main thread does, as Ctrl-C does in any Python program."""
+    global _received
+    _received = number
+    for context in list(_contexts):
+        context.interrupt()
+    before = _before.get(number)
+    if before in (signal.default_int_handler, signal.SIG_DFL):
+        raise InterruptedByUser
+    if callable(before):
+        before(number, frame)
+
+
+def _end_quietly() -> None:
+    """Let programs and threads end without a traceback that do not catch what ends them.
+
+    The exit code is the shell's for a program that a signal ended: 130 for Ctrl-C, 143 for SIGTERM.
+    """
+    global _quiet
+    if _quiet:
+        return
+    _quiet = True
+    show, show_in_thread = sys.excepthook, threading.excepthook
+
+    def on_error(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        if _received and issubclass(kind, _ENDS):
+            raise SystemExit(128 + _received)
+        show(kind, error, trace)
+
+    def on_error_in_thread(args: threading.ExceptHookArgs) -> None:
+        if not issubclass(args.exc_type, _ENDS):
+            show_in_thread(args)
+
+    sys.excepthook, threading.excepthook = on_error, on_error_in_thread

@@ -1,0 +1,106 @@
+"""Let a process notice that the one that started it is gone: an inherited pipe that then ends.
+
+The parent holds the writing end of a pipe and never writes; its children read. However the parent dies, the
+kernel closes its end, and the read returns. That works alike on Linux, macOS and Windows.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import stat
+import sys
+import threading
+import time
+from typing import Any
+
+VARIABLE = "ROBOLINK_LIFELINE"
+
+
+class Lifeline:
+    """The parent's side: give `options()` to the `Popen` of every child."""
+
+    def __init__(self) -> None:
+        self._reading, self._writing = os.pipe()
+
+    def options(self) -> tuple[dict[str, str], dict[str, Any]]:
+        """Give what a child needs: environment variables, and keyword arguments of `Popen`."""
+        if sys.platform == "win32":
+            import msvcrt
+            import subprocess
+
+            handle = msvcrt.get_osfhandle(self._reading)
+            os.set_handle_inheritable(handle, True)
+            startup = subprocess.STARTUPINFO(lpAttributeList={"handle_list": [handle]})
+            options: dict[str, Any] = {"startupinfo": startup}
+        else:
+            handle = self._reading
+            options = {"pass_fds": (handle,)}
+        return {VARIABLE: str(handle)}, options
+
+    def close(self) -> None:
+        """Let go: children that are still there take it as our end."""
+        os.close(self._writing)
+        os.close(self._reading)
+
+
+def watch_lifeline(patience: float = 2.0) -> bool:
+    """Stop this process when its launcher is gone; say whether there is a launcher to watch.
+
+    It then gets a SIGINT, for an orderly end, and `patience` seconds later it is killed with all of its
+    process group. Call it once, in a program's main thread, early.
+    """
+    reading = _inherited(os.environ.pop(VARIABLE, ""))
+    if reading is None:
+        return False
+    threading.Thread(target=_watch, args=(reading, patience), name="lifeline", daemon=True).start()
+    return True
+
+
+def _inherited(variable: str) -> int | None:
+    """Turn the variable into a file descriptor of ours, if it still stands for the pipe."""
+    try:
+        reading = _descriptor(int(variable))
+        if not stat.S_ISFIFO(os.fstat(reading).st_mode):
+            return None
+        os.set_inheritable(reading, False)
+    except (ValueError, OverflowError, OSError):
+        return None
+    return reading
+
+
+def _descriptor(handle: int) -> int:
+    if sys.platform == "win32":
+        import msvcrt
+
+        handle = msvcrt.open_osfhandle(handle, os.O_RDONLY)
+    return handle
+
+
+def _watch(reading: int, patience: float) -> None:
+    try:
+        while os.read(reading, 1):
+            continue
+    except OSError:  # Windows says "broken pipe" for the end
+        pass
+    _interrupt()
+    time.sleep(patience)
+    _kill_group()
+
+
+def _interrupt() -> None:
+    """Send the main thread what Ctrl-C would, so that even a wait of its is cut short."""
+    if sys.platform == "win32":
+        import _thread
+
+        _thread.interrupt_main()
+    else:
+        main = threading.main_thread().ident
+        assert main is not None
+        signal.pthread_kill(main, signal.SIGINT)
+
+
+def _kill_group() -> None:
+    if sys.platform != "win32" and os.getpgrp() == os.getpid():
+        os.killpg(os.getpid(), signal.SIGKILL)
+    os._exit(1)

@@ -1,0 +1,120 @@
+"""Run one program in a process group of its own: start it, read its lines, ask it to stop."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import IO, Any
+
+from robolink.exceptions import RobolinkError
+from robolink.supervisor.guardian import is_alive, signal_group
+from robolink.supervisor.lifeline import Lifeline
+from robolink.supervisor.policy import Step
+
+_LONGEST_LINE = 1 << 20
+"""Bytes; a longer line is printed in pieces."""
+_LAST_WORDS = 0.3
+"""Seconds that the output of a process may go on behind its end, in the pipe or from its own children."""
+
+
+class ProcessStartError(RobolinkError, OSError):
+    """A program cannot be started; the text names it and says why."""
+
+
+@dataclass(frozen=True)
+class Process:
+    """What to run: a command, under a name; `env` is added to our own environment.
+
+    An `interactive` process reads our standard input, the others read nothing.
+    """
+
+    name: str
+    argv: Sequence[str]
+    env: Mapping[str, str] = field(default_factory=dict)
+    cwd: str | os.PathLike[str] | None = None
+    interactive: bool = False
+
+
+class Child:
+    """A process that was started, with everything that it starts in turn: its process group."""
+
+    def __init__(self, process: Process, lifeline: Lifeline) -> None:
+        variables, options = lifeline.options()
+        try:
+            self._popen = subprocess.Popen(
+                list(process.argv),
+                env={**os.environ, "PYTHONUNBUFFERED": "1", **process.env, **variables},
+                cwd=process.cwd,
+                stdin=None if process.interactive else subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                **options,
+                **_own_group(),
+            )
+        except (OSError, ValueError) as error:
+            raise ProcessStartError(f"cannot start {process.name} ({process.argv[0]}): {error}") from None
+        self.name = process.name
+        self.group = self._popen.pid
+
+    def watch(self, on_line: Callable[[str, bytes], None], on_exit: Callable[[str, int], None]) -> None:
+        """Call `on_line` with each line, then `on_exit` with the return code, on threads of our own."""
+        output = self._popen.stdout
+        assert output is not None
+        reader = threading.Thread(target=self._read, args=(output, on_line), daemon=True)
+        reader.start()
+        threading.Thread(target=self._wait, args=(reader, on_exit), daemon=True).start()
+
+    def ask(self, step: Step) -> None:
+        """Ask the process group to stop, the harder the later the step."""
+        if sys.platform != "win32":
+            signal_group(self.group, _SIGNALS[step])
+        elif step is Step.INTERRUPT:
+            self._popen.send_signal(signal.CTRL_BREAK_EVENT)
+        else:
+            self._popen.terminate()
+
+    def pause(self) -> None:
+        """Hold the process group where it stands."""
+        if sys.platform != "win32":
+            signal_group(self.group, signal.SIGSTOP)
+
+    def resume(self) -> None:
+        """Let a paused process group go on."""
+        if sys.platform != "win32":
+            signal_group(self.group, signal.SIGCONT)
+
+    def is_left(self) -> bool:
+        """Whether the ended process left others in its group."""
+        return is_alive(self.group)
+
+    def _read(self, output: IO[bytes], on_line: Callable[[str, bytes], None]) -> None:
+        with output:
+            while line := output.readline(_LONGEST_LINE):
+                on_line(self.name, line)
+
+    def _wait(self, reader: threading.Thread, on_exit: Callable[[str, int], None]) -> None:
+        returncode = self._popen.wait()
+        reader.join(_LAST_WORDS)
+        on_exit(self.name, returncode)
+
+
+def _own_group() -> dict[str, Any]:
+    """Keep our Ctrl-C away from the process, so that it gets one, from us, and its children with it.
+
+    On POSIX that is a session of its own, not only a group: such a process may even read our terminal, for
+    which a background group would be stopped (SIGTTIN).
+    """
+    options: dict[str, Any] = {"start_new_session": True}
+    if sys.platform == "win32":
+        options = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
+    return options
+
+
+_SIGNALS = {Step.INTERRUPT: signal.SIGINT, Step.TERMINATE: signal.SIGTERM}
+if sys.platform != "win32":
+    _SIGNALS[Step.KILL] = signal.SIGKILL

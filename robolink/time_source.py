@@ -1,0 +1,108 @@
+"""Where a node's clock takes its time from: the system, or /clock while the parameter use_sim_time is true."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robolink.callback_groups import MutuallyExclusiveCallbackGroup
+from robolink.clock import ROSClock
+from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
+from robolink.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
+from robolink.parameter import Parameter
+from robolink.qos import QoSProfile, ReliabilityPolicy
+from robolink.time import Time
+
+if TYPE_CHECKING:
+    from robolink.node import Node
+    from robolink.subscription import Subscription
+
+CLOCK_TOPIC = "/clock"
+USE_SIM_TIME_NAME = "use_sim_time"
+
+
+class TimeSource:
+    """Sets the clocks attached to it, and follows a node's parameter use_sim_time."""
+
+    def __init__(self, *, node: Node | None = None) -> None:
+        self._clocks: list[ROSClock] = []
+        self._node: Node | None = None
+        self._clock_sub: Subscription[ClockMsg] | None = None
+        self._active = False
+        self._last: Time | None = None
+        if node is not None:
+            self.attach_node(node)
+
+    @property
+    def ros_time_is_active(self) -> bool:
+        """Whether the time comes from /clock."""
+        return self._active
+
+    @ros_time_is_active.setter
+    def ros_time_is_active(self, enabled: bool) -> None:
+        if self._active == enabled:
+            return
+        self._active = enabled
+        for clock in self._clocks:
+            clock._set_ros_time_is_active(enabled)
+        if enabled:
+            self._subscribe()
+        else:
+            self._unsubscribe()
+
+    def attach_node(self, node: Node) -> None:
+        """Follow this node's use_sim_time, which is declared if it is not yet. Raises TypeError for no bool."""
+        if self._node is not None:
+            self.detach_node()
+        self._node = node
+        if not node.has_parameter(USE_SIM_TIME_NAME):
+            node.declare_parameter(USE_SIM_TIME_NAME, False)
+        value = node.get_parameter(USE_SIM_TIME_NAME)
+        if value.type_ is not Parameter.Type.BOOL:
+            raise TypeError(f"{USE_SIM_TIME_NAME}: expected a bool, got {value.value!r}")
+        self.ros_time_is_active = value.value
+        node.add_on_set_parameters_callback(self._on_parameters)
+
+    def detach_node(self) -> None:
+        """Follow no node."""
+        self.ros_time_is_active = False
+        if self._node is not None:
+            self._node.remove_on_set_parameters_callback(self._on_parameters)
+        self._node = None
+
+    def attach_clock(self, clock: ROSClock) -> None:
+        """Set this clock from now on. Raises ValueError for what is no ROSClock."""
+        if not isinstance(clock, ROSClock):
+            raise ValueError("Only clocks with type ROS_TIME can be attached.")
+        if self._last is not None:
+            clock.set_ros_time_override(self._last)
+        clock._set_ros_time_is_active(self._active)
+        self._clocks.append(clock)
+
+    def clock_callback(self, msg: ClockMsg) -> None:
+        """Set the clocks to what /clock says."""
+        time = Time.from_msg(msg.clock)
+        self._last = time
+        for clock in self._clocks:
+            clock.set_ros_time_override(time)
+
+    def _subscribe(self) -> None:
+        if self._clock_sub is None and self._node is not None:
+            qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+            # A group of its own: time goes on while a coroutine of the node waits for it.
+            self._clock_sub = self._node.create_subscription(
+                ClockMsg, CLOCK_TOPIC, self.clock_callback, qos, callback_group=MutuallyExclusiveCallbackGroup()
+            )
+
+    def _unsubscribe(self) -> None:
+        if self._clock_sub is not None and self._node is not None:
+            self._node.destroy_subscription(self._clock_sub)
+            self._clock_sub = None
+
+    def _on_parameters(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
+        for parameter in parameters:
+            if parameter.name != USE_SIM_TIME_NAME:
+                continue
+            if parameter.type_ is not Parameter.Type.BOOL:
+                return SetParametersResult(successful=False, reason=f"{USE_SIM_TIME_NAME} must be a bool")
+            self.ros_time_is_active = parameter.value
+        return SetParametersResult(successful=True)

@@ -1,0 +1,349 @@
+"""A network inside one process: deterministic and without threads, for tests, simulation and examples.
+
+What is published is handed over inside `put`, calls inside `call`, and answers inside `reply`.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import re
+import threading
+import weakref
+from collections import Counter, deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from operator import itemgetter
+from typing import Any
+
+from robolink.exceptions import TransportClosedError
+from robolink.qos import DurabilityPolicy, QoSProfile, resolved
+from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport
+
+
+class Bus:
+    """What the sessions of one network share; two of them know nothing of each other."""
+
+    def __init__(self) -> None:
+        # Held while sinks are called, so that all subscriptions see one order and a closed one sees nothing.
+        self.lock = threading.RLock()
+        self.subscriptions: dict[str, tuple[_Subscription, ...]] = {}
+        self.outlets: dict[str, tuple[_Outlet, ...]] = {}
+        self.servers: dict[str, tuple[_Server, ...]] = {}
+        self.watches: tuple[_Watch, ...] = ()
+        self.tokens: Counter[str] = Counter()
+        self._session_ids = itertools.count(1)
+        self._order = itertools.count()
+
+    @classmethod
+    def named(cls, name: str) -> Bus:
+        """Give the bus of that name, which lives as long as somebody uses it."""
+        with _naming:
+            return _buses.setdefault(name, cls())
+
+    def new_session_id(self) -> str:
+        """Count the sessions of this bus, in hex."""
+        return f"{next(self._session_ids):x}"
+
+    def next_order(self) -> int:
+        """Number what is published, over all topics."""
+        return next(self._order)
+
+
+_naming = threading.Lock()
+_buses: weakref.WeakValueDictionary[str, Bus] = weakref.WeakValueDictionary()
+
+
+class MemoryTransport(Transport):
+    """A session on a bus: `MemoryTransport(bus=Bus())` for a network of one's own, or the bus of a name."""
+
+    threaded = False
+
+    def __init__(self, name: str = "", bus: Bus | None = None) -> None:
+        self.url = f"memory://{name}"
+        self.bus = bus or Bus.named(name)
+        self.session_id = self.bus.new_session_id()
+        self._handles: dict[_Declared, None] = {}
+        self._calls: weakref.WeakSet[_Call] = weakref.WeakSet()
+        self._queries: weakref.WeakSet[_Query] = weakref.WeakSet()
+        self._closed = False
+
+    def advertise(self, key: str, qos: QoSProfile) -> Outlet:
+        """Declare a publisher. With TRANSIENT_LOCAL it keeps the last `qos.depth` samples for late joiners."""
+        with self._declaring():
+            return _Outlet(self, key, qos)
+
+    def subscribe(self, key: str, qos: QoSProfile, sink: Sink) -> Handle:
+        """Call `sink` for every sample published on `key`; with TRANSIENT_LOCAL what was kept comes first."""
+        with self._declaring():
+            return _Subscription(self, key, qos, sink)
+
+    def serve(self, key: str, sink: Sink) -> Handle:
+        """Call `sink` for every call on `key`."""
+        with self._declaring():
+            return _Server(self, key, sink)
+
+    def call(self, key: str, payload: bytes, attachment: bytes, sink: Sink) -> Handle:
+        """Ask whoever serves `key`: `sink` gets each reply, then None."""
+        with self._declaring():
+            servers = self.bus.servers.get(key, ())
+            call = _Call(self.bus, sink, len(servers))
+            self._calls.add(call)
+            for server in servers:
+                server.ask(_Query(payload, attachment, call))
+            return call
+
+    def announce(self, token: str) -> Handle:
+        """Show `token` to all who watch, until closed."""
+        with self._declaring():
+            announced = _Announced(self, token)
+        _notify(self.bus)
+        return announced
+
+    def watch(self, pattern: str, on_change: Callable[[str, bool], object]) -> Handle:
+        """Call `on_change(token, alive)` for each token that matches, at once for those already there."""
+        with self._declaring():
+            watch = _Watch(self, pattern, on_change)
+        watch.drain()
+        return watch
+
+    def tokens(self, pattern: str) -> list[str]:
+        """List the tokens that match `pattern`, sorted."""
+        with self._declaring():
+            return sorted(filter(_matcher(pattern), self.bus.tokens))
+
+    def read(self, arrived: Any) -> Sample:
+        """Give what arrived: it is a Sample already."""
+        sample: Sample = arrived
+        return sample
+
+    def accept(self, arrived: Any) -> Query:
+        """Give what arrived: it is a Query already."""
+        query: _Query = arrived
+        return query
+
+    def close(self) -> None:
+        """Undeclare everything; the calls of this session end, and those that it has not answered."""
+        with self.bus.lock:
+            self._closed = True
+            handles, self._handles = self._handles, {}
+            for handle in reversed(handles):
+                handle.remove()
+            for call in list(self._calls):
+                call.end()
+            for query in list(self._queries):
+                query.close()
+        _notify(self.bus)
+
+    @contextmanager
+    def _declaring(self) -> Iterator[None]:
+        with self.bus.lock:
+            if self._closed:
+                raise TransportClosedError(f"session {self.session_id} of {self.url} has been closed")
+            yield
+
+
+class _Declared:
+    """Something that a session owns, until either is closed."""
+
+    def __init__(self, session: MemoryTransport) -> None:
+        self.session, self.bus, self.open = session, session.bus, True
+        session._handles[self] = None
+
+    def close(self) -> None:
+        with self.bus.lock:
+            self.session._handles.pop(self, None)
+            self.remove()
+        _notify(self.bus)
+
+    def remove(self) -> None:
+        """Take it off the bus, whose lock is held; nothing happens the second time."""
+        if self.open:
+            self.open = False
+            self.leave()
+
+    def leave(self) -> None:
+        raise NotImplementedError
+
+
+class _Outlet(_Declared):
+    def __init__(self, session: MemoryTransport, key: str, qos: QoSProfile) -> None:
+        super().__init__(session)
+        self.key = key
+        latched = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+        self.kept: deque[tuple[int, Sample]] = deque(maxlen=resolved(qos).depth if latched else 0)
+        self.bus.outlets[key] = (*self.bus.outlets.get(key, ()), self)
+
+    def put(self, payload: bytes, attachment: bytes) -> None:
+        with self.bus.lock:
+            if not self.open:
+                raise TransportClosedError(f"the publisher of {self.key} has been closed")
+            sample = Sample(payload, attachment)
+            if self.kept.maxlen:
+                self.kept.append((self.bus.next_order(), sample))
+            for subscription in self.bus.subscriptions.get(self.key, ()):
+                subscription.give(sample)
+
+    @property
+    def matched(self) -> bool:
+        return bool(self.bus.subscriptions.get(self.key))
+
+    def leave(self) -> None:
+        _drop(self.bus.outlets, self.key, self)
+        self.kept.clear()
+
+
+class _Subscription(_Declared):
+    def __init__(self, session: MemoryTransport, key: str, qos: QoSProfile, sink: Sink) -> None:
+        super().__init__(session)
+        self.key, self.sink = key, sink
+        self.bus.subscriptions[key] = (*self.bus.subscriptions.get(key, ()), self)
+        if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
+            self._catch_up(resolved(qos).depth)
+
+    def _catch_up(self, depth: int) -> None:
+        kept = [each for outlet in self.bus.outlets.get(self.key, ()) for each in list(outlet.kept)[-depth:]]
+        for _, sample in sorted(kept, key=itemgetter(0)):
+            self.give(sample)
+
+    def give(self, sample: Sample) -> None:
+        if self.open:
+            self.sink(sample)
+
+    def leave(self) -> None:
+        _drop(self.bus.subscriptions, self.key, self)
+
+
+class _Server(_Declared):
+    def __init__(self, session: MemoryTransport, key: str, sink: Sink) -> None:
+        super().__init__(session)
+        self.key, self.sink = key, sink
+        self.bus.servers[key] = (*self.bus.servers.get(key, ()), self)
+
+    def ask(self, query: _Query) -> None:
+        self.session._queries.add(query)
+        self.sink(query)
+
+    def leave(self) -> None:
+        _drop(self.bus.servers, self.key, self)
+
+
+class _Call:
+    """A call under way: ends when every server has closed its query, or when the caller gives up."""
+
+    def __init__(self, bus: Bus, sink: Sink, servers: int) -> None:
+        self.bus, self._waiting = bus, servers
+        self._sink: Sink | None = sink
+        if not servers:
+            self.end()
+
+    def give(self, sample: Sample) -> None:
+        if self._sink:
+            self._sink(sample)
+
+    def one_less(self) -> None:
+        self._waiting -= 1
+        if not self._waiting:
+            self.end()
+
+    def end(self) -> None:
+        sink, self._sink = self._sink, None
+        if sink:
+            sink(None)
+
+    def close(self) -> None:
+        with self.bus.lock:
+            self._sink = None
+
+
+class _Query:
+    """A call as one server sees it; forgetting it closes it."""
+
+    def __init__(self, payload: bytes, attachment: bytes, call: _Call) -> None:
+        self.payload, self.attachment = payload, attachment
+        self._call, self._open = call, True
+
+    def reply(self, payload: bytes, attachment: bytes) -> None:
+        with self._call.bus.lock:
+            if self._open:
+                self._call.give(Sample(payload, attachment))
+
+    def close(self) -> None:
+        with self._call.bus.lock:
+            if self._open:
+                self._open = False
+                self._call.one_less()
+
+    __del__ = close
+
+
+class _Announced(_Declared):
+    def __init__(self, session: MemoryTransport, token: str) -> None:
+        super().__init__(session)
+        self.token = token
+        self.bus.tokens[token] += 1
+        if self.bus.tokens[token] == 1:
+            _tell(self.bus, token, True)
+
+    def leave(self) -> None:
+        self.bus.tokens[self.token] -= 1
+        if not self.bus.tokens[self.token]:
+            del self.bus.tokens[self.token]
+            _tell(self.bus, self.token, False)
+
+
+class _Watch(_Declared):
+    """Changes are noted under the bus's lock and told outside it, each watch's in order and one at a time."""
+
+    def __init__(self, session: MemoryTransport, pattern: str, on_change: Callable[[str, bool], object]) -> None:
+        super().__init__(session)
+        self.matches, self.on_change = _matcher(pattern), on_change
+        self.changes = deque((token, True) for token in sorted(filter(self.matches, self.bus.tokens)))
+        self._telling = threading.Lock()
+        self.bus.watches = (*self.bus.watches, self)
+
+    def drain(self) -> None:
+        while self.changes and self._telling.acquire(blocking=False):
+            try:
+                self._tell_all()
+            finally:
+                self._telling.release()
+
+    def _tell_all(self) -> None:
+        while change := self._next():
+            self.on_change(*change)
+
+    def _next(self) -> tuple[str, bool] | None:
+        with self.bus.lock:
+            return self.changes.popleft() if self.changes else None
+
+    def leave(self) -> None:
+        self.bus.watches = tuple(watch for watch in self.bus.watches if watch is not self)
+        self.changes.clear()
+
+
+def _tell(bus: Bus, token: str, alive: bool) -> None:
+    for watch in bus.watches:
+        if watch.matches(token):
+            watch.changes.append((token, alive))
+
+
+def _notify(bus: Bus) -> None:
+    for watch in bus.watches:
+        watch.drain()
+
+
+def _drop(table: dict[str, tuple[Any, ...]], key: str, one: object) -> None:
+    rest = tuple(each for each in table[key] if each is not one)
+    if rest:
+        table[key] = rest
+    else:
+        del table[key]
+
+
+@functools.lru_cache(maxsize=64)
+def _matcher(pattern: str) -> Callable[[str], bool]:
+    """Match as Zenoh does: `*` is one chunk and `**` any number, but not those that begin with @."""
+    wild = {"*": r"/(?!@)[^/]+", "**": r"(?:/(?!@)[^/]+)*"}
+    regex = re.compile("".join(wild.get(chunk, "/" + re.escape(chunk)) for chunk in pattern.split("/")))
+    return lambda token: regex.fullmatch("/" + token) is not None

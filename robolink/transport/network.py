@@ -1,0 +1,265 @@
+"""Where a Zenoh session listens and whom it seeks: this machine only, unless the user asks for more."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import re
+import sys
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robolink.exceptions import TransportError, nearest
+
+if TYPE_CHECKING:
+    import zenoh
+
+FIRST_PORT = 17447
+"""The rendezvous port of domain 0; domain d meets at FIRST_PORT + d."""
+
+ROS_ROUTER = "tcp/127.0.0.1:7447"
+"""Where `rmw_zenohd`, the router of ROS 2, listens."""
+
+NAMES = ("localhost", "subnet", "off")
+"""Networks that can be asked for by name; an endpoint of a router or a file of Zenoh's settings do as well."""
+
+_HIGHEST_DOMAIN = 232
+_RANGES = {"": "localhost", "SYSTEM_DEFAULT": "localhost", "LOCALHOST": "localhost", "SUBNET": "subnet", "OFF": "off"}
+_ENDPOINT = re.compile(r"(tcp|tls|quic|ws)/\S+:\d+")
+_LOOPBACK = {"linux": "lo", "darwin": "lo0"}
+
+
+class Wanted(NamedTuple):
+    """Which network somebody asked for."""
+
+    asked_by: str
+    """The option or variable to name in an error."""
+    value: str
+    """One of NAMES, the endpoint of a router, or the path of a file."""
+
+
+def domain_id(environ: Mapping[str, str]) -> int:
+    """Read ROS_DOMAIN_ID, 0 when unset; raises TransportError for what is no domain."""
+    text = environ.get("ROS_DOMAIN_ID", "").strip() or "0"
+    if not re.fullmatch(r"[0-9]{1,3}", text):
+        raise TransportError(f"ROS_DOMAIN_ID must be a number from 0 to {_HIGHEST_DOMAIN}, got {text[:40]!r}")
+    return checked_domain(int(text), "ROS_DOMAIN_ID")
+
+
+def checked_domain(domain: int, asked_by: str = "the domain id") -> int:
+    """Give `domain` back; raises TransportError unless it is one of ROS 2's, 0 to 232."""
+    if not 0 <= domain <= _HIGHEST_DOMAIN:
+        raise TransportError(f"{asked_by} must be a number from 0 to {_HIGHEST_DOMAIN}, got {domain}")
+    return domain
+
+
+def wanted(network: str | None, environ: Mapping[str, str]) -> Wanted:
+    """Find out which network is asked for: by argument, by variable, or else this machine's own.
+
+    The variables are ROBOLINK_NETWORK, ZENOH_SESSION_CONFIG_URI and ROS_AUTOMATIC_DISCOVERY_RANGE, in this order.
+    """
+    if network:
+        return Wanted("network", network)
+    for variable in ("ROBOLINK_NETWORK", "ZENOH_SESSION_CONFIG_URI"):
+        if environ.get(variable):
+            return Wanted(variable, environ[variable])
+    variable = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+    reach = environ.get(variable, "")
+    if reach.upper() not in _RANGES:
+        known = ", ".join(filter(None, _RANGES))
+        raise TransportError(f"{variable} must be one of {known}, got {reach[:40]!r}")
+    return Wanted(variable, _RANGES[reach.upper()])
+
+
+def settings(value: str, domain: int, *, holds_port: bool = True, platform: str = sys.platform) -> dict[str, Any]:
+    """Give Zenoh's settings for a network by name or for the endpoint of a router, as JSON would have them.
+
+    Without `holds_port` the session leaves the rendezvous port to another process.
+    """
+    if _ENDPOINT.fullmatch(value):
+        return _client(value)
+    if value == "off":
+        return _BASE | {"listen": {"endpoints": []}, "scouting": _scouting(gossip=False)}
+    port = FIRST_PORT + checked_domain(domain)
+    if value == "subnet":
+        return _subnet(port, holds_port)
+    return _localhost(port, holds_port, platform)
+
+
+_BASE: dict[str, Any] = {
+    "mode": "peer",
+    # Publishers that keep samples for late joiners stamp them.
+    "timestamping": {"enabled": True},
+    "transport": {
+        "link": {
+            "protocols": ["tcp", "tls", "quic", "ws"],
+            "tx": {"lease": 5000},
+            "rx": {"max_message_size": 64 * 1024 * 1024},
+        },
+        "shared_memory": {"enabled": True},
+    },
+    "adminspace": {"enabled": False},
+}
+
+
+def _localhost(port: int, holds_port: bool, platform: str) -> dict[str, Any]:
+    loopback = _LOOPBACK.get(platform)
+    peers = [f"tcp/127.0.0.1:{port}"]
+    if loopback:
+        peers.append(ROS_ROUTER)
+    # Windows names its interfaces in ways that cannot be known before a link is up, so that there is no access
+    # control there, and without it a session follows gossip to other machines (seen on Linux). A ROS 2 router is
+    # what brings such gossip in: on Windows it has to be asked for, `--network tcp/127.0.0.1:7447`.
+    control = {"access_control": _only_on(loopback)} if loopback else {}
+    return _meeting("127.0.0.1", port, holds_port, peers) | {"scouting": _scouting()} | control
+
+
+def _subnet(port: int, holds_port: bool) -> dict[str, Any]:
+    peers = [f"tcp/127.0.0.1:{port}", ROS_ROUTER]
+    # A group of its own: what else speaks Zenoh here (224.0.0.224:7446) is not drawn in.
+    return _meeting("0.0.0.0", port, holds_port, peers) | {
+        "scouting": _scouting(delay=200, multicast={"enabled": True, "address": f"224.0.0.224:{port}"})
+    }
+
+
+def _meeting(host: str, port: int, holds_port: bool, peers: list[str]) -> dict[str, Any]:
+    own = [f"tcp/{host}:{port}", f"tcp/{host}:0"]
+    return _BASE | {
+        # No retry: a listener that retries for ever makes close() hang for 10 s (seen with Zenoh 1.10.2). When
+        # the holder of the port dies, the next process to start takes it, and the others find it there.
+        "listen": {
+            "endpoints": own if holds_port else own[1:],
+            "exit_on_failure": holds_port,
+            "timeout_ms": 0,
+        },
+        "connect": {
+            "endpoints": peers,
+            "exit_on_failure": False,
+            "timeout_ms": -1,
+            "retry": {"period_init_ms": 250, "period_max_ms": 1000, "period_increase_factor": 2},
+        },
+    }
+
+
+def _client(endpoint: str) -> dict[str, Any]:
+    # A client and not a peer: since 2024 routers of ROS 2 forward between a client and a peer, not between peers.
+    return _BASE | {
+        "mode": "client",
+        "connect": {"endpoints": [endpoint], "exit_on_failure": True, "timeout_ms": 3000},
+        "scouting": _scouting(gossip=False),
+    }
+
+
+def _scouting(delay: int = 20, gossip: bool = True, multicast: Mapping[str, object] | None = None) -> dict[str, Any]:
+    # The delay is what open() waits for endpoints that do not answer.
+    return {"delay": delay, "multicast": multicast or {"enabled": False}, "gossip": {"enabled": gossip}}
+
+
+def _only_on(interface: str) -> dict[str, Any]:
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": [
+            {
+                "id": "all",
+                "permission": "allow",
+                "flows": ["ingress", "egress"],
+                # ** does not match what begins with @: the graph and the history of latched topics.
+                "key_exprs": ["**", "@ros2_lv/**", "**/@adv/**"],
+                "messages": [
+                    *("put", "delete", "declare_subscriber", "query", "reply", "declare_queryable"),
+                    *("liveliness_token", "liveliness_query", "declare_liveliness_subscriber"),
+                ],
+            }
+        ],
+        "subjects": [{"id": "loopback", "interfaces": [interface]}],
+        "policies": [{"rules": ["all"], "subjects": ["loopback"]}],
+    }
+
+
+def load(network: str | None, domain: int, environ: Mapping[str, str], *, holds_port: bool = True) -> zenoh.Config:
+    """Make Zenoh's configuration of what is asked for; raises TransportError that names who asked.
+
+    ZENOH_CONFIG_OVERRIDE, `path=json5;path=json5`, has the last word.
+    """
+    asked_by, value = wanted(network, environ)
+    if value in NAMES or _ENDPOINT.fullmatch(value):
+        import zenoh
+
+        config = zenoh.Config.from_json5(json.dumps(settings(value, domain, holds_port=holds_port)))
+    else:
+        config = _from_file(asked_by, value)
+    return _overridden(config, environ.get("ZENOH_CONFIG_OVERRIDE", ""))
+
+
+def _from_file(asked_by: str, value: str) -> zenoh.Config:
+    import zenoh
+
+    path = Path(value.removeprefix("file://")).expanduser()
+    if not path.is_file():
+        known = f"the networks are {', '.join(NAMES)} and tcp/HOST:PORT of a router"
+        raise TransportError(f"{asked_by}: no network or file '{value[:200]}'{nearest(value[:200], NAMES)}; {known}")
+    try:
+        config: zenoh.Config = zenoh.Config.from_file(path)
+    except zenoh.ZError as error:
+        raise TransportError(f"{asked_by}: {path}: {reason(error)}") from None
+    config.insert_json5("timestamping/enabled", "true")  # latched topics cannot do without
+    return config
+
+
+def _overridden(config: zenoh.Config, overrides: str) -> zenoh.Config:
+    import zenoh
+
+    for override in filter(None, map(str.strip, overrides.split(";"))):
+        path, _, value = override.partition("=")
+        try:
+            config.insert_json5(path.strip(), value.strip())
+        except zenoh.ZError as error:
+            raise TransportError(f"ZENOH_CONFIG_OVERRIDE: {override!r}: {reason(error)}") from None
+    return config
+
+
+def reason(error: Exception) -> str:
+    """Give what a Zenoh error says in one line, without the places in Zenoh's own source.
+
+    >>> reason(Exception("Timeout! at /home/a/zenoh/src/b.rs:388."))
+    'Timeout!'
+    """
+    text = str(error)
+    quoted = re.search(r'(?:msg: |Str\()"((?:[^"\\]|\\.)*)"', text)
+    text = quoted[1].replace("\\n", "\n") if quoted else text
+    syntax = re.search(r"--> (\d+):(\d+)\n.*= (expected [^\n]*)", text, re.DOTALL)
+    text = f"line {syntax[1]}, column {syntax[2]}: {syntax[3]}" if syntax else text
+    return " ".join(re.sub(r" at [^\s]+\.rs:\d+\.?", "", text).split())
+
+
+_DELETE_ON_CLOSE: int = getattr(os, "O_TEMPORARY", 0)  # Windows has it
+
+
+class PortClaim:
+    """Says whether this session may listen on the rendezvous port.
+
+    Zenoh sets SO_REUSEADDR, with which Windows lets two processes bind one port. So there a file that only one
+    process can create stands for the port, and disappears with its process. Elsewhere the second bind fails.
+    """
+
+    def __init__(self, port: int, platform: str = sys.platform, folder: str | None = None) -> None:
+        self.path = Path(folder or tempfile.gettempdir()) / f"robolink-{port}.lock"
+        self._file = -1
+        self.granted = platform != "win32" or self._create()
+
+    def _create(self) -> bool:
+        with contextlib.suppress(OSError):
+            self._file = os.open(self.path, os.O_CREAT | os.O_EXCL | os.O_RDWR | _DELETE_ON_CLOSE)
+        return self._file >= 0
+
+    def release(self) -> None:
+        """Let another session have the port. Safe to call twice."""
+        if self._file >= 0:
+            os.close(self._file)
+            self._file = -1
+            if not _DELETE_ON_CLOSE:
+                self.path.unlink(missing_ok=True)

@@ -1,0 +1,228 @@
+"""A network between processes and machines: Eclipse Zenoh as rmw_zenoh uses it.
+
+No Python frame runs on Zenoh's threads for data: what they call is a `functools.partial` around the sink, and the
+sink is meant to be C as well. Raw samples wait in queues until `read` turns them into bytes.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import queue
+import sys
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import zenoh
+
+from robolink.exceptions import TransportError
+from robolink.qos import DurabilityPolicy, QoSProfile, resolved
+from robolink.transport import lifetime, network
+from robolink.transport import zenoh_declare as declare
+from robolink.transport import zenoh_handles as handles
+from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport
+
+QUIET = 0.03
+"""Seconds without news after which the list of tokens counts as complete."""
+
+PATIENCE = 0.4
+"""Seconds after which it is given as it is."""
+
+CLOSE_WITHIN = 0.15
+"""Seconds that closing may take before it goes on in the background."""
+
+RUNTIME = "(rx:(worker_threads:1),tx:(handover:rx))"
+"""Fewer threads for Zenoh, unless ZENOH_RUNTIME is set: a fifth less latency and CPU (at 1 kHz), nothing lost."""
+
+LINK_WITHIN = 1.0
+"""Seconds in which whoever holds the rendezvous port has to answer; it takes 2 ms."""
+
+_ZenohSample = zenoh.Sample
+_sample = functools.partial(tuple.__new__, Sample)  # half the time of Sample(), whose __new__ is Python
+
+
+class ZenohTransport(Transport):
+    """A session on a Zenoh network: this machine's, or what `network` or the environment asks for.
+
+    See `robolink.transport.network.wanted`. Raises TransportError when there is no joining it.
+    """
+
+    threaded = True
+
+    def __init__(self, domain: int = 0, network: str | None = None, environ: Mapping[str, str] | None = None) -> None:
+        self.url = "zenoh://"
+        lifetime.refuse_if_forked()
+        self._holdings = handles.Holdings()
+        self._session, self._claim = _join(domain, network, os.environ if environ is None else environ)
+        self.session_id = str(self._session.info.zid())
+        lifetime.watch_over(self)
+
+    def advertise(self, key: str, qos: QoSProfile) -> Outlet:
+        """Declare a publisher. With TRANSIENT_LOCAL it keeps the last `qos.depth` samples for late joiners."""
+        publishers = self._try(key, declare.declare_publishers, key, resolved(qos))
+        return handles.ZenohOutlet(self._holdings, key, publishers)
+
+    def subscribe(self, key: str, qos: QoSProfile, sink: Sink) -> Handle:
+        """Call `sink` for every sample published on `key`; with TRANSIENT_LOCAL what was kept comes first."""
+        gate = declare.make_gate(sink)
+        subscriber = self._try(key, declare.declare_subscriber, key, gate, resolved(qos))
+        latched = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+        topic = None if latched else self._holdings.topic(key)
+        return handles.ZenohSubscription(self._holdings, subscriber, gate, topic)
+
+    def serve(self, key: str, sink: Sink) -> Handle:
+        """Call `sink` for every call on `key`; `accept` turns what it gets into a Query."""
+        gate = declare.make_gate(sink)
+        return handles.Declared(self._holdings, self._try(key, declare.declare_server, key, gate), gate)
+
+    def call(self, key: str, payload: bytes, attachment: bytes, sink: Sink) -> Handle:
+        """Ask whoever serves `key`. `sink` gets each reply, then None once: no more will come."""
+        gate, end = declare.make_gate(sink), declare.make_gate(sink, None)
+        cancel = self._try(key, declare.call, key, payload, attachment, gate, end)
+        return handles.ZenohCall(cancel, gate, end)
+
+    def announce(self, token: str) -> Handle:
+        """Show `token` to all who watch, until closed or until this process is gone."""
+        return handles.Declared(self._holdings, self._try(token, declare.declare_token, token))
+
+    def watch(self, pattern: str, on_change: Callable[[str, bool], object]) -> Handle:
+        """Call `on_change(token, alive)` for each token that matches `pattern`, on a thread of its own."""
+        changes = handles.Changes(on_change)
+        subscriber = self._try(pattern, declare.declare_watch, pattern, zenoh.handlers.Callback(changes))
+        return handles.ZenohWatch(self._holdings, subscriber, changes)
+
+    def tokens(self, pattern: str) -> list[str]:
+        """List the tokens that match `pattern`, sorted: also those of peers that this session only just found."""
+        arrived: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        subscriber = self._try(pattern, declare.declare_watch, pattern, declare.direct(arrived.put))
+        try:
+            return sorted(_settled(arrived, self._peers))
+        finally:
+            declare.quietly(subscriber.undeclare)
+
+    def read(self, arrived: Any) -> Sample:
+        """Turn what a subscription's or a call's sink got into bytes. Raises TransportError on an error reply."""
+        kind = type(arrived)
+        if kind is _ZenohSample:  # the usual case first, and without calls: this is run once a message
+            attachment = arrived.attachment
+            return _sample((arrived.payload.to_bytes(), b"" if attachment is None else attachment.to_bytes()))
+        if kind is Sample:
+            own: Sample = arrived
+            return own
+        return handles.content_of_reply(arrived)
+
+    def accept(self, arrived: Any) -> Query:
+        """Turn what a server's sink got into a Query."""
+        return handles.ZenohQuery(arrived)
+
+    def close(self) -> None:
+        """Undeclare everything and leave the network; calls under way end. Safe to call twice."""
+        if self._holdings.why_closed:
+            return
+        why = f"session {self.session_id} has been closed"
+        with self._holdings.lock:
+            declared = self._holdings.end(why)
+        _leave(self._session, self._claim, [entity for handle in declared for entity in handle.shut(why)])
+        lifetime.forget(self)
+
+    def disown(self) -> None:
+        """Refuse every further use in a forked child."""
+        for handle in self._holdings.end(lifetime.AFTER_FORK):  # not locked: whoever holds the lock may be gone
+            handle.disown(lifetime.AFTER_FORK)
+        lifetime.bury(self._session)
+
+    def _peers(self) -> set[str]:
+        return {str(peer) for peer in self._session.info.peers_zid()}
+
+    def _try(self, key: str, action: Callable[..., Any], *arguments: object) -> Any:
+        self._holdings.check()
+        try:
+            return action(self._session, *arguments)
+        except zenoh.ZError as error:
+            raise self._holdings.failure(key, error) from None
+
+
+def _leave(session: zenoh.Session, claim: network.PortClaim, entities: list[object]) -> None:
+    """Close it, but wait no longer than a moment.
+
+    Each peer takes Zenoh some 5 ms, one that is frozen or does not shake hands 10 s.
+    """
+
+    def close() -> None:
+        declare.quietly(session.close)
+        claim.release()
+
+    deadline = time.monotonic() + CLOSE_WITHIN
+    lifetime.finish(close, CLOSE_WITHIN)
+    # A daemon thread that is inside Zenoh when the interpreter ends aborts the process: let it come back first.
+    while _in_use(entities) and time.monotonic() < deadline:
+        time.sleep(0.001)
+
+
+def _in_use(entities: list[object]) -> bool:
+    """Tell whether some thread is just inside a method of one of them, which nobody else refers to."""
+    (idle,) = (sys.getrefcount(each) for each in [object()])
+    return any(sys.getrefcount(each) > idle for each in entities)
+
+
+def _settled(arrived: queue.SimpleQueue[Any], peers: Callable[[], set[str]]) -> set[str]:
+    """Collect tokens until no more come and no more peers turn up."""
+    changes, known = handles.Changes(lambda token, alive: None), peers()
+    deadline = time.monotonic() + PATIENCE
+    while (left := deadline - time.monotonic()) > 0:
+        try:
+            changes(arrived.get(timeout=min(left, QUIET)))
+        except queue.Empty:
+            before, known = known, peers()
+            if known == before:
+                break
+    return changes.alive
+
+
+def _join(domain: int, asked: str | None, environ: Mapping[str, str]) -> tuple[zenoh.Session, network.PortClaim]:
+    os.environ.setdefault("ZENOH_RUNTIME", RUNTIME)  # Zenoh reads it when the first session is opened
+    port = network.FIRST_PORT + network.checked_domain(domain)
+    value = network.wanted(asked, environ).value
+    claim = network.PortClaim(port)
+
+    def open_session(holds_port: bool) -> zenoh.Session:
+        return zenoh.open(network.load(asked, domain, environ, holds_port=holds_port))
+
+    try:
+        if value in ("localhost", "subnet"):
+            return _meet(port, open_session, claim), claim
+        return open_session(True), claim
+    except zenoh.ZError as error:
+        claim.release()
+        raise TransportError(f"cannot join the network '{value}': {network.reason(error)}") from None
+    except TransportError:
+        claim.release()
+        raise
+
+
+def _meet(port: int, open_session: Callable[[bool], zenoh.Session], claim: network.PortClaim) -> zenoh.Session:
+    """Hold the rendezvous port, or meet whoever does."""
+    for _ in range(2):  # twice, since the holder may leave in between
+        if claim.granted:
+            try:
+                return open_session(True)
+            except zenoh.ZError:  # taken
+                pass
+        session = open_session(False)
+        if _linked(session):
+            return session
+        lifetime.finish(functools.partial(declare.quietly, session.close), CLOSE_WITHIN)
+    raise TransportError(
+        f"port {port} is taken by a program that does not answer as a robolink session does: "
+        "stop it, or choose another ROS_DOMAIN_ID"
+    )
+
+
+def _linked(session: zenoh.Session) -> bool:
+    deadline = time.monotonic() + LINK_WITHIN
+    while time.monotonic() < deadline:
+        if any(str(link.dst) != network.ROS_ROUTER for link in session.info.links()):
+            return True
+        time.sleep(0.002)
+    return False

@@ -1,0 +1,127 @@
+"""What is declared with Zenoh, and with which options: rmw_zenoh's where it has any."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import zenoh
+
+from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from robolink.transport.base import Sink
+
+FOR_EVER = 1e9
+"""Seconds, 31 years: time is up to whoever waits for an answer."""
+
+
+class Publishers(NamedTuple):
+    """What publishes, and what knows whether anybody listens: one object unless samples are kept."""
+
+    used: Any
+    asked: Any
+
+
+def declare_publishers(session: zenoh.Session, key: str, qos: QoSProfile) -> Publishers:
+    """Declare what a resolved profile asks for: it drops when congested, unless it is RELIABLE and KEEP_ALL."""
+    reliable = qos.reliability is ReliabilityPolicy.RELIABLE
+    blocking = reliable and qos.history is HistoryPolicy.KEEP_ALL
+    options: dict[str, Any] = {
+        "congestion_control": zenoh.CongestionControl.BLOCK if blocking else zenoh.CongestionControl.DROP,
+        "reliability": zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
+    }
+    plain = session.declare_publisher(key, **options)
+    if qos.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
+        return Publishers(plain, plain)
+    ext = zenoh.ext
+    keeping = ext.declare_advanced_publisher(
+        session,
+        key,
+        cache=ext.CacheConfig(max_samples=qos.depth),
+        publisher_detection=True,
+        sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=0.5) if reliable else None,
+        **options,
+    )
+    return Publishers(keeping, plain)
+
+
+def declare_subscriber(session: zenoh.Session, key: str, gate: Sink, qos: QoSProfile) -> Any:
+    """Declare what hears other sessions, and the own one too where there is a history: that is all Zenoh's then."""
+    if qos.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
+        return session.declare_subscriber(key, direct(gate), allowed_origin=zenoh.Locality.REMOTE)
+    ext = zenoh.ext
+    reliable = qos.reliability is ReliabilityPolicy.RELIABLE
+    return ext.declare_advanced_subscriber(
+        session,
+        key,
+        direct(gate),
+        history=ext.HistoryConfig(detect_late_publishers=True, max_samples=qos.depth),
+        recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if reliable else None,
+        subscriber_detection=True,
+    )
+
+
+def declare_server(session: zenoh.Session, key: str, gate: Sink) -> Any:
+    """Declare what answers calls."""
+    return session.declare_queryable(key, direct(gate), complete=True)
+
+
+def call(
+    session: zenoh.Session, key: str, payload: bytes, attachment: bytes, gate: Sink, end: Callable[[], object]
+) -> zenoh.CancellationToken:
+    """Ask; `end` is called after the last reply, or at once when nobody serves."""
+    cancel: zenoh.CancellationToken = zenoh.CancellationToken()
+    session.get(
+        key,
+        direct(gate, end),
+        payload=payload,
+        attachment=attachment,
+        target=zenoh.QueryTarget.ALL_COMPLETE,
+        consolidation=zenoh.ConsolidationMode.NONE,
+        timeout=FOR_EVER,
+        cancellation_token=cancel,
+    )
+    return cancel
+
+
+def declare_token(session: zenoh.Session, token: str) -> Any:
+    """Show a token."""
+    return session.liveliness().declare_token(token)
+
+
+def declare_watch(session: zenoh.Session, pattern: str, handler: Any) -> Any:
+    """See tokens come and go, those already there first."""
+    return session.liveliness().declare_subscriber(pattern, handler, history=True)
+
+
+def direct(callback: Callable[[Any], object], drop: Callable[[], object] | None = None) -> Any:
+    """Let Zenoh's own thread call; anything but C costs five times the price of the message there."""
+    return zenoh.handlers.Callback(callback, drop, indirect=False)
+
+
+def make_gate(sink: Any, *arguments: object) -> functools.partial[object]:
+    """Wrap `sink` in something in C that can be closed without a moment in between."""
+    # Not partial(sink): a partial of a partial is merged, and this one must not copy what the other one holds.
+    return functools.partial(sink.__call__, *arguments)
+
+
+def close_gate(gate: Any) -> None:
+    """Let nothing through any more: Zenoh does not wait for its callbacks when something is undeclared."""
+    gate.__setstate__((bool, (), {}, None))  # bool takes anything or nothing, and does nothing
+
+
+def quietly(action: Callable[[], object]) -> None:
+    """Undeclare or close what may be closed already."""
+    # RuntimeError: zenoh-python's "Already borrowed", when another thread is at work on the same object, which
+    # then goes as soon as that thread lets go of it.
+    with contextlib.suppress(zenoh.ZError, RuntimeError):
+        action()
+
+
+def is_matching(publisher: Any) -> bool:
+    """Tell whether anybody subscribes, as far as this session knows."""
+    try:
+        return bool(publisher.matching_status.matching)  # the status itself is always true
+    except zenoh.ZError:  # closed
+        return False

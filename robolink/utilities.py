@@ -1,0 +1,78 @@
+"""The default context and small questions about the process."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+
+_lock = threading.Lock()
+_default: Context | None = None
+
+
+def get_default_context(*, shutting_down: bool = False) -> Context:
+    """Give the context that is used where none is named; a new one once the last was shut down."""
+    global _default
+    from robolink.context import Context
+
+    with _lock:
+        if _default is None:
+            _default = Context()
+        context = _default
+        if shutting_down:
+            _default = None
+        return context
+
+
+def set_default_context(context: Context | None) -> None:
+    """Make `context` the default one: how tests run programs that know nothing of contexts."""
+    global _default
+    with _lock:
+        _default = context
+
+
+def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
+    """Give the arguments that are not ROS's; of sys.argv when none are given."""
+    from robolink.arguments import remove_ros_args as remove
+
+    return remove(sys.argv if args is None else args)
+
+
+def ok(*, context: Context | None = None) -> bool:
+    """Whether the context is initialized and not shut down."""
+    return (get_default_context() if context is None else context).ok()
+
+
+def shutdown(*, context: Context | None = None) -> None:
+    """Shut the context down. Raises RuntimeError when there is nothing to shut down."""
+    (get_default_context(shutting_down=True) if context is None else context).shutdown()
+
+
+def try_shutdown(*, context: Context | None = None) -> None:
+    """Shut the context down if it is not yet."""
+    global _default
+    if context is not None:
+        context.try_shutdown()
+        return
+    get_default_context().try_shutdown()
+    with _lock:
+        _default = None
+
+
+def get_rmw_implementation_identifier() -> str:
+    """Name the middleware whose wire this is."""
+    return "rmw_zenoh_cpp"
+
+
+def get_available_rmw_implementations() -> set[str]:
+    """Name all the middlewares there are."""
+    return {"rmw_zenoh_cpp"}
+
+
+def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
+    """Turn seconds into nanoseconds; -1, for ever, for None and below zero."""
+    return -1 if timeout_sec is None or timeout_sec < 0 else int(float(timeout_sec) * 1e9)

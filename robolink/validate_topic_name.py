@@ -1,0 +1,20 @@
+"""The check of a topic or service name as a user writes it: relative, private ('~/x') or absolute."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from robolink.exceptions import InvalidServiceNameException, InvalidTopicNameException
+from robolink.names import TOPIC_NAME_RULES, find_problem
+
+
+def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
+    """Give True for a name that can be expanded.
+
+    Raises `InvalidTopicNameException` with the index of the bad character (`InvalidServiceNameException` when
+    `is_service`). The expanded name may still be too long: see `validate_full_topic_name`.
+    """
+    problem = find_problem(name, TOPIC_NAME_RULES)
+    if problem is None:
+        return True
+    raise (InvalidServiceNameException if is_service else InvalidTopicNameException)(name, *problem)

@@ -1,0 +1,207 @@
+"""Find nodes, launch files and worlds by name.
+
+A workspace is a folder with `nodes/` and `configs/`. A name is looked up (1) as a path, (2) in the nearest
+workspace: the one asked for, `ROBOLINK_WORKSPACE`, or the working directory's or a parent's, (3) among the entry
+points `robolink.nodes` of installed packages, (4) in the workspace that comes with robolink. `_` and `-` in names
+are the same.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+from robolink.exceptions import NotFoundError
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+VARIABLE = "ROBOLINK_WORKSPACE"
+ENTRY_POINTS = "robolink.nodes"
+YAML = (".yaml", ".yml")
+Folder: TypeAlias = "str | os.PathLike[str] | None"
+
+
+@dataclass(frozen=True)
+class NodeSource:
+    """Where a node comes from: a file and what in it (`attribute`, or '' for what it holds), or an entry point."""
+
+    name: str
+    path: Path | None = None
+    attribute: str = ""
+    entry_point: EntryPoint | None = None
+
+    @property
+    def spec(self) -> str:
+        """What finds this again from anywhere: `PATH`, `PATH:attribute` or a name."""
+        if self.path is None:
+            return self.name
+        return f"{self.path}:{self.attribute}" if self.attribute else str(self.path)
+
+
+def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
+    """Find a node by name, `FILE`, `FILE:function` or `FILE:Class`; the path found is absolute.
+
+    Raises `NotFoundError` with the nearest name.
+    """
+    file, attribute = _split(name)
+    path = _as_path(file, workspace, (".py",))
+    if path is not None:
+        return NodeSource(path.stem, path, attribute)
+    asked = canonical(file.removesuffix(".py"))
+    for source in _node_sources(workspace):
+        if canonical(source.name) == asked:
+            return NodeSource(source.name, source.path, attribute, source.entry_point)
+    raise _not_found("node", file, workspace, (each.name for each in list_nodes(workspace=workspace)))
+
+
+def find_launch(name: str, *, workspace: Folder = None) -> Path:
+    """Find a launch file by name or path. Raises `NotFoundError` with the nearest name."""
+    return _find_yaml("launch file", name, "configs", workspace)
+
+
+def find_world(name: str, *, workspace: Folder = None) -> Path:
+    """Find a world file by name or path. Raises `NotFoundError` with the nearest name."""
+    return _find_yaml("world", name, "configs/worlds", workspace)
+
+
+def list_nodes(*, workspace: Folder = None) -> list[NodeSource]:
+    """Give every node that a name finds, by name; shadowed ones are left out."""
+    return sorted(_unshadowed(_node_sources(workspace)), key=lambda each: each.name)
+
+
+def list_launches(*, workspace: Folder = None) -> list[Path]:
+    """Give every launch file that a name finds, by name."""
+    return _list_yaml("configs", workspace)
+
+
+def list_worlds(*, workspace: Folder = None) -> list[Path]:
+    """Give every world file that a name finds, by name."""
+    return _list_yaml("configs/worlds", workspace)
+
+
+def user_workspace(workspace: Folder = None) -> Path | None:
+    """Give the user's workspace: the one asked for, the one that the environment names, or the nearest.
+
+    Raises `NotFoundError` when one is named that is no folder.
+    """
+    asked = workspace or os.environ.get(VARIABLE)
+    if not asked:
+        return workspace_of(Path.cwd())
+    folder = Path(asked).expanduser()
+    if not folder.is_dir():
+        raise NotFoundError("workspace folder", str(asked))
+    return folder.resolve()
+
+
+def workspace_of(path: Path) -> Path | None:
+    """Give the nearest folder at or above `path` that has `nodes/` and `configs/`."""
+    path = path.resolve()
+    return next((each for each in (path, *path.parents) if _is_workspace(each)), None)
+
+
+def built_in_workspace() -> Path:
+    """Give the workspace that comes with robolink: inside the wheel, or the repository."""
+    package = Path(__file__).resolve().parent.parent
+    shared = package / "share"
+    return shared if shared.is_dir() else package.parent
+
+
+def canonical(name: str) -> str:
+    """Spell a name so that equal ones are equal: `_` and `-` are the same."""
+    return name.replace("-", "_")
+
+
+def _is_workspace(folder: Path) -> bool:
+    return (folder / "nodes").is_dir() and (folder / "configs").is_dir()
+
+
+def _workspaces(workspace: Folder) -> list[Path]:
+    """Give the workspaces in the order in which they are searched; the built-in one comes last."""
+    own = user_workspace(workspace)
+    built_in = built_in_workspace()
+    return [built_in] if own is None or own == built_in else [own, built_in]
+
+
+def _split(name: str) -> tuple[str, str]:
+    """Part `FILE:function`; the colon of `C:\\nodes\\a.py` parts nothing."""
+    file, colon, attribute = name.rpartition(":")
+    if colon and file and attribute.isidentifier() and not Path(name).exists():
+        return file, attribute
+    return name, ""
+
+
+def _as_path(name: str, workspace: Folder, suffixes: tuple[str, ...]) -> Path | None:
+    """Give the file that a name is the path of, from here or from the user's workspace; None for a mere name."""
+    path = Path(name).expanduser()
+    is_path = len(path.parts) > 1 or path.suffix in suffixes
+    if not is_path:
+        return None
+    folders = [Path(), *_workspaces(workspace)]
+    for candidate in (folder / path for folder in folders):
+        if candidate.is_file():
+            return candidate.resolve()
+    if len(path.parts) > 1:
+        raise NotFoundError("file", name, _files_beside(path))
+    return None
+
+
+def _files_beside(path: Path) -> Iterator[str]:
+    return (str(each) for each in path.parent.glob("*") if each.is_file())
+
+
+def _node_sources(workspace: Folder) -> Iterator[NodeSource]:
+    """Yield what there is in the order of the lookup."""
+    *own, built_in = _workspaces(workspace)
+    for folder in own:
+        yield from _nodes_in(folder)
+    yield from _installed_nodes()
+    yield from _nodes_in(built_in)
+
+
+def _nodes_in(workspace: Path) -> Iterator[NodeSource]:
+    for path in sorted((workspace / "nodes").glob("*.py")):
+        if not path.name.startswith("_"):
+            yield NodeSource(path.stem, path)
+
+
+def _installed_nodes() -> Iterator[NodeSource]:
+    from importlib.metadata import entry_points
+
+    for each in sorted(entry_points(group=ENTRY_POINTS), key=lambda each: each.name):
+        yield NodeSource(each.name, entry_point=each)
+
+
+def _find_yaml(kind: str, name: str, inside: str, workspace: Folder) -> Path:
+    path = _as_path(name, workspace, YAML)
+    if path is not None:
+        return path
+    asked = canonical(Path(name).stem if Path(name).suffix in YAML else name)
+    for each in _yaml_files(inside, workspace):
+        if canonical(each.stem) == asked:
+            return each
+    raise _not_found(kind, name, workspace, (each.stem for each in _yaml_files(inside, workspace)))
+
+
+def _list_yaml(inside: str, workspace: Folder) -> list[Path]:
+    first = {canonical(path.stem): path for path in reversed(list(_yaml_files(inside, workspace)))}
+    return sorted(first.values(), key=lambda each: each.stem)
+
+
+def _yaml_files(inside: str, workspace: Folder) -> Iterator[Path]:
+    for folder in _workspaces(workspace):
+        for suffix in YAML:
+            yield from sorted((folder / inside).glob(f"*{suffix}"))
+
+
+def _unshadowed(sources: Iterable[NodeSource]) -> list[NodeSource]:
+    first = {canonical(each.name): each for each in reversed(list(sources))}
+    return list(first.values())
+
+
+def _not_found(kind: str, name: str, workspace: Folder, known: Iterable[str]) -> NotFoundError:
+    *own, _ = _workspaces(workspace)
+    return NotFoundError(kind, name, known, f"{own[0]} or robolink itself" if own else "")

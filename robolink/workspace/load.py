@@ -1,0 +1,146 @@
+"""Load what a node file holds: a Node class, a function such as `main()`, or a script to run."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from collections.abc import Callable
+from importlib.machinery import SourceFileLoader
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from robolink.exceptions import NotFoundError, RobolinkError
+from robolink.workspace.find import NodeSource
+
+if TYPE_CHECKING:
+    import ast
+
+    from robolink.node import Node
+
+    Runnable: TypeAlias = "type[Node] | Callable[[], Any]"
+
+
+class NodeLoadError(RobolinkError, ImportError):
+    """A file holds no node, or none that can be chosen, or is no Python."""
+
+
+def load_node(source: NodeSource) -> Runnable:
+    """Give what runs a node: a subclass of `Node` to construct and spin, or something to call.
+
+    What a file holds is decided in this order: the attribute asked for; a script with a `__main__` guard, which
+    is run as Python runs it; a function `main`; its only Node class; a script without any of these, which is
+    run too. Raises `NodeLoadError`, `NotFoundError` for an attribute, and whatever the file itself raises.
+    """
+    if source.path is None:
+        assert source.entry_point is not None
+        return _checked(source.entry_point.load(), source.entry_point.value)
+    if source.attribute:
+        return _attribute(load_module(source.path), source)
+    tree = _parse(source.path)
+    if _has_guard(tree) or (not _defines(tree, "ClassDef") and not _defines(tree, "FunctionDef", "main")):
+        return _script(source.path)
+    module = load_module(source.path)
+    return module.main if _defines(tree, "FunctionDef", "main") else _only_node(module, source.path)
+
+
+def load_module(path: Path) -> ModuleType:
+    """Load a Python file as a module of its own, named by its whole path; a second time, give the same.
+
+    Its folder is appended to `sys.path`, so that it finds its neighbours. Raises `NodeLoadError` for a file that
+    is no Python, and whatever the file itself raises.
+    """
+    path = path.resolve()
+    name = str(path)
+    if name in sys.modules:
+        return sys.modules[name]
+    _parse(path)
+    _reach(path.parent)
+    spec = importlib.util.spec_from_loader(name, SourceFileLoader(name, name))
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # msgspec looks here for what annotations mean
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
+    return module
+
+
+def _parse(path: Path) -> ast.Module:
+    """Parse a file without running it; a mistake becomes one line with its place."""
+    import ast
+
+    try:
+        return ast.parse(path.read_bytes(), str(path))
+    except SyntaxError as error:
+        place = f"{path}:{error.lineno or 1}:{error.offset or 1}"
+        raise NodeLoadError(f"{place}: {error.msg}") from None
+    except (OSError, ValueError, RecursionError, MemoryError) as error:
+        raise NodeLoadError(f"{path}: cannot be read: {error}") from None
+
+
+def _has_guard(tree: ast.Module) -> bool:
+    """Whether there is an `if __name__ == "__main__":`."""
+    import ast
+
+    return any(isinstance(each, ast.If) and "__main__" in ast.unparse(each.test) for each in tree.body)
+
+
+def _defines(tree: ast.Module, kind: str, name: str | None = None) -> bool:
+    return any(type(each).__name__ == kind and name in (None, getattr(each, "name", "")) for each in tree.body)
+
+
+def _script(path: Path) -> Callable[[], Any]:
+    """Give a function that runs a file as `python FILE` does."""
+
+    def run() -> None:
+        import runpy
+
+        _reach(path.parent)
+        runpy.run_path(str(path), run_name="__main__")
+
+    return run
+
+
+def _reach(folder: Path) -> None:
+    if str(folder) not in sys.path:
+        sys.path.append(str(folder))
+
+
+def _attribute(module: ModuleType, source: NodeSource) -> Runnable:
+    if not hasattr(module, source.attribute):
+        known = [name for name, value in vars(module).items() if callable(value) and not name.startswith("_")]
+        raise NotFoundError("class or function", source.attribute, known, str(source.path))
+    return _checked(getattr(module, source.attribute), source.spec)
+
+
+def _checked(found: Any, spec: str) -> Runnable:
+    """Refuse what can neither be constructed as a node nor called."""
+    if isinstance(found, type) and not _is_node(found):
+        raise NodeLoadError(f"{spec} is a class, but no subclass of Node")
+    if not callable(found):
+        raise NodeLoadError(f"{spec} is neither a Node class nor a function")
+    runnable: Runnable = found
+    return runnable
+
+
+def _only_node(module: ModuleType, path: Path) -> Runnable:
+    """Give the only Node class that a module itself defines (one that others of them extend does not count)."""
+    own = [each for each in vars(module).values() if _is_node(each) and each.__module__ == module.__name__]
+    last = [each for each in own if not any(other is not each and issubclass(other, each) for other in own)]
+    if not last:
+        raise NodeLoadError(f"{path} holds no node: no Node class, no main() and no `if __name__ == '__main__'`")
+    if len(last) > 1:
+        choices = " or ".join(f"{path.name}:{each.__name__}" for each in last)
+        raise NodeLoadError(f"{path} holds {len(last)} nodes: say which, {choices}")
+    found: type[Node] = last[0]
+    return found
+
+
+def _is_node(found: object) -> bool:
+    from robolink.node import Node
+
+    return isinstance(found, type) and issubclass(found, Node) and found is not Node

@@ -1,0 +1,272 @@
+"""Turn YAML text into nodes with their places, and nodes into plain data as people mean it.
+
+Differences from YAML 1.1, all on purpose: `on`, `off`, `yes`, `no`, dates and `12:30:00` are strings, `012`
+is 12, `1e3` is 1000.0, mapping keys are strings as they were written, and a key given twice is an error.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from typing import TypeAlias
+
+import yaml
+
+from robolink.exceptions import DocumentError
+
+MAX_DEPTH = 64
+MAX_REPEATED = 100_000
+"""How many values aliases may add: a few lines of nested aliases could fill the memory otherwise."""
+
+Data: TypeAlias = "bool | int | float | str | list[Data] | dict[str, Data] | None"
+
+_TAG = "tag:yaml.org,2002:"
+_MERGE = _TAG + "merge"
+_PLAIN = [
+    ("null", "~|null|Null|NULL|", ["~", "n", "N", ""]),
+    ("bool", "true|True|TRUE|false|False|FALSE", list("tTfF")),
+    ("int", r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+", list("-+0123456789")),
+    (
+        "float",
+        r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)",
+        list("-+0123456789."),
+    ),
+    ("merge", "<<", ["<"]),
+]
+
+
+class _Loader(yaml.SafeLoader):
+    """PyYAML's loader with YAML 1.2's scalars and a limit on nesting."""
+
+    yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}
+    _depth = 0
+
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
+        self._depth += 1
+        if parent is not None and self._depth > MAX_DEPTH:
+            raise yaml.MarkedYAMLError(None, None, f"nested more than {MAX_DEPTH} levels deep", parent.start_mark)
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        return node
+
+
+for _name, _pattern, _first in _PLAIN:
+    _Loader.add_implicit_resolver(_TAG + _name, re.compile(rf"(?:{_pattern})\Z"), _first)
+
+
+def compose(text: str, name: str) -> yaml.Node | None:
+    """Parse one document into nodes; `None` when it is empty. `name` stands in errors: `name:line:column`.
+
+    Raises `DocumentError`, and nothing else, whatever the text.
+    """
+    try:
+        loader = _Loader(text)
+    except yaml.reader.ReaderError as error:
+        raise DocumentError(f"{_place(name, text, error.position)}: {_unreadable(error)}") from None
+    try:
+        return loader.get_single_node()
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark or loader.get_mark()
+        raise DocumentError(f"{place(name, mark)}: {_problem(error)}") from None
+    except (ValueError, OverflowError) as error:  # what PyYAML lets through: '\UFFFFFFFF', '%YAML 9999...'
+        raise DocumentError(f"{place(name, loader.get_mark())}: {shown(str(error))}") from None
+    finally:
+        loader.dispose()
+
+
+def plain(node: yaml.Node | None, name: str) -> Data:
+    """Give the plain data that a node stands for; raises `DocumentError` for what has no plain meaning."""
+    return None if node is None else _Builder(name).build(node)
+
+
+def place(name: str, mark: yaml.Mark) -> str:
+    """Spell a place as editors understand it: `name:line:column`, both from 1."""
+    return f"{name}:{mark.line + 1}:{mark.column + 1}"
+
+
+def pairs(node: yaml.MappingNode) -> Iterator[tuple[yaml.Node, yaml.Node]]:
+    """Yield a mapping's own (key, value) nodes, then those that `<<` merges into it, nearest first."""
+    merged: list[yaml.Node] = []
+    for key, value in node.value:
+        if key.tag == _MERGE:
+            merged += value.value if isinstance(value, yaml.SequenceNode) else [value]
+        else:
+            yield key, value
+    for each in merged:
+        if isinstance(each, yaml.MappingNode):
+            yield from pairs(each)
+
+
+class _Builder:
+    """Builds plain data out of nodes, counting what aliases repeat."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.seen: set[int] = set()
+        self.repeated = 0
+        self.depth = 0
+
+    def build(self, node: yaml.Node) -> Data:
+        self._count(node)
+        if isinstance(node, yaml.ScalarNode):
+            return self._scalar(node)
+        self.depth += 1
+        data: Data
+        if isinstance(node, yaml.SequenceNode):
+            self._check_tag(node, "seq")
+            data = [self.build(each) for each in node.value]
+        else:
+            assert isinstance(node, yaml.MappingNode)
+            data = self._mapping(node)
+        self.depth -= 1
+        return data
+
+    def _count(self, node: yaml.Node) -> None:
+        """Refuse an alias that contains itself, and aliases that multiply."""
+        if self.depth > MAX_DEPTH:
+            raise self._error(node, f"nested more than {MAX_DEPTH} levels deep by aliases")
+        if id(node) in self.seen:
+            self.repeated += 1
+        if self.repeated > MAX_REPEATED:
+            raise self._error(node, f"aliases repeat more than {MAX_REPEATED} values")
+        self.seen.add(id(node))
+
+    def _mapping(self, node: yaml.MappingNode) -> dict[str, Data]:
+        self._check_tag(node, "map")
+        self._check_merges(node)
+        self._check_duplicates(node)
+        data: dict[str, Data] = {}
+        for key, value in pairs(node):
+            name = self._key(key)
+            if name not in data:
+                data[name] = self.build(value)
+        return data
+
+    def _check_merges(self, node: yaml.MappingNode, depth: int = 0) -> None:
+        for key, value in node.value:
+            if key.tag != _MERGE:
+                continue
+            for each in value.value if isinstance(value, yaml.SequenceNode) else [value]:
+                if not isinstance(each, yaml.MappingNode):
+                    raise self._error(each, "'<<' can merge only mappings")
+                self._count(each)
+                if depth > MAX_DEPTH:
+                    raise self._error(each, "'<<' merges a mapping into itself")
+                self._check_merges(each, depth + 1)
+
+    def _check_duplicates(self, node: yaml.MappingNode) -> None:
+        first: dict[str, yaml.Node] = {}
+        for key, _ in node.value:
+            name = self._key(key)
+            if name in first:
+                line = first[name].start_mark.line + 1
+                raise self._error(key, f"key '{shown(name)}' is given twice, first in line {line}")
+            first[name] = key
+
+    def _key(self, key: yaml.Node) -> str:
+        if not isinstance(key, yaml.ScalarNode):
+            raise self._error(key, f"a key must be a word, got a {kind(key)}")
+        return self._text(key)
+
+    def _text(self, node: yaml.ScalarNode) -> str:
+        text: str = node.value
+        if not text.isascii() and any("\ud800" <= each <= "\udfff" for each in text):
+            raise self._error(node, "half a surrogate pair is no character")
+        return text
+
+    def _scalar(self, node: yaml.ScalarNode) -> Data:
+        text = self._text(node)
+        convert = _SCALARS.get(node.tag.removeprefix(_TAG))
+        if convert is None:
+            raise self._error(node, f"unknown tag '{_shown_tag(node)}'")
+        try:
+            return convert(text)
+        except (ValueError, KeyError):
+            raise self._error(node, f"'{shown(text)}' is no {node.tag.removeprefix(_TAG)}") from None
+
+    def _check_tag(self, node: yaml.Node, tag: str) -> None:
+        if node.tag != _TAG + tag:
+            raise self._error(node, f"unknown tag '{_shown_tag(node)}'")
+
+    def _error(self, node: yaml.Node, message: str) -> DocumentError:
+        return DocumentError(f"{place(self.name, node.start_mark)}: {message}")
+
+
+def kind(node: yaml.Node) -> str:
+    """Name what a node is: `mapping`, `list` or `value`."""
+    return _KINDS.get(type(node), "value")
+
+
+_KINDS: dict[type[yaml.Node], str] = {yaml.MappingNode: "mapping", yaml.SequenceNode: "list"}
+
+
+def shown(text: str, limit: int = 60) -> str:
+    """Spell a text for an error: one line, not too long."""
+    if not text.isprintable():
+        text = "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
+    return text if len(text) <= limit else text[: limit - 1] + "…"
+
+
+def _int(text: str) -> int:
+    prefix = text[:2].lower()
+    return int(text, {"0x": 16, "0o": 8}.get(prefix, 10))
+
+
+def _float(text: str) -> float:
+    return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
+
+
+def _bool(text: str) -> bool:
+    return {"true": True, "false": False}[text.lower()]
+
+
+def _null(text: str) -> None:
+    {"~": None, "null": None, "": None}[text.lower()]
+
+
+_SCALARS: dict[str, Callable[[str], Data]] = {
+    "null": _null,
+    "bool": _bool,
+    "int": _int,
+    "float": _float,
+    "str": str,
+    "merge": str,
+}
+
+
+def _shown_tag(node: yaml.Node) -> str:
+    return shown(node.tag.replace(_TAG, "!!"))
+
+
+def _place(name: str, text: str, position: int) -> str:
+    before = text[:position]
+    return f"{name}:{before.count(chr(10)) + 1}:{position - before.rfind(chr(10))}"
+
+
+def _unreadable(error: yaml.reader.ReaderError) -> str:
+    code = error.character if isinstance(error.character, int) else ord(error.character)
+    return f"character U+{code:04X} is not allowed in YAML"
+
+
+_CLEARER = {
+    "'\\t'": "a tab where only spaces may stand",
+    "mapping values are not allowed here": "a second ': ' in one value, or a key that is indented wrongly",
+    "expected <block end>": "this does not go on with the block above it: check its indentation and its '-'",
+    "found unexpected end of stream": "a quote is opened and never closed",
+    "but found another document": "a second document begins here, and one file holds one",
+    "second occurrence": "this anchor is given twice",
+    "found character '@' that": "a plain value cannot begin with '@': put it in quotes",
+    "found character '`' that": "a plain value cannot begin with '`': put it in quotes",
+    "found character '%' that": "a plain value cannot begin with '%': put it in quotes",
+}
+"""What PyYAML says, and what a reader understands."""
+
+
+def _problem(error: yaml.MarkedYAMLError) -> str:
+    """Put PyYAML's two-part report in one line, in clearer words where we have them."""
+    theirs = error.problem or "cannot be read"
+    ours = next((better for part, better in _CLEARER.items() if part in theirs), theirs)
+    problem = shown(ours.replace("'<stream end>'", "the end of the text"), 200)
+    if error.context and error.context_mark and "while" in error.context:
+        return f"{problem} ({error.context} that begins in line {error.context_mark.line + 1})"
+    return problem

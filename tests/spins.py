@@ -1,0 +1,42 @@
+"""How tests spin: for so many seconds, or until something has come true."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from robolink import Future, Node
+from robolink.executors import Executor
+from robolink.interfaces.std_msgs.msg import Int32
+
+PATIENCE = 5.0
+
+T = TypeVar("T")
+
+
+def spin_for(executor: Executor, seconds: float) -> None:
+    """Spin for so long on the executor's own time."""
+    executor.spin_until_future_complete(Future(), timeout_sec=seconds)
+
+
+def spin_until(executor: Executor, condition: Callable[[], bool], patience: float = PATIENCE) -> None:
+    """Spin until it holds."""
+    steady = executor.context.time.steady
+    deadline = steady() + int(patience * 1e9)
+    while not condition():
+        assert steady() < deadline, "it did not come true"
+        executor.spin_once(timeout_sec=0.02)
+
+
+def done(executor: Executor, future: Future[T]) -> Any:
+    """Spin until the future is done; its result."""
+    executor.spin_until_future_complete(future, timeout_sec=PATIENCE)
+    assert future.done(), "the future was not completed"
+    return future.result()
+
+
+def numbers(node: Node, topic: str, depth: int = 10) -> list[int]:
+    """Subscribe to Int32; the list fills as they are received."""
+    got: list[int] = []
+    node.create_subscription(Int32, topic, lambda message: got.append(message.data), depth)
+    return got

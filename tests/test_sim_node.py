@@ -1,0 +1,293 @@
+"""The nodes of the simulation in memory and virtual time: topics, pace, safety, the same life twice."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import math
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robolink import Context, Node, Parameter, RobolinkError, VirtualTime, logging
+from robolink.exceptions import InvalidParameterValueException
+from robolink.executors import SingleThreadedExecutor
+from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
+from robolink.interfaces.nav_msgs.msg import Odometry
+from robolink.interfaces.rosgraph_msgs.msg import Clock
+from robolink.interfaces.sensor_msgs.msg import LaserScan
+from robolink.interfaces.tf2_msgs.msg import TFMessage
+from tests.nodefiles import load_node_file
+
+simulation, follower, reactive, teleop = map(
+    load_node_file, ("world", "wall_follower", "reactive_controller", "teleop")
+)
+START = 1_000_000_000
+NUMBERS = itertools.count()
+
+
+class System:
+    """Nodes of one process on a bus of their own, in virtual time."""
+
+    def __init__(self) -> None:
+        self.context = Context(transport=f"memory://sim{next(NUMBERS)}", time=VirtualTime(START))
+        self.context.init([])
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.probe = self.add(Node, node_name="probe")
+        self.log = list[str]()
+        logging.add_handler(self._note)
+
+    def _note(self, record: logging.Record) -> None:
+        self.log.append(record.message)
+
+    def add(self, node_class: Callable[..., Any], parameters: dict[str, Any] | None = None, **options: Any) -> Any:
+        overrides = [Parameter(name, value=value) for name, value in (parameters or {}).items()]
+        node = node_class(context=self.context, parameter_overrides=overrides, **options)
+        self.executor.add_node(node)
+        return node
+
+    def hear(self, message_class: type[Any], topic: str) -> list[Any]:
+        heard = list[Any]()
+        self.probe.create_subscription(message_class, topic, heard.append, 1000)
+        return heard
+
+    def run(self, seconds: float) -> None:
+        end = self.context.time.now() + round(seconds * 1e9)
+        timer = self.probe.create_timer(seconds, lambda: None)
+        while self.context.time.now() < end:
+            self.executor.spin_once()
+        self.probe.destroy_timer(timer)
+
+    def close(self) -> None:
+        logging.remove_handler(self._note)
+        for node in self.executor.get_nodes():
+            node.destroy_node()
+        self.executor.shutdown()
+        self.context.shutdown()
+
+
+@pytest.fixture
+def system() -> Iterator[System]:
+    system = System()
+    yield system
+    system.close()
+
+
+def stamps(messages: list[Any]) -> list[float]:
+    return [each.header.stamp.sec + each.header.stamp.nanosec * 1e-9 - START * 1e-9 for each in messages]
+
+
+def test_a_world_publishes_scan_odom_and_tf_at_their_rates(system: System) -> None:
+    scans, odometry, transforms = (
+        system.hear(LaserScan, "/scan"),
+        system.hear(Odometry, "/odom"),
+        system.hear(TFMessage, "/tf"),
+    )
+    system.add(simulation.SimulatedWorld, {"world": "corners"})
+    system.run(1.005)
+    assert stamps(scans) == pytest.approx([0.1 * (i + 1) for i in range(10)])
+    assert stamps(odometry) == pytest.approx([0.02 * (i + 1) for i in range(50)])
+    scan, odom = scans[0], odometry[0]
+    assert (scan.header.frame_id, len(scan.ranges), scan.scan_time) == ("base_scan", 360, pytest.approx(0.1))
+    assert scan.ranges[90] == pytest.approx(0.9)
+    assert (odom.header.frame_id, odom.child_frame_id) == ("odom", "base_link")
+    assert (odom.pose.pose.position.x, odom.pose.pose.position.y) == (3.0, 0.9)
+    assert [(each.header.frame_id, each.child_frame_id) for each in transforms[0].transforms] == [
+        ("odom", "base_link"),
+        ("base_link", "base_scan"),
+    ]
+    assert transforms[0].transforms[0].transform.translation == Vector3(x=3.0, y=0.9)
+
+
+def test_a_command_drives_and_half_a_second_without_one_stops(system: System) -> None:
+    odometry = system.hear(Odometry, "/odom")
+    system.add(simulation.SimulatedWorld, {"world": "empty_room"})
+    cmd_vel = system.probe.create_publisher(Twist, "/cmd_vel", 10)
+    system.run(0.1)
+    cmd_vel.publish(Twist(linear=Vector3(x=0.3), angular=Vector3(z=0.5)))
+    system.run(0.45)
+    assert odometry[-1].twist.twist == Twist(
+        linear=Vector3(x=pytest.approx(0.3)), angular=Vector3(z=pytest.approx(0.5))
+    )
+    system.run(0.5)
+    assert odometry[-1].twist.twist.linear.x == pytest.approx(0.0)
+    assert 3.1 < odometry[-1].pose.pose.position.x < 3.3
+    assert odometry[-1].pose.pose.orientation.z > 0.1
+
+
+def test_nonsense_on_cmd_vel_is_ignored_counted_and_warned_about_once(system: System) -> None:
+    world = system.add(simulation.SimulatedWorld, {"world": "empty_room"})
+    cmd_vel = system.probe.create_publisher(Twist, "/cmd_vel", 10)
+    cmd_vel.publish(Twist(linear=Vector3(x=0.3)))
+    for x, z in ((math.nan, 0.0), (0.0, math.inf), (1e9, 0.0), (0.0, -1e9)):
+        cmd_vel.publish(Twist(linear=Vector3(x=x), angular=Vector3(z=z)))
+    cmd_vel.publish(Twist(linear=Vector3(y=math.nan)))
+    system.run(0.3)
+    assert world.ports[0].refused == 5
+    assert world.world.robots["robot"].twist.v == pytest.approx(0.3)
+    assert sum("ignored a cmd_vel" in line for line in system.log) == 1
+
+
+def test_the_log_tells_within_two_seconds_where_the_robot_is(system: System) -> None:
+    system.add(simulation.SimulatedWorld, {"world": "empty_room"})
+    system.run(2.001)
+    assert "world 'empty_room' with robot" in system.log
+    assert "robot at (3.00, 3.00) heading 0 deg, 0.00 m/s, nearest wall 3.00 m" in system.log
+
+
+def test_running_into_a_wall_is_warned_about(system: System) -> None:
+    system.add(simulation.SimulatedWorld, {"world": "empty_room"})
+    cmd_vel = system.probe.create_publisher(Twist, "/cmd_vel", 10)
+    system.probe.create_timer(0.1, lambda: cmd_vel.publish(Twist(linear=Vector3(x=0.5))))
+    system.run(8.0)
+    assert any(line.startswith("robot ran into something at (5.8") for line in system.log)
+    assert any(line.endswith("in contact") for line in system.log)
+
+
+TWO = """
+robots:
+  - {name: r1, pose: [0, 0], sensors: [{lidar: scan, beams: 4, offset: [0.1, 0]}]}
+  - {name: r2, pose: [2, 0], drive: {timeout: 5}}
+"""
+
+
+def test_each_of_several_robots_has_a_namespace(system: System, tmp_path: Path) -> None:
+    path = tmp_path / "two.yaml"
+    path.write_text(TWO)
+    scans, odometry, transforms = (
+        system.hear(LaserScan, "/lab/r1/scan"),
+        system.hear(Odometry, "/lab/r2/odom"),
+        system.hear(TFMessage, "/tf"),
+    )
+    system.add(simulation.SimulatedWorld, {"world": str(path)}, namespace="lab")
+    cmd_vel = system.probe.create_publisher(Twist, "/lab/r2/cmd_vel", 10)
+    cmd_vel.publish(Twist(linear=Vector3(x=0.5)))
+    system.run(2.0)
+    assert scans[-1].header.frame_id == "r1/base_scan"
+    assert scans[0].ranges[2] == pytest.approx(1.73, abs=0.01)
+    assert scans[-1].ranges[2] > 2.0
+    assert odometry[-1].header.frame_id == "r2/odom"
+    frames = {each.child_frame_id for message in transforms for each in message.transforms}
+    assert frames == {"r1/base_link", "r1/base_scan", "r2/base_link"}
+
+
+def test_with_its_clock_published_time_counts_from_zero(system: System) -> None:
+    clocks, scans = system.hear(Clock, "/clock"), system.hear(LaserScan, "/scan")
+    system.add(simulation.SimulatedWorld, {"world": "empty_room", "publish_clock": True})
+    system.run(0.105)
+    assert [each.clock.nanosec for each in clocks] == [10_000_000 * (i + 1) for i in range(10)]
+    assert scans[0].header.stamp == clocks[-1].clock
+
+
+def test_a_world_can_run_faster_than_time(system: System) -> None:
+    world = system.add(simulation.SimulatedWorld, {"world": "empty_room", "rtf": 4.0})
+    system.run(1.0)
+    assert world.world.time_ns == pytest.approx(4e9, abs=5e7)
+
+
+@pytest.mark.parametrize("rtf", [-1.0, math.nan, math.inf])
+def test_an_impossible_pace_is_refused(system: System, rtf: float) -> None:
+    with pytest.raises(InvalidParameterValueException, match="rtf"):
+        system.add(simulation.SimulatedWorld, {"rtf": rtf})
+
+
+def test_an_unknown_world_is_an_error_of_robolink(system: System) -> None:
+    with pytest.raises(RobolinkError, match=r"cornrs.*did you mean 'corners'"):
+        system.add(simulation.SimulatedWorld, {"world": "cornrs"})
+
+
+def test_the_pace_does_not_drift_and_catches_up() -> None:
+    pace = simulation.Pace(start=7, dt=10_000_000, rtf=1.0)
+    assert [pace.due(7 + now * 1_000_000)[0] for now in (0, 9, 10, 25, 100, 590)] == [0, 0, 1, 1, 8, 49]
+    assert pace.due(7 + 3_590_000_000) == (50, pytest.approx(2.5))
+    assert pace.due(7 + 3_600_000_000) == (1, 0.0)
+
+
+def test_short_steps_are_made_in_bunches_and_rtf_0_knows_no_clock() -> None:
+    assert (simulation.Pace(0, 1_000_000, 1.0).bunch, simulation.Pace(0, 1_000_000, 1.0).period) == (10, 0.01)
+    assert simulation.Pace(0, 10_000_000, 0.5).period == pytest.approx(0.02)
+    assert simulation.Pace(0, 1_000_000, 0.0).due(123) == (10, 0.0)
+
+
+def life(controller: type[Node], world: str) -> tuple[str, float]:
+    """A minute of a robot's life: a hash of all that was published, and how long that took."""
+    system = System()
+    digest = hashlib.sha256()
+    for topic, kind in (("/scan", LaserScan), ("/odom", Odometry), ("/tf", TFMessage), ("/cmd_vel", Twist)):
+        system.probe.create_subscription(kind, topic, digest.update, 1000, raw=True)
+    started = time.perf_counter()
+    node = system.add(simulation.SimulatedWorld, {"world": world})
+    system.add(controller)
+    system.run(60.0)
+    took = time.perf_counter() - started
+    assert node.world.robots["robot"].contacts == 0
+    system.close()
+    return digest.hexdigest(), took
+
+
+@pytest.mark.parametrize(
+    ("controller", "world"), [(follower.WallFollower, "corners"), (reactive.ReactiveController, "obstacles")]
+)
+def test_a_minute_of_life_is_the_same_twice_and_quick(controller: type[Node], world: str) -> None:
+    (first, took), (again, _) = life(controller, world), life(controller, world)
+    assert first == again
+    assert took < 3.0
+
+
+@pytest.mark.parametrize(
+    ("controller", "words"),
+    [(follower.WallFollower, "following the wall on the right at"), (reactive.ReactiveController, "driving ahead, ")],
+)
+def test_a_controller_says_what_it_does(system: System, controller: type[Node], words: str) -> None:
+    system.add(simulation.SimulatedWorld, {"world": "corners"})
+    system.add(controller)
+    system.run(1.0)
+    assert any(line.startswith(words) for line in system.log)
+
+
+def test_a_follower_knows_two_sides(system: System) -> None:
+    with pytest.raises(InvalidParameterValueException, match="expected 'left' or 'right'"):
+        system.add(follower.WallFollower, {"side": "top"})
+
+
+class Typed:
+    """A keyboard that types what it is told."""
+
+    def __init__(self) -> None:
+        self.text, self.closed = "", False
+
+    def read(self) -> str:
+        text, self.text = self.text, ""
+        return text
+
+    def close(self) -> None:
+        self.closed = True
+
+
+def test_teleop_drives_while_a_key_is_held_then_stops_once_and_is_silent(system: System) -> None:
+    heard, keyboard = system.hear(Twist, "/cmd_vel"), Typed()
+    node = system.add(teleop.Teleop, {"speed": 0.2}, keyboard=keyboard)
+    system.run(1.0)
+    assert heard == []
+    for _ in range(3):
+        keyboard.text = "x\x1b[A"
+        system.run(0.2)
+    driving = len(heard)
+    assert set(map(str, heard)) == {str(Twist(linear=Vector3(x=0.2)))}
+    system.run(2.0)
+    assert heard[driving:-1] == [Twist(linear=Vector3(x=0.2))] * (len(heard) - driving - 1)
+    assert heard[-1] == Twist()
+    assert 0.25 <= (len(heard) - driving) / teleop.RATE <= 0.35  # 0.2 s after the last key it was counted
+    node.destroy_node()
+    assert keyboard.closed
+
+
+def test_teleop_tells_of_another_speed(system: System) -> None:
+    keyboard = Typed()
+    system.add(teleop.Teleop, keyboard=keyboard)
+    keyboard.text = "q"
+    system.run(0.1)
+    assert "speed 0.33 m/s, 1.10 rad/s" in system.log

@@ -1,0 +1,533 @@
+"""Processes run as one system: the first end is the end of all, and nothing ever stays behind."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import queue
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robolink.supervisor import Process, ProcessStartError, Supervisor
+from robolink.supervisor.guardian import remaining
+from robolink.supervisor.lifeline import VARIABLE, Lifeline, watch_lifeline
+from robolink.supervisor.policy import Ask, Policy, Say, Step
+from robolink.supervisor.printer import Printer, prefixes
+from robolink.supervisor.process import Child
+
+posix_only = pytest.mark.skipif(sys.platform == "win32", reason="signals and process groups are POSIX's")
+INTERRUPT, TERMINATE, KILL = Step.INTERRUPT, Step.TERMINATE, Step.KILL
+
+
+# --- deciding -------------------------------------------------------------------------------------------------
+
+
+def asked(*names: str, step: Step) -> list[Ask | Say]:
+    return [Ask(name, step) for name in names]
+
+
+def replay(policy: Policy, history: list[tuple[float, object]]) -> list[list[Ask | Say]]:
+    """Feed (time, event) pairs: a (name, return code), 'interrupt', 'end' or None for mere time."""
+    told = []
+    for now, event in history:
+        if isinstance(event, tuple):
+            name, returncode = event
+            told.append(policy.exited(name, returncode, now))
+        elif event is None:
+            told.append(policy.woken(now))
+        else:
+            told.append(policy.interrupted(now, in_hurry=event == "interrupt"))
+    return told
+
+
+HISTORIES: list[tuple[str, list[tuple[float, object]], int]] = [
+    ("the first to end decides", [(1, ("a", 3)), (2, ("b", 1))], 3),
+    ("a clean end is one too", [(1, ("a", 0)), (2, ("b", 1))], 0),
+    ("a signal counts from 128", [(1, ("a", -11)), (2, ("b", 0))], 139),
+    ("an orderly stop", [(1, "interrupt"), (2, ("a", 0)), (3, ("b", -2))], 0),
+    ("a stop with 130 and 143", [(1, "interrupt"), (2, ("a", 130)), (3, ("b", 143))], 0),
+    ("a crash while stopping", [(1, "interrupt"), (2, ("a", 0)), (3, ("b", 1))], 1),
+    ("the first crash while stopping", [(1, "end"), (2, ("a", 7)), (3, ("b", 1))], 7),
+    ("one that had to be killed", [(1, "interrupt"), (6, None), (11, None), (12, ("a", -9)), (12, ("b", 0))], 137),
+    ("the duration is over", [(60, None), (61, ("a", 0)), (61, ("b", -2))], 0),
+]
+
+
+@pytest.mark.parametrize(("history", "code"), [each[1:] for each in HISTORIES], ids=[each[0] for each in HISTORIES])
+def test_the_exit_code(history: list[tuple[float, object]], code: int) -> None:
+    policy = Policy(["a", "b"], ends=60)
+    replay(policy, history)
+    assert policy.is_over
+    assert policy.code == code
+
+
+def test_each_step_comes_when_patience_ends() -> None:
+    policy = Policy(["a", "b"])
+    told = replay(policy, [(1, ("a", 3)), (5.9, None), (6, None), (11, None), (15, None), (16, None)])
+    assert told == [
+        [Say("a ended with exit code 3"), *asked("b", step=INTERRUPT)],
+        [],
+        [Say("still running after 5 s: b"), *asked("b", step=TERMINATE)],
+        [Say("still running after 5 s: b"), *asked("b", step=KILL)],
+        [],
+        [Say("still running after 5 s: b")],
+    ]
+    assert policy.is_over
+
+
+def test_a_second_interrupt_goes_straight_to_the_next_step() -> None:
+    policy = Policy(["a", "b"])
+    first, echo, second, end, third = replay(
+        policy, [(1, "interrupt"), (1.1, "interrupt"), (2, "interrupt"), (3, "end"), (4, "interrupt")]
+    )
+    assert first == [Say("stopping (Ctrl-C again to hurry)"), *asked("a", "b", step=INTERRUPT)]
+    assert second == asked("a", "b", step=TERMINATE)
+    assert third == asked("a", "b", step=KILL)
+    assert echo == end == []
+
+
+def test_one_that_cannot_be_killed_is_given_up() -> None:
+    policy = Policy(["a"])
+    replay(policy, [(0, "end"), (5, None), (10, None), (15, None)])
+    assert policy.is_over
+    assert policy.code == 137
+
+
+events = st.sampled_from(["interrupt", "end", None]) | st.tuples(st.sampled_from("abc"), st.integers(-15, 255))
+
+
+@given(st.lists(st.tuples(st.floats(0, 9), events), max_size=30))
+def test_any_history_ends_and_asks_only_those_alive(history: list[tuple[float, object]]) -> None:
+    policy, now = Policy("abc", ends=50), 0.0
+    for wait, event in [*history, *[(50.0, None)] * 5]:
+        now += wait
+        if policy.is_over or (isinstance(event, tuple) and event[0] not in policy.alive):
+            continue
+        [actions] = replay(policy, [(now, event)])
+        assert all(action.name in policy.alive for action in actions if isinstance(action, Ask))
+    assert policy.is_over
+
+
+# --- printing -------------------------------------------------------------------------------------------------
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_lines_are_prefixed_and_coloured_on_a_terminal_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    for output, expected in [
+        (io.StringIO(), "[a] hi\n[b] é\ufffd\n[launch] over\n"),
+        (Terminal(), "\x1b[36m[a]\x1b[0m hi\n\x1b[33m[b]\x1b[0m é\ufffd\n\x1b[32m[launch]\x1b[0m over\n"),
+    ]:
+        printer = Printer(output, ["a", "b"])
+        printer.line("a", b"hi\r\n")
+        printer.line("b", b"\xc3\xa9\xff")
+        printer.say("over")
+        printer.close()
+        assert output.getvalue() == expected
+
+
+def test_no_color_is_respected(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    output = Terminal()
+    printer = Printer(output, ["a"])
+    printer.line("a", b"hi\n")
+    printer.close()
+    assert output.getvalue() == "[a] hi\n"
+
+
+def test_every_name_has_a_colour() -> None:
+    names = [f"node{index}" for index in range(30)]
+    assert len(set(prefixes(names, has_colour=True).values())) == 30
+
+
+def test_bytes_reach_a_pipe_unchanged_and_nobody_waits_for_a_broken_one() -> None:
+    reading, writing = os.pipe()
+    broken = threading.Event()
+    with os.fdopen(writing, "w") as output:
+        printer = Printer(output, ["a"], on_broken=broken.set)
+        printer.line("a", bytes(range(14, 256)))
+        with os.fdopen(reading, "rb") as received:
+            assert received.readline() == b"[a] " + bytes(range(14, 256)) + b"\n"
+        for _ in range(5000):
+            printer.line("a", b"x" * 100)
+        printer.close()
+        assert broken.wait(5)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), writing)  # so that what is buffered can be flushed
+
+
+def test_a_terminal_that_stands_still_does_not_hold_us_up() -> None:
+    go_on = threading.Event()
+
+    class Still(io.StringIO):
+        def write(self, text: str) -> int:
+            go_on.wait(10)
+            return super().write(text)
+
+    output = Still()
+    printer = Printer(output, ["a"])
+    for _ in range(3000):
+        printer.say("ready")
+    printer.close(timeout=0.01)
+    go_on.set()
+    printer.close()
+    assert output.getvalue().startswith("[launch] ready\n")
+
+
+# --- running --------------------------------------------------------------------------------------------------
+
+SAY_READY = "import signal, sys, time, os, subprocess\nsay = lambda *a: print(*a, flush=True)\n"
+FOR_EVER = "say('ready')\nwhile True: time.sleep(100)"
+IGNORES = "signal.signal(signal.SIGINT, signal.SIG_IGN)\n"
+
+
+def python(name: str, code: str, *, interactive: bool = False) -> Process:
+    return Process(name, [sys.executable, "-c", SAY_READY + textwrap.dedent(code)], interactive=interactive)
+
+
+def run(*processes: Process, patience: float = 5.0, duration: float | None = None) -> tuple[int, list[str]]:
+    output = io.StringIO()
+    code = Supervisor(processes, output=output, patience=patience).run(duration)
+    return code, output.getvalue().splitlines()
+
+
+def test_output_is_whole_whoever_prints_and_however_long() -> None:
+    chatty = "for i in range(300): print(i); print(i, file=sys.stderr)\ntime.sleep(0.3)"
+    long = "print('x' * 300_000); sys.stdout.flush(); sys.stdout.buffer.write(b'\\xff\\n'); say('end'); time.sleep(9)"
+    code, lines = run(python("a", chatty), python("b", long))
+    assert code == 0
+    assert [line for line in lines if line.startswith("[a]")] == [f"[a] {i // 2}" for i in range(600)]
+    assert [line for line in lines if line.startswith("[b]")][:3] == ["[b] " + "x" * 300_000, "[b] \ufffd", "[b] end"]
+
+
+def test_the_last_words_of_a_process_are_printed_before_its_end_is_reported() -> None:
+    code, lines = run(python("a", "print('last', end='')\nraise SystemExit(3)"))
+    assert code == 3
+    assert lines == ["[a] last", "[launch] a ended with exit code 3"]
+
+
+def test_stop_ends_the_system_from_any_thread() -> None:
+    class Watched(io.StringIO):
+        def write(self, text: str) -> int:
+            if "ready" in text:
+                supervisor.stop()
+            return super().write(text)
+
+    output = Watched()
+    supervisor = Supervisor([python("a", FOR_EVER), python("b", FOR_EVER)], output=output)
+    assert supervisor.run() == 0
+    assert "[launch] stopping (Ctrl-C again to hurry)\n" in output.getvalue()
+
+
+def test_a_program_that_is_not_there_stops_the_others() -> None:
+    started: list[Child] = []
+
+    def start(process: Process, lifeline: Lifeline) -> Child:
+        started.append(Child(process, lifeline))
+        return started[-1]
+
+    processes = [python("a", "time.sleep(100)"), Process("b", ["/no/such/program"])]
+    with pytest.raises(ProcessStartError, match="cannot start b"):
+        Supervisor(processes, output=io.StringIO(), start=start).run()
+    assert [child.name for child in started] == ["a"]
+    assert is_gone(started[0].group)
+
+
+@posix_only
+def test_a_process_that_ignores_the_interrupt_is_terminated() -> None:
+    stubborn = python("b", IGNORES + "say('ready')\ntime.sleep(100)")
+    waiting = python("a", "time.sleep(0.4); raise SystemExit(4)")
+    code, lines = run(waiting, stubborn, patience=0.2)
+    assert code == 4
+    assert lines[-2:] == ["[launch] a ended with exit code 4", "[launch] still running after 0.2 s: b"]
+
+
+class FakeChild:
+    """A child that only notes what is asked of it, and ends at the step that it obeys."""
+
+    group = 2**31 - 2
+
+    def __init__(self, process: Process, obeys: Step, notes: list[object]) -> None:
+        self.name, self.obeys, self.notes = process.name, obeys, notes
+
+    def watch(self, on_line: Callable[[str, bytes], None], on_exit: Callable[[str, int], None]) -> None:
+        on_line(self.name, b"started")
+        self.on_exit = on_exit
+
+    def ask(self, step: Step) -> None:
+        self.notes.append((self.name, step))
+        if step is self.obeys:
+            self.on_exit(self.name, 0)
+
+    def is_left(self) -> bool:
+        return False
+
+
+def test_clock_and_processes_can_be_replaced() -> None:
+    notes: list[object] = []
+    ticks = iter(range(0, 10**6, 100))
+
+    def start(process: Process, lifeline: object) -> FakeChild:
+        return FakeChild(process, TERMINATE if process.name == "slow" else INTERRUPT, notes)
+
+    names = [Process("quick", []), Process("slow", [])]
+    supervisor = Supervisor(names, output=io.StringIO(), clock=lambda: next(ticks), start=start)  # type: ignore[arg-type]
+    assert supervisor.run(duration=10) == 0
+    assert notes[:3] == [("quick", INTERRUPT), ("slow", INTERRUPT), ("slow", TERMINATE)]
+
+
+# --- the edges: a launcher of its own, and signals ------------------------------------------------------------
+
+LAUNCHER = """
+import json, sys
+from robolink.supervisor import Process, Supervisor
+spec = json.loads(sys.argv[1])
+processes = [Process(name, [sys.executable, "-c", code], interactive=name == "teleop") for name, code in spec.items()]
+raise SystemExit(Supervisor(processes, patience=float(sys.argv[2])).run())
+"""
+
+
+class Launcher:
+    """A launcher in a process of its own, and its lines as they come; `first` is what it does before all else."""
+
+    def __init__(self, codes: dict[str, str], patience: float, first: str, terminal: int | None) -> None:
+        spec = json.dumps({name: SAY_READY + textwrap.dedent(code) for name, code in codes.items()})
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", first + LAUNCHER, spec, str(patience)],
+            stdin=subprocess.DEVNULL if terminal is None else terminal,
+            stdout=subprocess.PIPE,
+            start_new_session=terminal is not None,
+        )
+        self.lines: queue.Queue[str] = queue.Queue()
+        self.said: list[str] = []
+        self.reader = threading.Thread(target=self.read, daemon=True)
+        self.reader.start()
+
+    def read(self) -> None:
+        assert self.process.stdout is not None
+        with self.process.stdout as output:
+            for line in output:
+                self.lines.put(line.decode().rstrip())
+
+    def wait_for(self, text: str) -> str:
+        """Wait for a line that holds the text, give the words behind it, and never give that line again."""
+        while not (found := [line for line in self.said if text in line]):
+            self.said.append(self.lines.get(timeout=10))
+        self.said.remove(found[0])
+        return found[0].partition(text)[2].strip()
+
+    def rest(self) -> list[str]:
+        """Give the lines that nobody waited for, after the end."""
+        return [*self.said, *(self.lines.get() for _ in range(self.lines.qsize()))]
+
+    def end(self) -> int:
+        code = self.process.wait(10)
+        self.reader.join(10)
+        return code
+
+
+@contextmanager
+def launched(
+    codes: dict[str, str], *, patience: float = 5.0, first: str = "", terminal: int | None = None
+) -> Iterator[Launcher]:
+    launcher = Launcher(codes, patience, first, terminal)
+    try:
+        yield launcher
+    finally:
+        launcher.process.kill()
+        launcher.end()
+
+
+def state(pid: int) -> str:
+    """Give the letter of a process's state, '' when there is none; a zombie ('Z') still has a number."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except FileNotFoundError:
+        if Path("/proc/self").exists():
+            return ""
+    shown = subprocess.run(["ps", "-o", "stat=", "-p", str(pid)], capture_output=True, text=True, check=False)
+    return shown.stdout.strip()[:1]
+
+
+def wait_until(condition: Callable[[], bool], timeout: float = 10.0) -> bool:
+    deadline = time.monotonic() + timeout
+    while not condition():
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.005)
+    return True
+
+
+def is_gone(pid: int) -> bool:
+    return state(pid) in ("", "Z", "X")
+
+
+@posix_only
+def test_ctrl_c_stops_all_in_order_with_one_interrupt_each() -> None:
+    counting = """
+        def count(*args):
+            say("interrupted")
+            raise SystemExit(0)
+        signal.signal(signal.SIGINT, count)
+        say("ready")
+        while True: time.sleep(100)
+    """
+    with launched({"a": counting, "b": counting}) as launcher:
+        launcher.wait_for("ready")
+        launcher.wait_for("ready")
+        launcher.process.send_signal(signal.SIGINT)
+        assert launcher.end() == 0
+        rest = launcher.rest()
+    assert rest[0] == "[launch] stopping (Ctrl-C again to hurry)"
+    assert sorted(rest[1:]) == ["[a] interrupted", "[b] interrupted"]
+
+
+@posix_only
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_other_signals_stop_in_order_too(number: int) -> None:
+    with launched({"a": FOR_EVER}) as launcher:
+        launcher.wait_for("ready")
+        launcher.process.send_signal(number)
+        assert launcher.end() == 0
+
+
+@posix_only
+def test_ctrl_c_again_and_again_hurries() -> None:
+    stubborn = IGNORES + "signal.signal(signal.SIGTERM, lambda *a: say('hurried'))\n" + FOR_EVER
+    with launched({"a": stubborn}, patience=60) as launcher:
+        launcher.wait_for("ready")
+        launcher.process.send_signal(signal.SIGINT)
+        launcher.wait_for("stopping")
+        time.sleep(0.25)  # not to wait for anything: sooner, it would count as an echo of the first
+        launcher.process.send_signal(signal.SIGINT)
+        launcher.wait_for("hurried")
+        time.sleep(0.25)
+        launcher.process.send_signal(signal.SIGINT)
+        assert launcher.end() == 137
+
+
+WITH_CHILD = """
+    child = subprocess.Popen([sys.executable, "-c", "import signal, time; signal.signal(signal.SIGINT, signal.SIG_IGN);"
+        "print('up', flush=True); time.sleep(100)"], stdout=subprocess.PIPE)
+    child.stdout.readline()
+    say("pids", os.getpid(), child.pid)
+"""
+
+
+@posix_only
+def test_processes_that_a_child_leaves_behind_are_ended_too() -> None:
+    with launched({"a": WITH_CHILD + "    raise SystemExit(5)"}) as launcher:
+        _, grandchild = map(int, launcher.wait_for("pids").split())
+        assert launcher.end() == 5
+        assert wait_until(lambda: is_gone(grandchild))
+
+
+@posix_only
+def test_nothing_stays_behind_when_the_launcher_is_killed() -> None:
+    watch = "from robolink.supervisor import watch_lifeline; assert watch_lifeline(0.2)\n"
+    stubborn = IGNORES + textwrap.dedent(WITH_CHILD) + FOR_EVER
+    with launched({"watching": watch + stubborn, "plain": stubborn}) as launcher:
+        watching = [int(pid) for pid in launcher.wait_for("[watching] pids").split()]
+        plain = [int(pid) for pid in launcher.wait_for("[plain] pids").split()]
+        launcher.wait_for("ready")
+        launcher.wait_for("ready")  # or else they may die of their own broken pipes
+        launcher.process.kill()
+        assert wait_until(lambda: all(map(is_gone, watching)))
+        assert not any(map(is_gone, plain))  # these have longer: the guardian lets others end in order
+        assert wait_until(lambda: all(map(is_gone, plain)))
+
+
+@posix_only
+def test_a_watching_program_ends_in_order_when_the_launcher_is_killed(tmp_path: Path) -> None:
+    code = f"""
+        from robolink.supervisor import watch_lifeline
+        assert watch_lifeline()
+        try:
+            say("ready")
+            time.sleep(100)
+        except KeyboardInterrupt:
+            open({str(tmp_path / "orderly")!r}, "w").close()
+    """
+    with launched({"a": code}) as launcher:
+        launcher.wait_for("ready")
+        launcher.process.kill()
+        assert wait_until((tmp_path / "orderly").exists, timeout=1.5)
+
+
+@posix_only
+def test_ctrl_z_pauses_all_and_fg_lets_them_go_on() -> None:
+    with launched({"a": "say('pid', os.getpid())\n" + FOR_EVER}, first="import os; os.setpgrp()\n") as launcher:
+        child = int(launcher.wait_for("pid"))
+        launcher.wait_for("ready")
+        launcher.process.send_signal(signal.SIGTSTP)
+        assert wait_until(lambda: state(launcher.process.pid) == state(child) == "T")
+        launcher.process.send_signal(signal.SIGCONT)
+        assert wait_until(lambda: state(launcher.process.pid) != "T" and state(child) != "T")
+        launcher.process.send_signal(signal.SIGINT)
+        assert launcher.end() == 0
+
+
+@posix_only
+def test_an_interactive_process_has_the_terminal() -> None:
+    teleop = """
+        def count(*args):
+            say("interrupted")
+            raise SystemExit(0)
+        signal.signal(signal.SIGINT, count)
+        say("terminal", sys.stdin.isatty())
+        while True: say("key", input())
+    """
+    other = "say('other', repr(sys.stdin.read()))\n" + FOR_EVER
+    take_terminal = "import fcntl, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0)\n"
+    ours, theirs = os.openpty()
+    with (
+        os.fdopen(ours, "wb", buffering=0) as keyboard,
+        launched({"teleop": teleop, "b": other}, first=take_terminal, terminal=theirs) as launcher,
+    ):
+        os.close(theirs)
+        assert launcher.wait_for("terminal") == "True"
+        assert launcher.wait_for("other") == "''"
+        keyboard.write(b"up\n")
+        assert launcher.wait_for("key") == "up"
+        keyboard.write(b"\x03")
+        assert launcher.end() == 0
+        assert [line for line in launcher.rest() if "interrupted" in line] == ["[teleop] interrupted"]
+
+
+# --- lifeline and guardian, by themselves ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("value", ["", "x", "-1", "99999", str(2**80), "0x3"])
+def test_a_lifeline_that_is_none_is_not_watched(value: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, value)
+    assert not watch_lifeline()
+    assert VARIABLE not in os.environ
+
+
+def test_a_file_is_no_lifeline(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with (tmp_path / "file").open("w") as file:
+        monkeypatch.setenv(VARIABLE, str(file.fileno()))
+        assert not watch_lifeline()
+
+
+@given(st.lists(st.tuples(st.booleans(), st.integers(1, 5))))
+def test_the_guardian_knows_what_is_left(history: list[tuple[bool, int]]) -> None:
+    lines = [b"%s%d\n" % (b"+" if added else b"-", group) for added, group in history]
+    last = {group: added for added, group in history}
+    assert remaining([*lines, b"+9"]) == {group for group, added in last.items() if added}

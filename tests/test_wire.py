@@ -1,0 +1,251 @@
+"""The wire is rmw_zenoh's, byte for byte; whatever else arrives is a WireError."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robolink import wire
+from robolink.duration import Duration, Infinite
+from robolink.exceptions import WireError
+from robolink.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_profile_sensor_data,
+    qos_profile_system_default,
+    resolved,
+)
+
+DATA = Path(__file__).parent / "data" / "wire"
+HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
+
+
+def golden(name: str) -> list[str]:
+    return (DATA / name).read_text().split()
+
+
+TOKEN = golden("liveliness-token-real-humble.txt")[0]
+
+chunks = st.from_regex(r"[a-z][a-z0-9_]{0,8}", fullmatch=True)
+names = st.lists(chunks, min_size=1, max_size=4).map(lambda parts: "/" + "/".join(parts))
+namespaces = st.just("/") | names
+types = st.builds("{}/{}/{}".format, chunks, st.sampled_from(["msg", "srv", "action"]), st.just("Thing_Feedback"))
+hashes = st.just(wire.NO_HASH) | st.from_regex(r"RIHS01_[0-9a-f]{64}", fullmatch=True)
+numbers = st.integers(0, 10**18)
+sessions = st.from_regex(r"[1-9a-f][0-9a-f]{0,31}", fullmatch=True)
+spans = st.just(Infinite) | st.integers(1, 2**63 - 3).map(lambda ns: Duration(nanoseconds=ns))
+profiles = st.builds(
+    QoSProfile,
+    history=st.sampled_from([HistoryPolicy.KEEP_LAST, HistoryPolicy.KEEP_ALL]),
+    depth=st.integers(1, 10**6),
+    reliability=st.sampled_from([ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT]),
+    durability=st.sampled_from([DurabilityPolicy.TRANSIENT_LOCAL, DurabilityPolicy.VOLATILE]),
+    lifespan=spans,
+    deadline=spans,
+    liveliness=st.sampled_from([LivelinessPolicy.AUTOMATIC, LivelinessPolicy.MANUAL_BY_TOPIC]),
+    liveliness_lease_duration=spans,
+)
+keys = st.builds(wire.DataKey, numbers, names, types, hashes)
+node_tokens = st.builds(wire.NodeToken, numbers, sessions, numbers, namespaces, namespaces, chunks)
+endpoint_tokens = st.builds(
+    wire.EndpointToken,
+    numbers,
+    sessions,
+    numbers,
+    numbers,
+    st.sampled_from(wire.EndpointKind),
+    namespaces,
+    namespaces,
+    chunks,
+    names,
+    types,
+    hashes,
+    profiles,
+)
+
+
+def test_data_keys_of_a_real_peer() -> None:
+    parsed = [wire.parse_key(key) for key in golden("data-keys.txt")]
+    assert [(key.domain, key.name) for key in parsed] == [(0, "/chatter"), (42, "/robot/_hidden/chatter")]
+    assert {key.type_name for key in parsed} == {"std_msgs/msg/String"}
+    assert [wire.format_key(key) for key in parsed] == golden("data-keys.txt")
+
+
+def test_key_of_a_service() -> None:
+    key = wire.DataKey(2, "/add_two_ints", "example_interfaces/srv/AddTwoInts", HASH)
+    assert wire.format_key(key) == f"2/add_two_ints/example_interfaces::srv::dds_::AddTwoInts_/{HASH}"
+
+
+def test_token_of_a_real_peer() -> None:
+    token = wire.parse_token(TOKEN)
+    assert isinstance(token, wire.EndpointToken)
+    assert token[:11] == (
+        0,
+        "9ca0f8facf84ffb1e6bfa4f2500889f0",
+        0,
+        3,
+        wire.EndpointKind.PUBLISHER,
+        "/",
+        "/",
+        "_ros2cli_712",
+        "/chatter",
+        "std_msgs/msg/String",
+        wire.NO_HASH,
+    )
+    assert (token.qos.durability, token.qos.depth) == (DurabilityPolicy.TRANSIENT_LOCAL, 1)
+    assert wire.format_token(token) == TOKEN
+
+
+def test_attachment_of_a_real_peer_carries_the_gid_of_its_token() -> None:
+    attachment = wire.unpack_attachment(bytes.fromhex(golden("attachment-real-humble.hex")[0]))
+    assert attachment == (216, 1784824452167621172, wire.gid_of(TOKEN))
+
+
+def test_attachment_bytes() -> None:
+    packed = wire.pack_attachment(7, 1724679300000000000, b"*" * 16)
+    assert packed[:8].hex() == golden("attachment-seq7.hex")[0][:16]
+    assert packed[16:].hex() == golden("attachment-seq7.hex")[0][32:]
+    assert wire.pack_attachment(*wire.unpack_attachment(packed)) == packed
+
+
+@pytest.mark.parametrize("text", golden("qos-components.txt"))
+def test_qos_of_a_real_peer(text: str) -> None:
+    qos = wire.parse_qos(text)
+    assert qos.reliability is ReliabilityPolicy.BEST_EFFORT
+    assert wire.format_qos(qos) == text
+
+
+@pytest.mark.parametrize(
+    ("qos", "text"),
+    [
+        (QoSProfile(depth=10), "::,10:,:,:,,"),
+        (qos_profile_sensor_data, "2::,5:,:,:,,"),
+        (QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL), ":1:,1:,:,:,,"),
+        (qos_profile_system_default, "::,:,:,:,,"),
+        (QoSProfile(history=HistoryPolicy.KEEP_ALL), "::2,10:,:,:,,"),
+        (QoSProfile(depth=42, deadline=Duration(seconds=2, nanoseconds=5)), "::,:2,5:,:,,"),
+    ],
+)
+def test_qos_field(qos: QoSProfile, text: str) -> None:
+    assert wire.format_qos(qos) == text
+    assert wire.parse_qos(text) == resolved(qos)
+
+
+def test_explicit_defaults_are_read_as_well() -> None:
+    explicit = "1:2:1,42:9223372036,854775807:9223372036,854775807:1,9223372036,854775807"
+    assert wire.parse_qos(explicit) == wire.parse_qos("::,:,:,:,,")
+
+
+def test_node_token() -> None:
+    token = wire.NodeToken(5, "ab12", 7, "", "/robot1", "talker")
+    assert wire.format_token(token) == "@ros2_lv/5/ab12/7/7/NN/%/%robot1/talker"
+    assert wire.parse_token(wire.format_token(token)) == token._replace(enclave="/")
+    assert wire.graph_pattern(5) == "@ros2_lv/5/**"
+
+
+@given(keys)
+def test_keys_survive_the_wire(key: wire.DataKey) -> None:
+    assert wire.parse_key(wire.format_key(key)) == key
+
+
+@given(node_tokens | endpoint_tokens)
+def test_tokens_survive_the_wire(token: wire.NodeToken | wire.EndpointToken) -> None:
+    assert wire.parse_token(wire.format_token(token)) == token
+
+
+@given(st.integers(-(2**63), 2**63 - 1), st.integers(-(2**63), 2**63 - 1), st.binary(min_size=16, max_size=16))
+def test_attachments_survive_the_wire(sequence: int, timestamp: int, gid: bytes) -> None:
+    packed = wire.pack_attachment(sequence, timestamp, gid)
+    assert len(packed) == 33
+    assert wire.unpack_attachment(packed) == (sequence, timestamp, gid)
+
+
+PARSERS: list[Callable[[str], object]] = [
+    wire.parse_key,
+    wire.parse_token,
+    wire.parse_qos,
+    wire.demangle_type,
+    wire.mangle_type,
+]
+
+
+@given(st.sampled_from(PARSERS), st.text() | st.text(alphabet="@ros2_lv/0123456789:,%MPNN\ud800"))
+def test_other_text_is_a_wire_error(parse: Callable[[str], object], text: str) -> None:
+    result: object = WireError
+    with contextlib.suppress(WireError):
+        result = parse(text)
+    assert result
+
+
+@given(st.integers(0, len(TOKEN) - 1), st.text(max_size=3))
+def test_a_damaged_token_is_a_wire_error_or_another_token(at: int, damage: str) -> None:
+    text = TOKEN[:at] + damage + TOKEN[at + 1 :]
+    try:
+        again = wire.format_token(wire.parse_token(text))
+    except WireError:
+        return
+    assert wire.parse_token(again) == wire.parse_token(text)
+
+
+@given(st.binary())
+def test_other_bytes_are_no_attachment(raw: bytes) -> None:
+    if len(raw) == 33 and raw[16] == 16:
+        assert wire.unpack_attachment(raw).gid == raw[17:]
+    else:
+        with pytest.raises(WireError):
+            wire.unpack_attachment(raw)
+
+
+@pytest.mark.parametrize(
+    "name", ["", "//", "/a//b", "/a*", "/a?b", "/a%b", "/a b", "/a/", "/ä", "/a\n", "/a$*", "/", "a"]
+)
+def test_names_that_would_break_a_key_are_refused(name: str) -> None:
+    with pytest.raises(WireError, match="expected a full topic"):
+        wire.format_key(wire.DataKey(0, name, "std_msgs/msg/String", HASH))
+
+
+@pytest.mark.parametrize("parse", PARSERS)
+def test_a_megabyte_is_refused_at_once(parse: Callable[[str], object]) -> None:
+    begin = time.perf_counter()
+    for hostile in ("a/" * 500_000, "a" * 1_000_000, TOKEN + "%a" * 500_000, "1:" * 500_000):
+        with pytest.raises(WireError) as caught:
+            parse(hostile)
+        assert len(str(caught.value)) < 400
+    assert time.perf_counter() - begin < 0.1
+
+
+def test_a_megabyte_is_not_announced() -> None:
+    token = wire.NodeToken(0, "a", 0, "/", "/", "x" * 1_000_000)
+    with pytest.raises(WireError, match="at most"):
+        wire.format_token(token)
+    key = wire.DataKey(0, "/" + "x" * (wire.LONGEST - 5), "std_msgs/msg/String", HASH)
+    with pytest.raises(WireError, match="a key has at most"):
+        wire.format_key(key)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        TOKEN.replace("/MP/", "/XX/"),
+        TOKEN.replace("/MP/", "/NN/"),
+        TOKEN.replace("@ros2_lv", "@ros2"),
+        TOKEN.replace("TypeHashNotSupported", "RIHS01_12"),
+        TOKEN.replace("dds_::String_", "String"),
+        TOKEN.replace(":1:,1", ":9:,1"),
+        TOKEN.replace("/0/3/", "/0/-3/"),
+        "@ros2_lv/0/ab/0/0/MP/%/%/talker",
+        TOKEN + "/more",
+    ],
+)
+def test_malformed_tokens(text: str) -> None:
+    with pytest.raises(WireError):
+        wire.parse_token(text)

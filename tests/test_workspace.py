@@ -1,0 +1,245 @@
+"""Names find nodes, launch files and worlds, the user's before those that come with robolink; files are loaded."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Callable, Iterator
+from importlib.metadata import EntryPoint
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robolink import Node
+from robolink.exceptions import NotFoundError
+from robolink.workspace import (
+    VARIABLE,
+    NodeLoadError,
+    built_in_workspace,
+    find,
+    find_launch,
+    find_node,
+    find_world,
+    list_launches,
+    list_nodes,
+    list_worlds,
+    load_module,
+    load_node,
+)
+
+NODE = """
+from robolink import Node
+
+class Talker(Node):
+    def __init__(self) -> None:
+        super().__init__("talker")
+"""
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A workspace of the user's, with the working directory somewhere below it."""
+    for folder in ("nodes", "configs/worlds", "src/deep"):
+        (tmp_path / folder).mkdir(parents=True)
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.chdir(tmp_path / "src/deep")
+    before = list(sys.path)
+    yield tmp_path.resolve()
+    sys.path[:] = before
+
+
+@pytest.fixture
+def write(home: Path) -> Callable[[str, str], Path]:
+    def write(name: str, text: str = NODE) -> Path:
+        path = home / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        return path
+
+    return write
+
+
+Write = Callable[..., Path]
+
+
+def test_a_users_node_is_found_from_below_its_workspace(write: Write) -> None:
+    path = write("nodes/line_follower.py")
+    assert find_node("line_follower").path == path
+    assert find_node("line-follower").path == path
+    assert find_node("line_follower.py").path == path
+    assert find_node("nodes/line_follower.py").path == path
+    assert find_node("../../nodes/line_follower.py").path == path
+    assert find_node(str(path)).spec == str(path)
+    assert find_node("line_follower:main").spec == f"{path}:main"
+    assert find_node(f"{path}:main").attribute == "main"
+
+
+def test_a_users_file_shadows_a_built_in_one(write: Write, home: Path) -> None:
+    assert find_node("wall_follower").path == built_in_workspace() / "nodes/wall_follower.py"
+    ours = write("nodes/wall-follower.py")
+    assert find_node("wall_follower").path == ours
+    assert [each.path for each in list_nodes() if "wall" in each.name] == [ours]
+    world = write("configs/worlds/empty-room.yml", "")
+    assert find_world("empty_room") == find_world("empty_room.yaml") == world
+    assert [each for each in list_worlds() if "empty" in each.name] == [world]
+    assert find_world("corners") == built_in_workspace() / "configs/worlds/corners.yaml"
+
+
+def test_everything_is_listed_but_private_files(write: Write) -> None:
+    write("nodes/mine.py")
+    write("nodes/_shared.py")
+    write("configs/lap.yaml", "nodes: []")
+    names = [each.name for each in list_nodes()]
+    assert {"mine", "world", "teleop"} <= set(names)
+    assert "_shared" not in names
+    assert names == sorted(names)
+    assert "lap" in [each.stem for each in list_launches()]
+
+
+def test_a_workspace_can_be_asked_for(
+    write: Write, home: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write("nodes/mine.py")
+    monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
+    with pytest.raises(NotFoundError):
+        find_node("mine")
+    assert find_node("mine", workspace=home).path == path
+    monkeypatch.setenv(VARIABLE, str(home))
+    assert find_node("mine").path == path
+    with pytest.raises(NotFoundError, match="no workspace folder named '/no/such/place'"):
+        find_node("mine", workspace="/no/such/place")
+
+
+def test_installed_packages_bring_nodes(monkeypatch: pytest.MonkeyPatch, write: Write) -> None:
+    entry_points = [
+        EntryPoint(name, value, find.ENTRY_POINTS)
+        for name, value in [("shop-node", "os:getpid"), ("world", "os:PathLike")]
+    ]
+    monkeypatch.setattr("importlib.metadata.entry_points", lambda group: entry_points)
+    assert find_node("world").entry_point is not None
+    found = load_node(find_node("shop_node"))
+    assert not isinstance(found, type)
+    assert found() == os.getpid()
+    assert find_node("shop_node").spec == "shop-node"
+    with pytest.raises(NodeLoadError, match=r"os:PathLike is a class, but no subclass of Node"):
+        load_node(find_node("world"))
+    path = write("nodes/world.py")
+    assert find_node("world").path == path
+
+
+@pytest.mark.parametrize(
+    ("name", "report"),
+    [
+        ("minee", "no node named 'minee' in {home} or robolink itself (did you mean 'mine'?)"),
+        ("wander_around_in_a_circle", "no node named 'wander_around_in_a_circle' in {home} or robolink itself"),
+        ("../nodes/mine.py", "no file named '../nodes/mine.py'"),
+        ("../../nodes/min.py", "no file named '../../nodes/min.py' (did you mean '../../nodes/mine.py'?)"),
+        ("min.py", "no node named 'min.py' in {home} or robolink itself (did you mean 'mine'?)"),
+        ("", "no node named '' in {home} or robolink itself"),
+    ],
+)
+def test_an_unknown_node_is_reported_with_the_nearest(name: str, report: str, write: Write, home: Path) -> None:
+    write("nodes/mine.py")
+    with pytest.raises(NotFoundError) as caught:
+        find_node(name)
+    assert str(caught.value) == report.format(home=home)
+
+
+def test_unknown_launch_files_and_worlds_too(write: Write) -> None:
+    write("configs/lap.yaml")
+    with pytest.raises(NotFoundError, match=r"no launch file named 'lep'.*did you mean 'lap'"):
+        find_launch("lep")
+    with pytest.raises(NotFoundError, match=r"no world named 'corner'.*did you mean 'corners'"):
+        find_world("corner")
+
+
+# --- loading --------------------------------------------------------------------------------------------------
+
+
+def loaded(path: Path, attribute: str = "") -> Any:
+    return load_node(find_node(f"{path}:{attribute}" if attribute else str(path)))
+
+
+def test_the_only_node_class_of_a_file_is_its_node(write: Write) -> None:
+    path = write("a.py")
+    found = loaded(path)
+    assert issubclass(found, Node)
+    assert found.__module__ == str(path)
+    assert loaded(path) is found
+
+
+def test_a_class_that_only_serves_as_a_base_does_not_count(write: Write) -> None:
+    path = write("a.py", NODE + "class Loud(Talker): pass\nclass Helper: pass\n")
+    assert loaded(path).__name__ == "Loud"
+    assert loaded(path, "Talker").__name__ == "Talker"
+
+
+def test_main_goes_before_classes(write: Write) -> None:
+    path = write("a.py", NODE + "class Other(Node): pass\ndef main(args=None): return 7\n")
+    assert loaded(path)() == 7
+
+
+def test_a_script_is_run_as_python_does(write: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    write("neighbour.py", "word = 'hello'")
+    guarded = write("a.py", NODE + "import neighbour\nif __name__ == '__main__': print(neighbour.word, __file__)")
+    loaded(guarded)()
+    assert capsys.readouterr().out == f"hello {guarded}\n"
+    plain = write("b.py", "import neighbour\nprint(neighbour.word, __name__)")
+    run = loaded(plain)
+    assert capsys.readouterr().out == ""
+    run()
+    assert capsys.readouterr().out == "hello __main__\n"
+
+
+def test_structs_of_a_node_file_know_their_annotations(write: Write) -> None:
+    path = write(
+        "a.py",
+        "from __future__ import annotations\nimport msgspec\n"
+        "class A(msgspec.Struct):\n    b: B\nclass B(msgspec.Struct):\n    x: int = 0\n",
+    )
+    import msgspec
+
+    module = load_module(path)
+    assert msgspec.convert({"b": {"x": 3}}, module.A).b.x == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "report"),
+    [
+        ("def x(:\n", r":1:\d+: invalid syntax"),
+        ("x = 1\n  y = 2\n", r":2:\d+: unexpected indent"),
+        ("x = '\0'", r".* source code .*null bytes"),
+        ("x = " + "(" * 1000, r":.*"),
+        (NODE + "class Other(Node): pass", r" holds 2 nodes: say which, a\.py:Talker or a\.py:Other"),
+        ("class A: pass", r" holds no node: no Node class, no main\(\) and no `if __name__ == '__main__'`"),
+    ],
+)
+def test_a_file_that_holds_no_node_is_one_line(text: str, report: str, write: Write) -> None:
+    path = write("a.py", text)
+    with pytest.raises(NodeLoadError) as caught:
+        loaded(path)
+    assert re.fullmatch(re.escape(str(path)) + report, str(caught.value))
+
+
+@pytest.mark.parametrize(
+    ("attribute", "report"),
+    [
+        ("Talkr", r"no class or function named 'Talkr' in .*a.py \(did you mean 'Talker'\?\)"),
+        ("word", "a.py:word is neither a Node class nor a function"),
+        ("Helper", "a.py:Helper is a class, but no subclass of Node"),
+    ],
+)
+def test_an_attribute_that_is_no_node_is_one_line(attribute: str, report: str, write: Write) -> None:
+    path = write("a.py", NODE + "word = 'x'\nclass Helper: pass\n")
+    with pytest.raises((NotFoundError, NodeLoadError), match=report):
+        loaded(path, attribute)
+
+
+def test_an_error_in_the_users_file_stays_as_it_is(write: Write) -> None:
+    path = write("a.py", "class A: pass\nraise KeyError('mine')")
+    for _ in range(2):
+        with pytest.raises(KeyError, match="mine"):
+            loaded(path)
+    assert str(path) not in sys.modules
