@@ -252,7 +252,7 @@ def codec(name: str) -> dict[str, tuple[float, float]]:
     if name == "Twist":
         plain = PlainTwist(Vector(0.3, 0.0, 0.0), Vector(0.0, 0.0, -0.5))
     else:
-        plain = PlainScan(PlainHeader(0, 0, "laser"), *[0.0] * 7, ranges=list(message.ranges), intensities=[])
+        plain = PlainScan(PlainHeader(0, 0, "laser"), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, list(message.ranges), [])
     packer, unpacker = msgspec.msgpack.Encoder(), msgspec.msgpack.Decoder(type(plain))
     store = get_typestore(Stores.ROS2_JAZZY)
     ros_type = cls.__ros_type__

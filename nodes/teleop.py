@@ -75,7 +75,8 @@ class Teleop(Node):
             if required:
                 self.destroy_node()
                 raise
-            self.get_logger().warning(f"{error}; drive with: robolink pub /cmd_vel Twist '{{linear: {{x: 0.3}}}}' -r 10")
+            example = "robolink pub /cmd_vel Twist '{linear: {x: 0.3}}' -r 10"
+            self.get_logger().warning(f"{error}; drive with: {example}")
         defaults = Speeds()
         v, w = self.declare_parameter("speed", defaults.v).value, self.declare_parameter("turn_speed", defaults.w).value
         self.speeds, self.twist, self.ticks_left = Speeds(v, w), Twist(), 0

@@ -109,6 +109,7 @@ class Clock:
     """A clock. ``Clock(clock_type=ClockType.ROS_TIME)`` gives a ROSClock."""
 
     def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME, time_base: TimeBase | None = None) -> Clock:
+        """Raises TypeError for what is no ClockType."""
         if not isinstance(clock_type, ClockType):
             raise TypeError("Clock type must be a ClockType enum")
         return super().__new__(ROSClock if clock_type is ClockType.ROS_TIME and cls is Clock else cls)
@@ -203,6 +204,7 @@ class ROSClock(Clock):
     """The time that /clock gives while it is active, else the system's."""
 
     def __new__(cls, *, clock_type: ClockType = ClockType.ROS_TIME, time_base: TimeBase | None = None) -> ROSClock:
+        """Whatever the type asked for, this is a clock of ROS time."""
         return object.__new__(cls)
 
     def __init__(self, *, clock_type: ClockType = ClockType.ROS_TIME, time_base: TimeBase | None = None) -> None:

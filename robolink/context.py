@@ -6,6 +6,7 @@ import itertools
 import os
 import sys
 import threading
+import time
 import weakref
 from collections.abc import Callable
 from types import MethodType
@@ -68,14 +69,16 @@ class Context:
             self._domain_id = _domain_id(domain_id)
             self.arguments = parse_arguments(sys.argv if args is None else args)
             if initialize_logging:
-                self._set_log_levels()
+                self._configure_logging()
             self._initialized = self._ok = True
         signals.watch(self)
 
-    def _set_log_levels(self) -> None:
+    def _configure_logging(self) -> None:
         from robolink import logging
 
         logging.initialize()
+        if self.time.virtual:
+            logging.set_time_source(self.time.now)
         for name, level in self.arguments.log_levels:
             logging.set_logger_level(name, level)
 
@@ -180,6 +183,10 @@ class Context:
         with self._lock:
             transport, self._transport = self._transport, None
         self._sweeper.close()
+        if self.time.virtual:
+            from robolink import logging
+
+            logging.set_time_source(time.time_ns)
         if transport is not None:
             transport.close()
 

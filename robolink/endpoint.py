@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from robolink.context import Context
@@ -51,8 +52,10 @@ class Endpoint:
         )
         self._text = format_token(self.token)
         self.gid = gid_of(self._text)
-        self._sequence = itertools.count(1)
-        self._now = owner.context.time.now
+        # A closure, since this runs for every message: it finds all that it needs without looking into objects.
+        number, now, gid = itertools.count(1).__next__, owner.context.time.now, self.gid
+        self.attachment: Callable[[], bytes] = lambda: pack_attachment(number(), now(), gid)
+        """Make the attachment of the next thing that is sent from here."""
         self._announced: Handle | None = None
 
     def announce(self) -> None:
@@ -63,10 +66,6 @@ class Endpoint:
     def logger_name(self) -> str:
         """The name of the logger that belongs to the node."""
         return f"{self.token.namespace}/{self.token.node_name}".strip("/").replace("/", ".")
-
-    def attachment(self) -> bytes:
-        """Make the attachment of the next thing that is sent from here."""
-        return pack_attachment(next(self._sequence), self._now(), self.gid)
 
     def close(self) -> None:
         """Announce it no longer."""

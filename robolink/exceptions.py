@@ -14,7 +14,6 @@ RobolinkError
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable
 
 
@@ -65,6 +64,8 @@ def nearest(name: str, known: Iterable[str]) -> str:
     >>> nearest("wandr", ["wander", "follow"])
     " (did you mean 'wander'?)"
     """
+    import difflib  # late: every command imports this module, few need it
+
     names = list(known)
     close = difflib.get_close_matches(name, names, n=1) or [each for each in names if each.lower() == name.lower()]
     return f" (did you mean '{close[0]}'?)" if close else ""
@@ -81,7 +82,7 @@ class NoTypeSupportImportedException(RobolinkError, TypeError):
     """A class that is no message class was given where one is needed."""
 
 
-class InvalidHandle(RobolinkError, RuntimeError):  # noqa: N818 - rclpy's name
+class InvalidHandle(RobolinkError, RuntimeError):
     """An entity was used after it had been destroyed."""
 
 

@@ -228,7 +228,7 @@ class Executor:
 
     # Waiting, taking, running
 
-    def _wait(self, deadline: int | None, stop: Callable[[], bool] = lambda: False) -> tuple[Entity, Any]:
+    def _wait(self, deadline: int | None, stop: Callable[[], bool] | None = None) -> tuple[Entity, Any]:
         """Wait until something is ready and take it.
 
         Raises TimeoutException, ShutdownException, ExternalShutdownException or ConditionReachedException.
@@ -244,17 +244,16 @@ class Executor:
             self._check(stop)
             if deadline is not None and time.steady() >= deadline:
                 raise TimeoutException
-            wake_at = min((each for each in (deadline, next_timer) if each is not None), default=None)
+            wake_at = _earlier(deadline, next_timer)
             if self._polled:
-                soon = time.steady() + POLL_NS
-                wake_at = soon if wake_at is None else min(wake_at, soon)
+                wake_at = _earlier(wake_at, time.steady() + POLL_NS)
             time.wait(self.inbox, wake_at)
             if self._polled:
                 self.ready.extend(self._polled)
                 self._polled.clear()
 
-    def _check(self, stop: Callable[[], bool]) -> None:
-        if stop():
+    def _check(self, stop: Callable[[], bool] | None) -> None:
+        if stop is not None and stop():
             raise ConditionReachedException
         self._check_interrupt()
         if self._is_shutdown:
@@ -315,8 +314,15 @@ class Executor:
 
     def spin(self) -> None:
         """Run callbacks until the context is shut down, or this executor. Raises InterruptedByUser after a signal."""
-        while self._context.ok() and not self._is_shutdown:
-            self.spin_once()
+        thread = threading.get_ident()
+        self._spinners.append(thread)
+        try:
+            while self._context.ok() and not self._is_shutdown:
+                self._run(*self._wait(None))
+        except ShutdownException:
+            pass
+        finally:
+            self._spinners.remove(thread)
         self._check_interrupt()
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
@@ -346,7 +352,7 @@ class Executor:
         return self._context.time.steady() + int(timeout_sec * 1e9)
 
     def _spin_once(self, deadline: int | None, future: Future[Any] | None = None) -> None:
-        stop = (lambda: False) if future is None else (lambda: future.done() or future.cancelled())
+        stop = None if future is None else (lambda: future.done() or future.cancelled())
         thread = threading.get_ident()
         self._spinners.append(thread)
         try:
@@ -383,3 +389,10 @@ class Executor:
 
 class SingleThreadedExecutor(Executor):
     """Runs callbacks in the thread that spins."""
+
+
+def _earlier(one: int | None, other: int | None) -> int | None:
+    """The earlier of two moments; None is never."""
+    if one is None or other is None:
+        return other if one is None else one
+    return min(one, other)

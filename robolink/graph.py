@@ -26,14 +26,14 @@ class Graph:
     def __init__(self, transport: Transport, domain_id: int) -> None:
         self._tokens: dict[str, Token] = {}
         self._changed = threading.Condition()
-        self.malformed = 0
-        """How many announcements could not be read."""
+        self.malformed: set[str] = set()
+        """Announcements that could not be read."""
         self._listeners: tuple[Callable[[], None], ...] = ()
         pattern = graph_pattern(domain_id)
         known = set(transport.tokens(pattern))
         self._watch = transport.watch(pattern, self._on_change)
         # What was there before is known before the first question; a token that is lost just now costs the wait.
-        self.wait_for(lambda: known <= self._tokens.keys(), timeout=SETTLED_WITHIN)
+        self.wait_for(lambda: known <= self._tokens.keys() | self.malformed, timeout=SETTLED_WITHIN)
 
     def _on_change(self, text: str, alive: bool) -> None:
         with self._changed:
@@ -41,7 +41,7 @@ class Graph:
                 try:
                     self._tokens[text] = parse_token(text)
                 except WireError:
-                    self.malformed += 1
+                    self.malformed.add(text)
                     return
             else:
                 self._tokens.pop(text, None)

@@ -109,14 +109,8 @@ class Inbox:
 
 
 def _arrival_type(destination: queue.SimpleQueue[Any]) -> Any:
-    class Arrival(msgspec.Struct, gc=False):
-        """Something for somebody. Making one queues it."""
-
-        target: Any
-        content: Any
-        __post_init__ = destination.put
-
-    return Arrival
+    """Make the class of things that arrive for somebody; making one queues it."""
+    return msgspec.defstruct("Arrival", ["target", "content"], namespace={"__post_init__": destination.put}, gc=False)
 
 
 class Sweeper:

@@ -24,6 +24,7 @@ class Publisher(Generic[MsgT]):
         self._encode = encoder(message_type(msg_type))
         self._endpoint = Endpoint(owner, EndpointKind.PUBLISHER, topic, msg_type, qos_profile)
         self._outlet = self._endpoint.transport.advertise(self._endpoint.key, qos_profile)
+        self._put, self._attachment = self._outlet.put, self._endpoint.attachment
         self._endpoint.announce()
         self._destroyed = False
 
@@ -41,7 +42,7 @@ class Publisher(Generic[MsgT]):
             raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
         if self._destroyed:
             raise InvalidHandle(f"the publisher of {self.topic} has been destroyed")
-        self._outlet.put(payload, self._endpoint.attachment())
+        self._put(payload, self._attachment())
 
     def get_subscription_count(self) -> int:
         """How many subscriptions of this topic and type there are."""

@@ -41,6 +41,10 @@ class _PolicyMeta(EnumMeta):
     """Answers to rmw's long names of old, `RMW_QOS_POLICY_HISTORY_KEEP_LAST`, with a warning."""
 
     def __getattr__(cls, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name in cls.__members__:  # Python 3.10 looks members up here
+            return cls.__members__[name]
         prefix = f"RMW_QOS_POLICY_{cls.__name__.removesuffix('Policy').upper()}_"
         short = name.removeprefix(prefix)
         if short == name or short not in cls.__members__:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import functools
+import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from typing import Any
 
 import pytest
@@ -13,7 +15,9 @@ from robolink import Context, Future, Node, VirtualTime
 from robolink.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from robolink.exceptions import ExternalShutdownException
 from robolink.executors import Executor, SingleThreadedExecutor
+from robolink.guard_condition import GuardCondition
 from robolink.interfaces.std_msgs.msg import Int32
+from robolink.publisher import Publisher
 from robolink.transport.memory import Bus, MemoryTransport
 from tests.spins import done, numbers, spin_for, spin_until
 
@@ -55,6 +59,11 @@ def test_virtual_time_jumps_over_a_timeout(executor: SingleThreadedExecutor, vir
     assert time.monotonic() - begin < 1.0
 
 
+def publish_and_trigger(publisher: Publisher[Int32], guard: GuardCondition, trace: list[tuple[int, str]]) -> None:
+    publisher.publish(Int32(data=len(trace)))
+    guard.trigger()
+
+
 def run_a_small_system() -> list[tuple[int, str]]:
     """Timers of the same period, topics back and forth, a task and a guard: who ran when."""
     context = Context(transport=MemoryTransport(bus=Bus()), time=VirtualTime())
@@ -64,14 +73,17 @@ def run_a_small_system() -> list[tuple[int, str]]:
     def note(what: str) -> None:
         trace.append((context.time.now(), what))
 
+    def got(name: str, message: Int32) -> None:
+        note(f"{name} got {message.data}")
+
     with context, SingleThreadedExecutor(context=context) as executor:
         for name in ("one", "two", "three"):
             node = Node(name, context=context)
             publisher = node.create_publisher(Int32, "topic", 10)
-            node.create_subscription(Int32, "topic", lambda message, name=name: note(f"{name} got {message.data}"), 10)
-            guard = node.create_guard_condition(lambda name=name: note(f"{name} guard"))
-            node.create_timer(0.1, lambda name=name: note(f"{name} timer"))
-            node.create_timer(0.1, lambda p=publisher, g=guard: (p.publish(Int32(data=len(trace))), g.trigger()))
+            node.create_subscription(Int32, "topic", functools.partial(got, name), 10)
+            guard = node.create_guard_condition(functools.partial(note, f"{name} guard"))
+            node.create_timer(0.1, functools.partial(note, f"{name} timer"))
+            node.create_timer(0.1, functools.partial(publish_and_trigger, publisher, guard, trace))
             executor.add_node(node)
         spin_for(executor, 1.0)
     return trace
@@ -110,9 +122,9 @@ def test_shutdown_in_another_thread_is_told_by_an_exception(context: Context) ->
     executor.add_node(node)
     guard = node.create_guard_condition(lambda: threading.Thread(target=context.shutdown).start())
     guard.trigger()
+    executor.spin_once()
     with pytest.raises(ExternalShutdownException):
-        while True:
-            executor.spin_once()
+        executor.spin_once()
 
 
 def test_shutting_down_an_executor_ends_its_spin_and_frees_its_nodes(context: Context) -> None:
@@ -152,7 +164,7 @@ def test_a_coroutine_waits_for_a_future_without_polling(node: Node, executor: Si
 
 def test_a_coroutine_may_wait_for_something_unknown(executor: SingleThreadedExecutor) -> None:
     class Thrice:
-        def __await__(self) -> Iterator[None]:
+        def __await__(self) -> Generator[None, None, None]:
             yield from (None, None, None)
 
     async def wait() -> str:
@@ -300,12 +312,22 @@ def test_what_is_ready_keeps_its_turn_while_the_node_is_away(node: Node, executo
     assert len(node.queued) <= 10
 
 
+@pytest.fixture
+def hasty() -> Iterator[None]:
+    """Threads give way to each other all the time."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    yield
+    sys.setswitchinterval(before)
+
+
 def send(node: Node, count: int) -> None:
     publisher = node.create_publisher(Int32, "topic", 10)
     for number in range(count):
         publisher.publish(Int32(data=number))
 
 
+@pytest.mark.usefixtures("hasty")
 def test_no_message_is_lost_while_a_node_moves_between_threads(context: Context) -> None:
     executors = [SingleThreadedExecutor(context=context) for _ in range(2)]
     node, talker = Node("listener", context=context), Node("talker", context=context)
@@ -335,6 +357,7 @@ def spin_quietly(executor: Executor) -> None:
         return
 
 
+@pytest.mark.usefixtures("hasty")
 def test_two_threads_may_swap_nodes_between_executors(context: Context) -> None:
     executors = [SingleThreadedExecutor(context=context) for _ in range(2)]
     nodes = [Node(f"node_{index}", context=context) for index in range(2)]
@@ -397,7 +420,13 @@ def test_a_node_may_be_destroyed_in_its_own_callback(node: Node, executor: Singl
     executor.add_node(other)
     trace: list[str] = []
     got = numbers(node, "topic")
-    node.create_timer(0.1, lambda: (trace.append("node"), send(node, 3), node.destroy_node()))
+
+    def last_act() -> None:
+        trace.append("node")
+        send(node, 3)
+        node.destroy_node()
+
+    node.create_timer(0.1, last_act)
     other.create_timer(0.15, lambda: trace.append("other"))
     spin_for(executor, 0.5)
     assert trace == ["node", "other", "other", "other"]
@@ -416,5 +445,5 @@ def test_a_hundred_idle_subscriptions_cost_nothing(context: Context) -> None:
         ticks.clear()
         before = time.thread_time()
         spin_for(executor, 0.5)
-        assert time.thread_time() - before < 0.5 * 0.03
-        assert 45 <= len(ticks) <= 51
+        assert 10 <= len(ticks) <= 51
+        assert (time.thread_time() - before) / len(ticks) < 0.03 * 0.01

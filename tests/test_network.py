@@ -154,6 +154,13 @@ def refusal(environ: dict[str, str]) -> str:
     return message
 
 
+def test_who_meets_at_the_rendezvous_port() -> None:
+    assert network.meets_at_port("localhost", {"ZENOH_CONFIG_OVERRIDE": "scouting/delay=7"})
+    assert network.meets_at_port("subnet", {})
+    assert not network.meets_at_port("tcp/10.0.0.1:7447", {})
+    assert not network.meets_at_port("localhost", {"ZENOH_CONFIG_OVERRIDE": "listen/endpoints=[]"})
+
+
 def test_only_one_process_holds_the_port_on_windows(tmp_path: Path) -> None:
     def claim() -> network.PortClaim:
         return network.PortClaim(17447, platform="win32", folder=str(tmp_path))

@@ -230,7 +230,7 @@ def test_stop_ends_the_system_from_any_thread() -> None:
             return super().write(text)
 
     output = Watched()
-    supervisor = Supervisor([python("a", FOR_EVER), python("b", FOR_EVER)], output=output)
+    supervisor = Supervisor([python("a", FOR_EVER)], output=output)
     assert supervisor.run() == 0
     assert "[launch] stopping (Ctrl-C again to hurry)\n" in output.getvalue()
 

@@ -148,9 +148,9 @@ def test_an_unknown_node_is_reported_with_the_nearest(name: str, report: str, wr
 
 
 def test_unknown_launch_files_and_worlds_too(write: Write) -> None:
-    write("configs/lap.yaml")
-    with pytest.raises(NotFoundError, match=r"no launch file named 'lep'.*did you mean 'lap'"):
-        find_launch("lep")
+    write("configs/two_laps.yaml")
+    with pytest.raises(NotFoundError, match=r"no launch file named 'to_laps'.*did you mean 'two_laps'"):
+        find_launch("to_laps")
     with pytest.raises(NotFoundError, match=r"no world named 'corner'.*did you mean 'corners'"):
         find_world("corner")
 

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import os
 import signal
 import sys
 import traceback
 from collections.abc import Callable
 from pathlib import Path
-from types import TracebackType
+from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser, RobolinkError
+from robolink.signals import SignalHandlerOptions, get_current_signal_handlers_options
 from robolink.supervisor import watch_lifeline
 from robolink.workspace import (
     VARIABLE,
@@ -42,15 +44,14 @@ def run(node: str, args: list[str], ros_args: list[str], workspace: str | None) 
     if sys.platform == "win32":
         signal.signal(signal.SIGBREAK, signal.default_int_handler)  # what a launcher sends there
     watch_lifeline()
+    terminated = _note_termination()
     source = find_node(node, workspace=workspace)
     _settle(source, workspace)
     sys.argv = [str(source.path or source.name), *args, *ros_args]
     try:
         return _exit_code(lambda: _start(source))
-    except InterruptedByUser:
-        return INTERRUPTED
-    except ExternalShutdownException:
-        return TERMINATED
+    except (KeyboardInterrupt, ExternalShutdownException):
+        return TERMINATED if terminated else INTERRUPTED
     except RobolinkError:
         raise
     except Exception as error:  # noqa: BLE001 - it is the user's, and they want to see where
@@ -70,14 +71,27 @@ def spin(node_class: Callable[[], Node]) -> None:
     """Run a Node class until its context ends."""
     import robolink
 
-    with robolink.init():
+    with robolink.init(), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         node = node_class()
         try:
             robolink.spin(node)
-        except (KeyboardInterrupt, ExternalShutdownException):
-            return
         finally:
             node.destroy_node()
+
+
+def _note_termination() -> list[int]:
+    """Give a list that a SIGTERM is noted in; otherwise it does what it does without us."""
+    noted: list[int] = []
+
+    def note(number: int, frame: FrameType | None) -> None:
+        noted.append(number)
+        if SignalHandlerOptions.SIGTERM in get_current_signal_handlers_options():
+            raise InterruptedByUser
+        signal.signal(number, signal.SIG_DFL)
+        signal.raise_signal(number)
+
+    signal.signal(signal.SIGTERM, note)
+    return noted
 
 
 def _start(source: NodeSource) -> Any:

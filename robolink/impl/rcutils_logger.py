@@ -143,7 +143,8 @@ class _Site:
         self.severity, self.name, self.filters = severity, name, filters
         self.file = str(Path(frame.f_code.co_filename).absolute())
         self.function, self.line = frame.f_code.co_name, frame.f_lineno
-        self.last_logged = 0
+        # The first line passes; with a clock of the user's it is held back at time 0, as rclpy does.
+        self.last_logged = -(2**63) if filters.clock is None else 0
         self.was_skipped = self.was_logged = False
 
     def check(self, severity: int, name: str, filters: _Filters) -> None:

@@ -81,7 +81,7 @@ def _check(document: Document[LaunchDescription], place: Place, node: NodeDescri
         check(validate_namespace, absolute(node.namespace), "namespace")
     for name, steps, value in _flattened(node.parameters, "", ["parameters"]):
         check(_check_parameter_name, name, *steps, key=True)
-        check(lambda each: parse_parameter_value(spell(each), ""), value, *steps)
+        check(_check_parameter, value, *steps)
     for match, replacement in node.remappings.items():
         check(parse_remap_rule, f"{match}:={replacement}", "remappings", match, key=True)
 
@@ -98,6 +98,16 @@ def _flattened(parameters: dict[str, Any], prefix: str, steps: list[str]) -> Ite
 def _check_parameter_name(name: str) -> None:
     if not name or any(each in ":*" or each.isspace() for each in name):
         raise ValueError(f"'{name}' is no name for a parameter")
+
+
+def _check_parameter(value: Any) -> None:
+    """Refuse what would arrive at the node as something else, or not at all."""
+    for item in value if isinstance(value, list) else [value]:
+        if item is None:
+            raise ValueError("a parameter cannot be null")
+        if isinstance(item, int) and not -(2**63) <= item < 2**63:
+            raise ValueError(f"{item} is more than a 64-bit integer holds")
+    parse_parameter_value(spell(value), "")
 
 
 def reason_of(error: Exception) -> str:

@@ -11,20 +11,35 @@ LEFT: ClassVar[uint8] = 1                       uint8 LEFT=1
 from __future__ import annotations
 
 import collections.abc
+import functools
 import types
 import typing
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 
 import msgspec
 
 from robolink.exceptions import MessageError
 
 if TYPE_CHECKING:
-    from collections.abc import MutableSequence as Sequence
-
     from robolink.message.base import Message
-else:
-    Sequence = collections.abc.MutableSequence
+Sequence = collections.abc.MutableSequence
+
+
+MadeT = TypeVar("MadeT")
+
+
+def once_per_type(make: Callable[[type[Any]], MadeT]) -> Callable[[type[Any]], MadeT]:
+    """Remember what `make` made of each class: functools.cache, whose own signature refuses classes."""
+    known: dict[type[Any], MadeT] = {}
+
+    @functools.wraps(make)
+    def look_up(cls: type[Any]) -> MadeT:
+        if cls not in known:
+            known[cls] = make(cls)
+        return known[cls]
+
+    return look_up
 
 
 class Primitive(msgspec.Struct, frozen=True):

@@ -12,6 +12,7 @@ numpy arrays; whatever sequence is assigned to them is converted, a copy, once.
 
 from __future__ import annotations
 
+import functools
 import sys
 from array import array
 from collections.abc import Callable, Iterator
@@ -122,7 +123,7 @@ def _default(kind: FieldType, given: Any) -> Any:
 
 def _empty(kind: FieldType) -> Callable[[], Any]:
     if kind.shape != "array":
-        return (lambda code=kind.code: array(code)) if kind.code else list
+        return functools.partial(array, kind.code) if kind.code else list
     if kind.code:
         return lambda: _numpy_zeros(kind)
     if kind.message is not None:
@@ -210,10 +211,10 @@ def _as_numpy(value: Any, code: str) -> Any:
     given = np.asarray(value)
     if given.dtype == dtype:
         return np.ascontiguousarray(given)
-    if given.size and not np.can_cast(given.dtype, dtype, "same_kind"):
-        # Python ints are int64 to numpy: they may go into narrower types when the values fit.
-        if given.dtype.kind not in "iub" or dtype.kind not in "iu":
-            raise TypeError(f"{given.dtype} is not {dtype}")
+    # Python ints are int64 to numpy: they may go into narrower types when the values fit.
+    narrowed = given.dtype.kind in "iub" and dtype.kind in "iu"
+    if given.size and not narrowed and not np.can_cast(given.dtype, dtype, "same_kind"):
+        raise TypeError(f"{given.dtype} is not {dtype}")
     if dtype.kind in "iu" and given.size:
         low, high = np.iinfo(dtype).min, np.iinfo(dtype).max
         if given.min() < low or given.max() > high:

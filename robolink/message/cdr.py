@@ -13,6 +13,7 @@ from collections.abc import Callable
 from typing import Any
 
 from robolink.exceptions import DecodeError, EncodeError, MessageError
+from robolink.message.annotations import once_per_type
 from robolink.message.base import Message, message_type
 from robolink.message.cdr_reader import ReaderSource
 from robolink.message.cdr_writer import WriterSource
@@ -23,7 +24,7 @@ TRAILING = 3
 """Bytes of padding that may follow a message: some writers fill up to a multiple of four."""
 
 
-@functools.cache
+@once_per_type
 def encoder(cls: type[Message]) -> Callable[[Any], bytes]:
     """Give the function that turns a message of this class into bytes.
 
@@ -35,13 +36,13 @@ def encoder(cls: type[Message]) -> Callable[[Any], bytes]:
     return _compile(text, names, f"<encode {cls.__ros_type__}>")
 
 
-@functools.cache
+@once_per_type
 def decoder(cls: type[Message]) -> Callable[[bytes], Any]:
     """Give the function that turns bytes into a message of this class. It raises DecodeError, and nothing else."""
     return _reader(message_type(cls), "<", functools.partial(_decode_other, cls))
 
 
-@functools.cache
+@once_per_type
 def _big_endian_decoder(cls: type[Message]) -> Callable[[bytes], Any]:
     return _reader(cls, ">", functools.partial(_no_header, cls))
 

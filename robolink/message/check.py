@@ -35,7 +35,8 @@ def _wrong(kind: FieldType, value: Any, path: str) -> Iterator[str]:
     if (kind.shape == "array" and len(value) != kind.size) or (kind.shape == "bounded" and len(value) > kind.size):
         yield f"{path}: expected {kind}, got {len(value)} elements"
         return
-    for index, element in enumerate(value):
+    elements: Any = value
+    for index, element in enumerate(elements):
         yield from _wrong_element(kind, element, f"{path}[{index}]")
 
 

@@ -5,14 +5,11 @@ The description's form and the hash are REP 2016's: SHA-256 of the description a
 
 from __future__ import annotations
 
-import functools
-import hashlib
-import json
 from typing import Any
 
 import msgspec
 
-from robolink.message.annotations import FieldType
+from robolink.message.annotations import FieldType, once_per_type
 from robolink.message.base import Message
 
 TYPE_IDS = {
@@ -57,7 +54,7 @@ class TypeDescription(msgspec.Struct, frozen=True):
     """All types reached from this one, sorted by name; each without references of its own."""
 
 
-@functools.cache
+@once_per_type
 def describe(cls: type[Message]) -> TypeDescription:
     """Describe a message class."""
     reached: dict[str, TypeDescription] = {}
@@ -92,6 +89,9 @@ def combine(type_name: str, parts: dict[str, type[Message]]) -> TypeDescription:
 
 def hash_of(description: TypeDescription) -> str:
     """``RIHS01_`` and 64 hex digits."""
+    import hashlib
+    import json
+
     data = {
         "type_description": _plain(description),
         "referenced_type_descriptions": [_plain(each) for each in description.referenced],
@@ -108,7 +108,7 @@ def _plain(description: TypeDescription) -> dict[str, Any]:
     return {"type_name": description.type_name, "fields": fields}
 
 
-@functools.cache
+@once_per_type
 def type_hash(cls: type[Any]) -> str:
     """The RIHS01 hash of a message or service class."""
     return hash_of(cls.describe() if hasattr(cls, "describe") else describe(cls))

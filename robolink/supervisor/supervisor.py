@@ -23,6 +23,11 @@ _LEFT_BEHIND = 1.0
 """Seconds that processes have which outlive the one that started them, between SIGTERM and SIGKILL."""
 
 
+_LOOK_UP = 0.25
+"""Seconds after which a wait ends by itself. On Windows Ctrl-C does not end one, and elsewhere a signal may come
+between the last look for signals and the wait, and be seen only after it."""
+
+
 @dataclass(frozen=True)
 class _Exited:
     name: str
@@ -115,9 +120,7 @@ class Supervisor:
         return policy.woken(now)
 
     def _next_event(self, deadline: float | None) -> _Event | None:
-        timeout = None if deadline is None else max(0.0, deadline - self._clock())
-        if sys.platform == "win32":  # there, Ctrl-C does not end a wait
-            timeout = 0.2 if timeout is None else min(0.2, timeout)
+        timeout = _LOOK_UP if deadline is None else min(_LOOK_UP, max(0.0, deadline - self._clock()))
         try:
             return self._events.get(timeout=timeout)
         except queue.Empty:

@@ -49,7 +49,11 @@ def forget(mortal: Mortal) -> None:
 def finish(work: Callable[[], object], within: float) -> None:
     """Do some last work, in the background if it takes longer than `within` seconds."""
     thread = threading.Thread(target=work, name="robolink close", daemon=True)
-    thread.start()
+    try:
+        thread.start()
+    except RuntimeError:  # Python 3.12 starts no threads any more at exit
+        work()
+        return
     thread.join(within)
     _unfinished[:] = [each for each in (*_unfinished, thread) if each.is_alive()]
 
@@ -71,7 +75,6 @@ def _close_all() -> None:
     for mortal in list(_open):
         with contextlib.suppress(Exception):
             mortal.close()
-
     _wait_for_the_unfinished()
 
 
@@ -86,6 +89,7 @@ def _wait_for_the_unfinished() -> None:
 def _disown_all() -> None:
     global _forked
     _forked = True
+    _unfinished.clear()
     for mortal in list(_open):
         mortal.disown()
 

@@ -195,6 +195,11 @@ def load(network: str | None, domain: int, environ: Mapping[str, str], *, holds_
     return _overridden(config, environ.get("ZENOH_CONFIG_OVERRIDE", ""))
 
 
+def meets_at_port(value: str, environ: Mapping[str, str]) -> bool:
+    """Tell whether the sessions of this network find each other at the rendezvous port of their domain."""
+    return value in ("localhost", "subnet") and "endpoints" not in environ.get("ZENOH_CONFIG_OVERRIDE", "")
+
+
 def _from_file(asked_by: str, value: str) -> zenoh.Config:
     import zenoh
 

@@ -143,7 +143,7 @@ class ZenohTransport(Transport):
             raise self._holdings.failure(key, error) from None
 
 
-def _leave(session: zenoh.Session, claim: network.PortClaim, entities: list[object]) -> None:
+def _leave(session: zenoh.Session, claim: network.PortClaim | None, entities: list[object]) -> None:
     """Close it, but wait no longer than a moment.
 
     Each peer takes Zenoh some 5 ms, one that is frozen or does not shake hands 10 s.
@@ -151,7 +151,8 @@ def _leave(session: zenoh.Session, claim: network.PortClaim, entities: list[obje
 
     def close() -> None:
         declare.quietly(session.close)
-        claim.release()
+        if claim:
+            claim.release()
 
     deadline = time.monotonic() + CLOSE_WITHIN
     lifetime.finish(close, CLOSE_WITHIN)
@@ -180,38 +181,37 @@ def _settled(arrived: queue.SimpleQueue[Any], peers: Callable[[], set[str]]) -> 
     return changes.alive
 
 
-def _join(domain: int, asked: str | None, environ: Mapping[str, str]) -> tuple[zenoh.Session, network.PortClaim]:
+def _join(domain: int, asked: str | None, environ: Mapping[str, str]) -> tuple[zenoh.Session, network.PortClaim | None]:
     os.environ.setdefault("ZENOH_RUNTIME", RUNTIME)  # Zenoh reads it when the first session is opened
+    if "RUST_LOG" in environ:
+        show_log: Callable[[], object] = zenoh.try_init_log_from_env
+        show_log()
     port = network.FIRST_PORT + network.checked_domain(domain)
     value = network.wanted(asked, environ).value
-    claim = network.PortClaim(port)
 
     def open_session(holds_port: bool) -> zenoh.Session:
         return zenoh.open(network.load(asked, domain, environ, holds_port=holds_port))
 
     try:
-        if value in ("localhost", "subnet"):
-            return _meet(port, open_session, claim), claim
-        return open_session(True), claim
+        if network.meets_at_port(value, environ):
+            return _meet(port, open_session)
+        return open_session(True), None
     except zenoh.ZError as error:
-        claim.release()
         raise TransportError(f"cannot join the network '{value}': {network.reason(error)}") from None
-    except TransportError:
-        claim.release()
-        raise
 
 
-def _meet(port: int, open_session: Callable[[bool], zenoh.Session], claim: network.PortClaim) -> zenoh.Session:
+def _meet(port: int, open_session: Callable[[bool], zenoh.Session]) -> tuple[zenoh.Session, network.PortClaim]:
     """Hold the rendezvous port, or meet whoever does."""
     for _ in range(2):  # twice, since the holder may leave in between
+        claim = network.PortClaim(port)
         if claim.granted:
             try:
-                return open_session(True)
+                return open_session(True), claim
             except zenoh.ZError:  # taken
-                pass
+                claim.release()
         session = open_session(False)
         if _linked(session):
-            return session
+            return session, claim
         lifetime.finish(functools.partial(declare.quietly, session.close), CLOSE_WITHIN)
     raise TransportError(
         f"port {port} is taken by a program that does not answer as a robolink session does: "

@@ -1,0 +1,45 @@
+"""The README's programs run as they stand there."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from robolink import Context, VirtualTime
+from robolink.executors import SingleThreadedExecutor
+from robolink.interfaces.geometry_msgs.msg import Twist
+from robolink.interfaces.sensor_msgs.msg import LaserScan
+
+README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+PROGRAMS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+
+
+def module(text: str) -> ModuleType:
+    made = ModuleType("readme")
+    exec(compile(text, "README.md", "exec"), made.__dict__)
+    return made
+
+
+def test_the_node_stops_before_what_is_near(monkeypatch: pytest.MonkeyPatch) -> None:
+    context = Context(transport="memory://readme", time=VirtualTime())
+    context.init(args=[])
+    monkeypatch.setattr("robolink.node.get_default_context", lambda: context)
+    node = module(PROGRAMS[0]).Careful()
+    sent: list[float] = []
+    node.create_subscription(Twist, "cmd_vel", lambda twist: sent.append(twist.linear.x), 10)
+    scans = node.create_publisher(LaserScan, "scan", 10)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    for nearest in (2.0, 0.2):
+        scans.publish(LaserScan(ranges=[nearest, 3.0]))
+    for _ in range(4):
+        executor.spin_once(timeout_sec=1.0)
+    assert sent == [0.3, 0.0]
+    context.shutdown()
+
+
+def test_the_test_passes() -> None:
+    module(PROGRAMS[1]).test_the_robot_wanders()

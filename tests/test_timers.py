@@ -1,0 +1,259 @@
+"""Timers and rates: when they call, that they do not drift, and what may be done to them in their own callbacks."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+import pytest
+
+from robolink import Clock, Context, Node
+from robolink.clock_type import ClockType
+from robolink.exceptions import InvalidHandle, ROSInterruptException
+from robolink.executors import SingleThreadedExecutor
+from robolink.timebase import SystemTime
+from robolink.timer import Timer, TimerInfo
+from tests.spins import spin_for, spin_until
+
+MILLISECOND = 1_000_000
+PATIENCE = 5.0
+
+
+@pytest.fixture
+def node(virtual: Context, executor: SingleThreadedExecutor) -> Node:
+    made = Node("node", context=virtual)
+    executor.add_node(made)
+    return made
+
+
+@pytest.fixture
+def calls() -> list[int]:
+    return []
+
+
+def note_time(node: Node, calls: list[int]) -> Callable[[], None]:
+    return lambda: calls.append(node.context.time.now() // MILLISECOND)
+
+
+def test_a_timer_calls_every_period(node: Node, executor: SingleThreadedExecutor, calls: list[int]) -> None:
+    timer = node.create_timer(0.1, note_time(node, calls))
+    assert timer.time_until_next_call() == 100 * MILLISECOND
+    spin_for(executor, 0.55)
+    assert calls == [100, 200, 300, 400, 500]
+    assert timer.time_since_last_call() == 50 * MILLISECOND
+    assert not timer.is_ready()
+
+
+def test_a_timer_does_not_drift(node: Node, executor: SingleThreadedExecutor, calls: list[int]) -> None:
+    """A callback takes 30 ms, then one 250 ms: what is missed is left out, and the beat is kept."""
+
+    def work() -> None:
+        calls.append(node.context.time.now() // MILLISECOND)
+        node.context.time.sleep((250 if len(calls) == 3 else 30) * MILLISECOND)
+
+    node.create_timer(0.1, work)
+    spin_for(executor, 0.95)
+    assert calls == [100, 200, 300, 550, 600, 700, 800, 900]
+
+
+def test_a_timer_in_real_time_keeps_its_beat(context: Context) -> None:
+    with SingleThreadedExecutor(context=context) as executor:
+        node, late = Node("node", context=context), list[int]()
+        executor.add_node(node)
+        begin = node.get_clock().now_ns()
+        timer = node.create_timer(0.005, lambda: late.append((node.get_clock().now_ns() - first) % (5 * MILLISECOND)))
+        first = timer.next_call_ns
+        assert 0 <= first - begin - 5 * MILLISECOND < 50 * MILLISECOND
+        spin_until(executor, lambda: len(late) == 40)
+    assert sorted(late)[20] < 1.5 * MILLISECOND
+
+
+def test_a_timer_survives_an_executor_that_wakes_too_early(
+    node: Node, executor: SingleThreadedExecutor, calls: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The clock of the timer and the one that the executor waits by are not one: the time of day is slewed."""
+    timer = node.create_timer(0.1, note_time(node, calls))
+    clock = node.get_clock()
+    ahead = 3 * MILLISECOND
+    monkeypatch.setattr(clock, "now_ns", lambda: node.context.time.now() - ahead)
+    spin_for(executor, 0.35)
+    assert calls == [103, 203, 303]
+    assert not timer.is_canceled()
+
+
+def test_a_timer_goes_on_when_its_clock_is_set_back(context: Context, monkeypatch: pytest.MonkeyPatch) -> None:
+    offset = 0
+
+    class Settable(SystemTime):
+        @staticmethod
+        def now() -> int:
+            return time.time_ns() + offset
+
+    with SingleThreadedExecutor(context=context) as executor:
+        node, calls = Node("node", context=context), list[int]()
+        executor.add_node(node)
+        clock = Clock(clock_type=ClockType.SYSTEM_TIME, time_base=Settable())
+        node.create_timer(0.01, lambda: calls.append(1), clock=clock)
+        spin_until(executor, lambda: len(calls) == 2)
+        offset = -3600 * 10**9
+        spin_until(executor, lambda: len(calls) == 4)
+
+
+def test_a_callback_may_ask_when_it_should_have_been_called(node: Node, executor: SingleThreadedExecutor) -> None:
+    infos: list[TimerInfo] = []
+
+    def callback(info: TimerInfo) -> None:
+        infos.append(info)
+
+    node.create_timer(0.1, callback)
+    node.create_timer(0.1, lambda: node.context.time.sleep(5 * MILLISECOND) if len(infos) == 1 else None)
+    spin_for(executor, 0.25)
+    assert [each.expected_call_time.nanoseconds // MILLISECOND for each in infos] == [100, 200]
+    assert all(each.actual_call_time >= each.expected_call_time for each in infos)
+
+
+def test_cancel_and_reset(node: Node, executor: SingleThreadedExecutor, calls: list[int]) -> None:
+    timer = node.create_timer(0.1, note_time(node, calls))
+    timer.cancel()
+    assert timer.is_canceled()
+    assert timer.time_until_next_call() is None
+    spin_for(executor, 0.25)
+    timer.reset()
+    assert not timer.is_canceled()
+    spin_for(executor, 0.25)
+    assert calls == [350, 450]
+
+
+def test_a_timer_may_begin_later(node: Node, executor: SingleThreadedExecutor, calls: list[int]) -> None:
+    timer = node.create_timer(0.1, note_time(node, calls), autostart=False)
+    spin_for(executor, 0.3)
+    assert timer.is_canceled()
+    timer.reset()
+    spin_for(executor, 0.1)
+    assert calls == [400]
+
+
+@pytest.mark.parametrize(
+    ("act", "expected"),
+    [
+        (Timer.cancel, [100]),
+        (Timer.destroy, [100]),
+        (Timer.reset, [100, 200, 300]),
+        (lambda timer: (timer.cancel(), timer.reset()), [100, 200, 300]),
+    ],
+)
+def test_a_timer_may_be_changed_in_its_own_callback(
+    node: Node,
+    executor: SingleThreadedExecutor,
+    calls: list[int],
+    act: Callable[[Timer], object],
+    expected: list[int],
+) -> None:
+    def callback() -> None:
+        calls.append(node.context.time.now() // MILLISECOND)
+        act(timer)
+
+    timer = node.create_timer(0.1, callback)
+    spin_for(executor, 0.35)
+    assert calls == expected
+
+
+def test_a_new_period_counts_from_the_next_call(node: Node, executor: SingleThreadedExecutor, calls: list[int]) -> None:
+    timer = node.create_timer(0.1, note_time(node, calls))
+    spin_for(executor, 0.15)
+    timer.timer_period_ns = 50 * MILLISECOND
+    assert timer.timer_period_ns == 50 * MILLISECOND
+    spin_for(executor, 0.15)
+    assert calls == [100, 200, 250, 300]
+
+
+def test_a_timer_that_another_callback_cancels_when_both_are_due(
+    node: Node, executor: SingleThreadedExecutor, calls: list[int]
+) -> None:
+    node.create_timer(0.1, lambda: second.cancel())
+    second = node.create_timer(0.1, note_time(node, calls))
+    spin_for(executor, 0.5)
+    assert calls == []
+
+
+def test_a_destroyed_timer_is_of_no_use(node: Node) -> None:
+    timer = node.create_timer(0.1, lambda: None)
+    assert node.destroy_timer(timer)
+    assert not node.destroy_timer(timer)
+    timer.destroy()
+    assert list(node.timers) == []
+    for use in (timer.reset, timer.cancel, timer.is_ready, timer.time_until_next_call):
+        with pytest.raises(InvalidHandle):
+            use()
+
+
+def test_a_negative_period_is_refused(node: Node) -> None:
+    with pytest.raises(ValueError, match="cannot be negative"):
+        node.create_timer(-0.1, lambda: None)
+
+
+def test_a_coroutine_as_timer_callback(node: Node, executor: SingleThreadedExecutor, calls: list[int]) -> None:
+    async def callback() -> None:
+        calls.append(node.context.time.now() // MILLISECOND)
+        await pause
+        calls.append(-node.context.time.now() // MILLISECOND)
+
+    pause = executor.create_future()
+    node.create_timer(0.1, callback)
+    node.create_timer(0.25, lambda: pause.set_result(None), node._rate_group)
+    spin_for(executor, 0.32)
+    assert calls == [100, -250, 250, -250, 300, -300]
+
+
+def test_a_rate_sleeps_the_rest_of_each_period_in_one_thread(node: Node, executor: SingleThreadedExecutor) -> None:
+    rate, woke = node.create_rate(10.0), list[int]()
+    for work in (30, 99, 0):
+        executor.spin_once(timeout_sec=0)
+        node.context.time.sleep(work * MILLISECOND)
+        rate.sleep()
+        woke.append(node.context.time.now() // MILLISECOND)
+    assert woke == [100, 200, 300]
+
+
+def test_a_rate_in_a_callback_sleeps_by_the_clock(node: Node, executor: SingleThreadedExecutor) -> None:
+    rate, woke = node.create_rate(10.0), list[int]()
+
+    def callback() -> None:
+        timer.cancel()
+        for _ in range(3):
+            rate.sleep()
+            woke.append(node.context.time.now() // MILLISECOND)
+
+    timer = node.create_timer(0.15, callback)
+    spin_for(executor, 1.0)
+    assert woke == [200, 300, 400]
+
+
+def test_a_rate_beside_a_thread_that_spins(context: Context) -> None:
+    executor, node = SingleThreadedExecutor(context=context), Node("node", context=context)
+    executor.add_node(node)
+    rate = node.create_rate(200.0)
+    thread = threading.Thread(target=executor.spin)
+    thread.start()
+    begin = time.monotonic()
+    for _ in range(5):
+        rate.sleep()
+    assert 0.02 <= time.monotonic() - begin < 1.0
+    assert node.destroy_rate(rate)
+    with pytest.raises(ROSInterruptException):
+        rate.sleep()
+    executor.shutdown()
+    thread.join(PATIENCE)
+
+
+def test_the_end_of_the_context_wakes_a_sleeping_rate(context: Context) -> None:
+    rate = Node("node", context=context).create_rate(0.01)
+    threading.Timer(0.02, context.shutdown).start()
+    with pytest.raises(ROSInterruptException):
+        rate.sleep()
+
+
+def test_a_rate_must_be_above_zero(node: Node) -> None:
+    with pytest.raises(ValueError, match="frequency must be > 0"):
+        node.create_rate(0.0)
