@@ -3,7 +3,8 @@
     python benchmarks/messaging.py [--rounds 5] [--seconds 2]
 
 Figures of one machine at one moment mean little; the ratios carry over. Two processes play ping-pong, one pinned to
-each of two cores, robolink's nodes and bare zenoh-python callbacks taking turns.
+each of two cores, robolink's nodes and bare zenoh-python callbacks taking turns. The bare ones do the least that a
+program can do with a message: they take its bytes and send them.
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ def bare_session(first: bool) -> Any:
 def bare_pong(name: str) -> None:
     session = bare_session(first=True)
     back = session.declare_publisher("bench/pong")
-    _keep = session.declare_subscriber("bench/ping", lambda got: back.put(got.payload))
+    _keep = session.declare_subscriber("bench/ping", lambda got: back.put(got.payload.to_bytes()))
     say_ready()
     sys.stdin.read()
 
@@ -75,7 +76,9 @@ def bare_ping(name: str) -> list[float]:
     session, payload, times, done = bare_session(first=False), encode(sample(name)), [], threading.Event()
     out = session.declare_publisher("bench/ping")
 
-    def on_pong(_: Any) -> None:
+    def on_pong(got: Any) -> None:
+        nonlocal payload
+        payload = got.payload.to_bytes()
         times.append(time.perf_counter())
         if len(times) < TRIPS:
             out.put(payload)

@@ -55,22 +55,16 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
 
     def __init__(self) -> None:
         super().__init__()
-        self._active: Any = None
-        self._lock = threading.Lock()
+        self._busy = threading.Lock()
 
     def can_execute(self, entity: Any) -> bool:
         """Whether none runs."""
-        return self._active is None
+        return not self._busy.locked()
 
     def beginning_execution(self, entity: Any) -> bool:
         """Whether none runs; from now on, this one does."""
-        with self._lock:
-            if self._active is not None:
-                return False
-            self._active = entity
-            return True
+        return self._busy.acquire(blocking=False)
 
     def ending_execution(self, entity: Any) -> None:
         """Let the next one run."""
-        with self._lock:
-            self._active = None
+        self._busy.release()

@@ -34,6 +34,8 @@ _RELEASED = object()
 class _Call:
     """One question under way."""
 
+    straight = False
+
     def __init__(self, client: Client, inbox: Inbox, future: Future[Any]) -> None:
         self.client, self.future = client, future
         self.sequence_number = 0

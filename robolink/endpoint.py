@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from robolink.context import Context
 from robolink.message import type_hash, type_name
 from robolink.qos import QoSProfile
 from robolink.transport.base import Handle
-from robolink.wire import DataKey, EndpointKind, EndpointToken, format_key, format_token, gid_of, pack_attachment
+from robolink.wire import DataKey, EndpointKind, EndpointToken, attachments, format_key, format_token, gid_of
 
 
 class Owner(NamedTuple):
@@ -52,9 +50,7 @@ class Endpoint:
         )
         self._text = format_token(self.token)
         self.gid = gid_of(self._text)
-        # A closure, since this runs for every message: it finds all that it needs without looking into objects.
-        number, now, gid = itertools.count(1).__next__, owner.context.time.now, self.gid
-        self.attachment: Callable[[], bytes] = lambda: pack_attachment(number(), now(), gid)
+        self.attachment = attachments(self.gid, owner.context.time.now)
         """Make the attachment of the next thing that is sent from here."""
         self._announced: Handle | None = None
 

@@ -49,6 +49,8 @@ class Entity:
 class Receiver(Entity):
     """An entity that a transport delivers to: it has a mailbox, and a sink that leads to whoever spins it."""
 
+    straight = False
+
     def __init__(self, parking: Inbox, depth: int, callback_group: CallbackGroup | None = None) -> None:
         super().__init__(callback_group)
         self._parking = parking

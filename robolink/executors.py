@@ -247,10 +247,26 @@ class Executor:
             wake_at = _earlier(deadline, next_timer)
             if self._polled:
                 wake_at = _earlier(wake_at, time.steady() + POLL_NS)
-            time.wait(self.inbox, wake_at)
+            arrival = time.wait(self.inbox, wake_at)
+            if arrival is not None:
+                taken = self._take_at_once(arrival)
+                if taken is not None:
+                    return taken
             if self._polled:
                 self.ready.extend(self._polled)
                 self._polled.clear()
+
+    def _take_at_once(self, arrival: Any) -> tuple[Entity, Any] | None:
+        """Take what arrived for an entity for which nothing waits; else deliver it, and it waits its turn."""
+        target = arrival.target
+        if target.straight:
+            with self.inbox.lock:
+                group = target.callback_group
+                is_next = target.executor is self and not (self.ready or len(target.mailbox))
+                if is_next and group.can_execute(target) and group.beginning_execution(target):
+                    return target, arrival.content
+        self.inbox.deliver(arrival)
+        return None
 
     def _check(self, stop: Callable[[], bool] | None) -> None:
         if stop is not None and stop():
@@ -378,7 +394,9 @@ class Executor:
                 self._check_interrupt()
                 raise ExternalShutdownException
             elif not done():
-                self._context.time.wait(self.inbox, deadline)
+                arrival = self._context.time.wait(self.inbox, deadline)
+                if arrival is not None:
+                    self.inbox.deliver(arrival)
 
     def __enter__(self: ExecutorT) -> ExecutorT:
         return self

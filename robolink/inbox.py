@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import functools
 import queue
+import sys
 import threading
 import weakref
 from collections import deque
@@ -19,11 +20,17 @@ from typing import Any, Protocol
 
 import msgspec
 
+A_WHILE = 0.1 if sys.platform == "win32" else 0.5
+"""Seconds of one wait at the most: on Windows Ctrl-C does not break into a wait, only between two of them."""
+
 
 class Target(Protocol):
     """What can be delivered to: a subscription, a service, a client's call under way."""
 
     sink: functools.partial[Any]
+
+    straight: bool
+    """Whether an executor may take what arrives straight from the inbox: a plain mailbox would only hand it on."""
 
     def deliver(self, arrived: Any) -> None:
         """Take what arrived, under the inbox's lock; quick, and no user code."""
@@ -81,14 +88,18 @@ class Inbox:
             for _ in range(self._queue.qsize()):
                 self._deliver()
 
-    def wait(self, timeout: float | None) -> None:
-        """Wait for something to arrive and deliver it; return after `timeout` seconds at the latest."""
+    def wait(self, timeout: float | None) -> Any:
+        """Wait for something to arrive and give it, undelivered; None after `timeout` seconds, or a while, or a wake.
+
+        A while, since a signal that comes just before the wait begins would otherwise be noticed only at its end.
+        """
         try:
-            arrival = self._queue.get(timeout=timeout)
+            return self._queue.get(timeout=A_WHILE if timeout is None else min(timeout, A_WHILE))
         except queue.Empty:
-            return
-        if arrival is None:
-            return
+            return None
+
+    def deliver(self, arrival: Any) -> None:
+        """Deliver what `wait` gave."""
         with self.lock:
             if arrival.target.sink.func is self._arrival:
                 arrival.target.deliver(arrival.content)

@@ -43,6 +43,8 @@ class MessageInfo(TypedDict):
 class Subscription(Receiver, Generic[MsgT]):
     """Receives messages of one type from one topic; made by `Node.create_subscription`."""
 
+    straight = True
+
     class CallbackType(Enum):
         """What the callback takes."""
 

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import sys
-import threading
 import time
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
     from robolink.inbox import Inbox
-
-FOREVER = 0.1 if sys.platform == "win32" else threading.TIMEOUT_MAX
-"""Seconds of one wait at the most: on Windows Ctrl-C does not break into a wait, only between two of them."""
 
 
 class TimeBase(Protocol):
@@ -25,8 +20,8 @@ class TimeBase(Protocol):
     def steady(self) -> int:
         """Nanoseconds that only grow, from some start."""
 
-    def wait(self, inbox: Inbox, until: int | None) -> None:
-        """Wait until something arrives or steady time is `until`."""
+    def wait(self, inbox: Inbox, until: int | None) -> Any:
+        """Wait until something arrives, and give it undelivered, or until steady time is `until`; or less long."""
 
     def sleep(self, nanoseconds: int) -> None:
         """Let so much time pass."""
@@ -39,13 +34,11 @@ class SystemTime:
     now = staticmethod(time.time_ns)
     steady = staticmethod(time.monotonic_ns)
 
-    def wait(self, inbox: Inbox, until: int | None) -> None:
-        """Wait until something arrives or steady time is `until`."""
+    def wait(self, inbox: Inbox, until: int | None) -> Any:
+        """Wait until something arrives, and give it undelivered, or until steady time is `until`; or less long."""
         if until is None:
-            inbox.wait(FOREVER)
-            return
-        left = until - time.monotonic_ns()
-        inbox.wait(min(left / 1e9, FOREVER) if left > 0 else 0.0)
+            return inbox.wait(None)
+        return inbox.wait(max(0.0, (until - time.monotonic_ns()) / 1e9))
 
     def sleep(self, nanoseconds: int) -> None:
         """Let so much time pass."""
@@ -66,14 +59,12 @@ class VirtualTime:
 
     steady = now
 
-    def wait(self, inbox: Inbox, until: int | None) -> None:
+    def wait(self, inbox: Inbox, until: int | None) -> Any:
         """Jump to `until`, unless something has arrived; with nothing to come, wait for another thread's message."""
-        if until is None:
-            inbox.wait(None)
-        elif inbox.empty():
-            self._now = max(self._now, until)
-        else:
-            inbox.sweep()
+        if until is None or not inbox.empty():
+            return inbox.wait(None)
+        self._now = max(self._now, until)
+        return None
 
     def sleep(self, nanoseconds: int) -> None:
         """Jump."""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import struct
+from collections.abc import Callable
 from enum import Enum, IntEnum
 from typing import NamedTuple, TypeVar
 
@@ -105,6 +107,15 @@ class EndpointToken(NamedTuple):
 def pack_attachment(sequence: int, timestamp: int, gid: bytes) -> bytes:
     """Give the 33 bytes of an attachment; `timestamp` in nanoseconds since the epoch, `gid` of 16 bytes."""
     return _ATTACHMENT.pack(sequence, timestamp, _GID_BYTES, gid)
+
+
+def attachments(gid: bytes, now: Callable[[], int]) -> Callable[[], bytes]:
+    """Give the function that makes a sender's next attachment, numbered from 1 and stamped with `now()`.
+
+    It runs for every message, hence a closure: all that it needs is at hand.
+    """
+    pack, number = _ATTACHMENT.pack, itertools.count(1).__next__
+    return lambda: pack(number(), now(), _GID_BYTES, gid)
 
 
 def unpack_attachment(raw: bytes) -> Attachment:

@@ -113,8 +113,10 @@ def test_waiting_for_a_change(bus: Bus, context: Context) -> None:
     graph, seen = context.graph, threading.Event()
     graph.listen(seen.set)
     assert not graph.wait_for(lambda: bool(graph.nodes()), timeout=0.01)
-    threading.Timer(0.02, lambda: Node("late", context=context)).start()
+    thread = threading.Timer(0.02, Node, ("late",), {"context": context})
+    thread.start()
     assert graph.wait_for(lambda: bool(graph.nodes()), timeout=PATIENCE)
+    thread.join(PATIENCE)
     assert seen.is_set()
 
 

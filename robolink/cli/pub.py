@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from robolink.cli.session import node_of, opened, say
 from robolink.exceptions import RobolinkError
 from robolink.interfaces import find
-from robolink.message import encode, from_builtins
+from robolink.message import Message, encode, from_builtins
 from robolink.task import Future
 from robolink.yamlfile import parse
 
@@ -16,8 +16,14 @@ if TYPE_CHECKING:
     from robolink.node import Node
     from robolink.publisher import Publisher
 
+MessageT = TypeVar("MessageT", bound=Message)
+
 KEEP_ALIVE = 0.1
 """Seconds that the publisher stays after its last message, so that it arrives."""
+
+
+LOWEST_RATE = 1e-9
+"""Hz: a message in thirty years."""
 
 
 class RateError(RobolinkError, ValueError):
@@ -26,17 +32,23 @@ class RateError(RobolinkError, ValueError):
 
 def run(topic: str, type_: str, values: str, *, rate: float, times: int, wait: int | None, print_every: int) -> None:
     """Publish `times` messages, 0 for no end, at `rate` Hz, once `wait` subscriptions are there."""
-    if not 0 < rate < float("inf"):
+    if not LOWEST_RATE <= rate < float("inf"):
         raise RateError(f"--rate: expected a number of Hz above 0, got {rate:g}")
     msg_type = find(type_)
-    message = from_builtins(msg_type, parse(values, name="<values>"))
-    encode(message)  # what does not fit is told before anybody waits
+    message = message_of(msg_type, values)
     with opened() as context:
         node = node_of(context)
         publisher = node.create_publisher(msg_type, topic, 10)
         _wait(node, publisher, (1 if times else 0) if wait is None else wait)
         say("publisher: beginning loop")
         _loop(node, publisher, message, rate, times, print_every)
+
+
+def message_of(msg_type: type[MessageT], values: str) -> MessageT:
+    """Make a message of YAML. Raises DocumentError or EncodeError that say where, before anybody waits for it."""
+    message: MessageT = from_builtins(msg_type, parse(values, name="<values>"))
+    encode(message)
+    return message
 
 
 def _wait(node: Node, publisher: Publisher[Any], count: int) -> None:

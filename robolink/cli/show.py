@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Any
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import EncodeError, nearest
 from robolink.message import to_builtins
 
+if TYPE_CHECKING:
+    from robolink.message import Message
+
 LONGEST = 128
 """Elements of a sequence, and characters of a text, that are shown unless all are asked for."""
 
-_STEP = re.compile(r"([A-Za-z]\w*)|\[(-?\d+)\]")
+_STEP = re.compile(r"(?P<name>[A-Za-z]\w*)|\[(?P<index>-?\d{1,18})\]", re.ASCII)
 
 
 def as_yaml(value: Any, longest: int | None = LONGEST) -> str:
@@ -21,7 +25,7 @@ def as_yaml(value: Any, longest: int | None = LONGEST) -> str:
 
     data = _cut(plain(value), longest)
     text = yaml.safe_dump(data, default_flow_style=False, sort_keys=False, allow_unicode=True, width=math.inf)
-    return text.removesuffix("...\n").rstrip("\n")
+    return text.removesuffix("\n...\n").removesuffix("\n")
 
 
 def as_json(value: Any) -> str:
@@ -44,32 +48,47 @@ def plain(value: Any) -> Any:
 
 def field_of(message: Any, path: str) -> Any:
     """Give ``linear.x`` or ``ranges[0]`` of a message. Raises EncodeError that names what there is instead."""
-    value, at = message, 0
-    for match in _STEP.finditer(path):
-        if path[at : match.start()] not in ("", "."):
-            break
-        value, at = _step(value, match, path), match.end()
-    if at != len(path) or not path:
-        raise EncodeError(f"--field: expected a path such as linear.x or ranges[0], got '{path}'")
+    check_path(type(message), path)
+    value = message
+    for step in _steps(path):
+        try:
+            value = getattr(value, step) if isinstance(step, str) else value[step]
+        except IndexError:
+            raise EncodeError(f"--field {path}: there are {len(value)} elements, no [{step}]") from None
     return value
 
 
-def _step(value: Any, match: re.Match[str], path: str) -> Any:
-    name, index = match.groups()
-    if name is not None:
-        fields = list(getattr(value, "__ros_fields__", ()))
-        if name not in fields:
-            raise EncodeError(f"--field {path}: no field '{name}'{nearest(name, fields)}; there is {_listed(fields)}")
-        return getattr(value, name)
-    try:
-        return value[int(index)]
-    except IndexError:
-        raise EncodeError(f"--field {path}: there are {len(value)} elements, no [{index}]") from None
-    except TypeError:
-        raise EncodeError(f"--field {path}: what stands before [{index}] is no sequence") from None
+def check_path(msg_type: type[Message], path: str) -> None:
+    """Raise EncodeError unless a message of the type can have ``linear.x`` or ``ranges[0]``."""
+    holder: type[Message] | None = msg_type
+    is_sequence = False
+    for step in _steps(path):
+        if isinstance(step, int):
+            if not is_sequence:
+                raise EncodeError(f"--field {path}: what stands before [{step}] is no sequence")
+            is_sequence = False
+            continue
+        fields = {} if holder is None or is_sequence else holder.__ros_fields__
+        if step not in fields:
+            there = "it is a sequence: say which, as in [0]" if is_sequence else f"there is {_listed(fields)}"
+            raise EncodeError(f"--field {path}: no field '{step}'{nearest(step, fields)}; {there}")
+        holder, is_sequence = fields[step].message, fields[step].shape != "one"
 
 
-def _listed(fields: list[str]) -> str:
+def _steps(path: str) -> list[str | int]:
+    steps: list[str | int] = []
+    at = 0
+    for match in _STEP.finditer(path):
+        if path[at : match.start()] != ("." if match["name"] and at else ""):
+            break
+        steps.append(match["name"] or int(match["index"]))
+        at = match.end()
+    if at != len(path) or not path:
+        raise EncodeError(f"--field: expected a path such as linear.x or ranges[0], got '{path}'")
+    return steps
+
+
+def _listed(fields: Iterable[str]) -> str:
     return ", ".join(fields) or "nothing in it"
 
 

@@ -1,0 +1,40 @@
+"""A node in memory that the commands of the same process see, for tests of commands."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+
+from robolink import Context, Node
+from robolink.qos import DurabilityPolicy, QoSProfile
+
+LATCHED = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+NUMBERS = itertools.count()
+
+
+@contextmanager
+def a_node_that_commands_see(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
+    """The node /lab/robot, on domain 7 of a network of its own that commands use too while this lasts."""
+    url = f"memory://commands{next(NUMBERS)}"
+    monkeypatch.setenv("ROBOLINK_TRANSPORT", url)
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    context = Context(transport=url)
+    context.init([])
+    with context:
+        yield made(context, "robot", "/lab")
+
+
+def made(context: Context, name: str, namespace: str = "") -> Node:
+    """A node with nothing of its own but /parameter_events."""
+    return Node(name, context=context, namespace=namespace, enable_rosout=False, start_parameter_services=False)
+
+
+def latch(node: Node, topic: str, *messages: Any) -> None:
+    """Publish messages that whoever comes later gets too."""
+    publisher = node.create_publisher(type(messages[0]), topic, LATCHED)
+    for message in messages:
+        publisher.publish(message)

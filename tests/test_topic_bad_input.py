@@ -1,0 +1,157 @@
+"""Mistakes in topic and node commands: each is one line on stderr that says what, where and what is near."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robolink import Node, RobolinkError
+from robolink.cli import main, pub
+from robolink.interfaces.geometry_msgs.msg import Twist
+from robolink.interfaces.sensor_msgs.msg import LaserScan
+from robolink.wire import EndpointKind, format_token
+from tests.seen_by_commands import a_node_that_commands_see, latch
+
+Captured = pytest.CaptureFixture[str]
+
+
+@pytest.fixture
+def node(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
+    with a_node_that_commands_see(monkeypatch) as robot:
+        yield robot
+
+
+BAD: list[tuple[str, list[str], str]] = [
+    ("type", ["pub", "/x", "Twst"], "no message type named 'Twst' (did you mean 'Twist'?)"),
+    ("package", ["pub", "/x", "geometry_mgs/Twist"], "no interface package named 'geometry_mgs' (did you mean 'geome"),
+    (
+        "in package",
+        ["pub", "/x", "geometry_msgs/Twis"],
+        "no message type named 'Twis' in geometry_msgs (did you mean 'T",
+    ),
+    ("no type", ["pub", "/x", "a b"], "'a b' is no type name; it should look like Twist, geometry_msgs/Twist or"),
+    ("echo type", ["topic", "echo", "/x", "Odometri"], "no message type named 'Odometri' (did you mean 'Odometry'?)"),
+    (
+        "field",
+        ["pub", "/x", "Twist", "{liner: {x: 1}}"],
+        "Twist: no field 'liner' (did you mean 'linear'?); it has lin",
+    ),
+    ("deep field", ["pub", "/x", "Twist", "{linear: {w: 1}}"], "Twist.linear: no field 'w'; it has x, y, z"),
+    ("value", ["pub", "/x", "Twist", "{linear: {x: fast}}"], "Twist.linear.x: expected float64, got 'fast'"),
+    ("range", ["pub", "/x", "Int32", "data: 3000000000"], "Int32.data: expected int32, got 3000000000"),
+    ("no mapping", ["pub", "/x", "Twist", "{linear: 3}"], "Twist.linear: expected a mapping of x, y, z, got 3"),
+    ("scalar", ["pub", "/x", "Twist", "3"], "Twist: expected a mapping of linear, angular, got 3"),
+    (
+        "length",
+        ["pub", "/x", "Imu", "{angular_velocity_covariance: [1, 2]}"],
+        "Imu.angular_velocity_covariance: expected",
+    ),
+    ("yaml", ["pub", "/x", "Twist", "{linear: {x: 1}"], "<values>:1:16: expected ',' or '}', but got the end of the"),
+    ("yaml line", ["pub", "/x", "Twist", "linear:\n\tx: 1"], "<values>:2:1: a tab where only spaces may stand"),
+    ("key twice", ["pub", "/x", "Twist", "{linear: {}, linear: {}}"], "<values>:1:14: "),
+    ("rate 0", ["pub", "/x", "Twist", "-r", "0"], "--rate: expected a number of Hz above 0, got 0"),
+    ("rate -1", ["pub", "/x", "Twist", "-r", "-1"], "--rate: expected a number of Hz above 0, got -1"),
+    ("rate nan", ["pub", "/x", "Twist", "-r", "nan"], "--rate: expected a number of Hz above 0, got nan"),
+    ("rate inf", ["pub", "/x", "Twist", "-r", "inf"], "--rate: expected a number of Hz above 0, got inf"),
+    ("tiny rate", ["pub", "/x", "Twist", "-r", "1e-320"], "--rate: expected a number of Hz above 0, got 9.99989e-321"),
+    ("echo field", ["topic", "echo", "/v", "--field", "linear.w"], "--field linear.w: no field 'w'; there is x, y, z"),
+    (
+        "echo path",
+        ["topic", "echo", "/v", "--field", "linear..x"],
+        "--field: expected a path such as linear.x or range",
+    ),
+    ("element", ["topic", "echo", "/s", "--field", "ranges[9]"], "--field ranges[9]: there are 2 elements, no [9]"),
+    ("unknown on wire", ["topic", "echo", "/odd"], "no interface package named 'odd_msgs'"),
+]
+
+
+@pytest.mark.parametrize(("args", "report"), [each[1:] for each in BAD], ids=[each[0] for each in BAD])
+def test_bad_input_is_one_line_and_1(node: Node, args: list[str], report: str, capsys: Captured) -> None:
+    latch(node, "/v", Twist())
+    latch(node, "/s", LaserScan(ranges=[1.0, 2.0]))
+    own = next(each for each in node.context.graph.endpoints(EndpointKind.PUBLISHER, name="/v"))
+    foreign = own._replace(name="/odd", type_name="odd_msgs/msg/Odd", endpoint_id=99)
+    node.context.transport.announce(format_token(foreign))
+    assert main(args) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith(f"robolink: {report}")
+    assert err.count("\n") == 1
+
+
+@pytest.mark.usefixtures("node")
+@pytest.mark.parametrize("args", [["pub", "{}", "Twist"], ["topic", "echo", "{}"], ["topic", "echo", "{}", "Twist"]])
+@pytest.mark.parametrize(
+    ("name", "report"),
+    [
+        ("/a b", "Invalid topic name: must not contain characters other than"),
+        ("//x", "Invalid topic name: must not contain '//'"),
+        ("/x/", "Invalid topic name: must not end with '/'"),
+        ("/1x", "Invalid topic name: must not start with a number in any of its tokens"),
+        ("", "Invalid topic name: must not be empty"),
+    ],
+)
+def test_a_bad_topic_name_is_one_line_and_1(args: list[str], name: str, report: str, capsys: Captured) -> None:
+    assert main([name if each == "{}" else each for each in args]) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith(f"robolink: {report}")
+    assert f"'{name}'" in err
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize("args", [["topic", "list"], ["node", "list"], ["topic", "echo", "/x"], ["pub", "/x", "Twist"]])
+@pytest.mark.parametrize(
+    ("variable", "value", "report"),
+    [
+        ("ROS_DOMAIN_ID", "abc", "ROS_DOMAIN_ID: expected a number from 0 to 232, got 'abc'"),
+        ("ROS_DOMAIN_ID", "300", "domain id: expected a number from 0 to 232, got 300"),
+        ("ROBOLINK_TRANSPORT", "zeno://", "no transport 'zeno://' (did you mean 'zenoh'?)"),
+    ],
+)
+def test_a_bad_environment_is_one_line_and_1(
+    args: list[str], variable: str, value: str, report: str, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    monkeypatch.setenv(variable, value)
+    assert main(args) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith(f"robolink: {report}")
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("args", "report"),
+    [
+        (["topic", "ecko"], "No such command 'ecko'. Did you mean 'echo'?"),
+        (["node", "lst"], "No such command 'lst'. Did you mean 'list'?"),
+        (["topic", "list", "--show-type"], "No such option: --show-type"),
+        (["node", "list", "--jsn"], "No such option: --jsn"),
+        (["topic", "list", "extra"], "Got unexpected extra argument"),
+        (["pub", "/x"], "Missing argument 'TYPE'"),
+        (["pub", "/x", "Twist", "--times", "-3"], "Invalid value for '--times' / '-t': -3 is not in the range x>=0"),
+        (["pub", "/x", "Twist", "-t", "two"], "Invalid value for '--times' / '-t': 'two' is not a valid int"),
+        (["pub", "/x", "Twist", "-r", "fast"], "Invalid value for '--rate' / '-r': 'fast' is not a valid float"),
+        (["pub", "/x", "Twist", "-p", "0"], "Invalid value for '--print' / '-p': 0 is not in the range x>=1"),
+        (["topic", "echo", "/x", "--field"], "Option '--field' requires an argument"),
+    ],
+)
+def test_wrong_usage_is_one_line_and_2(args: list[str], report: str, capsys: Captured) -> None:
+    assert main(args) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith(f"robolink: {report}")
+    assert err.count("\n") == 1
+
+
+@given(st.text(max_size=40) | st.text("{}[]:, linearxyz0123.", max_size=20))
+def test_any_values_are_a_message_or_refused_in_one_line(values: str) -> None:
+    try:
+        report = f"<values>: {pub.message_of(Twist, values)}"
+    except RobolinkError as error:
+        report = str(error)
+    assert report.startswith(("<values>:", "Twist"))
+    assert "\n" not in report
