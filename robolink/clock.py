@@ -163,7 +163,13 @@ class Clock:
         context = self._context(context)
         if until.clock_type != self._clock_type:
             raise ValueError("until's clock type does not match this clock's type")
-        event, changed = threading.Event(), False
+        event = threading.Event()
+        context.on_shutdown(event.set)
+        return self.sleep_until_ns(until.nanoseconds, event, lambda: not context.ok())
+
+    def sleep_until_ns(self, until: int, event: threading.Event, ended: Callable[[], bool]) -> bool:
+        """Sleep as `sleep_until` does, but end when `ended()`, which is asked again whenever `event` is set."""
+        changed = False
 
         def on_jump(jump: TimeJump) -> None:
             nonlocal changed
@@ -171,12 +177,11 @@ class Clock:
             event.set()
 
         smallest = JumpThreshold(min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1))
-        context.on_shutdown(event.set)
         with self.create_jump_callback(smallest, post_callback=on_jump):
-            while self.now_ns() < until.nanoseconds and context.ok() and not changed:
-                self._sleep(event, until.nanoseconds)
+            while self.now_ns() < until and not ended() and not changed:
+                self._sleep(event, until)
                 event.clear()
-        return self.now_ns() >= until.nanoseconds and not changed
+        return self.now_ns() >= until and not changed
 
     def _sleep(self, event: threading.Event, until: int) -> None:
         left = self.wait_ns(until)
@@ -238,7 +243,7 @@ class ROSClock(Clock):
         def switch() -> None:
             self._active = enabled
 
-        self._jump(change, switch)
+        self._jump(change, switch, self._override if enabled else self._base.now())
 
     def set_ros_time_override(self, time: Time) -> None:
         """Say what time it is while /clock is active. Raises TypeError for what is no Time."""
@@ -249,23 +254,19 @@ class ROSClock(Clock):
             self._override = time.nanoseconds
 
         if self._active:
-            self._jump(ClockChange.ROS_TIME_NO_CHANGE, move)
+            self._jump(ClockChange.ROS_TIME_NO_CHANGE, move, time.nanoseconds)
         else:
             move()
 
-    def _jump(self, change: ClockChange, act: Callable[[], None]) -> None:
-        before = self.now_ns()
-        for handle in list(self._jumps):
-            if handle.pre_callback is not None and self._will_be_told(handle, change):
+    def _jump(self, change: ClockChange, act: Callable[[], None], after: int) -> None:
+        jump = TimeJump(change, Duration(nanoseconds=after - self.now_ns()))
+        told = [handle for handle in self._jumps if handle.threshold.met_by(jump)]
+        for handle in told:
+            if handle.pre_callback is not None:
                 handle.pre_callback()
         act()
-        jump = TimeJump(change, Duration(nanoseconds=self.now_ns() - before))
-        for handle in list(self._jumps):
-            if handle.post_callback is not None and handle.threshold.met_by(jump):
+        for handle in told:
+            if handle.post_callback is not None:
                 handle.post_callback(jump)
         for watcher in list(self._watchers):
             watcher.on_clock(self)
-
-    @staticmethod
-    def _will_be_told(handle: JumpHandle, change: ClockChange) -> bool:
-        return change is ClockChange.ROS_TIME_NO_CHANGE or handle.threshold.on_clock_change

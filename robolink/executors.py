@@ -6,13 +6,16 @@ import heapq
 import inspect
 import itertools
 import threading
+import traceback
 from collections import deque
 from collections.abc import Callable
+from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from robolink.entity import NOTHING, Entity
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser, RobolinkError
 from robolink.inbox import Inbox
+from robolink.logging import get_logger
 from robolink.task import Future, Task
 from robolink.utilities import get_default_context
 
@@ -243,7 +246,10 @@ class Executor:
                 return taken
             self._check(stop)
             if deadline is not None and time.steady() >= deadline:
-                raise TimeoutException
+                if not self._polled:
+                    raise TimeoutException
+                self._ask_again()  # also whoever spins without waiting gets them done
+                continue
             wake_at = _earlier(deadline, next_timer)
             if self._polled:
                 wake_at = _earlier(wake_at, time.steady() + POLL_NS)
@@ -252,9 +258,11 @@ class Executor:
                 taken = self._take_at_once(arrival)
                 if taken is not None:
                     return taken
-            if self._polled:
-                self.ready.extend(self._polled)
-                self._polled.clear()
+            self._ask_again()
+
+    def _ask_again(self) -> None:
+        self.ready.extend(self._polled)
+        self._polled.clear()
 
     def _take_at_once(self, arrival: Any) -> tuple[Entity, Any] | None:
         """Take what arrived for an entity for which nothing waits; else deliver it, and it waits its turn."""
@@ -312,11 +320,24 @@ class Executor:
             outcome = entity.execute(taken)
             if outcome is not None and inspect.iscoroutine(outcome):
                 coroutine = outcome
+        except Exception as error:
+            self._log(entity, error)
+            raise
         finally:
             if coroutine is None:
                 entity.callback_group.ending_execution(entity)
         if coroutine is not None:
             self._run_on(entity, coroutine)
+
+    def _log(self, entity: Entity, error: Exception) -> None:
+        """Log a callback's exception, with its traceback, in the name of its node; once, however often it passes."""
+        if getattr(error, "__robolink_logged__", False):
+            return
+        error.__robolink_logged__ = True  # type: ignore[attr-defined]
+        owner = next((node for node in self.get_nodes() if entity in node.entities()), None)
+        name = "robolink" if owner is None else owner.get_logger().name
+        text = "".join(traceback.format_exception(type(error), error, _of_the_user(error.__traceback__)))
+        get_logger(name).error(f"an exception in a callback ends the spinning:\n{text.rstrip()}")
 
     def _run_on(self, entity: Entity, coroutine: Any) -> None:
         """Run a callback that is a coroutine; its group is busy until it ends."""
@@ -407,6 +428,14 @@ class Executor:
 
 class SingleThreadedExecutor(Executor):
     """Runs callbacks in the thread that spins."""
+
+
+def _of_the_user(trace: TracebackType | None) -> TracebackType | None:
+    """Leave out robolink's own frames at the top of a traceback."""
+    first = trace
+    while first is not None and first.tb_frame.f_globals.get("__name__", "").startswith("robolink."):
+        first = first.tb_next
+    return first or trace
 
 
 def _earlier(one: int | None, other: int | None) -> int | None:

@@ -74,6 +74,7 @@ class Node(NodeParameters, NodeGraph):
         self._executor: weakref.ReferenceType[Executor] | None = None
         self.queued: list[Entity] = []
         """What was ready when the last executor let go of this node, in order."""
+        self._rosout: Publisher[Log] | None = None  # none of the user's: `publishers` does not list it
         self._publishers: list[Publisher[Any]] = []
         self._subscriptions: list[Subscription[Any]] = []
         self._clients: list[Client] = []
@@ -88,8 +89,8 @@ class Node(NodeParameters, NodeGraph):
         self._context.track_node(self)
         try:
             if enable_rosout and self._arguments.rosout_logs is not False:
-                log_lines = self.create_publisher(Log, "/rosout", qos_profile_rosout_default)
-                rosout.publish_logs_of(self._logger.name, log_lines)
+                self._rosout = Publisher(self._owner, Log, "/rosout", qos_profile_rosout_default)
+                rosout.publish_logs_of(self._logger.name, self._rosout)
             self._parameter_events = self.create_publisher(
                 ParameterEvent, "/parameter_events", qos_profile_parameter_events
             )
@@ -119,12 +120,10 @@ class Node(NodeParameters, NodeGraph):
         return new_name, new_namespace
 
     def _announce(self) -> None:
-        context = self._context
-        node_id, enclave = context.next_id(), self._arguments.enclave or "/"
-        self._owner = Owner(context, node_id, enclave, self._namespace, self._name)
-        transport = context.transport
-        token = NodeToken(context.get_domain_id(), transport.session_id, node_id, enclave, self._namespace, self._name)
-        self._announced = transport.announce(format_token(token))
+        context, transport = self._context, self._context.transport
+        owner = Owner(context, context.next_id(), self._arguments.enclave or "/", self._namespace, self._name)
+        token = NodeToken(context.get_domain_id(), transport.session_id, *owner[1:])
+        self._owner, self._announced = owner, transport.announce(format_token(token))
 
     def _overrides(self, given: list[Parameter[Any]] | None) -> dict[str, Parameter[Any]]:
         values = self._arguments.overrides_for(self.get_fully_qualified_name())
@@ -214,8 +213,7 @@ class Node(NodeParameters, NodeGraph):
             return
         if current is not None:
             current.remove_node(self)
-        if executor is not None:
-            executor.add_node(self)
+        self.belong_to(executor if executor is not None and executor.add_node(self) else None)
 
     def belong_to(self, executor: Executor | None) -> None:
         """Be told by an executor that it has this node from now on, or no longer."""
@@ -367,6 +365,8 @@ class Node(NodeParameters, NodeGraph):
         if executor is not None:
             executor.remove_node(self)
         rosout.keep_to_itself(self._logger.name)
+        if self._rosout is not None:
+            self._rosout.destroy()
         for owned in (self._publishers, self._subscriptions, self._clients, self._services, self._timers, self._guards):
             for entity in list(owned):
                 _destroy(entity, owned)

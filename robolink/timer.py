@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup
 from robolink.clock import Clock, ROSClock
+from robolink.clock_type import ClockType
 from robolink.entity import NOTHING, Entity
 from robolink.exceptions import InvalidHandle, ROSInterruptException
 from robolink.time import Time
 
 if TYPE_CHECKING:
-    from robolink.clock_type import ClockType
     from robolink.context import Context
     from robolink.executors import Executor
 
@@ -21,7 +21,13 @@ if TYPE_CHECKING:
 class TimerInfo:
     """When a timer's callback should have been called and when it was."""
 
-    def __init__(self, *, expected_call_time: int, actual_call_time: int, clock_type: ClockType) -> None:
+    def __init__(
+        self,
+        *,
+        expected_call_time: int = 0,
+        actual_call_time: int = 0,
+        clock_type: ClockType = ClockType.SYSTEM_TIME,
+    ) -> None:
         self.expected_call_time = Time(nanoseconds=expected_call_time, clock_type=clock_type)
         self.actual_call_time = Time(nanoseconds=actual_call_time, clock_type=clock_type)
 
@@ -178,13 +184,14 @@ def _checked_period(period: int) -> int:
 
 def _wants_info(callback: Callable[..., Any]) -> bool:
     """Whether a callback has a parameter that is annotated as TimerInfo."""
-    annotations = getattr(callback, "__annotations__", None) or getattr(callback, "__func__", callback)
-    found = annotations if isinstance(annotations, dict) else getattr(annotations, "__annotations__", {})
-    return any(
-        each is TimerInfo or (isinstance(each, str) and each.rpartition(".")[2] == "TimerInfo")
-        for name, each in found.items()
-        if name != "return"
-    )
+    import inspect
+
+    try:
+        parameters = inspect.signature(callback).parameters.values()
+    except (TypeError, ValueError):  # a built-in function that does not tell
+        return False
+    kinds = [each.annotation for each in parameters]
+    return any(each is TimerInfo or str(each).rpartition(".")[2] == "TimerInfo" for each in kinds)
 
 
 class Rate:
@@ -192,7 +199,7 @@ class Rate:
 
     def __init__(self, timer: Timer, *, context: Context) -> None:
         self._timer, self._context = timer, context
-        self._condition = threading.Condition()
+        self._condition, self._woken = threading.Condition(), threading.Event()
         self._ticks = 0
         self._ended = False
         timer.callback = self._tick
@@ -207,6 +214,7 @@ class Rate:
         with self._condition:
             self._ended = True
             self._condition.notify_all()
+        self._woken.set()
 
     def destroy(self) -> None:
         """Wake whoever sleeps, for good. Safe to call twice."""
@@ -235,7 +243,6 @@ class Rate:
 
     def _sleep_by_clock(self) -> None:
         timer = self._timer
-        due = Time(nanoseconds=timer.next_call_ns, clock_type=timer.clock.clock_type)
-        timer.clock.sleep_until(due, self._context)
-        if timer.take() is NOTHING and self._context.ok():
+        timer.clock.sleep_until_ns(timer.next_call_ns, self._woken, lambda: self._ended)
+        if timer.take() is NOTHING and not self._ended:
             timer.reset()

@@ -254,10 +254,12 @@ def test_an_error_in_the_users_code_is_shown_from_there_on(write: Write) -> None
     code, _, err = outcome("run", "talker")
     assert code == 1
     lines = err.splitlines()
-    assert lines[0] == "Traceback (most recent call last):"
-    assert lines[1].startswith(f'  File "{path.resolve()}", line')
+    assert lines[0].endswith("[talker]: an exception in a callback ends the spinning:")
+    assert lines[1] == "Traceback (most recent call last):"
+    assert lines[2].startswith(f'  File "{path.resolve()}", line')
     assert lines[-1] == "KeyError: 'x'"
     assert "/robolink/" not in err
+    assert err.count("Traceback") == 1
 
 
 # --- launch ---------------------------------------------------------------------------------------------------

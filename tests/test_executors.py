@@ -17,6 +17,7 @@ from robolink.executors import SingleThreadedExecutor
 from robolink.guard_condition import GuardCondition
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.publisher import Publisher
+from robolink.qos import HistoryPolicy, QoSProfile
 from robolink.transport.memory import Bus, MemoryTransport
 from tests.spins import done, numbers, spin_for, spin_until
 
@@ -171,6 +172,10 @@ def test_a_coroutine_may_wait_for_something_unknown(executor: SingleThreadedExec
         return "done"
 
     assert done(executor, executor.create_task(wait)) == "done"
+    task = executor.create_task(wait)
+    for _ in range(4):
+        executor.spin_once(timeout_sec=0)
+    assert task.done()
 
 
 def test_a_task_from_another_thread_wakes_the_executor(context: Context) -> None:
@@ -257,6 +262,46 @@ def test_a_group_that_refuses_loses_no_message(node: Node, executor: SingleThrea
     group.willing = True
     spin_for(executor, 0.1)
     assert got == [1]
+
+
+def test_messages_keep_their_order_while_they_come_in(context: Context) -> None:
+    node, got = Node("node", context=context), list[int]()
+    every_one = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+    node.create_subscription(Int32, "topic", lambda message: got.append(message.data), every_one)
+    publisher = node.create_publisher(Int32, "topic", every_one)
+
+    def send() -> None:
+        for number in range(5000):
+            publisher.publish(Int32(data=number))
+
+    with SingleThreadedExecutor(context=context) as executor:
+        executor.add_node(node)
+        thread = threading.Thread(target=send)
+        thread.start()
+        spin_until(executor, lambda: len(got) == 5000)
+        thread.join(PATIENCE)
+    assert got == list(range(5000))
+
+
+def test_what_comes_in_waits_while_its_group_is_busy(context: Context) -> None:
+    node, trace = Node("node", context=context), list[str]()
+    publisher = node.create_publisher(Int32, "topic", 10)
+    pause: Future[None] = Future()
+
+    async def callback(message: Int32) -> None:
+        trace.append(f"begin {message.data}")
+        await pause
+        trace.append(f"end {message.data}")
+
+    node.create_subscription(Int32, "topic", callback, 10)
+    with SingleThreadedExecutor(context=context) as executor:
+        executor.add_node(node)
+        publisher.publish(Int32(data=1))
+        spin_until(executor, lambda: trace == ["begin 1"])
+        threading.Timer(0.01, publisher.publish, (Int32(data=2),)).start()
+        threading.Timer(0.05, pause.set_result, (None,)).start()
+        spin_until(executor, lambda: len(trace) == 4)
+    assert trace == ["begin 1", "end 1", "begin 2", "end 2"]
 
 
 def test_a_hundred_idle_subscriptions_cost_nothing(context: Context) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import threading
 import time
 from collections.abc import Callable
@@ -106,10 +107,14 @@ def test_a_callback_may_ask_when_it_should_have_been_called(node: Node, executor
     def callback(info: TimerInfo) -> None:
         infos.append(info)
 
+    def partly(_: str, info: TimerInfo) -> None:
+        infos.append(info)
+
     node.create_timer(0.1, callback)
-    node.create_timer(0.1, lambda: node.context.time.sleep(5 * MILLISECOND) if len(infos) == 1 else None)
+    node.create_timer(0.1, functools.partial(partly, "first"))
+    node.create_timer(0.1, lambda: node.context.time.sleep(5 * MILLISECOND))
     spin_for(executor, 0.25)
-    assert [each.expected_call_time.nanoseconds // MILLISECOND for each in infos] == [100, 200]
+    assert [each.expected_call_time.nanoseconds // MILLISECOND for each in infos] == [100, 100, 200, 200]
     assert all(each.actual_call_time >= each.expected_call_time for each in infos)
 
 
@@ -245,6 +250,14 @@ def test_a_rate_beside_a_thread_that_spins(context: Context) -> None:
         rate.sleep()
     executor.shutdown()
     thread.join(PATIENCE)
+
+
+def test_destroying_a_rate_wakes_who_sleeps_by_it(context: Context) -> None:
+    node = Node("node", context=context)
+    rate = node.create_rate(0.01)
+    threading.Timer(0.02, node.destroy_rate, (rate,)).start()
+    with pytest.raises(ROSInterruptException):
+        rate.sleep()
 
 
 def test_the_end_of_the_context_wakes_a_sleeping_rate(context: Context) -> None:

@@ -87,20 +87,18 @@ def test_bad_input_is_one_line_and_1(node: Node, args: list[str], report: str, c
 @pytest.mark.parametrize(
     ("name", "report"),
     [
-        ("/a b", "Invalid topic name: must not contain characters other than"),
-        ("//x", "Invalid topic name: must not contain '//'"),
-        ("/x/", "Invalid topic name: must not end with '/'"),
-        ("/1x", "Invalid topic name: must not start with a number in any of its tokens"),
-        ("", "Invalid topic name: must not be empty"),
+        ("/a b", "must not contain characters other than letters, digits, '_', '/', '~', '{' and '}' (at index 2)"),
+        ("//x", "must not contain '//' (at index 1)"),
+        ("/x/", "must not end with '/' (at index 2)"),
+        ("/1x", "must not start with a number in any of its tokens (at index 1)"),
+        ("", "must not be empty (at index 0)"),
     ],
 )
 def test_a_bad_topic_name_is_one_line_and_1(args: list[str], name: str, report: str, capsys: Captured) -> None:
     assert main([name if each == "{}" else each for each in args]) == 1
     out, err = capsys.readouterr()
     assert out == ""
-    assert err.startswith(f"robolink: {report}")
-    assert f"'{name}'" in err
-    assert err.count("\n") == 1
+    assert err == f"robolink: invalid topic name '{name}': {report}\n"
 
 
 @pytest.mark.parametrize("args", [["topic", "list"], ["node", "list"], ["topic", "echo", "/x"], ["pub", "/x", "Twist"]])

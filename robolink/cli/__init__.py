@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from robolink.exceptions import RobolinkError
+from robolink.exceptions import NameValidationException, RobolinkError
 
 
 def main(args: Sequence[str] | None = None) -> int:
@@ -29,6 +29,8 @@ def main(args: Sequence[str] | None = None) -> int:
 
 def complain(error: object, code: int = 1) -> int:
     """Print one line on stderr; give the exit code."""
+    if isinstance(error, NameValidationException):  # its text has a line for the caret
+        error = f"invalid {error.name_type} '{error.name[:200]}': {error.error_msg} (at index {error.invalid_index})"
     line = " ".join(str(error).split("\n"))
     print(f"robolink: {line}", file=sys.stderr)  # noqa: T201 - this is what the user is told
     return code

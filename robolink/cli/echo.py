@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from robolink.cli import show
 from robolink.cli.session import node_of, opened, say, tell
 from robolink.context import Context
-from robolink.exceptions import nearest
+from robolink.exceptions import RobolinkError, nearest
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces import find
 from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -55,8 +55,11 @@ def _show(node: Node, name: str, msg_type: type[Any], once: bool, form: Format) 
         if done.done():
             return
         first.set_result(None)
-        say(form.text(message))
-        if once:
+        try:
+            say(form.text(message))
+        except RobolinkError as error:  # what was asked for is not in the message: the command's error, no callback's
+            done.set_exception(error)
+        if once and not done.done():
             done.set_result(None)
 
     node.create_subscription(msg_type, name, on_message, _matching_qos(node.context, name))
@@ -66,6 +69,7 @@ def _show(node: Node, name: str, msg_type: type[Any], once: bool, form: Format) 
     if not first.done():
         tell(_why_silent(node.context, name, msg_type.__ros_type__))
     executor.spin_until_future_complete(done)
+    done.result()
 
 
 def _why_silent(context: Context, name: str, type_name: str) -> str:

@@ -132,7 +132,9 @@ def _purpose(source: NodeSource) -> str:
 
 
 def _show(error: Exception) -> None:
-    """Print a traceback that begins in the user's code."""
+    """Print a traceback that begins in the user's code, unless the executor has logged it."""
+    if getattr(error, "__robolink_logged__", False):
+        return
     trace = error.__traceback__
     while trace is not None and _is_ours(trace):
         trace = trace.tb_next
