@@ -9,8 +9,8 @@ READY := $(VENV)/.ready
 demo: $(READY)  ## A robot wanders in a simulated room, until Ctrl-C
 	$(BIN)/robolink launch wander
 
-test: $(READY)  ## Every test
-	$(BIN)/python -m pytest
+test: $(READY)  ## Every test; ARGS go to pytest
+	$(BIN)/python -m pytest $(ARGS)
 
 check: lint types floors test  ## What must be green before a commit
 
@@ -28,8 +28,9 @@ format: $(READY)
 	$(BIN)/ruff check --fix-only .
 	$(BIN)/ruff format .
 
-bench: $(READY)
+bench: $(READY)  ## Speed beside peers, in one run each
 	$(BIN)/python benchmarks/messaging.py
+	$(BIN)/python benchmarks/commands.py
 
 $(READY): pyproject.toml
 	$(PYTHON) -m venv $(VENV)

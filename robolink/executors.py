@@ -17,6 +17,7 @@ from robolink.exceptions import ExternalShutdownException, InterruptedByUser, Ro
 from robolink.inbox import Inbox
 from robolink.logging import get_logger
 from robolink.task import Future, Task
+from robolink.task_runner import TaskRunner
 from robolink.utilities import get_default_context
 
 if TYPE_CHECKING:
@@ -41,39 +42,6 @@ class ShutdownException(RobolinkError):  # noqa: N818 - rclpy's name
 
 class ConditionReachedException(RobolinkError):  # noqa: N818 - rclpy's name
     """What was waited for has come."""
-
-
-class TaskRunner(Entity):
-    """Runs one task, again and again until it is done."""
-
-    def __init__(self, task: Task[Any], on_end: Callable[[], None] | None = None) -> None:
-        super().__init__()
-        self.task = task
-        self.on_end = on_end
-
-    def take(self) -> Any:
-        """Give the task."""
-        return NOTHING if self.task.done() or self.task.cancelled() else self.task
-
-    def execute(self, taken: Task[Any]) -> None:
-        """Run it on. Raises what it raised."""
-        taken()
-        if not (taken.done() or taken.cancelled()):
-            self._sleep(taken)
-            return
-        if self.on_end is not None:
-            self.on_end()
-        if taken.exception() is not None:
-            raise taken.exception() or RuntimeError
-
-    def _sleep(self, task: Task[Any]) -> None:
-        executor = self.executor
-        if executor is None:
-            return
-        if task.awaits is None:
-            executor.poll(self)
-        else:
-            task.awaits.when_done(lambda: executor.post(self))
 
 
 class Executor:

@@ -1,6 +1,6 @@
-"""Draw the README's picture: a node drives in a simulated world, in virtual time, and leaves its path:
+"""Draw the README's picture: a node drives in a simulated world, in virtual time, and leaves its path.
 
-python tools/picture.py wall_follower corners docs/follow.svg --seconds 100
+Usage: python tools/picture.py wall_follower corners docs/follow.svg --seconds 95
 """
 
 from __future__ import annotations
