@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import random
-import socket
 from collections.abc import Iterator
 
 import pytest
@@ -13,27 +10,16 @@ from robolink import Context, VirtualTime, logging, try_shutdown
 from robolink.executors import SingleThreadedExecutor
 from robolink.impl.log_output import Record, output
 from robolink.transport.memory import Bus, MemoryTransport
-from robolink.transport.network import FIRST_PORT
 from robolink.transport.zenoh import ZenohTransport
+from tests.domains import free_domain
 from tests.transports import Network
 
 
 @pytest.fixture
 def domain() -> Iterator[int]:
-    """A domain that no other test uses now: a UDP socket on its port's number stands for it."""
-    for candidate in random.sample(range(1, 233), 232):
-        with socket.socket(type=socket.SOCK_DGRAM) as mark, socket.socket() as probe:
-            try:
-                mark.bind(("127.0.0.1", FIRST_PORT + candidate))
-                if os.name != "nt":  # else connections that have ended keep the port for a minute
-                    probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-                probe.bind(("127.0.0.1", FIRST_PORT + candidate))
-            except OSError:
-                continue
-            probe.close()
-            yield candidate
-            return
-    raise AssertionError("no domain is free")
+    """A domain that no other test uses now."""
+    with free_domain() as number:
+        yield number
 
 
 @pytest.fixture(params=["memory", "zenoh"])

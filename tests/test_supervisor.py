@@ -401,7 +401,8 @@ def test_ctrl_c_stops_all_in_order_with_one_interrupt_each() -> None:
 @posix_only
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_other_signals_stop_in_order_too(number: int) -> None:
-    with launched({"a": FOR_EVER}) as launcher:
+    heeded = f"import signal\nsignal.signal({int(number)}, signal.SIG_DFL)\n"  # the tests may run under nohup
+    with launched({"a": FOR_EVER}, first=heeded) as launcher:
         launcher.wait_for("ready")
         launcher.process.send_signal(number)
         assert launcher.end() == 0
