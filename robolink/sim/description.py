@@ -17,7 +17,7 @@ Mass: TypeAlias = Annotated[float, Meta(ge=0.001, le=100_000.0)]
 Rate: TypeAlias = Annotated[float, Meta(ge=0.001, le=10_000.0)]
 Limit: TypeAlias = Annotated[float, Meta(ge=0.001, le=1000.0)]
 Share: TypeAlias = Annotated[float, Meta(ge=0.0, le=1.0)]
-Point: TypeAlias = "tuple[Coordinate, Coordinate]"
+Point: TypeAlias = tuple[Coordinate, Coordinate]
 
 
 class Pose(Struct, frozen=True, array_like=True, forbid_unknown_fields=True):
