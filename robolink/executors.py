@@ -288,6 +288,8 @@ class Executor:
             outcome = entity.execute(taken)
             if outcome is not None and inspect.iscoroutine(outcome):
                 coroutine = outcome
+        except ExternalShutdownException:  # Ctrl-C in a callback is no fault of it
+            raise
         except Exception as error:
             self._log(entity, error)
             raise
