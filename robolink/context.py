@@ -178,17 +178,19 @@ class Context:
                 method()
 
     def _close(self) -> None:
-        for node in list(self._nodes):
-            node.destroy_node()
-        with self._lock:
-            transport, self._transport = self._transport, None
-        self._sweeper.close()
-        if self.time.virtual:
-            from robolink import logging
+        try:
+            for node in list(self._nodes):
+                node.destroy_node()
+        finally:  # a node's own destroy_node is anybody's code
+            with self._lock:
+                transport, self._transport = self._transport, None
+            self._sweeper.close()
+            if self.time.virtual:
+                from robolink import logging
 
-            logging.set_time_source(time.time_ns)
-        if transport is not None:
-            transport.close()
+                logging.set_time_source(time.time_ns)
+            if transport is not None:
+                transport.close()
 
     def on_shutdown(self, callback: Callable[[], Any]) -> None:
         """Call `callback()` when the context ends; a bound method is held weakly."""

@@ -321,49 +321,43 @@ class Executor:
 
     def spin(self) -> None:
         """Run callbacks until the context is shut down, or this executor. Raises InterruptedByUser after a signal."""
-        thread = threading.get_ident()
-        self._spinners.append(thread)
-        try:
-            while self._context.ok() and not self._is_shutdown:
-                self._run(*self._wait(None))
-        except ShutdownException:
-            pass
-        finally:
-            self._spinners.remove(thread)
+        if self._context.ok() and not self._is_shutdown:
+            self._spin()
         self._check_interrupt()
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Run one callback; wait for it at most `timeout_sec` seconds, for ever when None or negative."""
-        self._spin_once(self._deadline(timeout_sec))
+        self._spin(self._deadline(timeout_sec), once=True)
 
     def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Run callbacks until the future is done, or `timeout_sec` seconds have passed."""
         future.when_done(self.wake)
-        deadline = self._deadline(timeout_sec)
-        while not (future.done() or future.cancelled()):
-            if not self._context.ok() or self._is_shutdown:
-                self._check_interrupt()
-                return
-            self._spin_once(deadline, future)
-            if deadline is not None and self._context.time.steady() >= deadline:
-                return
+        if not future.over() and self._context.ok() and not self._is_shutdown:
+            self._spin(self._deadline(timeout_sec), future.over)
+        if not future.over():
+            self._check_interrupt()
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Run one callback, or none when the future is done first."""
         future.when_done(self.wake)
-        self._spin_once(self._deadline(timeout_sec), future)
+        self._spin(self._deadline(timeout_sec), future.over, once=True)
 
     def _deadline(self, timeout_sec: float | None) -> int | None:
         if timeout_sec is None or timeout_sec < 0:
             return None
         return self._context.time.steady() + int(timeout_sec * 1e9)
 
-    def _spin_once(self, deadline: int | None, future: Future[Any] | None = None) -> None:
-        stop = None if future is None else (lambda: future.done() or future.cancelled())
-        thread = threading.get_ident()
+    def _spin(self, deadline: int | None = None, stop: Callable[[], bool] | None = None, *, once: bool = False) -> None:
+        """Run callbacks until `stop()`, the deadline, or the end of the context or of this executor."""
+        time, thread = self._context.time, threading.get_ident()
         self._spinners.append(thread)
         try:
-            self._run(*self._wait(deadline, stop))
+            while True:
+                self._run(*self._wait(deadline, stop))
+                if once or self._is_shutdown or not self._context.ok() or (stop is not None and stop()):
+                    return
+                if deadline is not None and time.steady() >= deadline:
+                    return
         except (TimeoutException, ShutdownException, ConditionReachedException):
             pass
         finally:

@@ -45,6 +45,7 @@ class Graph:
                     return
             else:
                 self._tokens.pop(text, None)
+                self.malformed.discard(text)
             self._changed.notify_all()
             listeners = self._listeners
         for listener in listeners:

@@ -59,6 +59,10 @@ class Future(Generic[T]):
         """Whether it was cancelled."""
         return self._cancelled
 
+    def over(self) -> bool:
+        """Whether nothing more will come of it: it is done, or was cancelled."""
+        return self._done or self._cancelled
+
     def done(self) -> bool:
         """Whether it has a result or an exception."""
         return self._done

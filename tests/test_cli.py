@@ -262,6 +262,25 @@ def test_an_error_in_the_users_code_is_shown_from_there_on(write: Write) -> None
     assert err.count("Traceback") == 1
 
 
+def test_a_node_that_forgets_its_base_class_is_told_so(write: Write) -> None:
+    path = write("nodes/bare.py", "from robolink import Node\nclass Bare(Node):\n    def __init__(self): pass\n")
+    code, out, err = outcome("run", str(path))
+    assert (code, out) == (1, "")
+    assert err == "robolink: Bare.__init__ must call super().__init__('bare') before all else\n"
+
+
+@posix_only
+def test_a_signal_in_a_slow_callback_is_no_fault_of_it(write: Write) -> None:
+    tick = "    def tick(self):\n        print('tick', flush=True)\n        import time; time.sleep(10)\n"
+    write("nodes/talker.py", TALKER + "        self.create_timer(0.01, self.tick)\n" + tick)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        with started("run", "talker") as process:
+            wait_for(process, "tick")
+            process.send_signal(number)
+            assert process.communicate(timeout=10) == ("", "")
+            assert process.returncode == 0
+
+
 # --- launch ---------------------------------------------------------------------------------------------------
 
 

@@ -16,7 +16,8 @@ def main(args: Sequence[str] | None = None) -> int:
     """
     try:
         code = _run(sys.argv[1:] if args is None else list(args))
-        sys.stdout.flush()
+        if sys.stdout is not None:
+            sys.stdout.flush()
     except RobolinkError as error:
         return complain(error)
     except KeyboardInterrupt:
@@ -24,6 +25,8 @@ def main(args: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for the flush at exit
         return 141
+    except OSError as error:  # a full disk behind standard output, say
+        return complain(error)
     return code
 
 

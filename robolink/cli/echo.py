@@ -57,7 +57,10 @@ def _show(node: Node, name: str, msg_type: type[Any], once: bool, form: Format) 
         first.set_result(None)
         try:
             say(form.text(message))
-        except RobolinkError as error:  # what was asked for is not in the message: the command's error, no callback's
+        except (
+            RobolinkError,
+            OSError,
+        ) as error:  # the command's own error, no callback's: no such field, a closed pipe
             done.set_exception(error)
         if once and not done.done():
             done.set_result(None)

@@ -18,6 +18,7 @@ from robolink.signals import SignalHandlerOptions, get_current_signal_handlers_o
 from robolink.supervisor import watch_lifeline
 from robolink.workspace import (
     VARIABLE,
+    NodeLoadError,
     NodeSource,
     built_in_workspace,
     find_node,
@@ -73,6 +74,9 @@ def spin(node_class: Callable[[], Node]) -> None:
 
     with robolink.init(), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         node = node_class()
+        if not hasattr(node, "_owner"):
+            name = type(node).__name__
+            raise NodeLoadError(f"{name}.__init__ must call super().__init__('{name.lower()}') before all else")
         try:
             robolink.spin(node)
         finally:

@@ -63,8 +63,9 @@ def is_hidden(name: str) -> bool:
 
 def say(text: str) -> None:
     """Write a line to standard output, at once."""
-    sys.stdout.write(text + "\n")
-    sys.stdout.flush()
+    if sys.stdout is not None:  # it is None where it was closed from the start
+        sys.stdout.write(text + "\n")
+        sys.stdout.flush()
 
 
 def tell(text: str) -> None:
