@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 import yaml
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from robolink.cli.show import as_json, as_yaml, check_path, field_of
@@ -53,6 +53,8 @@ def test_scalars_texts_and_what_is_empty() -> None:
 
 
 @given(st.text(), st.lists(st.floats(width=32, allow_nan=False)), st.floats(allow_nan=False))
+@example("\x85", [], 0.0)
+@example("a\u2028b\u2029", [], 0.0)
 def test_yaml_reads_back_as_what_was_sent(frame: str, ranges: list[float], angle: float) -> None:
     message = LaserScan(header=Header(frame_id=frame), ranges=array("f", ranges), angle_min=angle)
     assert yaml.safe_load(as_yaml(message, longest=None)) == to_builtins(message)

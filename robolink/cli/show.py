@@ -23,8 +23,16 @@ def as_yaml(value: Any, longest: int | None = LONGEST) -> str:
     """YAML in block style; what is longer than `longest` ends in '...'."""
     import yaml
 
+    class Dumper(yaml.SafeDumper):
+        """Writes text whose line breaks only Unicode knows with escapes: bare, it would be read back as others."""
+
+    def text_node(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
+        style = '"' if any(each in text for each in "\x85\u2028\u2029") else None
+        return dumper.represent_scalar("tag:yaml.org,2002:str", text, style=style)
+
+    Dumper.add_representer(str, text_node)
     data = _cut(plain(value), longest)
-    text = yaml.safe_dump(data, default_flow_style=False, sort_keys=False, allow_unicode=True, width=math.inf)
+    text = yaml.dump(data, Dumper=Dumper, default_flow_style=False, sort_keys=False, allow_unicode=True, width=math.inf)
     return text.removesuffix("\n...\n").removesuffix("\n")
 
 
