@@ -1,0 +1,1 @@
+"""ROS 2's ackermann_msgs: commands for cars."""

@@ -1,0 +1,22 @@
+"""The action of example_interfaces."""
+
+from robolink.message import Action, Message, Sequence, int32
+
+
+class Fibonacci(Action):
+    """Compute Fibonacci numbers, slowly."""
+
+    class Goal(Message):
+        """How far to go: the index of the last number, where the sequence begins 0, 1, 1, 2."""
+
+        order: int32
+
+    class Result(Message):
+        """All numbers."""
+
+        sequence: Sequence[int32]
+
+    class Feedback(Message):
+        """The numbers so far."""
+
+        sequence: Sequence[int32]

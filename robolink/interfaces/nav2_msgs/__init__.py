@@ -1,0 +1,1 @@
+"""Nav2's nav2_msgs: the actions that make a robot drive somewhere."""

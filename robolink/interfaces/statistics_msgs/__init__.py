@@ -1,0 +1,1 @@
+"""ROS 2's statistics_msgs: what was measured of topics and processes."""

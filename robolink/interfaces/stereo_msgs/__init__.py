@@ -1,0 +1,1 @@
+"""ROS 2's stereo_msgs: depth from two cameras."""

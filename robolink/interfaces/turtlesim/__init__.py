@@ -1,0 +1,1 @@
+"""ROS 2's turtlesim: the turtle of the tutorials."""

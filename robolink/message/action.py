@@ -1,0 +1,143 @@
+"""The base class of action types: a goal, a result and a feedback message.
+
+class Fibonacci(Action):
+    class Goal(Message):
+        order: int32
+
+    class Result(Message):
+        sequence: Sequence[int32]
+
+    class Feedback(Message):
+        partial_sequence: Sequence[int32]
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import msgspec
+
+from robolink.exceptions import MessageError
+from robolink.message.annotations import boolean, int8
+from robolink.message.base import Message, MessageMeta
+from robolink.message.description import TypeDescription, combine
+from robolink.message.service import Service
+
+PARTS = ("Goal", "Result", "Feedback")
+
+
+class ActionImpl(msgspec.Struct, frozen=True):
+    """The services and topics that an action is made of, by rclpy's names."""
+
+    SendGoalService: type[Service]
+    """Request: goal_id (UUID) and goal. Response: accepted, and stamp, the time of that."""
+    GetResultService: type[Service]
+    """Request: goal_id. Response: status, a code of action_msgs/msg/GoalStatus, and result."""
+    FeedbackMessage: type[Message]
+    """goal_id and feedback."""
+    CancelGoalService: type[Service]
+    """action_msgs/srv/CancelGoal, the same for all actions."""
+    GoalStatusMessage: type[Message]
+    """action_msgs/msg/GoalStatusArray, the same for all actions."""
+
+
+class _ImplOfAction:
+    """`Fibonacci.Impl`, made when it is first asked for: it needs types of the packages above."""
+
+    def __get__(self, _: object, owner: type[Action]) -> ActionImpl:
+        if "_impl" not in owner.__dict__:
+            owner._impl = _impl(owner)
+        return owner._impl
+
+
+def _impl(action: type[Action]) -> ActionImpl:
+    uuid = importlib.import_module("robolink.interfaces.unique_identifier_msgs.msg").UUID
+    time = importlib.import_module("robolink.interfaces.builtin_interfaces.msg").Time
+    send_goal_request = {"goal_id": uuid, "goal": action.Goal}
+    get_result_response = {"status": int8, "result": action.Result}
+    return ActionImpl(
+        SendGoalService=_service(action, "SendGoal", send_goal_request, {"accepted": boolean, "stamp": time}),
+        GetResultService=_service(action, "GetResult", {"goal_id": uuid}, get_result_response),
+        FeedbackMessage=_message(action, "FeedbackMessage", {"goal_id": uuid, "feedback": action.Feedback}),
+        CancelGoalService=importlib.import_module("robolink.interfaces.action_msgs.srv").CancelGoal,
+        GoalStatusMessage=importlib.import_module("robolink.interfaces.action_msgs.msg").GoalStatusArray,
+    )
+
+
+def _service(action: type[Action], name: str, request: dict[str, Any], response: dict[str, Any]) -> type[Service]:
+    body = {
+        "__module__": action.__module__,
+        "__qualname__": f"{action.__qualname__}.Impl.{name}Service",
+        "__doc__": f"The {name} service of the action {action.__name__}.",
+        "__ros_action__": action,
+        "Request": _message(action, f"{name}_Request", request),
+        "Response": _message(action, f"{name}_Response", response),
+    }
+    return type(f"{action.__name__}_{name}", (Service,), body)
+
+
+def _message(action: type[Action], name: str, annotations: dict[str, Any]) -> type[Message]:
+    body = {
+        "__module__": action.__module__,
+        "__qualname__": f"{action.__qualname__}.Impl.{name}",
+        "__doc__": f"{name} of the action {action.__name__}.",
+        "__annotations__": annotations,
+    }
+    made: type[Message] = MessageMeta(
+        f"{action.__name__}_{name}", (Message,), body, type_name=f"{action.__ros_type__}_{name}"
+    )
+    return made
+
+
+class Action:
+    """An action type; a subclass has the message classes `Goal`, `Result` and `Feedback`."""
+
+    __ros_type__: ClassVar[str]
+    _impl: ClassVar[ActionImpl]
+
+    if TYPE_CHECKING:
+
+        class Goal(Message):
+            """What a client wants done."""
+
+        class Result(Message):
+            """What came of it."""
+
+        class Feedback(Message):
+            """How far it is."""
+
+        Impl: ClassVar[ActionImpl]
+    else:
+        Impl = _ImplOfAction()
+
+    def __init_subclass__(cls) -> None:
+        for part in PARTS:
+            found: Any = cls.__dict__.get(part)
+            if not hasattr(found, "__ros_fields__"):
+                raise MessageError(f"action {cls.__name__} needs a message class {part}")
+            if not found.__ros_type__.endswith(f"{cls.__name__}_{part}"):
+                raise MessageError(f"action {cls.__name__}: {part} must be a class inside it, got {found.__ros_type__}")
+        cls.__ros_type__ = cls.Goal.__ros_type__.removesuffix("_Goal").replace("/msg/", "/action/")
+        for part in PARTS:
+            cls.__dict__[part].__ros_type__ = f"{cls.__ros_type__}_{part}"
+
+    @classmethod
+    def describe(cls) -> TypeDescription:
+        """Describe the action as rosidl does: its three messages, two services and the feedback message."""
+        parts: dict[str, Any] = {
+            "goal": cls.Goal,
+            "result": cls.Result,
+            "feedback": cls.Feedback,
+            "send_goal_service": cls.Impl.SendGoalService,
+            "get_result_service": cls.Impl.GetResultService,
+            "feedback_message": cls.Impl.FeedbackMessage,
+        }
+        return combine(cls.__ros_type__, parts)
+
+
+def action_type(cls: Any) -> type[Action]:
+    """Give `cls` back if it is an action class. Raises MessageError otherwise."""
+    if isinstance(cls, type) and issubclass(cls, Action):
+        return cls
+    raise MessageError(f"{cls!r} is no action class")
