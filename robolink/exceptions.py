@@ -3,6 +3,7 @@
 RobolinkError
 ├─ DocumentError (ValueError)            a YAML file or text that is not what it should be
 ├─ MessageError (ValueError)             a message type or value
+│   ├─ DefinitionError                   the text of a .msg, .srv or .action file
 │   ├─ EncodeError (TypeError)           a field that does not fit its type
 │   └─ DecodeError                       bytes that are no message of this type
 ├─ WireError (ValueError)                a key, token or attachment that is not rmw_zenoh's
@@ -27,6 +28,10 @@ class DocumentError(RobolinkError, ValueError):
 
 class MessageError(RobolinkError, ValueError):
     """A message type or a message's value is not what it should be."""
+
+
+class DefinitionError(MessageError):
+    """The text of a .msg, .srv or .action file is not what it should be; it begins with file:line:column."""
 
 
 class EncodeError(MessageError, TypeError):
@@ -84,6 +89,10 @@ class NoTypeSupportImportedException(RobolinkError, TypeError):
 
 class InvalidHandle(RobolinkError, RuntimeError):
     """An entity was used after it had been destroyed."""
+
+
+class NodeNameNonExistentError(RobolinkError, RuntimeError, LookupError):
+    """A node was asked about that is not there."""
 
 
 class NameValidationException(RobolinkError, ValueError):

@@ -1,5 +1,6 @@
 """Messages: the base class, ROS's field types as annotations, and the bytes on the wire."""
 
+from robolink.message.action import Action, action_type
 from robolink.message.annotations import (
     AtMost,
     FieldType,
@@ -28,12 +29,14 @@ from robolink.message.description import describe, type_hash, type_name
 from robolink.message.service import Service, service_type
 
 __all__ = [
+    "Action",
     "AtMost",
     "FieldType",
     "Message",
     "Sequence",
     "Service",
     "Size",
+    "action_type",
     "boolean",
     "byte",
     "char",

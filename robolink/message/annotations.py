@@ -55,7 +55,7 @@ class Size(msgspec.Struct, frozen=True):
 
 
 class AtMost(msgspec.Struct, frozen=True):
-    """A sequence of at most `length` elements, or a string of at most `length` bytes."""
+    """A sequence of at most `length` elements, a string of as many bytes, or a wstring of as many UTF-16 units."""
 
     length: int
 

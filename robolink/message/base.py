@@ -13,6 +13,7 @@ numpy arrays; whatever sequence is assigned to them is converted, a copy, once.
 from __future__ import annotations
 
 import functools
+import re
 import sys
 from array import array
 from collections.abc import Callable, Iterator
@@ -24,6 +25,7 @@ import msgspec
 from robolink.exceptions import EncodeError, MessageError
 from robolink.message import annotations as ros
 from robolink.message.annotations import FieldType
+from robolink.message.spelling import wrong_name
 
 ZEROS: dict[str, Any] = {"bool": False, "byte": b"\x00", "string": "", "wstring": ""}
 DTYPES = {
@@ -52,8 +54,12 @@ class MessageMeta(msgspec.StructMeta):
         The Struct also takes its fields by position, for the codec alone: a metaclass's class calls slowly by name.
         """
         full_name = type_name or _type_name(namespace["__module__"], namespace["__qualname__"])
+        for base in bases:
+            if getattr(base, "__ros_fields__", None):
+                raise MessageError(f"{full_name}: a message cannot extend another ({base.__name__}): make it a field")
         annotations = ros.evaluate(_annotations(namespace), namespace["__module__"], sys._getframe(1))
         fields, constants = _read(annotations, namespace, full_name)
+        defaults = {field: namespace[field] for field in fields if field in namespace}
         for field, kind in fields.items():
             namespace[field] = _default(kind, namespace.get(field, msgspec.NODEFAULT))
         for constant in constants:
@@ -63,6 +69,7 @@ class MessageMeta(msgspec.StructMeta):
             __ros_type__=full_name,
             __ros_fields__=fields,
             __ros_constants__=constants,
+            __ros_defaults__=defaults,
         )
         converted = {field: kind for field, kind in fields.items() if kind.shape != "one" and kind.code}
         # Numbers and text make no reference cycles: without the collector's header a message is made faster.
@@ -92,7 +99,8 @@ def _type_name(module: str, qualname: str) -> str:
     if module == "__main__":
         module = getattr(sys.modules.get("__main__"), "__file__", None) or "main"
     stem = PurePath(module).stem if ("/" in module or "\\" in module) else module.rpartition(".")[2]
-    return f"{''.join(c if c.isalnum() else '_' for c in stem.lower())}/msg/{name}"
+    package = re.sub("[^a-z0-9]+", "_", stem.lower()).strip("_")  # rosidl's rule for the names of packages
+    return f"{package if package[:1].isalpha() else f'node_{package}'.rstrip('_')}/msg/{name}"
 
 
 def _read(
@@ -102,8 +110,13 @@ def _read(
     constants: dict[str, tuple[FieldType, Any]] = {}
     for name, annotation in annotations.items():
         constant = ros.constant_type(annotation)
+        wrong = wrong_name("field" if constant is None else "constant", name)
+        if wrong:
+            raise MessageError(f"{type_name}: {wrong}")
         if constant is None:
             fields[name] = ros.field_type(annotation, f"{type_name}.{name}")
+        elif name not in namespace:
+            raise MessageError(f"{type_name}: the constant {name} has no value: write {name}: ClassVar[...] = ...")
         else:
             constants[name] = (ros.field_type(constant, f"{type_name}.{name}"), namespace[name])
     return fields, constants
@@ -208,7 +221,9 @@ def _as_numpy(value: Any, code: str) -> Any:
     import numpy as np
 
     dtype = np.dtype(DTYPES[code])
-    given = np.asarray(value)
+    given = np.asarray(memoryview(value) if code == "B" and isinstance(value, (bytes, bytearray)) else value)
+    if given.dtype.kind == "f" and code == "Q" and isinstance(value, (list, tuple)) and _are_uint64(value):
+        given = np.array(value, dtype)  # numpy makes floats of ints that lie on both sides of 2**63
     if given.dtype == dtype:
         return np.ascontiguousarray(given)
     # Python ints are int64 to numpy: they may go into narrower types when the values fit.
@@ -220,6 +235,10 @@ def _as_numpy(value: Any, code: str) -> Any:
         if given.min() < low or given.max() > high:
             raise OverflowError(f"out of {low} to {high}")
     return np.ascontiguousarray(given.astype(dtype))
+
+
+def _are_uint64(values: Any) -> bool:
+    return all(isinstance(each, int) and 0 <= each < 1 << 64 for each in values)
 
 
 def _shown(value: Any) -> str:
@@ -235,6 +254,8 @@ if TYPE_CHECKING:
         __ros_type__: str
         __ros_fields__: dict[str, FieldType]
         __ros_constants__: dict[str, tuple[FieldType, Any]]
+        __ros_defaults__: dict[str, Any]
+        """The defaults that the class states; all other fields begin with ROS's zero."""
 
         def __init__(self, **fields: Any) -> None: ...
 

@@ -35,6 +35,8 @@ class Lines:
         self.depth = 2  # inside def and try
         self.serial = 0
         self.constants: dict[str, object] = {}
+        self.names: dict[int, str] = {}
+        """The name of each constant, by identity; `constants` keeps them alive, so that no two have the same."""
 
     def add(self, line: str) -> None:
         """Append a line at the current depth."""
@@ -47,9 +49,8 @@ class Lines:
 
     def constant(self, prefix: str, value: object) -> str:
         """Bind a value to a fresh global name of the generated function."""
-        for name, known in self.constants.items():
-            if known is value:
-                return name
-        name = self.fresh(prefix)
-        self.constants[name] = value
+        name = self.names.get(id(value))
+        if name is None:
+            name = self.names[id(value)] = self.fresh(prefix)
+            self.constants[name] = value
         return name

@@ -210,7 +210,10 @@ def _is_fixed(cls: type[Message]) -> bool:
 
 
 def narrow(units: bytes, order: str) -> str:
-    """Read a wstring's characters; see `wide`."""
-    name = "little" if order == "<" else "big"
-    codes = (int.from_bytes(units[k : k + 4], name) & 0xFFFF for k in range(0, len(units), 4))  # type: ignore[arg-type]
-    return b"".join(code.to_bytes(2, "little") for code in codes).decode("utf-16-le", "replace")
+    """Read a wstring's characters; see `wide`. Raises MessageError for one beyond 16 bits, as ROS 2 does."""
+    codes = struct.unpack(f"{order}{len(units) // 4}I", units)
+    try:
+        utf16 = struct.pack(f"<{len(codes)}H", *codes)
+    except struct.error:
+        raise MessageError("a wide character beyond 16 bits") from None
+    return utf16.decode("utf-16-le", "replace")

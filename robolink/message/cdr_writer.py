@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import keyword
+import struct
 from array import array
 from typing import Any
 
@@ -54,7 +56,7 @@ class WriterSource:
             if kind.code and kind.shape != "one":
                 self._numbers(kind, cls.__dict__[name], path)
             else:
-                self._field(kind, f"{path}.{name}")
+                self._field(kind, f"getattr({path}, {name!r})" if keyword.iskeyword(name) else f"{path}.{name}")
 
     def _field(self, kind: FieldType, value: str) -> None:
         if kind.shape != "one":
@@ -210,13 +212,16 @@ def _has_loops(cls: type[Message]) -> bool:
 
 def padded_with_head(codes: list[str]) -> Any:
     """Pack the header and a whole message of fixed size in one call."""
-    import struct
-
     body = padded(codes, 0, "<")
     return struct.Struct("<4s" + body.format[1:]).pack
 
 
 def wide(text: str) -> bytes:
-    """A wstring's characters: UTF-16 code units, each in four bytes as rosidl's Fast-CDR support writes them."""
-    units = memoryview(text.encode("utf-16-le")).cast("H")
-    return b"".join(unit.to_bytes(4, "little") for unit in units)
+    """A wstring's characters: UTF-16 code units, each in four bytes, and no NUL behind them.
+
+    So ROS 2 writes it (rosidl_typesupport_fastrtps_cpp's serialization_helpers.hpp in Jazzy; Fast-CDR 1.0 itself in
+    Humble), though DDS-XTypes now has two bytes for each.
+    """
+    units = text.encode("utf-16-le")
+    count = len(units) // 2
+    return struct.pack(f"<{count}I", *struct.unpack(f"<{count}H", units))

@@ -1,10 +1,11 @@
-"""What a type is, as data: its description, the RIHS01 hash of it, and its .msg text.
+"""What a type is, as data: its description, the RIHS01 hash of it, and the message that carries it.
 
 The description's form and the hash are REP 2016's: SHA-256 of the description as JSON in rosidl's spelling.
 """
 
 from __future__ import annotations
 
+import importlib
 from typing import Any
 
 import msgspec
@@ -33,6 +34,8 @@ NESTED, BOUNDED_STRING = 1, 4
 SHAPES = {"one": 0, "array": 48, "bounded": 96, "sequence": 144}
 PLACEHOLDER = "structure_needs_at_least_one_member"
 """The field that rosidl gives to an empty message, since C has no empty structs."""
+HASHED = ("type_id", "capacity", "string_capacity", "nested_type_name")
+"""What of a field's type goes into the hash, beside its name and in this order."""
 
 
 class FieldDescription(msgspec.Struct, frozen=True):
@@ -43,6 +46,8 @@ class FieldDescription(msgspec.Struct, frozen=True):
     capacity: int = 0
     string_capacity: int = 0
     nested_type_name: str = ""
+    default_value: str = ""
+    """As rosidl writes it: Python's str of the value. It is no part of the type and of its hash."""
 
 
 class TypeDescription(msgspec.Struct, frozen=True):
@@ -63,24 +68,35 @@ def describe(cls: type[Message]) -> TypeDescription:
             nested = describe(kind.message)
             reached.update({each.type_name: each for each in nested.referenced})
             reached[nested.type_name] = msgspec.structs.replace(nested, referenced=())
-    fields = tuple(_field(name, kind) for name, kind in cls.__ros_fields__.items())
+    fields = tuple(_field(name, kind, cls.__ros_defaults__) for name, kind in cls.__ros_fields__.items())
     fields = fields or (FieldDescription(PLACEHOLDER, TYPE_IDS["uint8"]),)
     return TypeDescription(cls.__ros_type__, fields, tuple(reached[name] for name in sorted(reached)))
 
 
-def _field(name: str, kind: FieldType) -> FieldDescription:
+def _field(name: str, kind: FieldType, defaults: dict[str, Any]) -> FieldDescription:
     nested = kind.message.__ros_type__ if kind.message is not None else ""
     type_id = NESTED if nested else TYPE_IDS[kind.base]
     if kind.string_bound:
         type_id += BOUNDED_STRING
-    return FieldDescription(name, type_id + SHAPES[kind.shape], kind.size, kind.string_bound, nested)
+    default = ""
+    if name in defaults and not nested:
+        from robolink.message.literals import as_rosidl_says  # late: few types state any
+
+        default = as_rosidl_says(kind, defaults[name])
+    return FieldDescription(name, type_id + SHAPES[kind.shape], kind.size, kind.string_bound, nested, default)
 
 
-def combine(type_name: str, parts: dict[str, type[Message]]) -> TypeDescription:
-    """Describe a service or action: a type whose fields are the messages it is made of."""
+def described(cls: type[Any]) -> TypeDescription:
+    """Describe a message, service or action class."""
+    description: TypeDescription = describe(cls) if hasattr(cls, "__ros_fields__") else cls.describe()
+    return description
+
+
+def combine(type_name: str, parts: dict[str, type[Any]]) -> TypeDescription:
+    """Describe a service or action: a type whose fields are the messages and services it is made of."""
     reached: dict[str, TypeDescription] = {}
     for cls in parts.values():
-        part = describe(cls)
+        part = described(cls)
         reached.update({each.type_name: each for each in part.referenced})
         reached[part.type_name] = msgspec.structs.replace(part, referenced=())
     fields = tuple(FieldDescription(name, NESTED, nested_type_name=cls.__ros_type__) for name, cls in parts.items())
@@ -103,17 +119,53 @@ def hash_of(description: TypeDescription) -> str:
 def _plain(description: TypeDescription) -> dict[str, Any]:
     fields = []
     for field in description.fields:
-        kind = {name: getattr(field, name) for name in field.__struct_fields__ if name != "name"}
+        kind = {name: getattr(field, name) for name in HASHED}
         fields.append({"name": field.name, "type": kind})
     return {"type_name": description.type_name, "fields": fields}
 
 
 @once_per_type
 def type_hash(cls: type[Any]) -> str:
-    """The RIHS01 hash of a message or service class."""
-    return hash_of(cls.describe() if hasattr(cls, "describe") else describe(cls))
+    """The RIHS01 hash of a message, service or action class."""
+    return hash_of(described(cls))
 
 
 def type_name(cls: type[Any]) -> str:
     """``geometry_msgs/msg/Twist`` for the class Twist."""
     return str(cls.__ros_type__)
+
+
+def to_message(description: TypeDescription) -> Any:
+    """Put a description into a type_description_interfaces/msg/TypeDescription."""
+    msg = _interfaces()
+    return msg.TypeDescription(
+        type_description=_individual(msg, description),
+        referenced_type_descriptions=[_individual(msg, each) for each in description.referenced],
+    )
+
+
+def _individual(msg: Any, description: TypeDescription) -> Any:
+    fields = []
+    for field in description.fields:
+        kind = msg.FieldType(**{name: getattr(field, name) for name in HASHED})
+        fields.append(msg.Field(name=field.name, type=kind, default_value=field.default_value))
+    return msg.IndividualTypeDescription(type_name=description.type_name, fields=fields)
+
+
+def from_message(message: Any) -> TypeDescription:
+    """Take a description out of a type_description_interfaces/msg/TypeDescription, unchecked."""
+    referenced = tuple(_from_individual(each) for each in message.referenced_type_descriptions)
+    return msgspec.structs.replace(_from_individual(message.type_description), referenced=referenced)
+
+
+def _from_individual(message: Any) -> TypeDescription:
+    fields = []
+    for field in message.fields:
+        kind = {name: getattr(field.type, name) for name in HASHED}
+        fields.append(FieldDescription(field.name, **kind, default_value=field.default_value))
+    return TypeDescription(message.type_name, tuple(fields))
+
+
+def _interfaces() -> Any:
+    """The messages stand on the floor above, made of this one's classes."""
+    return importlib.import_module("robolink.interfaces.type_description_interfaces.msg")

@@ -1,0 +1,64 @@
+"""How ROS 2 spells the names of packages, types, fields and constants (rosidl's rules)."""
+
+from __future__ import annotations
+
+import re
+
+from robolink.exceptions import MessageError
+
+LOWER = r"[a-z](?:_?[a-z0-9])*"
+PATTERNS = {"package": LOWER, "type": r"[A-Z][A-Za-z0-9]*", "field": LOWER, "constant": r"[A-Z](?:_?[A-Z0-9])*"}
+"""As text: every command imports this module, most need one of them at most."""
+PART = (
+    r"[A-Z][A-Za-z0-9]*_(?:Request|Response|Event|Goal|Result|Feedback|FeedbackMessage"
+    r"|(?:SendGoal|GetResult)(?:_Request|_Response|_Event)?)"
+)
+"""What rosidl calls the parts of a service or an action: ``SetBool_Request``."""
+LONGEST = 255
+"""Characters in a name; rosidl's own limit (HashedTypeDescription.schema.json)."""
+
+RIGHT = {
+    "package": "lower case letters, digits and single underscores, as in my_robot_msgs",
+    "type": "CamelCase letters and digits, as in WheelSpeeds",
+    "field": "lower case letters, digits and single underscores, as in max_speed",
+    "constant": "upper case letters, digits and single underscores, as in MAX_SPEED",
+}
+
+
+def wrong_name(what: str, name: str) -> str:
+    """Say what is wrong with the name of a `what` (a key of PATTERNS); '' when it is right.
+
+    >>> wrong_name("field", "maxSpeed")
+    "'maxSpeed' is no field name: lower case letters, digits and single underscores, as in max_speed"
+    """
+    if len(name) > LONGEST:
+        return f"'{shortened(name)}' is {len(name)} characters long; a name has at most {LONGEST}"
+    if re.fullmatch(PATTERNS[what], name):
+        return ""
+    return f"'{shortened(name)}' is no {what} name: {RIGHT[what]}"
+
+
+def split_type_name(name: str) -> tuple[str, str, str]:
+    """Split ``std_srvs/srv/SetBool`` into package, kind and name, after checking them. Raises MessageError.
+
+    Parts of services and actions, ``std_srvs/srv/SetBool_Request``, are types too.
+    """
+    parts = name.split("/")
+    if len(parts) != 3 or parts[1] not in ("msg", "srv", "action"):
+        raise MessageError(f"'{shortened(name)}' is no full type name; it should look like my_msgs/msg/WheelSpeeds")
+    package, kind, short = parts
+    wrong = wrong_name("package", package) or (not is_part(kind, short) and wrong_name("type", short))
+    if wrong:
+        raise MessageError(wrong)
+    return package, kind, short
+
+
+def is_part(kind: str, short: str) -> bool:
+    """Whether a type is the part of a service or action, by its kind and name: ``srv``, ``SetBool_Request``."""
+    return kind != "msg" and len(short) <= LONGEST and re.fullmatch(PART, short) is not None
+
+
+def shortened(text: str) -> str:
+    """`text` as an error shows it: on one line and not too long."""
+    shown = text if len(text) <= 60 else text[:57] + "..."
+    return shown if shown.isprintable() else repr(shown)[1:-1]
