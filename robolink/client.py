@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import queue
+import time
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup
@@ -18,17 +19,19 @@ from robolink.exceptions import (
     WireError,
 )
 from robolink.inbox import Inbox
+from robolink.logging import get_logger
 from robolink.message import Message, decoder, encoder, service_type
 from robolink.qos import QoSProfile
 from robolink.task import Future
 from robolink.transport.base import Handle
-from robolink.wire import EndpointKind, unpack_attachment
+from robolink.wire import NO_HASH, EndpointKind, unpack_attachment
 
 if TYPE_CHECKING:
     from robolink.executors import Executor
 
 
 _RELEASED = object()
+_UNREADABLE = (DecodeError, WireError, TransportError)
 
 
 class _Call:
@@ -41,6 +44,8 @@ class _Call:
         self.sequence_number = 0
         self.sink: functools.partial[Any] = inbox.sink(self)
         self.handle: Handle | None = None
+        self.bad: Exception | None = None
+        """Why the last answer could not be read."""
 
     def deliver(self, arrived: Any) -> None:
         """Hand an answer, or the end of all answers, to the client."""
@@ -74,6 +79,8 @@ class Client(Receiver):
         self._calls: set[_Call] = set()
         self._outside: set[queue.SimpleQueue[Any]] = set()
         self._destroyed = False
+        self.malformed = 0
+        """How many answers could not be read."""
         self._endpoint.announce()
         self._context.on_shutdown(self._release)
 
@@ -93,8 +100,7 @@ class Client(Receiver):
         if executor is None or not executor.spins_here:
             return self._call_from_outside(request, timeout_sec)
         self._refuse_deadlock(executor)
-        time = self._context.time
-        deadline = None if timeout_sec is None else time.steady() + int(timeout_sec * 1e9)
+        deadline = None if timeout_sec is None else self._context.time.steady() + int(timeout_sec * 1e9)
         future = self.call_async(request)
         executor.serve_until(future.done, deadline)
         if not future.done():
@@ -106,17 +112,36 @@ class Client(Receiver):
         packed = self._packed(request)
         answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._outside.add(answers)
-        handle = self._transport.call(self._endpoint.key, *packed, answers.put)
+        handle = self._transport.call(self._key(), *packed, answers.put)
         try:
-            answer = answers.get(timeout=timeout_sec)
+            return self._first_readable(answers, timeout_sec)
         except queue.Empty:
             raise self._timeout(timeout_sec) from None
         finally:
             self._outside.discard(answers)
             handle.close()
-        if answer is _RELEASED:
-            raise ExternalShutdownException(f"service {self.srv_name}: the context ended before the answer came")
-        return self._read(answer)
+
+    def _first_readable(self, answers: queue.SimpleQueue[Any], timeout_sec: float | None) -> Any:
+        """Wait for an answer; one that cannot be read is passed over, since another server may do better."""
+        deadline = None if timeout_sec is None else time.monotonic() + timeout_sec
+        bad: Exception | None = None
+        while True:
+            answer = answers.get(timeout=None if deadline is None else max(0.0, deadline - time.monotonic()))
+            if answer is _RELEASED:
+                raise ExternalShutdownException(f"service {self.srv_name}: the context ended before the answer came")
+            if answer is None:
+                raise self._no_answer(bad)
+            try:
+                return self._read(answer)
+            except _UNREADABLE as error:
+                bad = self._refuse(error)
+
+    def _key(self) -> str:
+        """Where to ask: where Humble's servers listen when there are no others."""
+        endpoint = self._endpoint
+        servers = list(endpoint.others.values())
+        only_humble = bool(servers) and all(each.type_hash == NO_HASH for each in servers)
+        return endpoint.humble_key if only_humble else endpoint.key
 
     def _release(self) -> None:
         for answers in list(self._outside):
@@ -149,7 +174,7 @@ class Client(Receiver):
         call = _Call(self, inbox, future)
         self._calls.add(call)
         call.sequence_number = unpack_attachment(packed[1]).sequence
-        call.handle = self._transport.call(self._endpoint.key, *packed, call.sink)
+        call.handle = self._transport.call(self._key(), *packed, call.sink)
         return future
 
     def _packed(self, request: Message) -> tuple[bytes, bytes]:
@@ -164,25 +189,37 @@ class Client(Receiver):
         call, arrived = taken
         if call not in self._calls:
             return
+        try:
+            answer = None if arrived is None else self._read(arrived)
+        except _UNREADABLE as error:
+            call.bad = self._refuse(error)  # another server may do better; the end of all answers comes in any case
+            return
         self._calls.discard(call)
         if call.handle is not None:
             call.handle.close()
-        try:
-            answer = self._read(arrived)
-        except ServiceError as error:
-            call.future.set_exception(error)
+        if answer is None:
+            call.future.set_exception(self._no_answer(call.bad))
         else:
             call.future.set_result(answer)
 
     def _read(self, arrived: Any) -> Any:
-        if arrived is None:
-            raise ServiceError(f"service {self.srv_name}: nobody serves it, or the server went away")
-        try:
-            payload, attachment = self._transport.read(arrived)
-            unpack_attachment(attachment)
-            return self._decode(payload)
-        except (DecodeError, WireError, TransportError) as error:
-            raise ServiceError(f"service {self.srv_name}: the answer cannot be read: {error}") from None
+        payload, attachment = self._transport.read(arrived)
+        unpack_attachment(attachment)
+        return self._decode(payload)
+
+    def _no_answer(self, bad: Exception | None) -> ServiceError:
+        if bad is None:
+            return ServiceError(f"service {self.srv_name}: nobody serves it, or the server went away")
+        return ServiceError(f"service {self.srv_name}: the answer cannot be read: {bad}")
+
+    def _refuse(self, error: Exception) -> Exception:
+        self.malformed += 1
+        if self.malformed == 1:
+            get_logger(self.logger_name).warning(
+                f"{self.srv_name}: refused an answer that is no {self._endpoint.type_name}: {error}"
+                " (the next ones are only counted)"
+            )
+        return error
 
     def remove_pending_request(self, future: Future[Any]) -> None:
         """Give up a call: its future will not be completed."""
@@ -200,15 +237,14 @@ class Client(Receiver):
 
     def service_is_ready(self) -> bool:
         """Whether somebody serves this name with this type."""
-        servers = self._context.graph.endpoints(EndpointKind.SERVICE, name=self.srv_name)
-        return any(each.type_name == self._endpoint.type_name for each in servers)
+        return self._endpoint.count_others() > 0
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait until somebody serves; whether so within `timeout_sec` seconds. The end of the context ends it."""
-        graph, time = self._context.graph, self._context.time
-        if time.virtual and timeout_sec is not None:
+        graph, clock = self._context.graph, self._context.time
+        if clock.virtual and timeout_sec is not None:
             if not self.service_is_ready():
-                time.sleep(int(timeout_sec * 1e9))
+                clock.sleep(int(timeout_sec * 1e9))
         else:
             graph.wait_for(lambda: self.service_is_ready() or not self._context.ok(), timeout_sec)
         return self.service_is_ready()

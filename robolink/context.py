@@ -12,7 +12,7 @@ from collections.abc import Callable
 from types import MethodType
 from typing import TYPE_CHECKING, Any
 
-from robolink import signals
+from robolink import humble, signals
 from robolink.arguments import Arguments, parse_arguments
 from robolink.exceptions import NotInitializedException, RobolinkError
 from robolink.inbox import Inbox, Sweeper
@@ -42,6 +42,8 @@ class Context:
         self.arguments = Arguments()
         self.interrupted = False
         """Whether a signal ended this context."""
+        self.speaks_humble = False
+        """Whether everything of this context is on the wire as Humble says it."""
         self.inbox = Inbox()
         """Where arrivals wait for entities that no executor has."""
         self._wanted = transport
@@ -60,13 +62,14 @@ class Context:
     ) -> None:
         """Make it ok. `args` are a command line, sys.argv by default; the domain comes from ROS_DOMAIN_ID.
 
-        Raises ContextError (a RuntimeError) the second time or for a domain id that cannot be, and what
-        `parse_arguments` raises.
+        Raises ContextError (a RuntimeError) the second time or for a domain id that cannot be, DistroError (a
+        ValueError) for an unknown ROBOLINK_ROS_DISTRO, and what `parse_arguments` raises.
         """
         with self._lock:
             if self._initialized:
                 raise ContextError("Context.init() must only be called once")
             self._domain_id = _domain_id(domain_id)
+            self.speaks_humble = humble.is_asked_for(os.environ)
             self.arguments = parse_arguments(sys.argv if args is None else args)
             if initialize_logging:
                 self._configure_logging()

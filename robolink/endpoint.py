@@ -1,14 +1,28 @@
-"""One announced end of a topic or service: its key, its token, and the id that goes with all it sends."""
+"""One announced end of a topic or service: its keys, its token, the ends that it meets, and the id it sends by."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from robolink.context import Context
+from robolink.disagreement import Disagreements
+from robolink.exceptions import RobolinkError, TransportClosedError
+from robolink.logging import get_logger
 from robolink.message import type_hash, type_name
 from robolink.qos import QoSProfile
 from robolink.transport.base import Handle
-from robolink.wire import DataKey, EndpointKind, EndpointToken, attachments, format_key, format_token, gid_of
+from robolink.wire import (
+    NO_HASH,
+    OTHER_END,
+    DataKey,
+    EndpointKind,
+    EndpointToken,
+    attachments,
+    format_key,
+    format_token,
+    gid_of,
+)
 
 
 class Owner(NamedTuple):
@@ -19,6 +33,7 @@ class Owner(NamedTuple):
     enclave: str
     namespace: str
     node_name: str
+    disagreements: Disagreements
 
 
 class Endpoint:
@@ -31,7 +46,7 @@ class Endpoint:
         self.context, self.name, self.qos = owner.context, name, qos
         self.domain_id = owner.context.get_domain_id()
         self.type_name = type_name(ros_type)
-        self.type_hash = type_hash(ros_type)
+        self.type_hash = NO_HASH if owner.context.speaks_humble else type_hash(ros_type)
         self.key = format_key(DataKey(self.domain_id, name, self.type_name, self.type_hash))
         self.transport = owner.context.transport
         self.token = EndpointToken(
@@ -48,15 +63,67 @@ class Endpoint:
             self.type_hash,
             qos,
         )
-        self._text = format_token(self.token)
-        self.gid = gid_of(self._text)
+        self.gid = gid_of(format_token(self.token))
         self.attachment = attachments(self.gid, owner.context.time.now)
         """Make the attachment of the next thing that is sent from here."""
+        self.others: dict[bytes, EndpointToken] = {}
+        """The ends that this one meets, by their gids, as far as it has been told."""
+        self.on_disagreement: Callable[[], object] | None = None
+        """Called for each end that comes with another type."""
+        self.warns = True
+        """Whether the node logs a warning about such an end."""
+        self.on_other: Callable[[bytes, bool], object] = lambda gid, alive: None
+        """Called with the gid of each end that comes or goes, and whether it came."""
+        self.speak_humble: Callable[[str], object] = lambda key: None
+        """Called once, with the second key to use, when a Humble peer is at the other end."""
+        self.humble_key = self.key if self.type_hash == NO_HASH else ""
+        """The key that Humble peers use, once there has been one."""
+        self._disagreements = owner.disagreements
+        self._following: Handle | None = None
         self._announced: Handle | None = None
 
     def announce(self) -> None:
-        """Show it to everybody."""
-        self._announced = self.transport.announce(self._text)
+        """Get to know the other ends, and show this one to everybody."""
+        graph = self.context.graph
+        self._following = graph.follow(self.name, self._on_endpoint)
+        self._announced = graph.announce(self.token)
+
+    def count_others(self) -> int:
+        """How many ends there are that this one meets; Humble peers count once their key is in use."""
+        found = self.context.graph.gids(OTHER_END[self.token.kind], self.name)
+        return sum(
+            self.token.understands(other) and (other.type_hash == self.type_hash or gid in self.others)
+            for gid, other in found
+        )
+
+    def _on_endpoint(self, gid: bytes, token: EndpointToken, alive: bool) -> None:
+        """Hear of an endpoint of the same name, on any thread."""
+        if token.kind is not OTHER_END[self.token.kind]:
+            return
+        if not alive:
+            if self.others.pop(gid, None) is not None:
+                self.on_other(gid, False)
+        elif self.token.understands(token):
+            self._meet(token)
+            self.others[gid] = token
+            self.on_other(gid, True)
+        else:
+            if self.warns:
+                self._disagreements.tell(self.token, token)
+            if self.on_disagreement is not None:
+                self.on_disagreement()
+
+    def _meet(self, token: EndpointToken) -> None:
+        """Use Humble's key as well, if this is the first Humble peer."""
+        if token.type_hash != NO_HASH or self.humble_key:
+            return
+        self.humble_key = format_key(DataKey(self.domain_id, self.name, self.type_name, NO_HASH))
+        try:
+            self.speak_humble(self.humble_key)
+        except TransportClosedError:  # the session ends just now
+            pass
+        except RobolinkError as error:
+            get_logger(self.logger_name).warning(f"{self.name}: cannot meet {token.full_node_name}: {error}")
 
     @property
     def logger_name(self) -> str:
@@ -64,6 +131,7 @@ class Endpoint:
         return f"{self.token.namespace}/{self.token.node_name}".strip("/").replace("/", ".")
 
     def close(self) -> None:
-        """Announce it no longer."""
-        if self._announced is not None:
-            self._announced.close()
+        """Announce it no longer, and hear of nobody. Safe to call twice."""
+        for handle in (self._following, self._announced):
+            if handle is not None:
+                handle.close()

@@ -2,62 +2,140 @@
 
 from __future__ import annotations
 
+import functools
 import threading
+import time
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, TypeVar
 
 from robolink.exceptions import WireError
-from robolink.wire import EndpointKind, EndpointToken, NodeToken, graph_pattern, parse_token
+from robolink.logging import get_logger
+from robolink.wire import EndpointKind, EndpointToken, NodeToken, format_token, gid_of, graph_pattern, parse_token
 
 if TYPE_CHECKING:
-    from robolink.transport.base import Transport
+    from robolink.transport.base import Handle, Transport
 
 Token = NodeToken | EndpointToken
 NamesAndTypes = list[tuple[str, list[str]]]
-
+Follower = Callable[[bytes, EndpointToken, bool], object]
+"""Told the gid and token of an endpoint of one topic or service, and whether it came or went."""
 
 SETTLED_WITHIN = 0.1
 """Seconds; it takes 2 ms."""
 
+LONG_STANDING = 1.0
+"""Seconds after which a session knows what was there before it."""
+
 
 class Graph:
-    """What is announced on a domain, kept up to date by the transport. Every question is answered from memory."""
+    """What is announced on a domain, kept up to date by the transport. Every question is answered from memory.
+
+    What this session announces itself is known at once; the first question waits until what others had announced
+    before is known too.
+    """
 
     def __init__(self, transport: Transport, domain_id: int) -> None:
-        self._tokens: dict[str, Token] = {}
+        self.malformed = 0
+        """How many announcements could not be read."""
+        self._transport, self._domain_id = transport, domain_id
+        self._index = _Index()
         self._changed = threading.Condition()
-        self.malformed: set[str] = set()
-        """Announcements that could not be read."""
-        self._listeners: tuple[Callable[[], None], ...] = ()
-        pattern = graph_pattern(domain_id)
-        known = set(transport.tokens(pattern))
-        self._watch = transport.watch(pattern, self._on_change)
-        # What was there before is known before the first question; a token that is lost just now costs the wait.
-        self.wait_for(lambda: known <= self._tokens.keys() | self.malformed, timeout=SETTLED_WITHIN)
+        self._listeners: tuple[_Listening, ...] = ()
+        self._followers: dict[str, tuple[_Listening, ...]] = {}
+        self._news: deque[Callable[[], object]] = deque()
+        self._telling = threading.Lock()
+        self._settling = threading.Lock()
+        self._settled = not transport.threaded
+        self._begin = time.monotonic()
+        self._watch = transport.watch(graph_pattern(domain_id), self._on_news)
 
-    def _on_change(self, text: str, alive: bool) -> None:
+    # What comes in
+
+    def announce(self, token: Token) -> Handle:
+        """Show something of this session's own to everybody, until the handle is closed."""
+        text = format_token(token)
+        handle = self._transport.announce(text)
+        gid = gid_of(text)
+        self._change(gid, token, True)
+        return _Announced(handle, functools.partial(self._change, gid, token, False))
+
+    def _on_news(self, text: str, alive: bool) -> bool:
+        """Hear of a token from the transport, on its thread; False for one that is not worth remembering."""
+        try:
+            token = parse_token(text)
+        except WireError as error:
+            self.malformed += alive
+            if alive and self.malformed == 1:
+                get_logger("robolink.graph").warning(
+                    f"somebody on domain {self._domain_id} announces what cannot be read: {error}"
+                    " (the next ones are only counted)"
+                )
+            return False
+        if token.session != self._transport.session_id:  # what is our own was noted in its turn
+            self._change(gid_of(text), token, alive)
+        return True
+
+    def _change(self, gid: bytes, token: Token, alive: bool) -> None:
         with self._changed:
-            if alive:
-                try:
-                    self._tokens[text] = parse_token(text)
-                except WireError:
-                    self.malformed.add(text)
-                    return
-            else:
-                self._tokens.pop(text, None)
-                self.malformed.discard(text)
+            if alive == (gid in self._index.tokens):
+                return
+            (self._index.add if alive else self._index.remove)(gid, token)
             self._changed.notify_all()
-            listeners = self._listeners
-        for listener in listeners:
-            listener()
+            self._news.extend(listening.news() for listening in self._listeners)
+            if isinstance(token, EndpointToken):
+                followers = self._followers.get(token.name, ())
+                self._news.extend(each.news(gid, token, alive) for each in followers)
+        self._tell()
 
-    def listen(self, listener: Callable[[], None]) -> None:
-        """Call `listener()` after each change, on the transport's thread."""
+    # Who wants to know
+
+    def listen(self, listener: Callable[[], object]) -> Handle:
+        """Call `listener()` after each change, until the handle is closed, on the thread that brings the change."""
+        listening = _Listening(listener, self._stop_listening)
         with self._changed:
-            self._listeners = (*self._listeners, listener)
+            self._listeners = (*self._listeners, listening)
+        return listening
+
+    def follow(self, name: str, follower: Follower) -> Handle:
+        """Call `follower(gid, token, alive)` for each endpoint of one topic or service, those already there first.
+
+        One call at a time and in order, on the thread that brings the change; until the handle is closed.
+        """
+        listening = _Listening(follower, functools.partial(self._stop_following, name))
+        with self._changed:
+            self._followers[name] = (*self._followers.get(name, ()), listening)
+            known = self._index.by_name.get(name, {})
+            self._news.extend(listening.news(gid, token, True) for gid, token in known.items())
+        self._tell()
+        return listening
+
+    def _tell(self) -> None:
+        # Outside the lock, since followers declare and publish; and nobody waits for whoever tells already.
+        while self._news and self._telling.acquire(blocking=False):
+            try:
+                while self._news:
+                    self._news.popleft()()
+            finally:
+                self._telling.release()
+            self.wake()  # what followers have done since may be what somebody waits for
+
+    def _stop_listening(self, listening: _Listening) -> None:
+        with self._changed:
+            self._listeners = tuple(each for each in self._listeners if each is not listening)
+
+    def _stop_following(self, name: str, listening: _Listening) -> None:
+        with self._changed:
+            rest = tuple(each for each in self._followers.get(name, ()) if each is not listening)
+            if rest:
+                self._followers[name] = rest
+            else:
+                self._followers.pop(name, None)
 
     def wait_for(self, condition: Callable[[], bool], timeout: float | None) -> bool:
         """Wait, in real time, until `condition()` holds; look whenever something changed."""
+        self._settle()
         with self._changed:
             return self._changed.wait_for(condition, timeout)
 
@@ -66,35 +144,141 @@ class Graph:
         with self._changed:
             self._changed.notify_all()
 
+    # Questions
+
     def nodes(self) -> list[NodeToken]:
-        """All nodes."""
-        return sorted({token for token in self._all() if isinstance(token, NodeToken)})
+        """All nodes, sorted."""
+        with self._knowing() as index:
+            return sorted(set(index.nodes.values()))
 
     def endpoints(self, *kinds: EndpointKind, name: str | None = None) -> list[EndpointToken]:
         """All endpoints of these kinds; of one topic or service, if named."""
-        return [
-            token
-            for token in self._all()
-            if isinstance(token, EndpointToken) and token.kind in kinds and (name is None or token.name == name)
-        ]
+        with self._knowing() as index:
+            table = index.endpoints if name is None else index.by_name.get(name, {})
+            return [each for each in table.values() if each.kind in kinds]
+
+    def gids(self, kind: EndpointKind, name: str) -> list[tuple[bytes, EndpointToken]]:
+        """All endpoints of this kind that one topic or service has, each with its gid."""
+        with self._knowing() as index:
+            return [(gid, each) for gid, each in index.by_name.get(name, {}).items() if each.kind is kind]
 
     def of_node(self, node_name: str, namespace: str, kind: EndpointKind) -> list[EndpointToken]:
         """The endpoints of a node."""
-        return [each for each in self.endpoints(kind) if (each.node_name, each.namespace) == (node_name, namespace)]
+        with self._knowing() as index:
+            found = index.by_node.get((node_name, namespace), {}).values()
+            return [each for each in found if isinstance(each, EndpointToken) and each.kind is kind]
+
+    def has_node(self, node_name: str, namespace: str) -> bool:
+        """Whether anything of this node is announced."""
+        with self._knowing() as index:
+            return (node_name, namespace) in index.by_node
 
     def count(self, kind: EndpointKind, name: str) -> int:
         """How many endpoints of this kind one topic or service has."""
         return len(self.endpoints(kind, name=name))
 
-    def text_of(self, token: Token) -> str:
-        """The announcement as it stands on the wire."""
-        with self._changed:
-            return next(text for text, each in self._tokens.items() if each == token)
+    def endpoint_of(self, gid: bytes) -> EndpointToken | None:
+        """Whose gid this is, as far as is known now."""
+        return self._index.endpoints.get(gid)
 
-    def _all(self) -> Iterator[Token]:
+    @contextmanager
+    def _knowing(self) -> Iterator[_Index]:
+        self._settle()
         with self._changed:
-            tokens = list(self._tokens.values())
-        return iter(tokens)
+            yield self._index
+
+    def _settle(self) -> None:
+        """Wait, once, until what was there before this session is known."""
+        if self._settled:
+            return
+        with self._settling:
+            if not self._settled and time.monotonic() - self._begin < LONG_STANDING:
+                # A token that is lost just now costs the wait.
+                known = set(self._readable(self._transport.tokens(graph_pattern(self._domain_id))))
+                with self._changed:
+                    self._changed.wait_for(lambda: known <= self._index.tokens.keys(), SETTLED_WITHIN)
+            self._settled = True
+
+    def _readable(self, texts: Iterable[str]) -> Iterable[bytes]:
+        for text in texts:
+            try:
+                parse_token(text)
+            except WireError:
+                continue
+            yield gid_of(text)
+
+
+class _Index:
+    """The tokens that are alive by their gid, and again by what questions are about."""
+
+    def __init__(self) -> None:
+        self.tokens: dict[bytes, Token] = {}
+        self.nodes: dict[bytes, NodeToken] = {}
+        self.endpoints: dict[bytes, EndpointToken] = {}
+        self.by_name: dict[str, dict[bytes, EndpointToken]] = {}
+        self.by_node: dict[tuple[str, str], dict[bytes, Token]] = {}
+
+    def add(self, gid: bytes, token: Token) -> None:
+        self.tokens[gid] = token
+        self.by_node.setdefault((token.node_name, token.namespace), {})[gid] = token
+        if isinstance(token, EndpointToken):
+            self.endpoints[gid] = token
+            self.by_name.setdefault(token.name, {})[gid] = token
+        else:
+            self.nodes[gid] = token
+
+    def remove(self, gid: bytes, token: Token) -> None:
+        del self.tokens[gid]
+        _drop(self.by_node, (token.node_name, token.namespace), gid)
+        if isinstance(token, EndpointToken):
+            del self.endpoints[gid]
+            _drop(self.by_name, token.name, gid)
+        else:
+            del self.nodes[gid]
+
+
+class _Listening:
+    """Somebody who is told, until closed."""
+
+    def __init__(self, listener: Callable[..., object], stop: Callable[[_Listening], None]) -> None:
+        self._listener: Callable[..., object] | None = listener
+        self._stop = stop
+
+    def news(self, *change: object) -> Callable[[], object]:
+        """What the teller calls in its turn."""
+        return functools.partial(self._tell, change)
+
+    def _tell(self, change: tuple[object, ...]) -> None:
+        listener = self._listener
+        if listener is not None:
+            listener(*change)
+
+    def close(self) -> None:
+        """Be told no more; what is just being told ends. Safe to call twice."""
+        self._listener = None
+        self._stop(self)
+
+
+class _Announced:
+    """Something of our own that is announced."""
+
+    def __init__(self, handle: Handle, forget: Callable[[], None]) -> None:
+        self._handle, self._forget = handle, forget
+
+    def close(self) -> None:
+        """Announce it no longer. Safe to call twice."""
+        self._handle.close()
+        self._forget()
+
+
+KeyT = TypeVar("KeyT")
+ValueT = TypeVar("ValueT")
+
+
+def _drop(table: dict[KeyT, dict[bytes, ValueT]], key: KeyT, gid: bytes) -> None:
+    del table[key][gid]
+    if not table[key]:
+        del table[key]
 
 
 def names_and_types(endpoints: Iterable[EndpointToken]) -> NamesAndTypes:

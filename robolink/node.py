@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from robolink import rosout
@@ -12,8 +12,11 @@ from robolink.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGro
 from robolink.client import Client
 from robolink.clock import Clock, ROSClock
 from robolink.context import Context
+from robolink.disagreement import Disagreements
 from robolink.endpoint import Owner
 from robolink.entity import Entity
+from robolink.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks, with_callbacks
+from robolink.exceptions import NodeNameNonExistentError as NodeNameNonExistentError
 from robolink.exceptions import NotInitializedException
 from robolink.expand_topic_name import expand_topic_name
 from robolink.guard_condition import GuardCondition
@@ -21,6 +24,7 @@ from robolink.impl.rcutils_logger import RcutilsLogger
 from robolink.interfaces.rcl_interfaces.msg import Log, ParameterEvent
 from robolink.logging import get_logger
 from robolink.message import Message
+from robolink.node_entities import NodeEntities
 from robolink.node_graph import NodeGraph
 from robolink.node_parameters import NodeParameters
 from robolink.parameter import Parameter
@@ -36,10 +40,11 @@ from robolink.service import Service
 from robolink.subscription import Subscription
 from robolink.time_source import TimeSource
 from robolink.timer import Rate, Timer
+from robolink.type_description_service import TypeDescriptionService
 from robolink.utilities import get_default_context
 from robolink.validate_namespace import validate_namespace
 from robolink.validate_node_name import validate_node_name
-from robolink.wire import NodeToken, format_token
+from robolink.wire import NodeToken
 
 if TYPE_CHECKING:
     from robolink.executors import Executor
@@ -48,7 +53,7 @@ MsgT = TypeVar("MsgT", bound=Message)
 EntityT = TypeVar("EntityT", bound=Entity)
 
 
-class Node(NodeParameters, NodeGraph):
+class Node(NodeParameters, NodeGraph, NodeEntities):
     """A participant of the system: subclass it, or take it as it is."""
 
     def __init__(
@@ -75,12 +80,7 @@ class Node(NodeParameters, NodeGraph):
         self.queued: list[Entity] = []
         """What was ready when the last executor let go of this node, in order."""
         self._rosout: Publisher[Log] | None = None  # none of the user's: `publishers` does not list it
-        self._publishers: list[Publisher[Any]] = []
-        self._subscriptions: list[Subscription[Any]] = []
-        self._clients: list[Client] = []
-        self._services: list[Service] = []
-        self._timers: list[Timer] = []
-        self._guards: list[GuardCondition] = []
+        self._init_entities()
         self._default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
         self._logger = get_logger(self.get_fully_qualified_name().strip("/").replace("/", "."))
@@ -99,6 +99,7 @@ class Node(NodeParameters, NodeGraph):
                 self._declare_from_overrides()
             self._time_source = TimeSource(node=self)
             self._time_source.attach_clock(self._clock)
+            self._type_description_service = TypeDescriptionService(self)
         except BaseException:
             self.destroy_node()
             raise
@@ -120,10 +121,12 @@ class Node(NodeParameters, NodeGraph):
         return new_name, new_namespace
 
     def _announce(self) -> None:
-        context, transport = self._context, self._context.transport
-        owner = Owner(context, context.next_id(), self._arguments.enclave or "/", self._namespace, self._name)
-        token = NodeToken(context.get_domain_id(), transport.session_id, *owner[1:])
-        self._owner, self._announced = owner, transport.announce(format_token(token))
+        context = self._context
+        enclave = self._arguments.enclave or "/"
+        identity = (context.next_id(), enclave, self._namespace, self._name)
+        self._owner = Owner(context, *identity, Disagreements(self._logger.name))
+        token = NodeToken(context.get_domain_id(), context.transport.session_id, *identity)
+        self._announced = context.graph.announce(token)
 
     def _overrides(self, given: list[Parameter[Any]] | None) -> dict[str, Parameter[Any]]:
         values = self._arguments.overrides_for(self.get_fully_qualified_name())
@@ -168,40 +171,6 @@ class Node(NodeParameters, NodeGraph):
         return self._default_callback_group
 
     @property
-    def publishers(self) -> Iterator[Publisher[Any]]:
-        """Its publishers."""
-        yield from self._publishers
-
-    @property
-    def subscriptions(self) -> Iterator[Subscription[Any]]:
-        """Its subscriptions."""
-        yield from self._subscriptions
-
-    @property
-    def clients(self) -> Iterator[Client]:
-        """Its clients."""
-        yield from self._clients
-
-    @property
-    def services(self) -> Iterator[Service]:
-        """Its services."""
-        yield from self._services
-
-    @property
-    def timers(self) -> Iterator[Timer]:
-        """Its timers."""
-        yield from self._timers
-
-    @property
-    def guards(self) -> Iterator[GuardCondition]:
-        """Its guard conditions."""
-        yield from self._guards
-
-    def entities(self) -> list[Entity]:
-        """All that an executor runs."""
-        return [*self._subscriptions, *self._services, *self._clients, *self._timers, *self._guards]
-
-    @property
     def executor(self) -> Executor | None:
         """The executor that it was added to."""
         return None if self._executor is None else self._executor()
@@ -232,13 +201,6 @@ class Node(NodeParameters, NodeGraph):
 
     # Making
 
-    def _add(self, entity: EntityT, group: list[EntityT]) -> EntityT:
-        group.append(entity)
-        executor = self.executor
-        if executor is not None:
-            executor.attach(entity)
-        return entity
-
     def create_publisher(
         self,
         msg_type: type[MsgT],
@@ -246,13 +208,25 @@ class Node(NodeParameters, NodeGraph):
         qos_profile: QoSProfile | int,
         *,
         callback_group: CallbackGroup | None = None,
-        event_callbacks: Any = None,
+        event_callbacks: PublisherEventCallbacks | None = None,
         qos_overriding_options: Any = None,
         publisher_class: type[Publisher[MsgT]] = Publisher,
     ) -> Publisher[MsgT]:
-        """Make a publisher. A number as QoS is the depth of a reliable, volatile KEEP_LAST profile."""
-        publisher = publisher_class(self._owner, msg_type, self.resolve_topic_name(topic), _qos(qos_profile))
+        """Make a publisher. A number as QoS is the depth of a reliable, volatile KEEP_LAST profile.
+
+        The callback group is that of the event callbacks. Raises UnsupportedEventTypeError (a RuntimeError) for an
+        event that this network does not have.
+        """
+        publisher = publisher_class(
+            self._owner,
+            msg_type,
+            self.resolve_topic_name(topic),
+            _qos(qos_profile),
+            event_callbacks=event_callbacks,
+            callback_group=callback_group or self._default_callback_group,
+        )
         self._publishers.append(publisher)
+        self._attach(*with_callbacks(publisher.event_handlers))
         return publisher
 
     def create_subscription(
@@ -263,14 +237,20 @@ class Node(NodeParameters, NodeGraph):
         qos_profile: QoSProfile | int,
         *,
         callback_group: CallbackGroup | None = None,
-        event_callbacks: Any = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: Any = None,
         raw: bool = False,
     ) -> Subscription[MsgT]:
-        """Make a subscription. `callback` takes the message, or the message and its MessageInfo; bytes if `raw`."""
+        """Make a subscription. `callback` takes the message, or the message and its MessageInfo; bytes if `raw`.
+
+        Raises UnsupportedEventTypeError (a RuntimeError) for an event that this network does not have.
+        """
         group = callback_group or self._default_callback_group
         name, qos = self.resolve_topic_name(topic), _qos(qos_profile)
-        return self._add(Subscription(self._owner, msg_type, name, callback, group, qos, raw), self._subscriptions)
+        made = Subscription(self._owner, msg_type, name, callback, group, qos, raw, event_callbacks)
+        self._add(made, self._subscriptions)
+        self._attach(*with_callbacks(made.event_handlers))
+        return made
 
     def create_service(
         self,
@@ -327,38 +307,6 @@ class Node(NodeParameters, NodeGraph):
         timer = self.create_timer(1.0 / frequency, None, callback_group=self._rate_group, clock=clock)
         return Rate(timer, context=self._context)
 
-    # Unmaking
-
-    def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
-        """Undeclare a publisher; False when it is none of this node's."""
-        return _destroy(publisher, self._publishers)
-
-    def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
-        """Undeclare a subscription; False when it is none of this node's."""
-        return _destroy(subscription, self._subscriptions)
-
-    def destroy_client(self, client: Client) -> bool:
-        """Undeclare a client; False when it is none of this node's."""
-        return _destroy(client, self._clients)
-
-    def destroy_service(self, service: Service) -> bool:
-        """Undeclare a service; False when it is none of this node's."""
-        return _destroy(service, self._services)
-
-    def destroy_timer(self, timer: Timer) -> bool:
-        """End a timer; False when it is none of this node's."""
-        return _destroy(timer, self._timers)
-
-    def destroy_guard_condition(self, guard: GuardCondition) -> bool:
-        """End a guard condition; False when it is none of this node's."""
-        return _destroy(guard, self._guards)
-
-    def destroy_rate(self, rate: Rate) -> bool:
-        """End a rate; False when it is none of this node's."""
-        found = self.destroy_timer(rate._timer)
-        rate.destroy()
-        return found
-
     def destroy_node(self) -> None:
         """Undeclare all that it has, and itself. Safe to call twice."""
         executor = self.executor
@@ -367,9 +315,7 @@ class Node(NodeParameters, NodeGraph):
         rosout.keep_to_itself(self._logger.name)
         if self._rosout is not None:
             self._rosout.destroy()
-        for owned in (self._publishers, self._subscriptions, self._clients, self._services, self._timers, self._guards):
-            for entity in list(owned):
-                _destroy(entity, owned)
+        self._destroy_entities()
         self._announced.close()
         self._context.untrack_node(self)
 
@@ -388,11 +334,3 @@ def _qos(profile: QoSProfile | int) -> QoSProfile:
             raise ValueError("history depth must be greater than or equal to zero")
         return QoSProfile(depth=profile)
     raise TypeError(f"Expected QoSProfile or int, but received {type(profile)!r}")
-
-
-def _destroy(entity: Any, owned: list[Any]) -> bool:
-    if entity not in owned:
-        return False
-    owned.remove(entity)
-    entity.destroy()
-    return True

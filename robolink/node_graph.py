@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from robolink.context import Context
+from robolink.exceptions import NodeNameNonExistentError, nearest
 from robolink.graph import NamesAndTypes, names_and_types
+from robolink.qos import resolved
+from robolink.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
+from robolink.type_hash import TypeHash
 from robolink.wire import EndpointKind
 
 
@@ -47,25 +51,62 @@ class NodeGraph:
     def get_publisher_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
-        """What a node publishes."""
+        """What a node publishes. Raises NodeNameNonExistentError (a RuntimeError) when there is no such node."""
         return self._by_node(node_name, node_namespace, EndpointKind.PUBLISHER)
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
-        """What a node subscribes to."""
+        """What a node subscribes to. Raises NodeNameNonExistentError (a RuntimeError) when there is no such node."""
         return self._by_node(node_name, node_namespace, EndpointKind.SUBSCRIPTION)
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """What a node serves."""
+        """What a node serves. Raises NodeNameNonExistentError (a RuntimeError) when there is no such node."""
         return self._by_node(node_name, node_namespace, EndpointKind.SERVICE)
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """Which services a node calls."""
+        """Which services a node calls. Raises NodeNameNonExistentError (a RuntimeError) when there is no such node."""
         return self._by_node(node_name, node_namespace, EndpointKind.CLIENT)
 
     def _by_node(self, node_name: str, namespace: str, kind: EndpointKind) -> NamesAndTypes:
-        return names_and_types(self._context.graph.of_node(node_name, namespace, kind))
+        graph = self._context.graph
+        if not graph.has_node(node_name, namespace):
+            full = f"{namespace.rstrip('/')}/{node_name}"
+            raise NodeNameNonExistentError(
+                f"no node named '{full}'{nearest(full, self.get_fully_qualified_node_names())}"
+            )
+        return names_and_types(graph.of_node(node_name, namespace, kind))
+
+    def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
+        """All publishers of a topic, each with its node, type, hash, gid and profile.
+
+        Raises InvalidTopicNameException (a ValueError), unless `no_mangle` asks for the name as it stands.
+        """
+        return self._info(topic_name, no_mangle, EndpointKind.PUBLISHER, TopicEndpointTypeEnum.PUBLISHER)
+
+    def get_subscriptions_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
+        """All subscriptions of a topic, each with its node, type, hash, gid and profile.
+
+        Raises InvalidTopicNameException (a ValueError), unless `no_mangle` asks for the name as it stands.
+        """
+        return self._info(topic_name, no_mangle, EndpointKind.SUBSCRIPTION, TopicEndpointTypeEnum.SUBSCRIPTION)
+
+    def _info(
+        self, topic_name: str, no_mangle: bool, kind: EndpointKind, end: TopicEndpointTypeEnum
+    ) -> list[TopicEndpointInfo]:
+        name = topic_name if no_mangle else self.resolve_topic_name(topic_name)
+        return [
+            TopicEndpointInfo(
+                node_name=each.node_name,
+                node_namespace=each.namespace,
+                topic_type=each.type_name,
+                topic_type_hash=TypeHash.from_text(each.type_hash),
+                endpoint_type=end,
+                endpoint_gid=list(gid),
+                qos_profile=resolved(each.qos),  # a copy, for the caller to change
+            )
+            for gid, each in self._context.graph.gids(kind, name)
+        ]
 
     def count_publishers(self, topic_name: str) -> int:
         """How many publishers a topic has."""
@@ -84,6 +125,12 @@ class NodeGraph:
         return self._context.graph.count(EndpointKind.CLIENT, self.resolve_service_name(service_name))
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
-        """Wait until a node is there; whether so within `timeout` seconds."""
-        wanted = "/" + fully_qualified_node_name.lstrip("/")
-        return self._context.graph.wait_for(lambda: wanted in self.get_fully_qualified_node_names(), timeout)
+        """Wait until a node is there; whether so within `timeout` seconds, or before the context ends if negative."""
+        namespace, _, name = ("/" + fully_qualified_node_name.lstrip("/")).rpartition("/")
+        graph, context = self._context.graph, self._context
+
+        def is_there() -> bool:
+            return graph.has_node(name, namespace or "/")
+
+        graph.wait_for(lambda: is_there() or not context.ok(), None if timeout < 0 else timeout)
+        return is_there()

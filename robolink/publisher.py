@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import threading
+from collections import deque
+from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
+from robolink.callback_groups import CallbackGroup
 from robolink.duration import Duration
 from robolink.endpoint import Endpoint, Owner
+from robolink.event_handler import PublisherEventCallbacks, QoSPublisherEventType, tell_handlers, warns_of_types
 from robolink.exceptions import InvalidHandle
 from robolink.message import Message, encoder, message_type
-from robolink.qos import QoSProfile
-from robolink.wire import EndpointKind
+from robolink.qos import DurabilityPolicy, QoSProfile, resolved
+from robolink.wire import NO_HASH, EndpointKind
 
 MsgT = TypeVar("MsgT", bound=Message)
 
@@ -17,16 +22,30 @@ MsgT = TypeVar("MsgT", bound=Message)
 class Publisher(Generic[MsgT]):
     """Publishes messages of one type on one topic; made by `Node.create_publisher`."""
 
-    def __init__(self, owner: Owner, msg_type: type[MsgT], topic: str, qos_profile: QoSProfile) -> None:
+    def __init__(
+        self,
+        owner: Owner,
+        msg_type: type[MsgT],
+        topic: str,
+        qos_profile: QoSProfile,
+        event_callbacks: PublisherEventCallbacks | None = None,
+        callback_group: CallbackGroup | None = None,
+    ) -> None:
         self.msg_type = msg_type
         self.topic = topic
         self.qos_profile = qos_profile
         self._encode = encoder(message_type(msg_type))
         self._endpoint = Endpoint(owner, EndpointKind.PUBLISHER, topic, msg_type, qos_profile)
-        self._outlet = self._endpoint.transport.advertise(self._endpoint.key, qos_profile)
-        self._put, self._attachment = self._outlet.put, self._endpoint.attachment
-        self._endpoint.announce()
         self._destroyed = False
+        callbacks = event_callbacks or PublisherEventCallbacks()
+        self.event_handlers = callbacks.create_event_handlers(callback_group, self, topic)
+        self._outlets = _Outlets(self._endpoint, qos_profile)
+        self._put, self._attachment = self._outlets.put, self._endpoint.attachment
+        self._endpoint.warns = warns_of_types(callbacks)
+        self._endpoint.on_disagreement = self._on_disagreement
+        self._endpoint.on_other = self._on_other
+        self._endpoint.speak_humble = self._speak_humble
+        self._endpoint.announce()
 
     def publish(self, msg: MsgT | bytes) -> None:
         """Send a message, or one that is serialized already, to all subscriptions.
@@ -44,11 +63,20 @@ class Publisher(Generic[MsgT]):
             raise InvalidHandle(f"the publisher of {self.topic} has been destroyed")
         self._put(payload, self._attachment())
 
+    def _speak_humble(self, key: str) -> None:
+        self._outlets.add(key)
+        self._put = self._outlets.put
+
+    def _on_other(self, gid: bytes, came: bool) -> None:
+        matched = {QoSPublisherEventType.RCL_PUBLISHER_MATCHED}
+        tell_handlers(self.event_handlers, matched, total=int(came), current=1 if came else -1)
+
+    def _on_disagreement(self) -> None:
+        tell_handlers(self.event_handlers, {QoSPublisherEventType.RCL_PUBLISHER_INCOMPATIBLE_TYPE}, total=1)
+
     def get_subscription_count(self) -> int:
         """How many subscriptions of this topic and type there are."""
-        graph = self._endpoint.context.graph
-        found = graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.topic)
-        return sum(each.type_name == self._endpoint.type_name for each in found)
+        return self._endpoint.count_others()
 
     @property
     def topic_name(self) -> str:
@@ -71,7 +99,9 @@ class Publisher(Generic[MsgT]):
         """Undeclare it. Safe to call twice."""
         if not self._destroyed:
             self._destroyed = True
-            self._outlet.close()
+            for handler in self.event_handlers:
+                handler.destroy()
+            self._outlets.close()
             self._endpoint.close()
 
     def __enter__(self) -> Publisher[MsgT]:
@@ -79,3 +109,49 @@ class Publisher(Generic[MsgT]):
 
     def __exit__(self, *_: Any) -> None:
         self.destroy()
+
+
+class _Outlets:
+    """Where a publisher sends: to its key, and to Humble's as well once a Humble peer has come."""
+
+    def __init__(self, endpoint: Endpoint, qos: QoSProfile) -> None:
+        self._transport, self._qos = endpoint.transport, qos
+        first = self._transport.advertise(endpoint.key, qos)
+        self._all = [first]
+        self._closed = False
+        self._lock = threading.Lock()
+        self._kept: deque[tuple[bytes, bytes]] | None = None
+        self.put: Callable[[bytes, bytes], None] = first.put
+        """Send a payload with its attachment; another function after `add`."""
+        if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL and endpoint.type_hash != NO_HASH:
+            # What late joiners get is kept here too: a Humble peer may come when it has all been published.
+            self._kept = deque(maxlen=resolved(qos).depth)
+            self.put = self._put_and_keep
+
+    def add(self, key: str) -> None:
+        """Send to this key too from now on, and at once what late joiners get."""
+        outlet = self._transport.advertise(key, self._qos)
+        with self._lock:
+            for payload, attachment in self._kept or ():
+                outlet.put(payload, attachment)
+            self._all = [*self._all, outlet]
+            if self._kept is None:
+                self.put = self._put_to_all
+        if self._closed:  # meanwhile
+            outlet.close()
+
+    def _put_to_all(self, payload: bytes, attachment: bytes) -> None:
+        for outlet in self._all:
+            outlet.put(payload, attachment)
+
+    def _put_and_keep(self, payload: bytes, attachment: bytes) -> None:
+        assert self._kept is not None
+        with self._lock:
+            self._kept.append((payload, attachment))
+            self._put_to_all(payload, attachment)
+
+    def close(self) -> None:
+        """Send nothing any more."""
+        self._closed = True
+        for outlet in self._all:
+            outlet.close()

@@ -54,8 +54,15 @@ class Service(Receiver):
         self._endpoint = Endpoint(owner, EndpointKind.SERVICE, srv_name, srv_type, qos_profile)
         self._transport = self._endpoint.transport
         self._destroyed = False
-        self._handle = self._transport.serve(self._endpoint.key, self.sink)
+        self._handles = [self._transport.serve(self._endpoint.key, self.sink)]
+        self._endpoint.speak_humble = self._speak_humble
         self._endpoint.announce()
+
+    def _speak_humble(self, key: str) -> None:
+        """Serve Humble's key too from now on; a client calls one of them."""
+        self._handles.append(self._transport.serve(key, self.sink))
+        if self._destroyed:  # meanwhile
+            self._close()
 
     def deliver(self, arrived: Any) -> None:
         """Keep a request; the one that must give way ends without an answer."""
@@ -125,11 +132,15 @@ class Service(Receiver):
         if self._destroyed:
             return
         self._destroyed = True
-        self._handle.close()
-        self._endpoint.close()
+        self._close()
         self.detach()
         while len(self.mailbox):
             self._transport.accept(self.mailbox.take()).close()
+
+    def _close(self) -> None:
+        for handle in self._handles:
+            handle.close()
+        self._endpoint.close()
 
     def __enter__(self) -> Service:
         return self

@@ -2,20 +2,33 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from enum import Enum
 from typing import Any, Generic, TypedDict, TypeVar
 
 from robolink.callback_groups import CallbackGroup
 from robolink.endpoint import Endpoint, Owner
-from robolink.entity import Receiver
+from robolink.entity import ANY_TIME, Receiver
+from robolink.event_handler import (
+    QoSSubscriptionEventType,
+    SubscriptionEventCallbacks,
+    tell_handlers,
+    warns_of_types,
+)
 from robolink.exceptions import DecodeError, TransportError, WireError
+from robolink.humble import Copies, CopyError, FromHumbleKey
+from robolink.inbox import Inbox
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, message_type
 from robolink.qos import HistoryPolicy, QoSProfile, resolved
-from robolink.wire import EndpointKind, unpack_attachment
+from robolink.transport.base import Handle, Sample
+from robolink.wire import ATTACHMENT_BYTES, Attachment, EndpointKind, unpack_attachment
 
 MsgT = TypeVar("MsgT", bound=Message)
+
+MOST_SENDERS = 1000
+"""Publishers of a topic whose messages are looked at for gaps."""
 
 
 def takes_arguments(function: Callable[..., Any], count: int) -> bool:
@@ -60,6 +73,7 @@ class Subscription(Receiver, Generic[MsgT]):
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
         raw: bool = False,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
     ) -> None:
         depth = 0 if qos_profile.history is HistoryPolicy.KEEP_ALL else resolved(qos_profile).depth
         super().__init__(owner.context.inbox, depth, callback_group)
@@ -72,8 +86,14 @@ class Subscription(Receiver, Generic[MsgT]):
         self.callback = callback
         self._decode: Callable[[bytes], Any] = bytes if raw else decoder(message_type(msg_type))
         self._endpoint = Endpoint(owner, EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile)
-        self._read = self._endpoint.transport.read
-        self._handle = self._endpoint.transport.subscribe(self._endpoint.key, qos_profile, self.sink)
+        self._read: Callable[[Any], Sample] = self._endpoint.transport.read
+        self._humble_door: _HumbleDoor | None = None
+        self._inbox = owner.context.inbox
+        self._handles: list[Handle] = []
+        self._destroyed = False
+        self._listen_for_events(event_callbacks or SubscriptionEventCallbacks())
+        self._endpoint.speak_humble = self._speak_humble
+        self._handles.append(self._endpoint.transport.subscribe(self._endpoint.key, qos_profile, self.sink))
         self._endpoint.announce()
 
     @property
@@ -98,8 +118,12 @@ class Subscription(Receiver, Generic[MsgT]):
         """Decode what arrived and call the callback; what cannot be decoded is counted, and warned about once."""
         try:
             payload, attachment = self._read(taken)
+            if len(attachment) != ATTACHMENT_BYTES or attachment[16] != 16:
+                unpack_attachment(attachment)  # it says what is wrong
             message = self._decode(payload)
             info = self._info(attachment) if self._with_info else None
+        except CopyError:
+            return None
         except (DecodeError, WireError, TransportError) as error:
             self._refuse(error)
             return None
@@ -117,9 +141,13 @@ class Subscription(Receiver, Generic[MsgT]):
     def _refuse(self, error: Exception) -> None:
         self.malformed += 1
         if self.malformed == 1:
+            ros = (
+                "whose attachment is not ROS 2's"
+                if isinstance(error, WireError)
+                else f"that is no {self._endpoint.type_name}"
+            )
             get_logger(self.logger_name).warning(
-                f"{self.topic}: dropped a message that is no {self._endpoint.type_name}: {error}"
-                " (the next ones are only counted)"
+                f"{self.topic}: dropped a message {ros}: {error} (the next ones are only counted)"
             )
 
     @property
@@ -129,8 +157,65 @@ class Subscription(Receiver, Generic[MsgT]):
 
     def get_publisher_count(self) -> int:
         """How many publishers of this topic and type there are."""
-        found = self._endpoint.context.graph.endpoints(EndpointKind.PUBLISHER, name=self.topic)
-        return sum(each.type_name == self._endpoint.type_name for each in found)
+        return self._endpoint.count_others()
+
+    # Events
+
+    def _listen_for_events(self, callbacks: SubscriptionEventCallbacks) -> None:
+        group = None if self.callback_group is ANY_TIME else self.callback_group
+        self.event_handlers = callbacks.create_event_handlers(group, self, self.topic)
+        self._endpoint.warns = warns_of_types(callbacks)
+        self._endpoint.on_disagreement = self._on_disagreement
+        self._endpoint.on_other = self._on_other
+        if callbacks.message_lost:
+            self._count_lost()
+
+    def _on_other(self, gid: bytes, came: bool) -> None:
+        matched = {QoSSubscriptionEventType.RCL_SUBSCRIPTION_MATCHED}
+        tell_handlers(self.event_handlers, matched, total=int(came), current=1 if came else -1)
+
+    def _on_disagreement(self) -> None:
+        tell_handlers(self.event_handlers, {QoSSubscriptionEventType.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE}, total=1)
+
+    def _count_lost(self) -> None:
+        """Look for gaps between the numbers of the messages that are taken."""
+        read, lost = self._read, {QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST}
+        gaps = _Gaps()
+
+        def read_and_count(taken: Any) -> Sample:
+            sample = read(taken)
+            missing = gaps.before(unpack_attachment(sample.attachment))
+            if missing:
+                tell_handlers(self.event_handlers, lost, total=missing)
+            return sample
+
+        self._read = read_and_count
+
+    # Humble peers
+
+    def _speak_humble(self, key: str) -> None:
+        """Receive from Humble's key too from now on; what comes to both keys is taken once."""
+        read, copies = self._read, Copies(self._endpoint.context.graph.endpoint_of)
+
+        def read_once(taken: Any) -> Sample:
+            sample = taken.sample if type(taken) is FromHumbleKey else read(taken)
+            if len(sample.attachment) == ATTACHMENT_BYTES:
+                copies.check(sample.attachment)
+            return sample
+
+        self._read = read_once
+        with self._parking.lock:  # held, too, where `redirect` is called
+            self._humble_door = _HumbleDoor(self, self._inbox, copies)
+        self._handles.append(self._endpoint.transport.subscribe(key, self.qos_profile, self._humble_door.sink))
+        if self._destroyed:  # meanwhile
+            self._close()
+
+    def redirect(self, inbox: Inbox) -> None:
+        """Have what comes from now on arrive in this inbox."""
+        super().redirect(inbox)
+        self._inbox = inbox
+        if self._humble_door is not None:
+            inbox.take_over(self._humble_door.sink)
 
     @property
     def topic_name(self) -> str:
@@ -144,13 +229,52 @@ class Subscription(Receiver, Generic[MsgT]):
 
     def destroy(self) -> None:
         """Undeclare it. Safe to call twice."""
-        self._handle.close()
-        self._endpoint.close()
+        self._destroyed = True
+        self._close()
+        for handler in self.event_handlers:
+            handler.destroy()
         self.detach()
         self.mailbox.waiting.clear()
+
+    def _close(self) -> None:
+        for handle in self._handles:
+            handle.close()
+        self._endpoint.close()
 
     def __enter__(self) -> Subscription[MsgT]:
         return self
 
     def __exit__(self, *_: Any) -> None:
         self.destroy()
+
+
+class _HumbleDoor:
+    """Where samples of Humble's key arrive for a subscription."""
+
+    straight = False
+
+    def __init__(self, subscription: Subscription[Any], inbox: Inbox, copies: Copies) -> None:
+        self._subscription, self._copies = subscription, copies
+        self._read = subscription._endpoint.transport.read
+        self.sink: functools.partial[Any] = inbox.sink(self)
+
+    def deliver(self, arrived: Any) -> None:
+        """Hand it on, but no copies: they would drive other messages out of the mailbox."""
+        sample = self._read(arrived)
+        if not self._copies.comes_twice(sample.attachment):
+            self._subscription.deliver(FromHumbleKey(sample))
+
+
+class _Gaps:
+    """The last number of each sender's messages."""
+
+    def __init__(self) -> None:
+        self._last: dict[bytes, int] = {}
+
+    def before(self, sender: Attachment) -> int:
+        """How many of its messages are missing before this one."""
+        last = self._last.pop(sender.gid, sender.sequence)
+        self._last[sender.gid] = max(last, sender.sequence)  # the one heard last is last
+        if len(self._last) > MOST_SENDERS:
+            del self._last[next(iter(self._last))]
+        return max(0, sender.sequence - last - 1)

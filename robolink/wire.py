@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import re
 import struct
@@ -33,7 +34,8 @@ NO_HASH = "TypeHashNotSupported"
 """What Humble says in place of a type hash."""
 
 _ATTACHMENT = struct.Struct("<qqB16s")
-_GID_BYTES = 16
+ATTACHMENT_BYTES = _ATTACHMENT.size
+GID_BYTES = 16
 _GRAPH = "@ros2_lv"
 _CHUNK = r"[A-Za-z0-9_.~-]+"
 _NAME = re.compile(rf"/?{_CHUNK}(?:/{_CHUNK})*|/")
@@ -75,6 +77,15 @@ class EndpointKind(Enum):
     CLIENT = "SC"
 
 
+OTHER_END = {
+    EndpointKind.PUBLISHER: EndpointKind.SUBSCRIPTION,
+    EndpointKind.SUBSCRIPTION: EndpointKind.PUBLISHER,
+    EndpointKind.SERVICE: EndpointKind.CLIENT,
+    EndpointKind.CLIENT: EndpointKind.SERVICE,
+}
+"""Whom each kind talks to."""
+
+
 class NodeToken(NamedTuple):
     """What a node announces about itself."""
 
@@ -103,10 +114,20 @@ class EndpointToken(NamedTuple):
     type_hash: str
     qos: QoSProfile
 
+    @property
+    def full_node_name(self) -> str:
+        """Namespace and name of the node that owns it."""
+        return f"{self.namespace.rstrip('/')}/{self.node_name}"
+
+    def understands(self, other: EndpointToken) -> bool:
+        """Whether both mean the same type: by name and hash, or by name where one is a Humble peer's."""
+        same_hash = self.type_hash == other.type_hash or NO_HASH in (self.type_hash, other.type_hash)
+        return same_hash and self.type_name == other.type_name
+
 
 def pack_attachment(sequence: int, timestamp: int, gid: bytes) -> bytes:
     """Give the 33 bytes of an attachment; `timestamp` in nanoseconds since the epoch, `gid` of 16 bytes."""
-    return _ATTACHMENT.pack(sequence, timestamp, _GID_BYTES, gid)
+    return _ATTACHMENT.pack(sequence, timestamp, GID_BYTES, gid)
 
 
 def attachments(gid: bytes, now: Callable[[], int]) -> Callable[[], bytes]:
@@ -115,7 +136,7 @@ def attachments(gid: bytes, now: Callable[[], int]) -> Callable[[], bytes]:
     It runs for every message, hence a closure: all that it needs is at hand.
     """
     pack, number = _ATTACHMENT.pack, itertools.count(1).__next__
-    return lambda: pack(number(), now(), _GID_BYTES, gid)
+    return lambda: pack(number(), now(), GID_BYTES, gid)
 
 
 def unpack_attachment(raw: bytes) -> Attachment:
@@ -123,14 +144,15 @@ def unpack_attachment(raw: bytes) -> Attachment:
     if len(raw) != _ATTACHMENT.size:
         raise WireError(f"an attachment has {_ATTACHMENT.size} bytes, got {len(raw)}")
     sequence, timestamp, gid_length, gid = _ATTACHMENT.unpack(raw)
-    if gid_length != _GID_BYTES:
-        raise WireError(f"an attachment's gid has {_GID_BYTES} bytes, got {gid_length}")
+    if gid_length != GID_BYTES:
+        raise WireError(f"an attachment's gid has {GID_BYTES} bytes, got {gid_length}")
     return Attachment(sequence, timestamp, gid)
 
 
 def gid_of(token: str) -> bytes:
     """Give the 16 bytes that stand for an endpoint: XXH3-128 of its token, the low half first."""
-    return xxhash.xxh3_128_intdigest(token.encode()).to_bytes(_GID_BYTES, "little")
+    raw = token.encode(errors="surrogatepass")
+    return xxhash.xxh3_128_intdigest(raw).to_bytes(GID_BYTES, "little")
 
 
 def mangle_type(type_name: str) -> str:
@@ -196,7 +218,10 @@ def format_token(token: NodeToken | EndpointToken) -> str:
 
 
 def parse_token(text: str) -> NodeToken | EndpointToken:
-    """Read a token; raises WireError for what no peer of rmw_zenoh announces."""
+    """Read a token; raises WireError for what no peer of rmw_zenoh announces.
+
+    Tokens share their profiles: copy one before you change it.
+    """
     fields = _not_too_long(text, "a token").split("/")
     if len(fields) not in (9, 13) or fields[0] != _GRAPH:
         raise WireError(f"a token has 9 or 13 fields after {_GRAPH}, got {_shown(text)}")
@@ -219,7 +244,7 @@ def parse_token(text: str) -> NodeToken | EndpointToken:
         _checked_topic(_demangled(fields[9])),
         demangle_type(fields[10]),
         _checked_hash(fields[11]),
-        parse_qos(fields[12]),
+        _shared_qos(fields[12]),
     )
 
 
@@ -258,6 +283,9 @@ def parse_qos(text: str) -> QoSProfile:
 
 
 _DEFAULTS = resolved(qos_profile_system_default)
+
+# A system has thousands of tokens and a handful of profiles, and reading those takes two thirds of the time.
+_shared_qos = functools.lru_cache(maxsize=256)(parse_qos)
 
 
 def _unless(value: int, usual: int) -> str:

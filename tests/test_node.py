@@ -121,15 +121,16 @@ def test_it_knows_what_it_has(node: Node) -> None:
     timer = node.create_timer(1.0, lambda: None)
     guard = node.create_guard_condition(lambda: None)
     assert publisher in node.publishers
-    assert [*node.subscriptions, *node.clients, *node.services] == [subscription, client, service]
+    assert service in node.services
+    assert [*node.subscriptions, *node.clients] == [subscription, client]
     assert ([*node.timers], [*node.guards]) == ([timer], [guard])
-    assert set(node.entities()) == {subscription, client, service, timer, guard}
+    assert set(node.entities()) == {*node.services, subscription, client, service, timer, guard}
     assert node.default_callback_group.has_entity(timer)
     assert node.destroy_client(client)
     assert node.destroy_service(service)
     assert node.destroy_guard_condition(guard)
     assert node.destroy_timer(timer)
-    assert node.entities() == [subscription]
+    assert node.entities() == [subscription, *node.services]
 
 
 def test_destroying_a_node_takes_it_from_the_network_and_the_executor(bus: Bus, node: Node) -> None:

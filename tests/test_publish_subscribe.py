@@ -19,6 +19,7 @@ from robolink.message import decode, encode
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from robolink.subscription import MessageInfo, Subscription
 from robolink.transport.memory import Bus, MemoryTransport
+from robolink.wire import pack_attachment
 from tests.programs import Program
 from tests.spins import numbers, spin_for, spin_until
 
@@ -203,16 +204,24 @@ def test_a_malformed_payload_is_counted_and_told_once(
     assert "std_msgs/msg/String" in warnings[0].message
 
 
-def test_a_malformed_attachment_only_matters_to_who_asks_for_it(
-    bus: Bus, node: Node, executor: SingleThreadedExecutor
+@pytest.mark.parametrize("attachment", [b"", b"nonsense", b"\x00" * 34])
+def test_a_message_without_ros_2_attachment_is_dropped_and_told_once(
+    bus: Bus, node: Node, executor: SingleThreadedExecutor, log_lines: list[Record], attachment: bytes
 ) -> None:
-    plain = numbers(node, "topic")
-    asking = node.create_subscription(Int32, "topic", lambda _, info: plain.append(-1), 10)
-    outlet = MemoryTransport(bus=bus).advertise(asking._endpoint.key, QoSProfile(depth=10))
-    outlet.put(encode(Int32(data=4)), b"nonsense")
+    """As rmw_zenoh does it, so that what works here works with a real robot."""
+    got = numbers(node, "topic")
+    (subscription,) = (each for each in node.subscriptions if each.topic_name == "/topic")
+    outlet = MemoryTransport(bus=bus).advertise(subscription._endpoint.key, QoSProfile(depth=10))
+    for data, sent in enumerate([attachment, attachment, pack_attachment(1, 2, b"*" * 16)]):
+        outlet.put(encode(Int32(data=data)), sent)
     spin_for(executor, 0.1)
-    assert plain == [4]
-    assert asking.malformed == 1
+    assert got == [2]
+    assert subscription.malformed == 2
+    (warning,) = (each.message for each in log_lines if each.severity.name == "WARN")
+    assert (
+        f"/topic: dropped a message whose attachment is not ROS 2's: an attachment has 33 bytes, got {len(attachment)}"
+        in warning
+    )
 
 
 def test_what_was_destroyed_is_of_no_use(node: Node) -> None:

@@ -1,44 +1,82 @@
-"""The standard message and service types, one package for each of ROS 2's, and the way to find a type by name.
+"""The standard message, service and action types, one package for each of ROS 2's, and the way to find a type by name.
 
 >>> from robolink.interfaces import find
 >>> find("Twist")  # geometry_msgs.msg is imported now, and only it
 <class 'robolink.interfaces.geometry_msgs.msg.Twist'>
+
+Types that do not come with robolink are found in the same way, once their source is added (`add_source`); the
+workspace's `.msg`, `.srv` and `.action` files are one (`robolink.workspace.use_interfaces`).
 """
 
 from __future__ import annotations
 
 import importlib
-from typing import Any
+from collections.abc import Collection, Mapping
+from typing import Any, Protocol
 
 from robolink.exceptions import MessageError, NotFoundError
 from robolink.interfaces._standard import STANDARD
 
-__all__ = ["find", "names", "register"]
+__all__ = ["Source", "add_source", "find", "find_announced", "names", "register", "remove_source"]
 
 KINDS = {"msg": "message", "srv": "service", "action": "action"}
 """What a type name's middle part stands for."""
-FIRST = ("std_msgs", "std_srvs")
-"""The packages whose types a bare name stands for, when others have it too."""
+FIRST = (("std_msgs", "std_srvs"), ("geometry_msgs", "sensor_msgs", "nav_msgs"))
+"""The packages whose types a bare name stands for, when others have it too; those named first go first."""
+ACTION_PARTS = {
+    "SendGoal": "SendGoalService",
+    "GetResult": "GetResultService",
+    "FeedbackMessage": "FeedbackMessage",
+}
+"""How the types of an action's services and topic end, and what its `Impl` calls them."""
+
+
+class Source(Protocol):
+    """Where types come from that are not robolink's own."""
+
+    def names(self, kind: str) -> Mapping[str, Collection[str]]:
+        """Give the types of a kind that there are now: package to the names within it. Nothing is read or built."""
+
+    def get(self, package: str, kind: str, short: str) -> type[Any] | None:
+        """Give the class of a type, None when there is none. Raises MessageError when its definition is wrong."""
+
 
 _registered: dict[str, type[Any]] = {}
+_sources: tuple[Source, ...] = ()
 
 
 def find(name: str, kind: str = "msg") -> type[Any]:
     """Give the class of a type named ``Twist``, ``geometry_msgs/Twist`` or ``geometry_msgs/msg/Twist``.
 
     `kind` is ``msg``, ``srv`` or ``action``; dots may stand for the slashes. Raises NotFoundError, with the nearest
-    name, when there is no such type, and MessageError when the text is no type name, is the name of another kind, or
-    stands for several types.
+    name, when there is no such type, and MessageError when the text is no type name, is the name of another kind,
+    stands for several types, or its definition is wrong.
     """
     package, short = _split(name, kind)
-    if not package:
-        package = _package_of(short, kind)
-    elif package not in _packages():
+    found = _get(package or _package_of(short, kind), kind, short)
+    if found is not None:
+        return found
+    types = _types(kind)
+    if package not in types and package not in _packages():
         raise NotFoundError("interface package", package, _packages())
-    elif short not in _types(kind).get(package, []):
-        raise NotFoundError(f"{KINDS[kind]} type", short, _types(kind).get(package, []), where=package)
-    registered = _registered.get(f"{package}/{kind}/{short}")
-    return registered or _standard(package, kind, short)
+    raise NotFoundError(f"{KINDS[kind]} type", short, types.get(package, ()), where=package)
+
+
+def find_announced(name: str) -> type[Any]:
+    """Give the class of a type that an endpoint names: a message, a service, or one of what an action is made of.
+
+    >>> find_announced("std_srvs/srv/Trigger")
+    <class 'robolink.interfaces.std_srvs.srv.Trigger'>
+
+    The name is full. Raises what `find` raises.
+    """
+    package, _, rest = name.partition("/")
+    kind, _, short = rest.partition("/")
+    action, _, part = short.rpartition("_")
+    if kind == "action" and part in ACTION_PARTS:
+        found: type[Any] = getattr(find(f"{package}/action/{action}", "action").Impl, ACTION_PARTS[part])
+        return found
+    return find(name, kind if kind in KINDS else "msg")
 
 
 def names(kind: str = "msg") -> list[str]:
@@ -47,8 +85,25 @@ def names(kind: str = "msg") -> list[str]:
 
 
 def register(interface: type[Any]) -> None:
-    """Make a message, service or action class known by its type name, in place of a standard one of that name."""
+    """Make a message, service or action class known by its type name, in place of any other of that name."""
     _registered[interface.__ros_type__] = interface
+
+
+def add_source(source: Source) -> None:
+    """Find types there too, before robolink's own and after the sources added earlier; once, however often added.
+
+    A source may add to a standard package and replace a type of it. Where its type has the very hash of the standard
+    one, the standard class is given: a copy of a standard file changes nothing.
+    """
+    global _sources
+    if source not in _sources:
+        _sources = (*_sources, source)
+
+
+def remove_source(source: Source) -> None:
+    """Look there no longer."""
+    global _sources
+    _sources = tuple(each for each in _sources if each is not source)
 
 
 def _split(name: str, kind: str) -> tuple[str, str]:
@@ -57,15 +112,17 @@ def _split(name: str, kind: str) -> tuple[str, str]:
     said = parts[1] if len(parts) == 3 else kind
     if len(parts) > 3 or said not in KINDS or not all(part.isascii() and part.isidentifier() for part in parts):
         shown = name if len(name) <= 80 else name[:77] + "..."
-        example = (
-            "Trigger, std_srvs/Trigger or std_srvs/srv/Trigger"
-            if kind == "srv"
-            else ("Twist, geometry_msgs/Twist or geometry_msgs/msg/Twist")
-        )
-        raise MessageError(f"'{shown}' is no type name; it should look like {example}")
+        raise MessageError(f"'{shown}' is no type name; it should look like {_EXAMPLES[kind]}")
     if said != kind:
         raise MessageError(f"'{name}' is the name of a {KINDS[said]} type; a {KINDS[kind]} type is asked for")
     return ("" if len(parts) == 1 else parts[0]), parts[-1]
+
+
+_EXAMPLES = {
+    "msg": "Twist, geometry_msgs/Twist or geometry_msgs/msg/Twist",
+    "srv": "Trigger, std_srvs/Trigger or std_srvs/srv/Trigger",
+    "action": "NavigateToPose, nav2_msgs/NavigateToPose or nav2_msgs/action/NavigateToPose",
+}
 
 
 def _package_of(short: str, kind: str) -> str:
@@ -73,7 +130,7 @@ def _package_of(short: str, kind: str) -> str:
     packages = [package for package in types if short in types[package]]
     if not packages:
         raise NotFoundError(f"{KINDS[kind]} type", short, [each for known in types.values() for each in known])
-    preferred = [package for package in packages if package in FIRST] or packages
+    preferred = next(filter(None, ([each for each in packages if each in group] for group in FIRST)), packages)
     if len(preferred) > 1:
         candidates = " or ".join(f"{package}/{kind}/{short}" for package in preferred)
         raise MessageError(f"several {KINDS[kind]} types are named '{short}': say {candidates}")
@@ -82,9 +139,15 @@ def _package_of(short: str, kind: str) -> str:
 
 def _types(kind: str) -> dict[str, list[str]]:
     types = {package: text.split() for package, text in STANDARD[kind].items()}
+    known = [
+        (package, short) for source in _sources for package, shorts in source.names(kind).items() for short in shorts
+    ]
     for full_name in _registered:
         package, of_kind, short = full_name.split("/")
-        if of_kind == kind and short not in types.setdefault(package, []):
+        if of_kind == kind:
+            known.append((package, short))
+    for package, short in known:
+        if short not in types.setdefault(package, []):
             types[package].append(short)
     return types
 
@@ -93,6 +156,26 @@ def _packages() -> list[str]:
     return sorted({package for kind in KINDS for package in _types(kind)})
 
 
-def _standard(package: str, kind: str, short: str) -> type[Any]:
+def _get(package: str, kind: str, short: str) -> type[Any] | None:
+    registered = _registered.get(f"{package}/{kind}/{short}")
+    if registered is not None:
+        return registered
+    standard = _standard(package, kind, short)
+    for source in _sources:
+        found = source.get(package, kind, short)
+        if found is not None:
+            return standard if standard is not None and _same(found, standard) else found
+    return standard
+
+
+def _standard(package: str, kind: str, short: str) -> type[Any] | None:
+    if short not in STANDARD[kind].get(package, "").split():
+        return None
     found: type[Any] = getattr(importlib.import_module(f"robolink.interfaces.{package}.{kind}"), short)
     return found
+
+
+def _same(one: type[Any], other: type[Any]) -> bool:
+    from robolink.message import type_hash
+
+    return type_hash(one) == type_hash(other)

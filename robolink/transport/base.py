@@ -95,7 +95,9 @@ class Transport(ABC):
     def watch(self, pattern: str, on_change: Callable[[str, bool], object]) -> Handle:
         """Call `on_change(token, alive)` for each token that matches `pattern`, those already there first.
 
-        This one is called on a thread of the transport's own and may do a little work.
+        This one is called on a thread of the transport's own and may do a little work. It may give False for a
+        token that it has no use for: that one is not remembered, so that nonsense costs no memory, and may be told
+        of again.
         """
 
     @abstractmethod
@@ -109,6 +111,10 @@ class Transport(ABC):
     @abstractmethod
     def read(self, arrived: Any) -> Sample:
         """Turn what a subscription's or a call's sink got into bytes. Raises TransportError on an error reply."""
+
+    def size(self, arrived: Any) -> int:
+        """Tell how many bytes the payload of what a subscription's sink got has, without copying them."""
+        return len(self.read(arrived).payload)
 
     @abstractmethod
     def accept(self, arrived: Any) -> Query:

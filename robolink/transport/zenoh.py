@@ -24,10 +24,10 @@ from robolink.transport import zenoh_handles as handles
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport
 
 QUIET = 0.03
-"""Seconds without news after which the list of tokens counts as complete."""
+"""Seconds without news after which no more peers are expected."""
 
-PATIENCE = 0.4
-"""Seconds after which it is given as it is."""
+PATIENCE = 0.5
+"""Seconds after which the list of tokens is given as it is."""
 
 CLOSE_WITHIN = 0.15
 """Seconds that closing may take before it goes on in the background."""
@@ -97,7 +97,7 @@ class ZenohTransport(Transport):
         arrived: queue.SimpleQueue[Any] = queue.SimpleQueue()
         subscriber = self._try(pattern, declare.declare_watch, pattern, declare.direct(arrived.put))
         try:
-            return sorted(_settled(arrived, self._peers))
+            return sorted(_settled(arrived, functools.partial(self._try, pattern, declare.ask, pattern), self._peers))
         finally:
             declare.quietly(subscriber.undeclare)
 
@@ -111,6 +111,10 @@ class ZenohTransport(Transport):
             own: Sample = arrived
             return own
         return handles.content_of_reply(arrived)
+
+    def size(self, arrived: Any) -> int:
+        """Tell how many bytes the payload of what a subscription's sink got has, without copying them."""
+        return len(arrived.payload)
 
     def accept(self, arrived: Any) -> Query:
         """Turn what a server's sink got into a Query."""
@@ -167,17 +171,34 @@ def _in_use(entities: list[object]) -> bool:
     return any(sys.getrefcount(each) > idle for each in entities)
 
 
-def _settled(arrived: queue.SimpleQueue[Any], peers: Callable[[], set[str]]) -> set[str]:
-    """Collect tokens until no more come and no more peers turn up."""
-    changes, known = handles.Changes(lambda token, alive: None), peers()
-    deadline = time.monotonic() + PATIENCE
+def _settled(
+    arrived: queue.SimpleQueue[Any], ask: Callable[[Callable[[], object], float], object], peers: Callable[[], set[str]]
+) -> set[str]:
+    """Collect tokens until all peers have told theirs and no more peers turn up."""
+    changes, deadline = handles.Changes(lambda token, alive: None), time.monotonic() + PATIENCE
+
+    def collect(longest: float) -> bool:
+        """Take what comes until nothing does for so long; whether it was because the peers have answered."""
+        while (left := deadline - time.monotonic()) > 0:
+            try:
+                sample = arrived.get(timeout=min(left, longest))
+            except queue.Empty:
+                return False
+            if sample is None:
+                return True
+            changes(sample)
+        return False
+
+    was_quiet = False
     while (left := deadline - time.monotonic()) > 0:
-        try:
-            changes(arrived.get(timeout=min(left, QUIET)))
-        except queue.Empty:
-            before, known = known, peers()
-            if known == before:
-                break
+        before = peers()
+        # Silence alone proves nothing: a busy peer is silent too. Its answer comes after all its tokens.
+        ask(functools.partial(arrived.put, None), left)
+        collect(left)
+        if was_quiet and peers() == before:
+            break
+        collect(QUIET)
+        was_quiet = True
     return changes.alive
 
 
@@ -195,7 +216,7 @@ def _join(domain: int, asked: str | None, environ: Mapping[str, str]) -> tuple[z
     try:
         if network.meets_at_port(value, environ):
             return _meet(port, open_session)
-        return open_session(True), None
+        return open_session(False), None  # nobody would look for it at the rendezvous port
     except zenoh.ZError as error:
         raise TransportError(f"cannot join the network '{value}': {network.reason(error)}") from None
 

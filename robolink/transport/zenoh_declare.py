@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import threading
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -11,6 +12,9 @@ import zenoh
 
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from robolink.transport.base import Sink
+
+MOST_BETWEEN = 1 << 16
+"""Samples of a latched topic that wait for their thread; when there are more, Zenoh waits."""
 
 FOR_EVER = 1e9
 """Seconds, 31 years: time is up to whoever waits for an answer."""
@@ -52,14 +56,25 @@ def declare_subscriber(session: zenoh.Session, key: str, gate: Sink, qos: QoSPro
         return session.declare_subscriber(key, direct(gate), allowed_origin=zenoh.Locality.REMOTE)
     ext = zenoh.ext
     reliable = qos.reliability is ReliabilityPolicy.RELIABLE
-    return ext.declare_advanced_subscriber(
+    # Not called directly: an advanced subscriber is locked while it calls, and would wait for Python; an advanced
+    # publisher of the same process that is undeclared meanwhile keeps Python and waits for that lock.
+    subscriber = ext.declare_advanced_subscriber(
         session,
         key,
-        direct(gate),
+        zenoh.handlers.FifoChannel(MOST_BETWEEN),
         history=ext.HistoryConfig(detect_late_publishers=True, max_samples=qos.depth),
         recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if reliable else None,
         subscriber_detection=True,
     )
+    threading.Thread(target=_hand_on, args=(subscriber.handler, gate), name="robolink latched", daemon=True).start()
+    return subscriber
+
+
+def _hand_on(channel: Any, gate: Sink) -> None:
+    """Give what arrives to the gate until the subscriber is gone."""
+    with contextlib.suppress(zenoh.ZError):
+        for sample in channel:
+            gate(sample)
 
 
 def declare_server(session: zenoh.Session, key: str, gate: Sink) -> Any:
@@ -93,6 +108,11 @@ def declare_token(session: zenoh.Session, token: str) -> Any:
 def declare_watch(session: zenoh.Session, pattern: str, handler: Any) -> Any:
     """See tokens come and go, those already there first."""
     return session.liveliness().declare_subscriber(pattern, handler, history=True)
+
+
+def ask(session: zenoh.Session, pattern: str, answered: Callable[[], object], timeout: float) -> None:
+    """Have all peers tell their tokens; `answered()` when they have, or after `timeout` seconds."""
+    session.liveliness().get(pattern, direct(bool, answered), timeout=timeout)
 
 
 def direct(callback: Callable[[Any], object], drop: Callable[[], object] | None = None) -> Any:

@@ -183,7 +183,8 @@ class Changes:
         with self._telling:
             if self._on_change and alive != (token in self.alive):
                 (self.alive.add if alive else self.alive.discard)(token)
-                self._on_change(token, alive)
+                if self._on_change(token, alive) is False:
+                    self.alive.discard(token)
 
     def end(self) -> None:
         """Tell nothing any more."""

@@ -1,0 +1,130 @@
+"""What a node owns: its publishers, subscriptions, services, clients, timers and guard conditions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from robolink.client import Client
+from robolink.entity import Entity
+from robolink.event_handler import with_callbacks
+from robolink.guard_condition import GuardCondition
+from robolink.publisher import Publisher
+from robolink.service import Service
+from robolink.subscription import Subscription
+from robolink.timer import Rate, Timer
+
+if TYPE_CHECKING:
+    from robolink.executors import Executor
+
+EntityT = TypeVar("EntityT", bound=Entity)
+
+
+class NodeEntities:
+    """The part of a node that keeps what it has made, and unmakes it."""
+
+    def _init_entities(self) -> None:
+        self._publishers: list[Publisher[Any]] = []
+        self._subscriptions: list[Subscription[Any]] = []
+        self._clients: list[Client] = []
+        self._services: list[Service] = []
+        self._timers: list[Timer] = []
+        self._guards: list[GuardCondition] = []
+
+    @property
+    def executor(self) -> Executor | None:
+        """The executor that the node was added to."""
+        raise NotImplementedError
+
+    @property
+    def publishers(self) -> Iterator[Publisher[Any]]:
+        """Its publishers."""
+        yield from self._publishers
+
+    @property
+    def subscriptions(self) -> Iterator[Subscription[Any]]:
+        """Its subscriptions."""
+        yield from self._subscriptions
+
+    @property
+    def clients(self) -> Iterator[Client]:
+        """Its clients."""
+        yield from self._clients
+
+    @property
+    def services(self) -> Iterator[Service]:
+        """Its services."""
+        yield from self._services
+
+    @property
+    def timers(self) -> Iterator[Timer]:
+        """Its timers."""
+        yield from self._timers
+
+    @property
+    def guards(self) -> Iterator[GuardCondition]:
+        """Its guard conditions."""
+        yield from self._guards
+
+    def entities(self) -> list[Entity]:
+        """All that an executor runs."""
+        own: list[Entity] = [*self._subscriptions, *self._services, *self._clients, *self._timers, *self._guards]
+        for publisher in self._publishers:
+            own += with_callbacks(publisher.event_handlers)
+        for subscription in self._subscriptions:
+            own += with_callbacks(subscription.event_handlers)
+        return own
+
+    def _add(self, entity: EntityT, group: list[EntityT]) -> EntityT:
+        group.append(entity)
+        self._attach(entity)
+        return entity
+
+    def _attach(self, *entities: Entity) -> None:
+        executor = self.executor
+        if executor is not None:
+            for entity in entities:
+                executor.attach(entity)
+
+    def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
+        """Undeclare a publisher; False when it is none of this node's."""
+        return _destroy(publisher, self._publishers)
+
+    def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
+        """Undeclare a subscription; False when it is none of this node's."""
+        return _destroy(subscription, self._subscriptions)
+
+    def destroy_client(self, client: Client) -> bool:
+        """Undeclare a client; False when it is none of this node's."""
+        return _destroy(client, self._clients)
+
+    def destroy_service(self, service: Service) -> bool:
+        """Undeclare a service; False when it is none of this node's."""
+        return _destroy(service, self._services)
+
+    def destroy_timer(self, timer: Timer) -> bool:
+        """End a timer; False when it is none of this node's."""
+        return _destroy(timer, self._timers)
+
+    def destroy_guard_condition(self, guard: GuardCondition) -> bool:
+        """End a guard condition; False when it is none of this node's."""
+        return _destroy(guard, self._guards)
+
+    def destroy_rate(self, rate: Rate) -> bool:
+        """End a rate; False when it is none of this node's."""
+        found = self.destroy_timer(rate._timer)
+        rate.destroy()
+        return found
+
+    def _destroy_entities(self) -> None:
+        for owned in (self._publishers, self._subscriptions, self._clients, self._services, self._timers, self._guards):
+            for entity in list(owned):
+                _destroy(entity, owned)
+
+
+def _destroy(entity: Any, owned: list[Any]) -> bool:
+    if entity not in owned:
+        return False
+    owned.remove(entity)
+    entity.destroy()
+    return True

@@ -1,0 +1,102 @@
+"""What is known about one publisher or subscription of a topic."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any
+
+from robolink.qos import HistoryPolicy, QoSPresetProfiles, QoSProfile
+from robolink.type_hash import TypeHash
+
+
+class TopicEndpointTypeEnum(IntEnum):
+    """The kinds of endpoints, numbered as in rmw."""
+
+    INVALID = 0
+    PUBLISHER = 1
+    SUBSCRIPTION = 2
+
+
+_FIELDS: dict[str, type] = {
+    "node_name": str,
+    "node_namespace": str,
+    "topic_type": str,
+    "topic_type_hash": TypeHash,
+    "endpoint_type": TopicEndpointTypeEnum,
+    "endpoint_gid": list,
+    "qos_profile": QoSProfile,
+}
+
+
+class TopicEndpointInfo:
+    """One end of a topic: whose it is, its type and hash, which end, its gid (16 numbers), and its profile.
+
+    A hash or a profile may be given as the dictionary of its parts, the kind of end as its number; a value of
+    another type is an AssertionError, as in rclpy.
+    """
+
+    __slots__ = tuple(_FIELDS)
+
+    node_name: str
+    node_namespace: str
+    topic_type: str
+    topic_type_hash: TypeHash
+    endpoint_type: TopicEndpointTypeEnum
+    endpoint_gid: list[int]
+    qos_profile: QoSProfile
+
+    def __init__(
+        self,
+        node_name: str = "",
+        node_namespace: str = "",
+        topic_type: str = "",
+        topic_type_hash: TypeHash | None = None,
+        endpoint_type: TopicEndpointTypeEnum = TopicEndpointTypeEnum.INVALID,
+        endpoint_gid: list[int] | None = None,
+        qos_profile: QoSProfile = QoSPresetProfiles.UNKNOWN.value,
+    ) -> None:
+        self.node_name = node_name
+        self.node_namespace = node_namespace
+        self.topic_type = topic_type
+        self.topic_type_hash = TypeHash() if topic_type_hash is None else topic_type_hash
+        self.endpoint_type = endpoint_type
+        self.endpoint_gid = [] if endpoint_gid is None else endpoint_gid
+        self.qos_profile = qos_profile
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        kind = _FIELDS.get(name)
+        if kind is None:
+            raise AttributeError(f"a TopicEndpointInfo has no field {name!r}")
+        if isinstance(value, dict):
+            value = kind(**value)
+        elif kind is TopicEndpointTypeEnum and isinstance(value, int):
+            value = kind(value)
+        assert isinstance(value, kind), f"{name} must be of type {kind.__name__}, got {value!r}"
+        object.__setattr__(self, name, value)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, TopicEndpointInfo) and all(getattr(self, n) == getattr(other, n) for n in _FIELDS)
+
+    __hash__ = None  # type: ignore[assignment]  # mutable and compared by value, like a list
+
+    def __str__(self) -> str:
+        qos = self.qos_profile
+        depth = f" ({qos.depth})" if qos.history is HistoryPolicy.KEEP_LAST else ""
+        return "\n".join(
+            [
+                f"Node name: {self.node_name}",
+                f"Node namespace: {self.node_namespace}",
+                f"Topic type: {self.topic_type}",
+                f"Topic type hash: {self.topic_type_hash}",
+                f"Endpoint type: {self.endpoint_type.name}",
+                f"GID: {'.'.join(f'{byte:02x}' for byte in self.endpoint_gid)}",
+                "QoS profile:",
+                f"  Reliability: {qos.reliability.name}",
+                f"  History (Depth): {qos.history.name}{depth}",
+                f"  Durability: {qos.durability.name}",
+                f"  Lifespan: {qos.lifespan}",
+                f"  Deadline: {qos.deadline}",
+                f"  Liveliness: {qos.liveliness.name}",
+                f"  Liveliness lease duration: {qos.liveliness_lease_duration}",
+            ]
+        )

@@ -1,0 +1,134 @@
+"""The service ``~/get_type_description`` of a node: what the types that it uses are made of."""
+
+from __future__ import annotations
+
+import re
+import weakref
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from robolink.callback_groups import MutuallyExclusiveCallbackGroup
+from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor, ParameterType
+from robolink.message import Service, type_hash, type_name
+from robolink.message.description import described, to_message
+from robolink.message.text import text_of
+from robolink.parameter import Parameter
+from robolink.wire import NO_HASH
+
+if TYPE_CHECKING:
+    from robolink.interfaces.type_description_interfaces.srv import GetTypeDescription
+    from robolink.node import Node
+
+START_TYPE_DESCRIPTION_SERVICE_PARAM = "start_type_description_service"
+SERVICE_NAME = "get_type_description"
+HASH = re.compile(r"RIHS01_[0-9a-f]{64}", re.ASCII)
+
+
+class TypeDescriptionService:
+    """Declares the parameter `start_type_description_service`, and serves unless that is false.
+
+    It answers for the types of the node's publishers, subscriptions, services and clients, for the messages that a
+    service is made of, and for an action whose services they are. A request states the type's hash, which alone
+    counts then, or only its name. A group of its own makes the answer come while other callbacks run, where the
+    executor has several threads.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = weakref.ref(node)  # the transport holds the service: it must not keep the node alive
+        self.enabled = _enabled(node) and not node.context.speaks_humble
+        if self.enabled:
+            from robolink.interfaces.type_description_interfaces.srv import GetTypeDescription
+
+            group = MutuallyExclusiveCallbackGroup()
+            node.create_service(GetTypeDescription, f"~/{SERVICE_NAME}", self._answer, callback_group=group)
+
+    def _answer(
+        self, request: GetTypeDescription.Request, response: GetTypeDescription.Response
+    ) -> GetTypeDescription.Response:
+        asked = "" if request.type_hash == NO_HASH else request.type_hash
+        if asked and not HASH.fullmatch(asked):
+            return _refused(response, "Failed to parse type hash")
+        for each in self._types():
+            if (type_hash(each) == asked) if asked else (type_name(each) == request.type_name):
+                return _described(response, each, request.include_type_sources)
+        return _refused(response, "Type not currently in use by this node")
+
+    def _types(self) -> Iterator[type[Any]]:
+        node = self._node()
+        if node is None:
+            return
+        yield from (each.msg_type for each in node.publishers)
+        yield from (each.msg_type for each in node.subscriptions)
+        services = [each.srv_type for each in node.services] + [each.srv_type for each in node.clients]
+        for service in services:
+            yield service
+            yield from (service.Request, service.Response, service.Event)
+            action = getattr(service, "__ros_action__", None)
+            if action is not None:
+                yield from (action, action.Goal, action.Result, action.Feedback)
+
+
+def _enabled(node: Node) -> bool:
+    name = START_TYPE_DESCRIPTION_SERVICE_PARAM
+    if not node.has_parameter(name):
+        descriptor = ParameterDescriptor(
+            name=name,
+            type=ParameterType.PARAMETER_BOOL,
+            description="If enabled, start the ~/get_type_description service.",
+            read_only=True,
+        )
+        node.declare_parameter(name, True, descriptor)
+    parameter = node.get_parameter(name)
+    if parameter.type_ is not Parameter.Type.BOOL:  # somebody declared it before, with a type of their own
+        node.get_logger().error(
+            f"parameter {name}: expected a bool, got {parameter.value!r}; there is no ~/{SERVICE_NAME}"
+        )
+        return False
+    return bool(parameter.value)
+
+
+def _refused(response: GetTypeDescription.Response, reason: str) -> GetTypeDescription.Response:
+    response.successful, response.failure_reason = False, reason
+    return response
+
+
+def _described(
+    response: GetTypeDescription.Response, asked: type[Any], with_sources: bool
+) -> GetTypeDescription.Response:
+    from robolink.interfaces.type_description_interfaces.msg import TypeSource
+
+    response.successful, response.failure_reason = True, ""
+    response.type_description = to_message(described(asked))
+    if with_sources:
+        response.type_sources = [TypeSource(**_source(each)) for each in _reached(asked)]
+    return response
+
+
+def _reached(asked: type[Any]) -> list[type[Any]]:
+    """Give a type and then, by name, those that it is made of."""
+    found: dict[str, type[Any]] = {}
+    waiting = [asked]
+    while waiting:
+        each = waiting.pop()
+        if type_name(each) not in found:
+            found[type_name(each)] = each
+            waiting.extend(_made_of(each))
+    del found[type_name(asked)]
+    return [asked, *(found[name] for name in sorted(found))]
+
+
+def _made_of(cls: type[Any]) -> list[type[Any]]:
+    if hasattr(cls, "__ros_fields__"):
+        return [kind.message for kind in cls.__ros_fields__.values() if kind.message is not None]
+    if issubclass(cls, Service):
+        return [cls.Request, cls.Response, cls.Event]
+    impl = cls.Impl
+    return [cls.Goal, cls.Result, cls.Feedback, impl.SendGoalService, impl.GetResultService, impl.FeedbackMessage]
+
+
+def _source(cls: type[Any]) -> dict[str, str]:
+    """Give the fields of a TypeSource. What no file says by itself, such as a request, is `implicit`, as in ROS 2."""
+    _, kind, short = type_name(cls).split("/")
+    if kind != "msg" and "_" in short:
+        return {"type_name": type_name(cls), "encoding": "implicit", "raw_file_contents": ""}
+    return {"type_name": type_name(cls), "encoding": kind, "raw_file_contents": text_of(cls)}
