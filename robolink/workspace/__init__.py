@@ -1,4 +1,4 @@
-"""The workspace: a folder with `nodes/` and `configs/`, found (`find`) and loaded (`load`) by name."""
+"""The workspace: a folder with `nodes/` and `configs/`, found (`find`) and loaded (`load`) by name, and its types."""
 
 from robolink.workspace.find import (
     VARIABLE,
@@ -15,11 +15,13 @@ from robolink.workspace.find import (
     user_workspace,
     workspace_of,
 )
+from robolink.workspace.interfaces import InterfaceImportError, use_interfaces
 from robolink.workspace.load import NodeLoadError, load_module, load_node
 
 __all__ = [
     "VARIABLE",
     "Folder",
+    "InterfaceImportError",
     "NodeLoadError",
     "NodeSource",
     "built_in_workspace",
@@ -32,6 +34,7 @@ __all__ = [
     "list_worlds",
     "load_module",
     "load_node",
+    "use_interfaces",
     "user_workspace",
     "workspace_of",
 ]

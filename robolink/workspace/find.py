@@ -1,6 +1,6 @@
 """Find nodes, launch files and worlds by name.
 
-A workspace is a folder with `nodes/` and `configs/`. A name is looked up (1) as a path, (2) in the nearest
+A workspace is a folder with two of `nodes/`, `configs/` and `interfaces/`. A name is looked up (1) as a path, (2) in the nearest
 workspace: the one asked for, `ROBOLINK_WORKSPACE`, or the working directory's or a parent's, (3) among the entry
 points `robolink.nodes` of installed packages, (4) in the workspace that comes with robolink. `_` and `-` in names
 are the same.
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 VARIABLE = "ROBOLINK_WORKSPACE"
 ENTRY_POINTS = "robolink.nodes"
 YAML = (".yaml", ".yml")
+PARTS = ("nodes", "configs", "interfaces")
 Folder: TypeAlias = "str | os.PathLike[str] | None"
 
 
@@ -98,7 +99,7 @@ def user_workspace(workspace: Folder = None) -> Path | None:
 
 
 def workspace_of(path: Path) -> Path | None:
-    """Give the nearest folder at or above `path` that has `nodes/` and `configs/`."""
+    """Give the nearest folder at or above `path` that is a workspace."""
     path = path.resolve()
     return next((each for each in (path, *path.parents) if _is_workspace(each)), None)
 
@@ -116,7 +117,8 @@ def canonical(name: str) -> str:
 
 
 def _is_workspace(folder: Path) -> bool:
-    return (folder / "nodes").is_dir() and (folder / "configs").is_dir()
+    # One of them alone means nothing: many a folder has a `configs/`.
+    return sum((folder / part).is_dir() for part in PARTS) >= 2
 
 
 def _workspaces(workspace: Folder) -> list[Path]:

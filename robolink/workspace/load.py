@@ -11,7 +11,8 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robolink.exceptions import NotFoundError, RobolinkError
-from robolink.workspace.find import NodeSource
+from robolink.workspace.find import NodeSource, workspace_of
+from robolink.workspace.interfaces import use_interfaces
 
 if TYPE_CHECKING:
     import ast
@@ -34,6 +35,7 @@ def load_node(source: NodeSource) -> Runnable:
     """
     if source.path is None:
         assert source.entry_point is not None
+        use_interfaces()
         return _checked(source.entry_point.load(), source.entry_point.value)
     if source.attribute:
         return _attribute(load_module(source.path), source)
@@ -47,8 +49,8 @@ def load_node(source: NodeSource) -> Runnable:
 def load_module(path: Path) -> ModuleType:
     """Load a Python file as a module of its own, named by its whole path; a second time, give the same.
 
-    Its folder is appended to `sys.path`, so that it finds its neighbours. Raises `NodeLoadError` for a file that
-    is no Python, and whatever the file itself raises.
+    Its folder is appended to `sys.path`, so that it finds its neighbours, and the types of its workspace can be
+    imported. Raises `NodeLoadError` for a file that is no Python, and whatever the file itself raises.
     """
     path = path.resolve()
     name = str(path)
@@ -106,6 +108,8 @@ def _script(path: Path) -> Callable[[], Any]:
 
 
 def _reach(folder: Path) -> None:
+    """Let what a file in this folder imports be found: its neighbours and the types of its workspace."""
+    use_interfaces(workspace_of(folder))
     if str(folder) not in sys.path:
         sys.path.append(str(folder))
 

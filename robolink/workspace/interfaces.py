@@ -1,0 +1,180 @@
+"""The types of a workspace: the `.msg`, `.srv` and `.action` files in `interfaces/PACKAGE/{msg,srv,action}/`.
+
+They are known by name (`robolink.interfaces.find`) and importable, `from my_msgs.msg import WheelSpeeds`, in every node
+that `robolink run` or `robolink launch` starts, and anywhere after `use_interfaces()`.
+"""
+
+from __future__ import annotations
+
+import functools
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from robolink import interfaces
+from robolink.exceptions import DefinitionError, MessageError, NotFoundError
+from robolink.workspace.find import Folder, built_in_workspace, user_workspace
+from robolink.workspace.modules import Fill, ModuleFinder
+
+INTERFACES = "interfaces"
+DEEPEST = 48
+"""Messages within messages; each is read while the one before is."""
+
+
+class InterfaceImportError(MessageError, ImportError):
+    """A type cannot be imported since its definition is wrong; the text begins with file:line:column."""
+
+
+class WorkspaceTypes:
+    """The types that workspaces define: those that were added, the latest first, the user's, the built-in one.
+
+    The user's is looked for anew each time, as `robolink.workspace` does: it is what the environment names, or the
+    nearest. A question costs the listing of a few folders; a file is read when its type is first asked for, once.
+    """
+
+    def __init__(self) -> None:
+        self._added: list[Path] = []
+        self._made: dict[Path, type[Any]] = {}
+        self._making: list[Path] = []
+        self._lock = threading.RLock()
+
+    def add(self, workspace: Path) -> None:
+        """Look into this workspace before all others."""
+        self._added = [workspace, *(each for each in self._added if each != workspace)]
+
+    def folders(self) -> list[Path]:
+        """Give the folders of packages, in the order in which they are searched."""
+        user = user_workspace()
+        workspaces = [*self._added, *([user] if user is not None else []), built_in_workspace()]
+        return [each / INTERFACES for each in dict.fromkeys(workspaces)]
+
+    def names(self, kind: str) -> dict[str, list[str]]:
+        """Give the types of a kind: package to the names within it."""
+        found: dict[str, list[str]] = {}
+        for folder in self.folders():
+            for package in _listed(folder):
+                shorts = (name.removesuffix(f".{kind}") for name in _listed(folder / package / kind, f".{kind}"))
+                found.setdefault(package, []).extend(shorts)
+        return {package: shorts for package, shorts in found.items() if shorts}
+
+    def places(self, package: str, kind: str = "") -> list[Path]:
+        """Give the folders of a package, or of its types of a kind."""
+        found = [folder / package for folder in self.folders() if package in _listed(folder)]
+        return [each / kind for each in found if not kind or kind in _listed(each)]
+
+    def get(self, package: str, kind: str, short: str) -> type[Any] | None:
+        """Give the class of a type, None when no workspace defines it. Raises DefinitionError."""
+        file = f"{short}.{kind}"
+        for folder in self.places(package, kind):
+            if file in _listed(folder, f".{kind}"):
+                return self._class_of(folder / file, f"{package}/{kind}/{short}")
+        return None
+
+    def _class_of(self, path: Path, type_name: str) -> type[Any]:
+        with self._lock:
+            if path in self._making:
+                chain = " -> ".join(str(each) for each in [*self._making[self._making.index(path) :], path])
+                raise MessageError(f"a message cannot contain itself: {chain}")
+            if len(self._making) > DEEPEST:
+                raise MessageError(f"messages within messages over {DEEPEST} deep")
+            if path not in self._made:
+                self._making.append(path)
+                try:
+                    self._made[path] = _build(path, type_name)
+                finally:
+                    self._making.pop()
+            return self._made[path]
+
+
+def _listed(folder: Path, suffix: str = "") -> Iterator[str]:
+    """Yield the names in a folder that may be a package's or, with a suffix, a type's; nothing where it is none.
+
+    A listing, not a look at one path: on some systems `twist.msg` would find `Twist.msg`.
+    """
+    try:
+        names = sorted(each.name for each in folder.iterdir())
+    except OSError:
+        return
+    for name in names:
+        if name.endswith(suffix) and name.removesuffix(suffix).isidentifier():
+            yield name
+
+
+def _build(path: Path, type_name: str) -> type[Any]:
+    from robolink.message.building import build
+    from robolink.message.definition import parse
+
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise DefinitionError(f"{path}:1:1: cannot be read: {error}") from None
+    return build(parse(text, type_name, str(path)), interfaces.find)
+
+
+WORKSPACE_TYPES = WorkspaceTypes()
+FINDER = ModuleFinder()
+
+
+def use_interfaces(workspace: Folder = None) -> None:
+    """Make the types of workspaces known by name and importable in this process.
+
+    >>> use_interfaces()  # in a conftest.py, say
+    >>> from my_msgs.msg import WheelSpeeds  # interfaces/my_msgs/msg/WheelSpeeds.msg
+
+    `workspace` is a folder that is searched first; then the user's workspace, that of ROBOLINK_WORKSPACE or the
+    nearest, and the built-in one. Raises NotFoundError when one is named that is no folder.
+    """
+    if workspace is not None:
+        found = user_workspace(workspace)
+        assert found is not None  # one was named
+        WORKSPACE_TYPES.add(found)
+    interfaces.add_source(WORKSPACE_TYPES)
+    if FINDER not in sys.meta_path:
+        FINDER.makers = [_interface_module]
+        sys.meta_path.insert(0, FINDER)
+
+
+def _interface_module(fullname: str) -> Fill | None:
+    """Know `my_msgs` and `my_msgs.msg`, where a workspace has that folder."""
+    package, _, kind = fullname.partition(".")
+    if kind and kind not in interfaces.KINDS:
+        return None
+    try:
+        places = WORKSPACE_TYPES.places(package, kind)
+    except (NotFoundError, OSError):  # a workspace or working directory that is gone: other imports go on
+        return None
+    return functools.partial(_fill, package, kind, places[0]) if places else None
+
+
+def _fill(package: str, kind: str, place: Path, module: ModuleType) -> None:
+    """Give a module its place, for errors, and the types of its kind, each made when it is first used."""
+    module.__file__ = str(place)
+    if not kind:
+        return
+
+    def known() -> list[str]:
+        start = f"{package}/{kind}/"
+        return [name.removeprefix(start) for name in interfaces.names(kind) if name.startswith(start)]
+
+    def get(name: str) -> Any:
+        if name == "__all__":
+            return known()
+        if name.startswith("_"):
+            raise AttributeError(f"module '{module.__name__}' has no attribute '{name}'")
+        setattr(module, name, found := _imported(f"{package}/{kind}/{name}", kind, module))
+        return found
+
+    module.__getattr__ = get  # type: ignore[method-assign]
+    module.__dir__ = lambda: sorted({*vars(module), *known()})  # type: ignore[method-assign]
+
+
+def _imported(name: str, kind: str, module: ModuleType) -> type[Any]:
+    try:
+        return interfaces.find(name, kind)
+    except NotFoundError as error:
+        raise AttributeError(f"module '{module.__name__}': {error}") from None
+    except MessageError as error:
+        raise InterfaceImportError(str(error)) from None
