@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -29,8 +29,24 @@ def a_node_that_commands_see(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
 
 
 def made(context: Context, name: str, namespace: str = "") -> Node:
-    """A node with nothing of its own but /parameter_events."""
+    """A node with nothing of its own but /parameter_events and ~/get_type_description."""
     return Node(name, context=context, namespace=namespace, enable_rosout=False, start_parameter_services=False)
+
+
+def when_said(monkeypatch: pytest.MonkeyPatch, module: Any, function: str, action: Callable[[str], object]) -> None:
+    """Do something whenever a module of the command line has said something: by its `say` or its `tell`."""
+    original = getattr(module, function)
+
+    def speak(text: str) -> None:
+        original(text)
+        action(text)
+
+    monkeypatch.setattr(module, function, speak)
+
+
+def press_ctrl_c(text: str) -> None:
+    """Do what Ctrl-C does."""
+    raise KeyboardInterrupt
 
 
 def latch(node: Node, topic: str, *messages: Any) -> None:

@@ -12,11 +12,11 @@ import yaml
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from robolink.cli.show import as_json, as_yaml, check_path, field_of
+from robolink.cli.show import Style, as_csv, as_json, as_yaml, check_path, field_of
 from robolink.exceptions import EncodeError
 from robolink.interfaces.geometry_msgs.msg import PoseWithCovariance, Twist, Vector3
-from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.interfaces.std_msgs.msg import Byte, Empty, Header, String
+from robolink.interfaces.sensor_msgs.msg import Image, LaserScan
+from robolink.interfaces.std_msgs.msg import Byte, ByteMultiArray, Empty, Header, String
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.message import to_builtins
 
@@ -38,7 +38,7 @@ def test_a_long_sequence_and_a_long_text_are_cut_unless_wanted_whole() -> None:
     long = scan(*range(200))
     shown = yaml.safe_load(as_yaml(long))["ranges"]
     assert shown == [*map(float, range(128)), "..."]
-    assert len(yaml.safe_load(as_yaml(long, longest=None))["ranges"]) == 200
+    assert len(yaml.safe_load(as_yaml(long, Style(longest=None)))["ranges"]) == 200
     assert as_yaml(String(data="x" * 129)) == f"data: {'x' * 128}..."
     assert as_yaml(String(data="x" * 128)) == f"data: {'x' * 128}"
 
@@ -57,7 +57,60 @@ def test_scalars_texts_and_what_is_empty() -> None:
 @example("a\u2028b\u2029", [], 0.0)
 def test_yaml_reads_back_as_what_was_sent(frame: str, ranges: list[float], angle: float) -> None:
     message = LaserScan(header=Header(frame_id=frame), ranges=array("f", ranges), angle_min=angle)
-    assert yaml.safe_load(as_yaml(message, longest=None)) == to_builtins(message)
+    assert yaml.safe_load(as_yaml(message, Style(longest=None))) == to_builtins(message)
+
+
+@pytest.mark.parametrize(
+    ("value", "style", "shown"),
+    [
+        (TWIST, Style(flow=True), "{linear: {x: 0.3, y: 0.0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: -1.5}}"),
+        (scan(1.0, 2.0).ranges, Style(longest=1), "- 1.0\n- '...'"),
+        (String(data="hello"), Style(longest=2), "data: he..."),
+        (String(data="hello"), Style(longest=0), "data: '...'"),
+        (String(data="hello"), Style(strings=False), "data: '<string length: <5>>'"),
+        (
+            TFMessage(),
+            Style(arrays=False),
+            "transforms: '<sequence type: geometry_msgs/msg/TransformStamped, length: 0>'",
+        ),
+        (Image(data=bytes(70_000)).data, Style(longest=2), "- 0\n- 0\n- '...'"),
+        (ByteMultiArray(data=[b"\x01", b"\x02"]).data, Style(), "- 1\n- 2"),
+    ],
+)
+def test_how_much_is_shown_is_up_to_the_style(value: Any, style: Style, shown: str) -> None:
+    assert as_yaml(value, style) == shown
+
+
+def test_sequences_are_described_with_ros2s_words() -> None:
+    described = yaml.safe_load(as_yaml(scan(1.0, 2.0), Style(arrays=False)))
+    assert described["ranges"] == "<sequence type: float, length: 2>"
+    assert (
+        yaml.safe_load(as_yaml(PoseWithCovariance(), Style(arrays=False)))["covariance"] == "<array type: double[36]>"
+    )
+
+
+# --- values between commas ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("value", "style", "shown"),
+    [
+        (TWIST, Style(), "0.3,0.0,0.0,0.0,0.0,-1.5"),
+        (scan(1.0, 2.0), Style(), "0,0,laser,0.0,0.0,0.0,0.0,0.0,0.0,0.0,1.0,2.0,"),
+        (scan(1.0, 2.0, 4.0).ranges, Style(longest=2), "1.0,2.0,..."),
+        (String(data="a,b"), Style(), "a,b"),
+        (String(data="a,b"), Style(strings=False), "<string length: <3>>"),
+        (
+            scan(1.0),
+            Style(arrays=False),
+            "0,0,laser,0.0,0.0,0.0,0.0,0.0,0.0,0.0,<sequence type: float, length: 1>,<sequence type: float, length: 0>",
+        ),
+        (Byte(data=b"\x07"), Style(), "7"),
+        (TWIST.linear.x, Style(), "0.3"),
+    ],
+)
+def test_values_stand_between_commas(value: Any, style: Style, shown: str) -> None:
+    assert as_csv(value, style) == shown
 
 
 # --- JSON -----------------------------------------------------------------------------------------------------

@@ -9,10 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink import Node, RobolinkError
-from robolink.cli import main, pub
+from robolink.cli import main
+from robolink.cli.topic.stamps import Stamped
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.wire import EndpointKind, format_token
+from robolink.yamlfile import parse
 from tests.seen_by_commands import a_node_that_commands_see, latch
 
 Captured = pytest.CaptureFixture[str]
@@ -64,7 +65,14 @@ BAD: list[tuple[str, list[str], str]] = [
         "--field: expected a path such as linear.x or range",
     ),
     ("element", ["topic", "echo", "/s", "--field", "ranges[9]"], "--field ranges[9]: there are 2 elements, no [9]"),
-    ("unknown on wire", ["topic", "echo", "/odd"], "no interface package named 'odd_msgs'"),
+    ("no type yet", ["pub", "/x"], "nobody uses /x yet, so say its type: TOPIC TYPE VALUES"),
+    ("near topic", ["pub", "/vv", "{}"], "nobody uses /vv yet (did you mean '/v'?), so say its type"),
+    ("wait", ["pub", "/x", "Twist", "--max-wait-time-secs", "3"], "--max-wait-time-secs only says something with"),
+    ("filter", ["topic", "echo", "/v", "--filter", "m.liner"], "--filter: column 1: no field 'liner' (did you mean"),
+    ("filter of a field", ["topic", "echo", "/v", "--field", "linear", "--filter", "m.linear"], "--filter: column 1"),
+    ("filter of hz", ["topic", "hz", "/v", "--filter", "open('x')"], "--filter: column 1: no function 'open'"),
+    ("no header", ["topic", "delay", "/v"], "topic delay needs a std_msgs/msg/Header named header; geometry_msgs/msg"),
+    ("node name", ["topic", "echo", "/v", "-n", "a b"], "invalid node name 'a b'"),
 ]
 
 
@@ -72,9 +80,6 @@ BAD: list[tuple[str, list[str], str]] = [
 def test_bad_input_is_one_line_and_1(node: Node, args: list[str], report: str, capsys: Captured) -> None:
     latch(node, "/v", Twist())
     latch(node, "/s", LaserScan(ranges=[1.0, 2.0]))
-    own = next(each for each in node.context.graph.endpoints(EndpointKind.PUBLISHER, name="/v"))
-    foreign = own._replace(name="/odd", type_name="odd_msgs/msg/Odd", endpoint_id=99)
-    node.context.transport.announce(format_token(foreign))
     assert main(args) == 1
     out, err = capsys.readouterr()
     assert out == ""
@@ -129,11 +134,37 @@ def test_a_bad_environment_is_one_line_and_1(
         (["topic", "list", "--show-type"], "No such option: --show-type"),
         (["node", "list", "--jsn"], "No such option: --jsn"),
         (["topic", "list", "extra"], "Got unexpected extra argument"),
-        (["pub", "/x"], "Missing argument 'TYPE'"),
+        (["topic", "pub"], "Missing argument 'TOPIC'"),
+        (["topic", "hz"], "Missing argument 'TOPIC'"),
+        (["topic", "hz", "/x", "-w", "0"], "Invalid value for '--window' / '-w': 0 is not in the range"),
+        (["topic", "bw", "/x", "-w", "1"], "Invalid value for '--window' / '-w': 1 is not in the range"),
+        (
+            ["topic", "echo", "/x", "--timeout", "nan"],
+            "Invalid value for '--timeout': expected 0 to 1e+09 second",
+        ),
+        (
+            ["topic", "echo", "/x", "--timeout", "-1"],
+            "Invalid value for '--timeout': expected 0 to 1e+09 second",
+        ),
+        (
+            ["pub", "/x", "Twist", "--keep-alive", "inf"],
+            "Invalid value for '--keep-alive': expected 0 to 1e+09 sec",
+        ),
+        (["topic", "echo", "/x", "--csv", "--json"], "--csv and --json do not go together"),
+        (["topic", "echo", "/x", "--raw", "--field", "a"], "--raw and --field or --filter do not go together"),
+        (["topic", "echo", "/x", "-l", "-1"], "Invalid value for '--truncate-length' / '-l': -1 is not in the range"),
+        (["pub", "/x", "Twist", "{}", "--stdin"], "--stdin and VALUES do not go together"),
+        (["pub", "/x", "Twist", "-1", "-t", "2"], "--once and --times do not go together"),
+        (
+            ["pub", "/x", "Twist", "--qos-reliability", "relable"],
+            "Invalid value for '--qos-reliability': 'relable' is no",
+        ),
+        (["topic", "echo", "/x", "--qos-depth", "9" * 30], "Invalid value for '--qos-depth': 999"),
+        (["topic", "echo", "/x", "--qos-depth", "-1"], "Invalid value for '--qos-depth': -1 is not in the range"),
         (["pub", "/x", "Twist", "--times", "-3"], "Invalid value for '--times' / '-t': -3 is not in the range x>=0"),
         (["pub", "/x", "Twist", "-t", "two"], "Invalid value for '--times' / '-t': 'two' is not a valid int"),
         (["pub", "/x", "Twist", "-r", "fast"], "Invalid value for '--rate' / '-r': 'fast' is not a valid float"),
-        (["pub", "/x", "Twist", "-p", "0"], "Invalid value for '--print' / '-p': 0 is not in the range x>=1"),
+        (["pub", "/x", "Twist", "-p", "-1"], "Invalid value for '--print' / '-p': -1 is not in the range x>=0"),
         (["topic", "echo", "/x", "--field"], "Option '--field' requires an argument"),
     ],
 )
@@ -148,7 +179,7 @@ def test_wrong_usage_is_one_line_and_2(args: list[str], report: str, capsys: Cap
 @given(st.text(max_size=40) | st.text("{}[]:, linearxyz0123.", max_size=20))
 def test_any_values_are_a_message_or_refused_in_one_line(values: str) -> None:
     try:
-        report = f"<values>: {pub.message_of(Twist, values)}"
+        report = f"<values>: {Stamped(Twist, parse(values, name='<values>')).message}"
     except RobolinkError as error:
         report = str(error)
     assert report.startswith(("<values>:", "Twist"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -52,6 +53,86 @@ def test_an_echo_that_waits_says_why_and_ends_quietly(start: Callable[..., Progr
         listener.interrupt()
         assert listener.end() == 130
     assert listener.errors == [f"waiting for a publisher of /nothing: nobody publishes it on domain {domain} yet"]
+
+
+COUNTER = """
+import time
+import robolink
+from robolink.interfaces.std_msgs.msg import Int32
+
+robolink.init()
+node = robolink.create_node("counter")
+publisher = node.create_publisher(Int32, "/count", 10)
+print("ready")
+number = 0
+while True:
+    publisher.publish(Int32(data=number))
+    number += 1
+    time.sleep(0.002)
+"""
+
+
+def test_hz_loses_nothing_and_its_rate_is_that_of_the_arrivals(
+    start: Callable[..., Program], tmp_path: Path, domain: int
+) -> None:
+    with Program(tmp_path, COUNTER, domain) as counter:
+        assert counter.line() == "ready"
+        with start("topic", "hz", "/count", "--json") as meter, start("topic", "echo", "/count", "--csv") as listener:
+            found = [json.loads(meter.line()) for _ in range(2)]
+            numbers = [int(listener.line()) for _ in range(100)]
+            meter.interrupt()
+            listener.interrupt()
+            assert (meter.end(), listener.end()) == (130, 130)
+        counter.kill()
+    assert numbers == list(range(numbers[0], numbers[0] + 100))
+    for each in found:
+        assert each["min"] <= 1 / each["rate"] <= each["max"]
+    assert found[1]["window"] == found[0]["new"] + found[1]["new"] - 1
+    assert found[1]["rate"] > 50
+    assert (meter.errors, listener.errors) == ([], [])
+
+
+def test_a_type_that_only_the_publisher_knows_is_measured(
+    start: Callable[..., Program], tmp_path: Path, domain: int
+) -> None:
+    program = """
+    import time
+    import robolink
+    from robolink.message import Message, float64
+
+    class Gripper(Message):
+        force: float64
+
+    robolink.init()
+    node = robolink.create_node("gripper")
+    publisher = node.create_publisher(Gripper, "/gripper", 10)
+    print("ready")
+    while True:
+        publisher.publish(Gripper(force=2.5))
+        robolink.spin_once(node, timeout_sec=0.01)
+    """
+    with Program(tmp_path, program, domain) as gripper:
+        assert gripper.line() == "ready"
+        with start("topic", "bw", "/gripper", "--json") as meter:
+            while (size := json.loads(meter.line())["mean"]) is None:
+                pass
+            assert size == 12.0
+        with start("topic", "echo", "/gripper", "--once", "--filter", "m.force > 2", "--csv") as listener:
+            assert (listener.line(), listener.end()) == ("2.5", 0)
+        with start("pub", "/gripper", "{force: 3}", "-1", "-w", "0") as talker:
+            assert talker.line() == "publisher: beginning loop"
+            assert talker.line().endswith("Gripper(force=3.0)")
+            assert talker.end() == 0
+
+
+@pytest.mark.parametrize("content", [b"\x00\xff\xfe" * 1000, b"data: [", b""])
+def test_nonsense_on_standard_input_is_one_line(domain: int, content: bytes) -> None:
+    command = [sys.executable, "-m", "robolink", "pub", "/chatter", "String", "--stdin", "-1"]
+    environ = os.environ | {"ROS_DOMAIN_ID": str(domain)}
+    ended = subprocess.run(command, env=environ, input=content, capture_output=True, timeout=PATIENCE, check=False)
+    assert (ended.returncode, ended.stdout) == (1, b"")
+    assert ended.stderr.startswith(b"robolink: <standard input>")
+    assert ended.stderr.count(b"\n") == 1
 
 
 def test_a_closed_pipe_ends_a_command_quietly(domain: int) -> None:

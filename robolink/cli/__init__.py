@@ -2,20 +2,55 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import NameValidationException, RobolinkError
+
+if TYPE_CHECKING:
+    from robolink.interfaces import Source
+
+COMPLETION = "_ROBOLINK_COMPLETE"
+"""The variable in which a shell says that it wants to know how to go on."""
 
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run a command; give the exit code: 1 after an error, 2 after wrong usage, 130 after Ctrl-C.
 
-    A `RobolinkError` and wrong usage become one line on stderr; any other exception is a bug, and passes.
+    A `RobolinkError` and wrong usage become one line on stderr; any other exception is a bug, and passes. Without
+    `args` the process is the command's own, and ends here where that saves the time to close a session.
     """
+    given = sys.argv[1:] if args is None else list(args)
+    if os.environ.get(COMPLETION):
+        code = _complete(given)
+        if args is None:
+            _end(code)
+        return code
     try:
-        code = _run(sys.argv[1:] if args is None else list(args))
+        code = _outcome(given)
+        if args is None and _has_open_looks():
+            _end(code)
+        return code
+    finally:
+        if _has_open_looks():
+            sys.modules["robolink.cli.session"].close_looks()
+
+
+def complain(error: object, code: int = 1) -> int:
+    """Print one line on stderr; give the exit code."""
+    if isinstance(error, NameValidationException):  # its text has a line for the caret
+        error = f"invalid {error.name_type} '{error.name[:200]}': {error.error_msg} (at index {error.invalid_index})"
+    line = " ".join(str(error).split("\n"))
+    print(f"robolink: {line}", file=sys.stderr)  # noqa: T201 - this is what the user is told
+    return code
+
+
+def _outcome(args: list[str]) -> int:
+    try:
+        code = _run(args)
         if sys.stdout is not None:
             sys.stdout.flush()
     except RobolinkError as error:
@@ -30,20 +65,37 @@ def main(args: Sequence[str] | None = None) -> int:
     return code
 
 
-def complain(error: object, code: int = 1) -> int:
-    """Print one line on stderr; give the exit code."""
-    if isinstance(error, NameValidationException):  # its text has a line for the caret
-        error = f"invalid {error.name_type} '{error.name[:200]}': {error.error_msg} (at index {error.invalid_index})"
-    line = " ".join(str(error).split("\n"))
-    print(f"robolink: {line}", file=sys.stderr)  # noqa: T201 - this is what the user is told
-    return code
+def _complete(args: list[str]) -> int:
+    """Answer the shell. An error would stand in the middle of what is being typed: there is none."""
+    os.environ.pop("RUST_LOG", None)
+    try:
+        return _run(args)
+    except SystemExit as answered:  # what typer ends with
+        return answered.code if isinstance(answered.code, int) else 0
+    except (Exception, KeyboardInterrupt):  # noqa: BLE001
+        return 1
+
+
+def _has_open_looks() -> bool:
+    session = sys.modules.get("robolink.cli.session")
+    return session is not None and session.any_looks()
+
+
+def _end(code: int) -> None:
+    """End the process without closing what is open: see `robolink.cli.session.looking`."""
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(OSError, ValueError, AttributeError):  # closed, or None
+            stream.flush()
+    os._exit(code)
 
 
 def _run(args: list[str]) -> int:
     import typer
 
     from robolink.cli.root import command
+    from robolink.interfaces import add_source
 
+    add_source(_OF_WORKSPACE)
     usage_error: type[Exception] = next(each for each in typer.BadParameter.__mro__ if each.__name__ == "UsageError")
     try:
         code = command().main(args, prog_name="robolink", standalone_mode=False)
@@ -52,8 +104,30 @@ def _run(args: list[str]) -> int:
     return code if isinstance(code, int) else 0
 
 
+class _WorkspaceTypes:
+    """The types of the workspace; what finds them is imported when one is asked for."""
+
+    def names(self, kind: str) -> Mapping[str, Collection[str]]:
+        """Give the types of a kind that there are."""
+        return self._source().names(kind)
+
+    def get(self, package: str, kind: str, short: str) -> type[Any] | None:
+        """Give the class of a type."""
+        return self._source().get(package, kind, short)
+
+    def _source(self) -> Source:
+        from robolink.workspace.interfaces import WORKSPACE_TYPES
+
+        return WORKSPACE_TYPES
+
+
+_OF_WORKSPACE = _WorkspaceTypes()
+
+
 def _explain(error: Exception) -> int:
     """Say what is wrong with the usage; a noun without a verb gets its whole help."""
+    if os.environ.get(COMPLETION):
+        return 1
     if type(error).__name__ == "NoArgsIsHelpError":
         print(error, file=sys.stderr)  # noqa: T201
         return 2

@@ -6,20 +6,17 @@ from typing import Annotated
 
 import typer
 
+from robolink.cli import complete
+
 app = typer.Typer()
-
-
-def launch_names() -> list[str]:
-    """Give the names for the shell to complete."""
-    from robolink.workspace import list_launches
-
-    return [each.stem for each in list_launches()]
 
 
 @app.command()
 def launch(
     ctx: typer.Context,
-    file: Annotated[str, typer.Argument(metavar="NAME|FILE", help="What to launch.", autocompletion=launch_names)] = "",
+    file: Annotated[
+        str, typer.Argument(metavar="NAME|FILE", help="What to launch.", autocompletion=complete.launch_files)
+    ] = "",
     duration: Annotated[
         float | None, typer.Option("--duration", metavar="S", help="End after so many seconds.", min=0.0)
     ] = None,

@@ -1,17 +1,31 @@
-"""robolink node: see which nodes there are."""
+"""robolink node: see which nodes there are, and what each of them does."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections import Counter
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-app = typer.Typer(no_args_is_help=True, help="See which nodes there are.")
+from robolink.cli import complete
+
+if TYPE_CHECKING:
+    from robolink.graph import NamesAndTypes, Token
+    from robolink.wire import EndpointKind, EndpointToken
+
+app = typer.Typer(no_args_is_help=True, help="See which nodes there are, and what each of them does.")
+
+ACTION = "/_action/"
+"""What stands between the name of an action and that of each of its five parts."""
+SERVICES = {"send_goal", "get_result", "cancel_goal"}
+FEEDBACK, STATUS = "feedback", "status"
+FEEDBACK_TYPE = "_FeedbackMessage"
 
 
 @app.callback()
 def _noun() -> None:
-    """See which nodes there are."""
+    """See which nodes there are, and what each of them does."""
 
 
 @app.command("list")
@@ -21,17 +35,110 @@ def list_nodes(
     as_json: Annotated[bool, typer.Option("--json", help="A JSON array.")] = False,
 ) -> None:
     """List the nodes by their full names."""
-    from robolink.cli.session import is_hidden, nodes, opened, say
+    from robolink.cli.session import full_name, looking, nodes, say, say_json
 
-    with opened() as context:
-        names = sorted(f"{each.namespace.rstrip('/')}/{each.node_name}" for each in nodes(context))
-    names = [each for each in names if show_all or not is_hidden(each)]
+    with looking() as context:
+        found = [each for each in nodes(context) if show_all or not each.node_name.startswith("_")]
+    names = sorted(map(full_name, found))
     if as_json:
-        import msgspec
-
-        say(msgspec.json.encode(names).decode())
+        say_json(names)
     elif count:
         say(str(len(names)))
     else:
+        _warn_of_twins(names)
         for name in names:
             say(name)
+
+
+@app.command("info")
+def info(
+    node: Annotated[str, typer.Argument(help="Name of the node, such as /robot.", autocompletion=complete.node_names)],
+    hidden: Annotated[
+        bool, typer.Option("--include-hidden", help="Also topics, services and actions that begin with _.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="A JSON object.")] = False,
+) -> None:
+    """Show what a node publishes, subscribes to, serves and calls."""
+    from robolink.cli.session import absolute, looking, say, say_json, tell, tokens
+
+    name = absolute(node)
+    with looking() as context:
+        count, found = of_node(tokens(context), name, context.get_domain_id())
+    if count > 1:
+        tell(f'There are {count} nodes in the graph with the exact name "{name}". This is what they do together.')
+    sections = sections_of(found, hidden)
+    if as_json:
+        lists = {title.lower().replace(" ", "_"): dict(listed) for title, listed in sections}
+        say_json({"name": name, "count": count, **lists})
+        return
+    say(name)
+    for title, listed in sections:  # one that is empty has an empty line, as in ros2
+        say(f"  {title}:")
+        say("\n".join(f"    {each}: {', '.join(types)}" for each, types in listed))
+
+
+def of_node(tokens: list[Token], name: str, domain: int) -> tuple[int, list[EndpointToken]]:
+    """Count the nodes of a full name, and give their endpoints. Raises NotFoundError for an unknown name."""
+    from robolink.cli.session import full_name, shown
+    from robolink.exceptions import NotFoundError
+    from robolink.wire import EndpointToken, NodeToken
+
+    names = [full_name(each) for each in tokens if isinstance(each, NodeToken)]
+    if name not in names:
+        raise NotFoundError("node", shown(name), names, f"domain {domain}")
+    own = [each for each in tokens if isinstance(each, EndpointToken) and full_name(each) == name]
+    return names.count(name), own
+
+
+def sections_of(endpoints: Iterable[EndpointToken], hidden: bool) -> list[tuple[str, NamesAndTypes]]:
+    """Give what `ros2 node info` lists of a node: six titles, each with names and types."""
+    from robolink.cli.session import is_hidden
+    from robolink.graph import names_and_types
+    from robolink.wire import EndpointKind
+
+    of_kind = {kind: [each for each in endpoints if each.kind is kind] for kind in EndpointKind}
+    titles = {
+        "Subscribers": EndpointKind.SUBSCRIPTION,
+        "Publishers": EndpointKind.PUBLISHER,
+        "Service Servers": EndpointKind.SERVICE,
+        "Service Clients": EndpointKind.CLIENT,
+    }
+    sections = [(title, names_and_types(of_kind[kind])) for title, kind in titles.items()]
+    sections += [
+        ("Action Servers", actions(of_kind, EndpointKind.SERVICE, EndpointKind.PUBLISHER)),
+        ("Action Clients", actions(of_kind, EndpointKind.CLIENT, EndpointKind.SUBSCRIPTION)),
+    ]
+    return [(title, [each for each in listed if hidden or not is_hidden(each[0])]) for title, listed in sections]
+
+
+def actions(
+    of_kind: dict[EndpointKind, list[EndpointToken]], services: EndpointKind, topics: EndpointKind
+) -> NamesAndTypes:
+    """Give the actions of which one node has all five parts: that is all that the wire knows of an action."""
+    asked = _parts(of_kind[services])
+    told = _parts(of_kind[topics])
+    found = []
+    for name in sorted(asked.keys() & told.keys()):
+        if asked[name].keys() >= SERVICES and told[name].keys() >= {FEEDBACK, STATUS}:
+            types = {type_ for type_ in told[name][FEEDBACK] if type_.endswith(FEEDBACK_TYPE)}
+            found.append((name, sorted(each.removesuffix(FEEDBACK_TYPE) for each in types)))
+    return found
+
+
+def _parts(endpoints: Iterable[EndpointToken]) -> dict[str, dict[str, set[str]]]:
+    """Sort endpoints by the action, then by which part of it each is; give the types of each part."""
+    found: dict[str, dict[str, set[str]]] = {}
+    for each in endpoints:
+        action, mark, part = each.name.rpartition(ACTION)
+        if mark:
+            found.setdefault(action, {}).setdefault(part, set()).add(each.type_name)
+    return found
+
+
+def _warn_of_twins(names: list[str]) -> None:
+    from robolink.cli.session import tell
+
+    twins = [f"{name} ({count} times)" for name, count in Counter(names).items() if count > 1]
+    if twins:
+        more = f" and {len(twins) - 5} more" if len(twins) > 5 else ""
+        tell(f"WARNING: several nodes have the exact same name: {', '.join(twins[:5])}{more}")

@@ -22,13 +22,22 @@ class Entry(NamedTuple):
     help: str
     verb: str = ""
 
+    @property
+    def hidden(self) -> bool:
+        """Whether it is an alias, which help does not list."""
+        return not self.help
+
 
 COMMANDS = {
     "run": Entry("robolink.cli.run", "Run a node."),
     "launch": Entry("robolink.cli.launch", "Run a system of nodes that a file describes."),
     "pub": Entry("robolink.cli.topic", "Publish messages: short for topic pub.", "pub"),
     "topic": Entry("robolink.cli.topic", "See and send what nodes publish."),
-    "node": Entry("robolink.cli.node", "See which nodes there are."),
+    "node": Entry("robolink.cli.node", "See which nodes there are, and what each of them does."),
+    "service": Entry("robolink.cli.service", "See which services there are, and call them."),
+    "interface": Entry("robolink.cli.interface", "See the types of messages, services and actions."),
+    "doctor": Entry("robolink.cli.doctor", "Find out what is wrong here or on the network."),
+    "wtf": Entry("robolink.cli.doctor", ""),
 }
 
 
@@ -37,7 +46,7 @@ class Root(typer.core.TyperGroup):
 
     def list_commands(self, ctx: Context) -> list[str]:
         """Give the names in the order of the table."""
-        return list(COMMANDS)
+        return [name for name, entry in COMMANDS.items() if not entry.hidden]
 
     def get_command(self, ctx: Context, cmd_name: str) -> Any:
         """Import a command; None for an unknown name."""
@@ -56,10 +65,20 @@ class Root(typer.core.TyperGroup):
             ctx.fail(f"no command named '{args[0]}'{nearest(args[0], COMMANDS)}")
         return super().resolve_command(ctx, args)
 
+    def shell_complete(self, ctx: Context, incomplete: str) -> list[Any]:
+        """Complete the commands' names, without importing any, and the options."""
+        base = next(
+            each for each in type(self).__mro__ if each.__name__ == "Command"
+        )  # typer has its own copy of click
+        item = importlib.import_module(f"{base.__module__.rpartition('.')[0]}.shell_completion").CompletionItem
+        names = [name for name in self.list_commands(ctx) if name.startswith(incomplete)]
+        options: list[Any] = base.shell_complete(self, ctx, incomplete)  # type: ignore[attr-defined]
+        return [*(item(name, help=COMMANDS[name].help) for name in names), *options]
+
     def format_commands(self, ctx: Context, formatter: Any) -> None:
         """List the commands without importing any."""
         with formatter.section("Commands"):
-            formatter.write_dl([(name, entry.help) for name, entry in COMMANDS.items()])
+            formatter.write_dl([(name, entry.help) for name, entry in COMMANDS.items() if not entry.hidden])
 
 
 app = typer.Typer(cls=Root, rich_markup_mode=None, no_args_is_help=True, pretty_exceptions_enable=False)

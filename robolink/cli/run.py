@@ -7,6 +7,8 @@ from typing import Annotated, Any
 import typer
 import typer.core
 
+from robolink.cli import complete
+
 ROS_ARGS = "--ros-args"
 META = "robolink.ros_args"
 
@@ -24,18 +26,12 @@ class RunCommand(typer.core.TyperCommand):
         return rest
 
 
-def node_names() -> list[str]:
-    """Give the names for the shell to complete."""
-    from robolink.workspace import list_nodes
-
-    return [each.name for each in list_nodes()]
-
-
 @app.command(cls=RunCommand)
 def run(
     ctx: typer.Context,
     node: Annotated[
-        str, typer.Argument(metavar="NAME|FILE[:FUNCTION]", help="The node to run.", autocompletion=node_names)
+        str,
+        typer.Argument(metavar="NAME|FILE[:FUNCTION]", help="The node to run.", autocompletion=complete.runnable_nodes),
     ] = "",
     args: Annotated[
         list[str] | None, typer.Argument(metavar="[ARGS]...", help="For the program; after -- whatever they are.")

@@ -1,0 +1,86 @@
+"""robolink doctor: what may be wrong with this machine, its network and the running system."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from robolink.cli.doctor.report import Section
+    from robolink.cli.doctor.verdict import Check, Verdict
+
+app = typer.Typer(no_args_is_help=False)
+
+MARKS = {"ok": "ok", "warning": "WARN", "error": "FAIL", "unknown": "?"}
+
+
+@app.command("doctor")
+def doctor(
+    report: Annotated[bool, typer.Option("--report", "-r", help="Print all that is known instead.")] = False,
+    report_failed: Annotated[
+        bool, typer.Option("--report-failed", "-rf", help="Also print all that is known of what failed.")
+    ] = False,
+    include_warnings: Annotated[
+        bool, typer.Option("--include-warnings", "-iw", help="Count warnings as failures.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="A JSON object.")] = False,
+) -> None:
+    """Check the settings, the network and the running system; exit code 1 if something is wrong."""
+    from robolink.cli.doctor.checks import CHECKS
+    from robolink.cli.doctor.facts import gather
+    from robolink.cli.doctor.graph_checks import GRAPH_CHECKS
+    from robolink.cli.doctor.report import sections
+    from robolink.cli.session import say
+
+    facts = gather()
+    # Where the system could not be looked at, one check says so, and the others have nothing to say.
+    checks = CHECKS + (GRAPH_CHECKS[:1] if facts.seen.error else GRAPH_CHECKS)
+    verdicts = [(check, check.decide(facts)) for check in checks]
+    bad = ("error", "warning") if include_warnings else ("error",)
+    failed = [check.module for check, verdict in verdicts if verdict.level in bad]
+    shown = [each for each in sections(facts) if report or (report_failed and each.module in failed)]
+    if as_json:
+        say(_json(verdicts, failed, shown))
+    else:
+        for line in [*([] if report else _lines(verdicts, failed)), *(line for each in shown for line in each.lines())]:
+            say(line)
+    if failed and not report:
+        raise typer.Exit(1)
+
+
+def _lines(verdicts: list[tuple[Check, Verdict]], failed: list[str]) -> list[str]:
+    lines = []
+    for check, verdict in verdicts:
+        head = f"{MARKS[verdict.level]:6}{check.name:16}"
+        first, *others = verdict.findings or [verdict.summary]
+        lines += [head + first, *(" " * len(head) + each for each in others)]
+    if failed:
+        modules = sorted(set(failed))
+        return [*lines, f"\n{len(failed)}/{len(verdicts)} check(s) failed\n", f"Failed modules: {' '.join(modules)}"]
+    return [*lines, f"\nAll {len(verdicts)} checks passed\n"]
+
+
+def _json(verdicts: list[tuple[Check, Verdict]], failed: list[str], shown: list[Section]) -> str:
+    import msgspec
+
+    checks = [
+        {
+            "name": check.name,
+            "module": check.module,
+            "level": verdict.level,
+            "summary": verdict.summary,
+            "errors": verdict.errors,
+            "warnings": verdict.warnings,
+        }
+        for check, verdict in verdicts
+    ]
+    result: dict[str, Any] = {
+        "checks": checks,
+        "total": len(verdicts),
+        "failed": len(failed),
+        "failed_modules": sorted(set(failed)),
+    }
+    if shown:
+        result["report"] = {each.name: each.items for each in shown}
+    return msgspec.json.encode(result).decode()

@@ -1,0 +1,189 @@
+"""What `robolink doctor` checks of this machine and its network: small functions of the facts."""
+
+from __future__ import annotations
+
+import re
+
+from robolink.cli.doctor.facts import ClockOffset, Facts
+from robolink.cli.doctor.probes import REFUSES, ROUTER, SILENT, Port
+from robolink.cli.doctor.verdict import Check, Verdict, count, listed
+from robolink.wire import NodeToken
+
+OLDEST_PYTHON = (3, 10)
+OLDEST_ZENOH = (1, 10)
+
+LITTLE_SPACE = 48 * 2**20
+"""Bytes of /dev/shm: each session wants 18 MB."""
+
+LATE, WRONG = 0.1, 1.0
+"""Seconds between two clocks that disturb transforms, and that make them impossible."""
+
+_NO_EFFECT = {
+    "ROS_LOCALHOST_ONLY": "say ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST, which is the default here",
+    "ROS_STATIC_PEERS": "say ROBOLINK_NETWORK=tcp/HOST:7447 to meet another machine through its router",
+    "ROS_DISCOVERY_SERVER": "it is DDS's; say ROBOLINK_NETWORK=tcp/HOST:7447 to meet another machine",
+}
+_NOTED = (
+    *("ROBOLINK_NETWORK", "ROBOLINK_TRANSPORT", "ROBOLINK_ROS_DISTRO", "ZENOH_SESSION_CONFIG_URI"),
+    *("ZENOH_CONFIG_OVERRIDE", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ZENOH_RUNTIME", "RUST_LOG"),
+)
+
+
+def versions(facts: Facts) -> Verdict:
+    """Python and what robolink stands on are new enough."""
+    missing = [name for name, found in facts.versions.items() if not found and name != "robolink"]  # its source may run
+    errors = [f"{each} is not installed: pip install {each}" for each in missing]
+    if facts.python < OLDEST_PYTHON:
+        errors.append(f"Python {_dotted(facts.python)} is too old: robolink needs {_dotted(OLDEST_PYTHON)} or newer")
+    zenoh = facts.versions.get("eclipse-zenoh", "")
+    if zenoh and _numbers(zenoh) < OLDEST_ZENOH:
+        errors.append(f"eclipse-zenoh {zenoh} is too old: pip install -U 'eclipse-zenoh>={_dotted(OLDEST_ZENOH)}'")
+    shown = [f"{name} {found}" for name, found in facts.versions.items() if found]
+    return Verdict(", ".join([*shown[:1], f"Python {_dotted(facts.python)}", *shown[1:4]]), tuple(errors))
+
+
+def _dotted(version: tuple[int, ...]) -> str:
+    return ".".join(map(str, version))
+
+
+def _numbers(version: str) -> tuple[int, ...]:
+    return tuple(int(each) for each in re.findall(r"\d+", version)[:2])
+
+
+def settings(facts: Facts) -> Verdict:
+    """The environment asks for something that can be, and nothing in it is without effect."""
+    environ, wanted = facts.environ, facts.settings
+    without_effect = [each for each in _NO_EFFECT if environ.get(each, "0") not in ("", "0")]
+    warnings = [f"{each}={environ[each][:80]} has no effect: {_NO_EFFECT[each]}" for each in without_effect]
+    middleware = environ.get("RMW_IMPLEMENTATION", "")
+    if middleware not in ("", "rmw_zenoh_cpp"):
+        warnings.append(
+            f"RMW_IMPLEMENTATION={middleware[:80]}: ROS 2 nodes started from here do not meet robolink's; "
+            "start them with RMW_IMPLEMENTATION=rmw_zenoh_cpp"
+        )
+    if wanted.transport != "zenoh":
+        warnings.append(f"ROBOLINK_TRANSPORT={wanted.transport[:80]}: nodes see only their own process")
+    in_force = [f"{name}={environ[name][:80]}" for name in _NOTED if environ.get(name)]
+    domain = f"domain {wanted.domain} ({'ROS_DOMAIN_ID' if environ.get('ROS_DOMAIN_ID') else 'the default'})"
+    network = f"network {wanted.network} ({wanted.asked_by or 'the default'})"
+    return Verdict(", ".join([domain, network, *in_force]), wanted.errors, tuple(warnings))
+
+
+def loopback(facts: Facts) -> Verdict:
+    """The machine reaches itself: that is where nodes meet."""
+    if facts.loopback:
+        return Verdict("this machine can connect to itself")
+    hint = ": try 'ip link set lo up'" if facts.platform == "linux" else ""
+    return Verdict("", (f"no connection to 127.0.0.1{hint}",))
+
+
+def rendezvous(facts: Facts) -> Verdict:
+    """The port where nodes meet is free, or one of them has it."""
+    wanted = facts.settings
+    if wanted.transport != "zenoh" or not wanted.meets:
+        return Verdict("not used with these settings")
+    port = facts.ports.get(wanted.port)
+    if port is None:
+        return Verdict(f"port {wanted.port} of domain {wanted.domain} is free: the next node takes it")
+    if port.speaks_zenoh:
+        return Verdict(f"port {wanted.port} of domain {wanted.domain} is held by {_whose(facts, port)}")
+    hint = "stop it, or choose another ROS_DOMAIN_ID"
+    return Verdict("", (f"port {wanted.port} of domain {wanted.domain} is held by {_stranger(facts, port)}: {hint}",))
+
+
+def router(facts: Facts) -> Verdict:
+    """A router of ROS 2, if there is one, answers; so does the one that is asked for."""
+    asked, far, port = facts.settings.network, facts.far_router, facts.ports.get(facts.router_port)
+    where = f"port {facts.router_port}, the ROS 2 router's,"
+    errors, warnings = [], []
+    if asked.startswith("tcp/") and far is None:
+        errors.append(f"nothing listens at {asked}: start the router there, or unblock the port")
+    elif asked.startswith("tcp/") and far is not None and not far.speaks_zenoh:
+        errors.append(f"{asked} listens but does not answer as Zenoh does")
+    if port is not None and port.role != ROUTER:
+        errors.append(f"{where} is held by {_stranger(facts, port)}: stop it to meet ROS 2 nodes")
+    elif port is not None and facts.platform == "win32" and asked == "localhost":
+        hint = f"ROBOLINK_NETWORK=tcp/127.0.0.1:{port.number}"
+        warnings.append(f"a ROS 2 router answers; on Windows nodes join it only when asked to: {hint}")
+    answers = f"a ROS 2 router answers on port {facts.router_port}: {_whose(facts, port)}" if port else ""
+    none = f"no ROS 2 router on port {facts.router_port}: none is needed but to meet ROS 2 nodes"
+    return Verdict(answers or none, tuple(errors), tuple(warnings))
+
+
+def _whose(facts: Facts, port: Port) -> str:
+    holder = facts.holders.get(port.number)
+    process = f" ({holder.command}, pid {holder.pid})" if holder else ""
+    return f"a Zenoh {port.role}{process}" if port.speaks_zenoh else f"a stranger{process}"
+
+
+def _stranger(facts: Facts, port: Port) -> str:
+    """Name what is on a port where something else is expected."""
+    if port.speaks_zenoh:
+        return f"{_whose(facts, port)}, which is no router"
+    says = {REFUSES: "speaks Zenoh but refuses", SILENT: "accepts connections and says nothing, or is frozen"}
+    return f"{_whose(facts, port)} that {says.get(port.role, 'does not speak Zenoh')}"
+
+
+def domains(facts: Facts) -> Verdict:
+    """The nodes are on the domain that one looks at."""
+    own = sum(isinstance(each, NodeToken) for each in facts.seen.tokens)
+    others = [
+        f"domain {number} has {count(nodes, 'node') if nodes is not None else 'somebody'}"
+        for number, nodes in sorted(facts.other_domains.items())
+        if nodes != 0
+    ]
+    here = f"domain {facts.settings.domain} has {count(own, 'node')}"
+    if others and not own and not facts.seen.error:
+        return Verdict("", (), (f"{here}, but {listed(others)}: is ROS_DOMAIN_ID what you want?",))
+    if facts.seen.error:
+        return Verdict(listed(others) or "not known", unknown=True)
+    return Verdict("; ".join([here, *others]))
+
+
+def memory(facts: Facts) -> Verdict:
+    """There is room for the messages that are handed over in shared memory."""
+    if not facts.settings.shared_memory:
+        return Verdict("shared memory is off in the settings")
+    space = facts.shared_memory
+    if space is None:
+        return Verdict("shared memory is on; its size is not known on this system")
+    shown = f"{space.free // 2**20} of {space.total // 2**20} MB of /dev/shm are free"
+    if space.free < LITTLE_SPACE:
+        return Verdict("", (), (f"{shown}: large messages get slow (in a container, give it --shm-size=256m)",))
+    return Verdict(f"shared memory is on, {shown}")
+
+
+def clocks(facts: Facts) -> Verdict:
+    """The clocks of the other processes agree with this one's."""
+    found = facts.seen.clocks
+    if not found:
+        return Verdict("not measured: no node that tells the time", unknown=True)
+    # An answer that took long proves little: only what is beyond its uncertainty counts.
+    beyond = {each: abs(each.seconds) - each.uncertainty for each in found}
+    worst = max(abs(each.seconds) for each in found) * 1000
+    known = max(each.uncertainty for each in found) * 1000
+    return Verdict(
+        f"{count(len(found), 'node')} asked, {worst:.1f} ms apart at most (measured to within {known:.1f} ms)",
+        tuple(_apart(each) for each in found if beyond[each] > WRONG),
+        tuple(_apart(each) for each in found if LATE < beyond[each] <= WRONG),
+    )
+
+
+def _apart(offset: ClockOffset) -> str:
+    side = "ahead" if offset.seconds > 0 else "behind"
+    return (
+        f"the clock of {offset.node} is {abs(offset.seconds):.3g} s {side}: "
+        "synchronise the machines (chrony, ntp), or it runs on simulated time"
+    )
+
+
+CHECKS = (
+    Check("versions", "platform", versions),
+    Check("settings", "network", settings),
+    Check("loopback", "network", loopback),
+    Check("rendezvous", "network", rendezvous),
+    Check("router", "network", router),
+    Check("domains", "network", domains),
+    Check("shared memory", "platform", memory),
+    Check("clocks", "platform", clocks),
+)

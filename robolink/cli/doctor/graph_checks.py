@@ -1,0 +1,213 @@
+"""What `robolink doctor` checks of a running system: who does not meet whom, and why. Small functions of the facts."""
+
+from __future__ import annotations
+
+import collections
+import itertools
+from collections.abc import Iterable
+
+from robolink.cli.doctor.facts import Facts
+from robolink.cli.doctor.verdict import Check, Verdict, count, listed
+from robolink.exceptions import nearest
+from robolink.qos import DurabilityPolicy
+from robolink.wire import NO_HASH, EndpointKind, EndpointToken, NodeToken
+
+PUBLISHER, SUBSCRIPTION = EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION
+SERVICE, CLIENT = EndpointKind.SERVICE, EndpointKind.CLIENT
+
+Variant = tuple[str, str]
+"""A type's name and hash."""
+
+SILENT_TOPICS = ("/parameter_events", "/rosout", "/clock", "/tf_static")
+"""What nodes subscribe to whether or not anybody publishes. /clock has a check of its own."""
+
+COMMANDS = ("_robolink_", "_ros2cli")
+"""How the names of nodes begin through which commands speak: they come and go, and nobody waits for them."""
+
+SEND_GOAL = "/_action/send_goal"
+"""The part of an action that stands for the whole."""
+
+
+def announcements(facts: Facts) -> Verdict:
+    """What is announced can be read."""
+    if facts.seen.error:
+        return Verdict("", (f"the system could not be looked at: {facts.seen.error}",))
+    warnings = tuple(f"cannot be read, so it is not seen: {text[:120]!a}" for text in facts.seen.malformed)
+    tokens = facts.seen.tokens
+    processes = len({each.session for each in tokens})
+    summary = f"{count(len(_nodes(tokens)), 'node')} and {count(len(_endpoints(tokens)), 'endpoint')}"
+    return Verdict(f"{summary} in {processes} process{'' if processes == 1 else 'es'}", warnings=warnings)
+
+
+def nodes(facts: Facts) -> Verdict:
+    """Each node has a name of its own."""
+    tokens = facts.seen.tokens
+    busy = collections.Counter((each.session, each.node_id) for each in _endpoints(tokens))
+    homes: dict[str, list[NodeToken]] = {}
+    for node in _nodes(tokens):
+        homes.setdefault(_owner(node), []).append(node)
+    warnings = []
+    for name, same in sorted(homes.items()):
+        sessions = {each.session for each in same}
+        # Some peers announce a node anew for each of its endpoints: that is still one.
+        together = max(sum(each.session == own and busy[own, each.node_id] > 1 for each in same) for own in sessions)
+        many = max(len(sessions), together)
+        if many > 1:
+            warnings.append(f"{many} nodes are named {name}: rename one with --ros-args -r __node:=NAME")
+    return Verdict(f"{count(len(homes), 'name')}, no two alike", warnings=tuple(warnings))
+
+
+def topic_types(facts: Facts) -> Verdict:
+    """Publishers and subscriptions of a topic agree in its type: with two types they never meet."""
+    return _types(facts, "topic", {PUBLISHER: "publishes", SUBSCRIPTION: "subscribes to"})
+
+
+def service_types(facts: Facts) -> Verdict:
+    """Clients and servers of a service agree in its type."""
+    return _types(facts, "service", {SERVICE: "serves", CLIENT: "calls"})
+
+
+def _types(facts: Facts, noun: str, verbs: dict[EndpointKind, str]) -> Verdict:
+    errors = []
+    named = _by_name(each for each in _endpoints(facts.seen.tokens) if each.kind in verbs)
+    for name, ends in named.items():
+        owners: dict[EndpointKind, dict[Variant, list[str]]] = {kind: {} for kind in verbs}
+        for each in ends:
+            owners[each.kind].setdefault((each.type_name, each.type_hash), []).append(_owner(each))
+        giving, taking = owners.values()
+        apart = {each for pair in itertools.product(giving, taking) if _differ(*pair) for each in pair}
+        if apart:
+            told = _told({verbs[kind]: _only(owners[kind], apart) for kind in verbs})
+            errors.append(f"{name}: {told}: they never meet")
+    return Verdict(f"{count(len(named), noun)}, both ends agree", tuple(errors))
+
+
+def _differ(one: Variant, other: Variant) -> bool:
+    return one[0] != other[0] or (one[1] != other[1] and NO_HASH not in (one[1], other[1]))
+
+
+def _only(owners: dict[Variant, list[str]], variants: set[Variant]) -> dict[Variant, list[str]]:
+    return {variant: names for variant, names in owners.items() if variant in variants}
+
+
+def _told(sides: dict[str, dict[Variant, list[str]]]) -> str:
+    """Say who uses which type; with its hash where the name alone does not tell them apart."""
+    same_name = len({type_name for owners in sides.values() for type_name, _ in owners}) == 1
+    return ", ".join(
+        f"{listed(names)} {verb} {type_name}" + (f" of hash {type_hash[:15]}..." if same_name else "")
+        for verb, owners in sides.items()
+        for (type_name, type_hash), names in owners.items()
+    )
+
+
+def topics(facts: Facts) -> Verdict:
+    """Whoever subscribes has somebody to hear."""
+    ends = _by_name(each for each in _endpoints(facts.seen.tokens) if each.kind in (PUBLISHER, SUBSCRIPTION))
+    published = [name for name, found in ends.items() if any(each.kind is PUBLISHER for each in found)]
+    warnings = []
+    for name, found in ends.items():
+        waiting = [_owner(each) for each in found if not _is_command(each)]
+        if name not in published and waiting and not _hidden(name) and name not in SILENT_TOPICS:
+            warnings.append(f"{name} has no publisher; {listed(waiting)} subscribed to it{nearest(name, published)}")
+    return Verdict(f"{count(len(published), 'topic')} published, nobody waits in vain", warnings=tuple(warnings))
+
+
+def services(facts: Facts) -> Verdict:
+    """Whoever calls has a server, and one only."""
+    tokens = facts.seen.tokens
+    ends = _by_name(each for each in _endpoints(tokens) if each.kind in (SERVICE, CLIENT))
+    served = [name for name, found in ends.items() if any(each.kind is SERVICE for each in found)]
+    warnings = []
+    for name, found in ends.items():
+        shown = f"action {name.removesuffix(SEND_GOAL)}" if name.endswith(SEND_GOAL) else f"service {name}"
+        clients = [_owner(each) for each in found if each.kind is CLIENT and not _is_command(each)]
+        if name not in served and clients and (not _hidden(name) or name.endswith(SEND_GOAL)):
+            warnings.append(f"{shown} has no server; {listed(clients)} waits for it{nearest(name, served)}")
+        servers = [_owner(each) for each in found if each.kind is SERVICE]
+        if len(set(servers)) > 1:
+            warnings.append(f"{shown} has {len(servers)} servers, and each does every call: {listed(servers)}")
+    return Verdict(f"{count(len(served), 'service')} served, nobody waits in vain", warnings=tuple(warnings))
+
+
+def clock(facts: Facts) -> Verdict:
+    """Simulated time comes from one source, where somebody runs on it."""
+    ends = [each for each in _endpoints(facts.seen.tokens) if each.name == "/clock"]
+    sources = [_owner(each) for each in ends if each.kind is PUBLISHER]
+    users = [_owner(each) for each in ends if each.kind is SUBSCRIPTION and not _is_command(each)]
+    if len(sources) > 1:
+        return Verdict("", (f"{len(sources)} publishers on /clock ({listed(sources)}): time jumps between them",))
+    if users and not sources:
+        return Verdict("", (), (f"nobody publishes /clock: the time of {listed(users)} stands still",))
+    return Verdict(f"/clock is published by {sources[0]}" if sources else "nobody uses simulated time")
+
+
+def qos(facts: Facts) -> Verdict:
+    """Who subscribes to what was kept gets it: of a volatile publisher nothing is kept."""
+    ends = _by_name(each for each in _endpoints(facts.seen.tokens) if each.kind in (PUBLISHER, SUBSCRIPTION))
+    warnings = []
+    for name, found in ends.items():
+        forgetful = [_owner(each) for each in found if each.kind is PUBLISHER and not _latched(each)]
+        waiting = [each for each in found if each.kind is SUBSCRIPTION and not _is_command(each)]
+        asking = [_owner(each) for each in waiting if _latched(each)]
+        if forgetful and asking:
+            warnings.append(
+                f"{name}: {listed(asking)} asks for what was published before (TRANSIENT_LOCAL), "
+                f"but {listed(forgetful)} keeps nothing (VOLATILE)"
+            )
+    return Verdict(f"{count(len(ends), 'topic')}, no subscription asks for more than it gets", warnings=tuple(warnings))
+
+
+def distributions(facts: Facts) -> Verdict:
+    """All nodes speak of types in the same way: Humble's have no hashes."""
+    ends = [each for each in _endpoints(facts.seen.tokens) if not _is_command(each)]
+    humble = {_owner(each) for each in ends if each.type_hash == NO_HASH}
+    others = {_owner(each) for each in ends} - humble
+    if humble and others:
+        newer = f"{listed(others)} of a newer ROS 2"
+        warning = f"{listed(humble)} of ROS 2 Humble (no type hashes) and {newer}: they meet only where robolink is one"
+        return Verdict("", warnings=(warning,))
+    return Verdict("all of ROS 2 Humble" if humble else "all with type hashes, as since Iron")
+
+
+def _nodes(tokens: Iterable[NodeToken | EndpointToken]) -> list[NodeToken]:
+    return [each for each in tokens if isinstance(each, NodeToken)]
+
+
+def _endpoints(tokens: Iterable[NodeToken | EndpointToken]) -> list[EndpointToken]:
+    return [each for each in tokens if isinstance(each, EndpointToken)]
+
+
+def _by_name(ends: Iterable[EndpointToken]) -> dict[str, list[EndpointToken]]:
+    found: dict[str, list[EndpointToken]] = {}
+    for each in ends:
+        found.setdefault(each.name, []).append(each)
+    return dict(sorted(found.items()))
+
+
+def _owner(token: NodeToken | EndpointToken) -> str:
+    return f"{token.namespace.rstrip('/')}/{token.node_name}"
+
+
+def _latched(end: EndpointToken) -> bool:
+    return end.qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+
+
+def _is_command(end: EndpointToken) -> bool:
+    return end.node_name.startswith(COMMANDS)
+
+
+def _hidden(name: str) -> bool:
+    return "/_" in name
+
+
+GRAPH_CHECKS = (
+    Check("announcements", "middleware", announcements),
+    Check("nodes", "node", nodes),
+    Check("topic types", "middleware", topic_types),
+    Check("service types", "middleware", service_types),
+    Check("topics", "topic", topics),
+    Check("services", "service", services),
+    Check("clock", "topic", clock),
+    Check("qos", "middleware", qos),
+    Check("distributions", "middleware", distributions),
+)

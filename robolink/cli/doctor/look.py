@@ -1,0 +1,159 @@
+"""A look at a running system from outside: what is announced, and what its clocks say."""
+
+from __future__ import annotations
+
+import collections
+import queue
+import time
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from robolink.cli.doctor.facts import ClockOffset, Seen
+from robolink.exceptions import RobolinkError, WireError
+from robolink.transport import connect
+from robolink.wire import (
+    DataKey,
+    EndpointKind,
+    EndpointToken,
+    NodeToken,
+    format_key,
+    format_token,
+    gid_of,
+    graph_pattern,
+    pack_attachment,
+    parse_token,
+    unpack_attachment,
+)
+
+if TYPE_CHECKING:
+    from robolink.transport.base import Transport
+
+ALL_DOMAINS = "@ros2_lv/**"
+
+LIST_WITHIN = 0.6
+"""Seconds that two listings of what is announced have to agree."""
+
+CLOCKS_WITHIN = 0.25
+"""Seconds that nodes have to say what time it is."""
+
+MOST_CLOCKS = 16
+"""So many processes are asked."""
+
+_QUESTIONS = ("rcl_interfaces/srv/GetParameters", "type_description_interfaces/srv/GetTypeDescription")
+"""Services that nearly every node has and that change nothing; asked for nothing, they answer at once."""
+
+
+def look(url: str, domain: int) -> Seen:
+    """Join, list what is announced, ask for the time, leave. What goes wrong is told in `error`."""
+    try:
+        transport = connect(url, domain)
+    except RobolinkError as error:
+        return Seen(error=str(error))
+    try:
+        return _seen(transport, domain)
+    except RobolinkError as error:
+        return Seen(session=transport.session_id, error=str(error))
+    finally:
+        transport.close()
+
+
+def count_nodes(domain: int) -> int | None:
+    """Count the nodes of a domain; None if it cannot be joined."""
+    try:
+        transport = connect("zenoh://", domain)
+    except RobolinkError:
+        return None
+    try:
+        return sum(text.split("/")[5:6] == ["NN"] for text in transport.tokens(graph_pattern(domain)))
+    except RobolinkError:
+        return None
+    finally:
+        transport.close()
+
+
+def _seen(transport: Transport, domain: int) -> Seen:
+    tokens: list[NodeToken | EndpointToken] = []
+    malformed: list[str] = []
+    others: collections.Counter[int] = collections.Counter()
+    for text in _listed(transport):
+        try:
+            token = parse_token(text)
+        except WireError:
+            malformed.append(text)
+            continue
+        if token.domain == domain:
+            tokens.append(token)
+        elif isinstance(token, NodeToken):
+            others[token.domain] += 1
+    return Seen(transport.session_id, tuple(tokens), tuple(malformed), others, _clocks(transport, tokens))
+
+
+def _listed(transport: Transport) -> list[str]:
+    """List what is announced, until two listings agree: on a busy machine the first may be incomplete."""
+    deadline = time.monotonic() + LIST_WITHIN
+    found = transport.tokens(ALL_DOMAINS)
+    while time.monotonic() < deadline:
+        before, found = found, transport.tokens(ALL_DOMAINS)
+        if found == before:
+            break
+    return found
+
+
+def _clocks(transport: Transport, tokens: list[NodeToken | EndpointToken]) -> tuple[ClockOffset, ...]:
+    """Ask one node of each process for the time, all at once: a reply carries the time at which it was sent."""
+    servers = one_server_of_each(tokens)[:MOST_CLOCKS]
+    answers: queue.SimpleQueue[tuple[EndpointToken, int, int, Any]] = queue.SimpleQueue()
+    calls = []
+    for server in servers:
+        sent = time.time_ns()
+        key = format_key(DataKey(server.domain, server.name, server.type_name, server.type_hash))
+        attachment = pack_attachment(1, sent, gid_of(format_token(server)))
+
+        def sink(arrived: Any, server: EndpointToken = server, sent: int = sent) -> None:
+            answers.put((server, sent, time.time_ns(), arrived))
+
+        calls.append(transport.call(key, _nothing_asked(server.type_name), attachment, sink))
+    found = _answered(transport, answers, len(calls))
+    for call in calls:
+        call.close()
+    return found
+
+
+def one_server_of_each(tokens: Sequence[NodeToken | EndpointToken]) -> list[EndpointToken]:
+    """Choose a service of each session that can be asked for nothing."""
+    chosen: dict[str, EndpointToken] = {}
+    for question in reversed(_QUESTIONS):
+        for token in tokens:
+            if isinstance(token, EndpointToken) and token.kind is EndpointKind.SERVICE and token.type_name == question:
+                chosen[token.session] = token
+    return list(chosen.values())
+
+
+def _nothing_asked(type_name: str) -> bytes:
+    from robolink.interfaces import find
+    from robolink.message import encode
+
+    return encode(find(type_name, "srv").Request())
+
+
+def _answered(
+    transport: Transport, answers: queue.SimpleQueue[tuple[EndpointToken, int, int, Any]], calls: int
+) -> tuple[ClockOffset, ...]:
+    """Collect until each call has ended, or time is up."""
+    found: list[ClockOffset] = []
+    deadline = time.monotonic() + CLOCKS_WITHIN
+    while calls and (left := deadline - time.monotonic()) > 0:
+        try:
+            server, sent, received, arrived = answers.get(timeout=left)
+        except queue.Empty:
+            break
+        if arrived is None:
+            calls -= 1
+            continue
+        try:
+            stamp = unpack_attachment(transport.read(arrived).attachment).timestamp
+        except RobolinkError:  # no reply of a ROS 2 node: it says nothing of its clock
+            continue
+        name = f"{server.namespace.rstrip('/')}/{server.node_name}"
+        found.append(ClockOffset(name, (stamp - (sent + received) / 2) / 1e9, (received - sent) / 2e9))
+    return tuple(found)

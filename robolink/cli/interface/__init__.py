@@ -1,0 +1,154 @@
+"""robolink interface: see the types of messages, services and actions."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from robolink.cli import complete
+
+app = typer.Typer(no_args_is_help=True, help="See the types of messages, services and actions.")
+
+HEADINGS = {"msg": "Messages", "srv": "Services", "action": "Actions"}
+
+Type = Annotated[
+    str,
+    typer.Argument(
+        help="Twist, geometry_msgs/Twist or geometry_msgs/msg/Twist.",
+        metavar="TYPE",
+        autocompletion=complete.interface_types,
+    ),
+]
+OnlyMsgs = Annotated[bool, typer.Option("--only-msgs", "-m", help="Only messages.")]
+OnlySrvs = Annotated[bool, typer.Option("--only-srvs", "-s", help="Only services.")]
+OnlyActions = Annotated[bool, typer.Option("--only-actions", "-a", help="Only actions.")]
+AsJson = Annotated[bool, typer.Option("--json", help="JSON.")]
+
+
+@app.command("list")
+def list_interfaces(
+    only_msgs: OnlyMsgs = False, only_srvs: OnlySrvs = False, only_actions: OnlyActions = False, as_json: AsJson = False
+) -> None:
+    """List all types that are installed here or lie in the workspace."""
+    from robolink.cli.session import say, say_json
+
+    found = {kind: _names(kind) for kind in _kinds(only_msgs, only_srvs, only_actions)}
+    if as_json:
+        say_json({HEADINGS[kind].lower(): names for kind, names in found.items()})
+        return
+    for kind, names in found.items():
+        say("\n".join([f"{HEADINGS[kind]}:", *(f"    {name}" for name in names)]))
+
+
+@app.command("packages")
+def packages(
+    only_msgs: OnlyMsgs = False, only_srvs: OnlySrvs = False, only_actions: OnlyActions = False, as_json: AsJson = False
+) -> None:
+    """List the packages that have types."""
+    from robolink.cli.session import say, say_json
+
+    names = [name for kind in _kinds(only_msgs, only_srvs, only_actions) for name in _names(kind)]
+    found = sorted({name.partition("/")[0] for name in names})
+    if as_json:
+        say_json(found)
+    else:
+        say("\n".join(found))
+
+
+@app.command("package")
+def package(
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="Such as example_interfaces.", metavar="PACKAGE", autocompletion=complete.interface_packages
+        ),
+    ],
+    only_msgs: OnlyMsgs = False,
+    only_srvs: OnlySrvs = False,
+    only_actions: OnlyActions = False,
+    as_json: AsJson = False,
+) -> None:
+    """List the types of a package."""
+    from robolink.cli.session import say, say_json
+    from robolink.exceptions import NotFoundError
+
+    known = [each for kind in HEADINGS for each in _names(kind)]
+    if not any(each.startswith(f"{name}/") for each in known):
+        raise NotFoundError("interface package", name[:200], {each.partition("/")[0] for each in known})
+    kinds = _kinds(only_msgs, only_srvs, only_actions)
+    found = [each for each in known if each.split("/")[:2] in [[name, kind] for kind in kinds]]
+    if as_json:
+        say_json(found)
+    elif found:
+        say("\n".join(found))
+
+
+@app.command("show")
+def show_interface(
+    type_: Annotated[
+        str,
+        typer.Argument(
+            help="Twist, geometry_msgs/Twist or geometry_msgs/msg/Twist; - reads it from standard input.",
+            metavar="TYPE",
+            autocompletion=complete.interface_types,
+        ),
+    ],
+    all_comments: Annotated[bool, typer.Option("--all-comments", help="Comments of nested types too.")] = False,
+    no_comments: Annotated[bool, typer.Option("--no-comments", help="No comments and no empty lines.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="A JSON object, with the type's hash.")] = False,
+) -> None:
+    """Show what a type is made of."""
+    from robolink.cli.interface.show import as_data, lines, type_named
+    from robolink.cli.session import say
+    from robolink.cli.show import as_json as json_text
+
+    if all_comments and no_comments:
+        raise typer.BadParameter("--all-comments and --no-comments exclude each other")
+    found = type_named(_from_stdin() if type_ == "-" else type_)
+    if as_json:
+        say(json_text(as_data(found)))
+    else:
+        say("\n".join(lines(found, comments=not no_comments, nested_comments=all_comments)))
+
+
+@app.command("proto")
+def proto(
+    type_: Type, no_quotes: Annotated[bool, typer.Option("--no-quotes", help="Without quotes around it.")] = False
+) -> None:
+    """Show a message, request or goal with its defaults, in YAML that topic pub and service call take."""
+    from robolink.cli.interface.show import prototype, type_named
+    from robolink.cli.session import say
+
+    text = prototype(type_named(type_))
+    say(f"{text}\n" if no_quotes else f'"{_escaped(text)}\n"')
+
+
+def _escaped(text: str) -> str:
+    """Mask what a shell would take for its own within the quotes."""
+    import re
+
+    return re.sub(r'([\\"$`])', r"\\\1", text)
+
+
+def _kinds(*only: bool) -> list[str]:
+    """Give the kinds that are asked for; all, if none is."""
+    return [kind for kind, wanted in zip(HEADINGS, only, strict=True) if wanted] or list(HEADINGS)
+
+
+def _names(kind: str) -> list[str]:
+    from robolink.interfaces import names
+    from robolink.workspace import use_interfaces
+
+    use_interfaces()
+    return names(kind)
+
+
+def _from_stdin() -> str:
+    if sys.stdin is None or sys.stdin.isatty():
+        raise typer.BadParameter("'-' reads the type from a pipe: robolink topic type /chatter | robolink ... show -")
+    name = sys.stdin.readline().strip()
+    if not name:
+        raise typer.BadParameter("nothing came from standard input: expected the name of a type")
+    return name

@@ -1,0 +1,158 @@
+"""robolink service: see which services there are, and call them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from robolink.cli import complete
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+
+app = typer.Typer(no_args_is_help=True, help="See which services there are, and call them.")
+
+Service = Annotated[
+    str,
+    typer.Argument(
+        help="Name of the service, such as /reset.", metavar="SERVICE", autocompletion=complete.service_names
+    ),
+]
+Hidden = Annotated[bool, typer.Option("--include-hidden-services", help="Also those that begin with _.")]
+AsJson = Annotated[bool, typer.Option("--json", help="JSON, for programs.")]
+Count = Annotated[bool, typer.Option("--count-services", "-c", help="Only say how many there are.")]
+
+
+@app.callback()
+def _noun() -> None:
+    """See which services there are, and call them."""
+
+
+@app.command("list")
+def list_services(
+    show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Also show the types.")] = False,
+    count: Count = False,
+    hidden: Hidden = False,
+    as_json: AsJson = False,
+) -> None:
+    """List the services that are served or called."""
+    from robolink.cli.session import is_hidden, looking, say, say_json
+
+    with looking() as context:
+        services = {name: types for name, types in _types(context).items() if hidden or not is_hidden(name)}
+    if as_json:
+        say_json(services)
+    elif count:
+        say(str(len(services)))
+    else:
+        for name, types in services.items():
+            say(f"{name} [{', '.join(types)}]" if show_types else name)
+
+
+@app.command("type")
+def show_type(service: Service, hidden: Hidden = False, as_json: AsJson = False) -> None:
+    """Show the type of a service."""
+    from robolink.cli.session import looking, say, say_json
+
+    with looking() as context:
+        types = _types(context)
+        name = _known(context, service, types)
+    if as_json:
+        say_json(types[name])
+    else:
+        say("\n".join(types[name]))
+
+
+@app.command("find")
+def find(
+    type_: Annotated[
+        str,
+        typer.Argument(help="Trigger or std_srvs/srv/Trigger.", metavar="TYPE", autocompletion=complete.service_types),
+    ],
+    count: Count = False,
+    hidden: Hidden = False,
+    as_json: AsJson = False,
+) -> None:
+    """List the services of a type."""
+    from robolink.cli.service.call import is_named
+    from robolink.cli.session import is_hidden, looking, say, say_json
+
+    with looking() as context:
+        services = {name: types for name, types in _types(context).items() if hidden or not is_hidden(name)}
+    found = [name for name, types in services.items() if any(is_named(each, type_) for each in types)]
+    if as_json:
+        say_json(found)
+    elif count:
+        say(str(len(found)))
+    else:
+        for name in found:
+            say(name)
+
+
+@app.command("info")
+def show_info(
+    service: Service,
+    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Also show who serves and calls it.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Show a service's type, and how many serve and call it."""
+    from robolink.cli.service.info import show
+
+    show(service, verbose=verbose, as_json=as_json)
+
+
+@app.command("call")
+def call_service(
+    ctx: typer.Context,
+    service: Service,
+    type_: Annotated[
+        str,
+        typer.Argument(
+            help="Its type; found out when left out.", metavar="[TYPE]", autocompletion=complete.type_of_service
+        ),
+    ] = "",
+    values: Annotated[
+        str | None, typer.Argument(help="The request in YAML, such as '{data: true}'.", metavar="[VALUES]")
+    ] = None,
+    from_stdin: Annotated[bool, typer.Option("--stdin", help="Read the request from standard input.")] = False,
+    rate: Annotated[float | None, typer.Option("--rate", "-r", metavar="HZ", help="Call again and again.")] = None,
+    timeout: Annotated[
+        float, typer.Option("--timeout", metavar="S", help="Give up after so many seconds without an answer.")
+    ] = 5.0,
+    node_name: Annotated[
+        str, typer.Option("--node-name", "-n", metavar="NAME", help="Name of the node that calls.")
+    ] = "",
+    as_json: Annotated[bool, typer.Option("--json", help="A line of JSON for each call.")] = False,
+) -> None:
+    """Call a service and show what it answers."""
+    from robolink.cli.service import call
+
+    if values is None and not call.is_type(type_):  # SERVICE VALUES: the type was left out
+        type_, values = "", type_
+    if from_stdin and values:
+        ctx.fail("either VALUES or --stdin, not both")
+    manner = call.Manner(rate, timeout, as_json, node_name)
+    if manner.problem():
+        ctx.fail(manner.problem())
+    call.run(service, type_, call.read_stdin() if from_stdin else values or "", manner)
+
+
+def _types(context: Context) -> dict[str, list[str]]:
+    """Give every service with its types, sorted; also those that are only called, as in ros2."""
+    from robolink.cli.session import endpoints
+    from robolink.graph import names_and_types
+    from robolink.wire import EndpointKind
+
+    return dict(names_and_types(endpoints(context, EndpointKind.SERVICE, EndpointKind.CLIENT)))
+
+
+def _known(context: Context, service: str, services: dict[str, list[str]]) -> str:
+    """Give the full name of a service. Raises NotFoundError when there is none."""
+    from robolink.cli.session import absolute, shown
+    from robolink.exceptions import NotFoundError
+
+    name = absolute(service)
+    if name not in services:
+        raise NotFoundError("service", shown(name), services, f"domain {context.get_domain_id()}")
+    return name

@@ -1,0 +1,88 @@
+"""What `robolink service info` shows: the type, how many serve and call, and who they are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from robolink.cli.session import absolute, announced, full_name, looking, say, say_json, shown
+from robolink.exceptions import NotFoundError
+from robolink.qos import HistoryPolicy
+from robolink.wire import EndpointKind, EndpointToken, gid_of
+
+if TYPE_CHECKING:
+    from robolink.graph import Token
+
+TITLES = {EndpointKind.CLIENT: "Clients count", EndpointKind.SERVICE: "Services count"}
+ROLES = {EndpointKind.CLIENT: "CLIENT", EndpointKind.SERVICE: "SERVER"}
+
+
+class End(NamedTuple):
+    """A server or client, and the id that it sends by."""
+
+    token: EndpointToken
+    gid: str
+
+
+def show(service: str, *, verbose: bool, as_json: bool) -> None:
+    """Show it. Raises NotFoundError for a service that nobody serves or calls."""
+    with looking() as context:
+        tokens = announced(context)
+    ends = _ends(tokens, absolute(service), f"domain {context.get_domain_id()}")
+    types = sorted({each.token.type_name for each in ends})
+    if as_json:
+        say_json({"name": absolute(service), "types": types, **_as_json(ends)})
+        return
+    more = "\n" if verbose else ""
+    say(f"Type: {types[0] if len(types) == 1 else types}{more}")
+    for kind, title in TITLES.items():
+        of_kind = [each for each in ends if each.token.kind is kind]
+        say(f"{title}: {len(of_kind)}{more}")
+        for each in of_kind if verbose else ():
+            say(f"{described(each)}\n")
+
+
+def _ends(tokens: dict[str, Token], name: str, where: str) -> list[End]:
+    found = [
+        End(each, ".".join(f"{byte:02x}" for byte in gid_of(text)))
+        for text, each in tokens.items()
+        if isinstance(each, EndpointToken) and each.kind in TITLES
+    ]
+    ends = [each for each in found if each.token.name == name]
+    if not ends:
+        raise NotFoundError("service", shown(name), {each.token.name for each in found}, where)
+    return sorted(ends, key=lambda each: (full_name(each.token), each.gid))
+
+
+def described(end: End) -> str:
+    """Give the lines that ros2 prints for an endpoint."""
+    token, qos = end.token, end.token.qos
+    depth = f" ({qos.depth})" if qos.history is HistoryPolicy.KEEP_LAST else ""
+    return "\n".join(
+        [
+            f"Node name: {token.node_name}",
+            f"Node namespace: {token.namespace}",
+            f"Service type: {token.type_name}",
+            f"Service type hash: {token.type_hash}",
+            f"Endpoint type: {ROLES[token.kind]}",
+            f"GID: {end.gid}",
+            "QoS profile:",
+            f"  Reliability: {qos.reliability.name}",
+            f"  History (Depth): {qos.history.name}{depth}",
+            f"  Durability: {qos.durability.name}",
+            f"  Lifespan: {qos.lifespan}",
+            f"  Deadline: {qos.deadline}",
+            f"  Liveliness: {qos.liveliness.name}",
+            f"  Liveliness lease duration: {qos.liveliness_lease_duration}",
+        ]
+    )
+
+
+def _as_json(ends: list[End]) -> dict[str, list[dict[str, str]]]:
+    return {
+        f"{role.lower()}s": [
+            {"node": full_name(token), "type": token.type_name, "hash": token.type_hash, "gid": gid}
+            for token, gid in ends
+            if token.kind is kind
+        ]
+        for kind, role in ROLES.items()
+    }

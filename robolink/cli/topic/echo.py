@@ -1,0 +1,199 @@
+"""What `robolink topic echo` does."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robolink.cli import show
+from robolink.cli.session import node_of, opened, say, tell
+from robolink.cli.topic import silence
+from robolink.cli.topic.lenient import Leniently
+from robolink.cli.topic.qos_options import QoSFlags
+from robolink.cli.types import message_type
+from robolink.context import Context
+from robolink.event_handler import QoSMessageLostInfo, SubscriptionEventCallbacks
+from robolink.exceptions import RobolinkError
+from robolink.executors import SingleThreadedExecutor
+from robolink.message import type_hash
+from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from robolink.subscription import MessageInfo
+from robolink.task import Future
+from robolink.wire import EndpointKind
+
+if TYPE_CHECKING:
+    from robolink.node import Node
+
+PATIENCE = silence.PATIENCE
+MOST_KEPT = 10_000
+"""Of what a latched publisher says that it has kept, so many are asked for."""
+
+CLEAR = "\x1b[H\x1b[2J"
+"""What empties a terminal."""
+
+
+class NothingCameError(RobolinkError, TimeoutError):
+    """--timeout passed before a message came."""
+
+
+class Format(NamedTuple):
+    """How messages are shown."""
+
+    field: str = ""
+    style: show.Style = show.Style()
+    json: bool = False
+    csv: bool = False
+    raw: bool = False
+    info: bool = False
+    clear: bool = False
+
+    def text(self, message: Any, info: MessageInfo) -> str:
+        """Give a message as it is shown. `info` comes first where it is wanted, in ros2's order."""
+        value = show.field_of(message, self.field) if self.field else message
+        if self.json:
+            return show.as_json({"info": dict(info), "message": value} if self.info else value)
+        if self.csv:
+            before = [str(each) for each in info.values()] if self.info else []
+            return ",".join([*before, show.as_csv(value, self.style)])
+        shown = repr(value) if self.raw else show.as_yaml(value, self.style)
+        before = [show.as_yaml(dict(sorted(info.items())))] if self.info else []
+        return (CLEAR + "\n" if self.clear else "") + "\n---\n".join([*before, shown, ""]).removesuffix("\n")
+
+
+class Wish(NamedTuple):
+    """What is to be heard, and until when."""
+
+    type_name: str = ""
+    once: bool = False
+    timeout: float | None = None
+    filter: str = ""
+    lost: bool = True
+    """Whether lost messages are told of."""
+    node_name: str = ""
+    qos: QoSFlags = QoSFlags()
+
+
+def run(topic: str, wish: Wish, form: Format) -> None:
+    """Show what is published on a topic; one message if `once`, else until Ctrl-C or the timeout."""
+    begin = time.monotonic()
+    with opened() as context:
+        node = node_of(context, wish.node_name)
+        name = node.resolve_topic_name(topic)
+        told = wish.type_name == "" and _wait_for_topic(context, name, wish.timeout)
+        msg_type = message_type(context, name, wish.type_name)
+        passes = _passes(msg_type, form, wish.filter)
+        left = None if wish.timeout is None else max(wish.timeout - (time.monotonic() - begin), 0.0)
+        if not _Echo(node, name, msg_type, wish, form, passes).run(left, told) and wish.timeout is not None:
+            raise NothingCameError(f"no message on {name} within {wish.timeout:g} s")
+
+
+def _passes(msg_type: type[Any], form: Format, text: str) -> Callable[[Any], bool]:
+    """Give what tells whether a message is shown. Raises EncodeError for a wrong field, FilterError."""
+    kind = show.check_path(msg_type, form.field) if form.field else None
+    if not text:
+        return lambda _: True
+    from robolink.cli.topic.filter import compile_filter
+
+    passes = Leniently(compile_filter(text, kind or msg_type))
+    if kind is None:
+        return passes
+    return lambda message: passes(show.field_of(message, form.field))
+
+
+class _Echo:
+    """One run: it has come to its end when `done` is."""
+
+    def __init__(
+        self,
+        node: Node,
+        name: str,
+        msg_type: type[Any],
+        wish: Wish,
+        form: Format,
+        passes: Callable[[Any], bool],
+    ) -> None:
+        self.node, self.name, self.msg_type = node, name, msg_type
+        self.wish, self.form, self.passes = wish, form, passes
+        self.first, self.done = Future[None](), Future[None]()
+        self.shown = 0
+        self.qos = wish.qos.over("sensor_data") if wish.qos.given else matching_qos(node.context, name)
+
+    def run(self, timeout: float | None, told: bool) -> int:
+        """Show messages until the end; how many were shown."""
+        end = None if timeout is None else time.monotonic() + timeout
+        # Why nothing comes is told here, in this command's words.
+        events = SubscriptionEventCallbacks(message_lost=self.on_lost, use_default_callbacks=False)
+        self.node.create_subscription(
+            self.msg_type, self.name, self.on_message, self.qos, event_callbacks=events, raw=self.form.raw
+        )
+        with SingleThreadedExecutor(context=self.node.context) as executor:
+            executor.add_node(self.node)
+            if not told:
+                patience = PATIENCE if timeout is None else min(PATIENCE, timeout)
+                executor.spin_until_future_complete(self.first, timeout_sec=patience)
+                if not self.first.done() and patience == PATIENCE:
+                    tell(silence.why_silent(self.node.context, self.name, self.wanted()))
+            left = None if end is None else max(end - time.monotonic(), 0.0)
+            executor.spin_until_future_complete(self.done, timeout_sec=left)
+        if self.done.done():
+            self.done.result()
+        return self.shown
+
+    def wanted(self) -> silence.Wanted:
+        """Give what is listened for."""
+        return silence.Wanted(self.msg_type.__ros_type__, type_hash(self.msg_type), self.qos)
+
+    def on_message(self, message: Any, info: MessageInfo) -> None:
+        """Show a message. What goes wrong is this command's own error, no callback's: no such field, a closed pipe."""
+        if self.done.done():
+            return
+        if not self.first.done():
+            self.first.set_result(None)
+        try:
+            if self.form.raw or self.passes(message):
+                say(self.form.text(message, info))
+                self.shown += 1
+        except (RobolinkError, OSError) as error:
+            self.done.set_exception(error)
+        if self.wish.once and self.shown and not self.done.done():
+            self.done.set_result(None)
+
+    def on_lost(self, info: QoSMessageLostInfo) -> None:
+        """Tell of messages that were sent and did not come."""
+        if self.wish.lost:
+            change, total = info.total_count_change, info.total_count
+            tell(f"A message was lost!!!\n\ttotal count change:{change}\n\ttotal count: {total}")
+
+
+def _wait_for_topic(context: Context, name: str, timeout: float | None) -> bool:
+    """Wait until somebody publishes or subscribes; whether it was told that this takes long."""
+    begin, told = time.monotonic(), False
+
+    def known() -> bool:
+        return bool(context.graph.endpoints(EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION, name=name))
+
+    while not known():
+        spent = time.monotonic() - begin
+        if timeout is not None and spent >= timeout:
+            raise NothingCameError(f"nobody publishes {name}: its type is not known, and {timeout:g} s have passed")
+        if not context.ok():
+            raise KeyboardInterrupt
+        left = PATIENCE if timeout is None else min(PATIENCE, timeout - spent)
+        # Never without a limit: on Windows Ctrl-C does not end a wait.
+        if not context.graph.wait_for(lambda: known() or not context.ok(), left) and not told and left == PATIENCE:
+            tell(silence.why_silent(context, name))
+            told = True
+    return told
+
+
+def matching_qos(context: Context, name: str) -> QoSProfile:
+    """Ask for what the publishers offer: what they kept, if one of them keeps something."""
+    offered = [each.qos for each in context.graph.endpoints(EndpointKind.PUBLISHER, name=name)]
+    latched = [each.depth for each in offered if each.durability is DurabilityPolicy.TRANSIENT_LOCAL]
+    reliable = all(each.reliability is not ReliabilityPolicy.BEST_EFFORT for each in offered)
+    return QoSProfile(
+        depth=min(max([10, *latched]), MOST_KEPT),
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+    )

@@ -1,0 +1,197 @@
+"""What `robolink topic list`, `info`, `type` and `find` say: topics as they are announced."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from typing import TYPE_CHECKING, Any
+
+from robolink.cli.session import absolute, endpoints, is_hidden, looking, say, say_json, shown, tell
+from robolink.duration import Infinite
+from robolink.exceptions import MessageError, NotFoundError, WireError, nearest
+from robolink.graph import names_and_types
+from robolink.qos import HistoryPolicy, QoSProfile
+from robolink.validate_full_topic_name import validate_full_topic_name
+from robolink.wire import EndpointKind, EndpointToken, gid_of, graph_pattern, parse_token
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+    from robolink.duration import Duration
+
+End = tuple[bytes, EndpointToken]
+"""One end of a topic, with the gid that its announcement gives it."""
+
+_TYPE = re.compile(r"(?:[A-Za-z]\w*[/.])?(?:msg[/.])?[A-Za-z]\w*", re.ASCII)
+
+
+def list_topics(*, types: bool, count: bool, verbose: bool, hidden: bool, json: bool) -> None:
+    """List the topics that are published or subscribed to."""
+    with looking() as context:
+        found = [each for each in _ends(context) if hidden or not is_hidden(each.name)]
+    topics = names_and_types(found)
+    if json:
+        say_json(len(topics) if count else _details(found) if verbose else dict(topics))
+    elif count:
+        say(str(len(topics)))
+    elif verbose and topics:
+        say(_section("Published", "publisher", found, EndpointKind.PUBLISHER))
+        say(_section("Subscribed", "subscriber", found, EndpointKind.SUBSCRIPTION))
+    else:
+        for name, known in topics:
+            say(f"{name} [{', '.join(known)}]" if types else name)
+
+
+def show_info(topic: str, *, verbose: bool, json: bool) -> None:
+    """Say of which type a topic is and who uses it."""
+    with looking() as context:
+        name, found = _of_topic(context, topic)
+    types = sorted({each.type_name for _, each in found})
+    ends = {kind: [each for each in found if each[1].kind is kind] for kind in _KINDS}
+    if json:
+        counts = {f"{_KINDS[kind].lower()}_count": len(each) for kind, each in ends.items()}
+        lists = {f"{_KINDS[kind].lower()}s": [_endpoint_data(*one) for one in each] for kind, each in ends.items()}
+        say_json({"name": name, "types": types, **counts, **lists})
+        return
+    gap = "\n" if verbose else ""
+    say(f"Type: {types[0] if len(types) == 1 else types}{gap}")
+    for kind, each in ends.items():
+        say(f"{_KINDS[kind].capitalize()} count: {len(each)}{gap}")
+        for one in each if verbose else []:
+            say(f"{_endpoint_text(*one)}\n")
+
+
+def show_type(topic: str, *, json: bool) -> None:
+    """Say of which type a topic is: a line for each, where there are several."""
+    with looking() as context:
+        _, found = _of_topic(context, topic)
+    types = sorted({each.type_name for _, each in found})
+    say_json(types) if json else say("\n".join(types))
+
+
+def find_topics(type_: str, *, count: bool, hidden: bool, json: bool) -> None:
+    """List the topics of a type: ``Twist``, ``geometry_msgs/Twist`` or ``geometry_msgs/msg/Twist``."""
+    if _TYPE.fullmatch(type_) is None:
+        raise MessageError(
+            f"'{shown(type_, 80)}' is no type name; it should look like Twist, geometry_msgs/Twist or"
+            " geometry_msgs/msg/Twist"
+        )
+    with looking() as context:
+        ends = [each for each in _ends(context) if hidden or not is_hidden(each.name)]
+    names = sorted({each.name for each in ends if _is_named(each.type_name, type_)})
+    if json:
+        say_json(len(names) if count else names)
+    elif count:
+        say(str(len(names)))
+    elif names:
+        say("\n".join(names))
+    else:
+        tell(f"no topic is of type {shown(type_)}{nearest(type_, _spellings(ends))}")
+
+
+_KINDS = {EndpointKind.PUBLISHER: "Publisher", EndpointKind.SUBSCRIPTION: "Subscription"}
+
+
+def _ends(context: Context) -> list[EndpointToken]:
+    return endpoints(context, *_KINDS)
+
+
+def _of_topic(context: Context, topic: str) -> tuple[str, list[End]]:
+    """Give a topic's full name and its ends. Raises NotFoundError for one that nobody announces."""
+    name = absolute(topic)
+    validate_full_topic_name(name)
+    ends: list[End] = []
+    for text in context.transport.tokens(graph_pattern(context.get_domain_id())):
+        with contextlib.suppress(WireError):
+            token = parse_token(text)
+            if isinstance(token, EndpointToken) and token.kind in _KINDS:
+                ends.append((gid_of(text), token))
+    found = sorted((each for each in ends if each[1].name == name), key=_by_node)
+    if not found:
+        known = {each.name for _, each in ends}
+        raise NotFoundError("topic", shown(name), known, f"domain {context.get_domain_id()}")
+    return name, found
+
+
+def _by_node(end: End) -> tuple[str, str, str, int]:
+    return end[1].namespace, end[1].node_name, end[1].session, end[1].endpoint_id
+
+
+def _is_named(type_name: str, asked: str) -> bool:
+    package, *_, short = type_name.split("/")
+    return asked.replace(".", "/") in (short, f"{package}/{short}", type_name)
+
+
+def _spellings(ends: list[EndpointToken]) -> set[str]:
+    full = {each.type_name for each in ends}
+    return full | {each.rpartition("/")[2] for each in full}
+
+
+def _section(title: str, noun: str, ends: list[EndpointToken], kind: EndpointKind) -> str:
+    """Give a section of `topic list -v`, which ends in an empty line. The types are those of both ends, as in ros2."""
+    lines = [f"{title} topics:"]
+    for name, types in names_and_types(ends):
+        number = sum(each.name == name and each.kind is kind for each in ends)
+        if number:
+            lines.append(f" * {name} [{', '.join(types)}] {number} {noun}{'s' if number > 1 else ''}")
+    return "\n".join([*lines, ""])
+
+
+def _details(ends: list[EndpointToken]) -> dict[str, Any]:
+    return {
+        name: {
+            "types": types,
+            **{f"{_KINDS[kind].lower()}s": sum(e.name == name and e.kind is kind for e in ends) for kind in _KINDS},
+        }
+        for name, types in names_and_types(ends)
+    }
+
+
+def _endpoint_text(gid: bytes, end: EndpointToken) -> str:
+    """Spell one end of a topic as `ros2 topic info -v` does."""
+    qos = end.qos
+    keeps_last = qos.history is HistoryPolicy.KEEP_LAST
+    return "\n".join(
+        [
+            f"Node name: {end.node_name}",
+            f"Node namespace: {end.namespace}",
+            f"Topic type: {end.type_name}",
+            f"Topic type hash: {end.type_hash}",
+            f"Endpoint type: {_KINDS[end.kind].upper()}",
+            f"GID: {gid.hex('.')}",
+            "QoS profile:",
+            f"  Reliability: {qos.reliability.name}",
+            f"  History (Depth): {f'KEEP_LAST ({qos.depth})' if keeps_last else qos.history.name}",
+            f"  Durability: {qos.durability.name}",
+            f"  Lifespan: {_span(qos.lifespan)}",
+            f"  Deadline: {_span(qos.deadline)}",
+            f"  Liveliness: {qos.liveliness.name}",
+            f"  Liveliness lease duration: {_span(qos.liveliness_lease_duration)}",
+        ]
+    )
+
+
+def _endpoint_data(gid: bytes, end: EndpointToken) -> dict[str, Any]:
+    return {
+        "node_name": end.node_name,
+        "node_namespace": end.namespace,
+        "topic_type": end.type_name,
+        "topic_type_hash": end.type_hash,
+        "endpoint_type": _KINDS[end.kind].upper(),
+        "gid": gid.hex("."),
+        "qos_profile": _qos_data(end.qos),
+    }
+
+
+def _qos_data(qos: QoSProfile) -> dict[str, Any]:
+    """Give a profile for programs: policies by name, spans in seconds, null for ever."""
+    policies = ("reliability", "history", "durability", "liveliness")
+    spans = ("lifespan", "deadline", "liveliness_lease_duration")
+    return (
+        {name: getattr(qos, name).name for name in policies}
+        | {"depth": qos.depth}
+        | {name: None if (span := getattr(qos, name)) == Infinite else span.nanoseconds / 1e9 for name in spans}
+    )
+
+
+def _span(span: Duration) -> str:
+    return "Infinite" if span == Infinite else f"{span.nanoseconds} nanoseconds"

@@ -1,0 +1,275 @@
+"""What `robolink topic hz`, `bw` and `delay` do: listen, and say once a second what came."""
+
+from __future__ import annotations
+
+import struct
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robolink.cli.session import node_of, opened, say, say_json, tell
+from robolink.cli.topic import rates
+from robolink.cli.topic.arrivals import Arrivals, Take
+from robolink.cli.topic.lenient import Leniently
+from robolink.cli.topic.silence import PATIENCE, why_silent
+from robolink.exceptions import DecodeError, RobolinkError
+from robolink.time_source import CLOCK_TOPIC
+from robolink.wire import EndpointToken
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+
+PERIOD = 1.0
+"""Seconds from one report to the next."""
+
+STAMP = {1: struct.Struct("<iI"), 0: struct.Struct(">iI")}
+"""A builtin_interfaces/msg/Time at the beginning of a message, by the byte that tells its order."""
+
+NO_NEWS = "no new messages"
+
+
+class NoHeaderError(RobolinkError, ValueError):
+    """A type without the header that `topic delay` needs."""
+
+
+class Flags(NamedTuple):
+    """What all three can be asked for."""
+
+    window: int
+    json: bool = False
+    sim_time: bool = False
+    """Whether moments are those of /clock."""
+
+
+class Report(NamedTuple):
+    """How figures are said: for one topic, in the columns of a table for several, and for programs."""
+
+    text: str
+    cells: list[str]
+    data: dict[str, Any]
+
+
+class Meter(NamedTuple):
+    """What is measured: how a message of a publisher's type is noted, and what is said of those noted."""
+
+    take: Callable[[EndpointToken, rates.Window], Take]
+    header: list[str]
+    report: Callable[[list[int], list[int]], Report | None]
+    nothing: dict[str, Any]
+
+
+def hz(topics: list[str], flags: Flags, filter_text: str) -> None:
+    """Say how often messages come; only those that pass a filter, if there is one."""
+    header = ["topic", "rate", "min_delta", "max_delta", "std_dev", "window"]
+    with opened() as context:
+        take = _filtered(context, filter_text) if filter_text else _noted
+        _measure(context, topics, flags, Meter(take, header, _rate, _no_figures("rate")), more=1)
+
+
+def bw(topics: list[str], flags: Flags) -> None:
+    """Say how many bytes come."""
+    header = ["topic", "bandwidth", "mean", "min", "max", "messages"]
+    nothing = dict.fromkeys(["bytes_per_second", "mean", "min", "max"]) | {"messages": 0}
+    with opened() as context:
+        size = context.transport.size
+        meter = Meter(lambda _, window: lambda content, at: window.add(at, size(content)), header, _bandwidth, nothing)
+        _measure(context, topics, flags, meter)
+
+
+def delay(topic: str, flags: Flags) -> None:
+    """Say how long after the stamp in its header each message came."""
+    with opened() as context:
+        meter = Meter(lambda publisher, window: _delayed(context, publisher, window), [], _delay, _no_figures("delay"))
+        _measure(context, [topic], flags, meter, clock=time.time_ns)
+
+
+def _measure(
+    context: Context,
+    topics: list[str],
+    flags: Flags,
+    meter: Meter,
+    *,
+    more: int = 0,
+    clock: Callable[[], int] = time.monotonic_ns,
+) -> None:
+    node = node_of(context)
+    names = list(dict.fromkeys(node.resolve_topic_name(each) for each in topics))
+    windows = {name: rates.Window(flags.window + more) for name in names}
+    arrivals = Arrivals(node, clock)
+    try:
+        timed = _sim_time(context, arrivals) if flags.sim_time else _as_it_is
+        for name, window in windows.items():
+            arrivals.listen(name, lambda publisher, window=window: timed(meter.take(publisher, window)))  # type: ignore[misc]
+            if len(names) > 1 and not flags.json:
+                say(f"Subscribed to [{name}]")
+        _report(context, arrivals, windows, meter, flags)
+    finally:
+        arrivals.close()
+
+
+def _report(context: Context, arrivals: Arrivals, windows: dict[str, rates.Window], meter: Meter, flags: Flags) -> None:
+    begin, rounds = time.monotonic(), 0
+    explained = False
+    while True:
+        rounds += 1
+        arrivals.wait(begin + rounds * PERIOD)
+        looks = {name: window.look() for name, window in windows.items()}
+        reports = {name: meter.report(times, values) if new else None for name, (times, values, new) in looks.items()}
+        if flags.json:
+            for name, found in reports.items():
+                say_json({"topic": name, **(found.data if found else meter.nothing), "new": looks[name][2]})
+        else:
+            _say_reports(meter, windows, reports)
+        if not explained and rounds * PERIOD >= PATIENCE:
+            explained = True
+            for name in (each for each, window in windows.items() if not window.total):
+                tell(why_silent(context, name))
+
+
+def _say_reports(meter: Meter, windows: dict[str, rates.Window], reports: dict[str, Report | None]) -> None:
+    found = {name: each for name, each in reports.items() if each is not None}
+    if len(windows) > 1 and found:
+        say(rates.table(meter.header, [[name, *each.cells] for name, each in found.items()]))
+    elif found:
+        say(next(iter(found.values())).text)
+    elif any(window.total for window in windows.values()):
+        say(NO_NEWS)
+
+
+# How messages are noted
+
+
+def _noted(publisher: EndpointToken, window: rates.Window) -> Take:
+    return lambda content, at: window.add(at)
+
+
+def _filtered(context: Context, text: str) -> Callable[[EndpointToken, rates.Window], Take]:
+    from robolink.cli.topic.filter import compile_filter
+    from robolink.cli.types import type_of
+    from robolink.message import decoder
+
+    def how(publisher: EndpointToken, window: rates.Window) -> Take:
+        msg_type = type_of(context, publisher)
+        passes, decode, read = Leniently(compile_filter(text, msg_type)), decoder(msg_type), context.transport.read
+
+        def take(content: Any, at: int) -> None:
+            message = passes.decoded(lambda: decode(read(content).payload))
+            if message is not None and passes(message):
+                window.add(at)
+
+        return take
+
+    return how
+
+
+def _delayed(context: Context, publisher: EndpointToken, window: rates.Window) -> Take:
+    from robolink.cli.types import type_of
+
+    stamp_of, read = stamp_reader(type_of(context, publisher)), context.transport.read
+    leniently = Leniently(lambda _: True)
+
+    def take(content: Any, at: int) -> None:
+        stamp = leniently.decoded(lambda: stamp_of(read(content).payload))
+        if stamp is not None:
+            window.add(at, at - stamp)
+
+    return take
+
+
+def stamp_reader(msg_type: type[Any]) -> Callable[[bytes], int]:
+    """Give what reads a message's stamp, in nanoseconds: the first bytes where the header comes first, as mostly.
+
+    Raises NoHeaderError for a type without one.
+    """
+    from robolink.message import decoder
+
+    fields = msg_type.__ros_fields__
+    header = fields.get("header")
+    if header is None or header.base != "std_msgs/msg/Header" or header.shape != "one":
+        there = ", ".join(fields) or "nothing"
+        raise NoHeaderError(
+            f"topic delay needs a std_msgs/msg/Header named header; {msg_type.__ros_type__} has {there}"
+        )
+    if next(iter(fields)) == "header":
+        return first_stamp
+    decode = decoder(msg_type)
+
+    def stamp_of(payload: bytes) -> int:
+        stamp = decode(payload).header.stamp
+        return int(stamp.sec) * 10**9 + int(stamp.nanosec)
+
+    return stamp_of
+
+
+def first_stamp(payload: bytes) -> int:
+    """Give the time with which a message begins, in nanoseconds. Raises DecodeError where there is none."""
+    try:
+        seconds, nanoseconds = STAMP[payload[1]].unpack_from(payload, 4)
+    except (KeyError, IndexError, struct.error):
+        raise DecodeError(f"{len(payload)} bytes that do not begin with a stamp") from None
+    return int(seconds) * 10**9 + int(nanoseconds)
+
+
+def _as_it_is(take: Take) -> Take:
+    return take
+
+
+def _sim_time(context: Context, arrivals: Arrivals) -> Callable[[Take], Take]:
+    """Listen to /clock; what is timed by it is left out before its first message. All of it runs on one thread."""
+    read, now = context.transport.read, [0]
+    leniently = Leniently(lambda _: True)
+
+    def on_clock(content: Any, at: int) -> None:
+        now[0] = leniently.decoded(lambda: first_stamp(read(content).payload)) or now[0]
+
+    arrivals.listen(CLOCK_TOPIC, lambda _: on_clock)
+
+    def timed(take: Take) -> Take:
+        return lambda content, at: take(content, now[0]) if now[0] else None
+
+    return timed
+
+
+# What is said of them
+
+
+def _rate(times: list[int], values: list[int]) -> Report | None:
+    figures, rate = rates.gaps(times), rates.rate(times)
+    if figures is None or rate is None:
+        return None
+    low, high, deviation, count = figures[1:]
+    return Report(
+        f"average rate: {rate:.3f}\n\tmin: {low:.3f}s max: {high:.3f}s std dev: {deviation:.5f}s window: {count}",
+        [f"{rate:.3f}", f"{low:.3f}", f"{high:.3f}", f"{deviation:.5f}", str(count)],
+        {"rate": rate, "min": low, "max": high, "std_dev": deviation, "window": count},
+    )
+
+
+def _bandwidth(times: list[int], sizes: list[int]) -> Report | None:
+    found, figures = rates.bandwidth(times, sizes), rates.figures_of(sizes)
+    if found is None or figures is None:
+        return None
+    speed = rates.as_bytes(found, found) + "/s"
+    mean, low, high = (rates.as_bytes(each, found) for each in figures[:3])
+    data = {"bytes_per_second": found, "mean": figures.mean, "min": figures.low, "max": figures.high}
+    return Report(
+        f"{speed} from {figures.number} messages\n\tMessage size mean: {mean} min: {low} max: {high}",
+        [speed, mean, low, high, str(figures.number)],
+        data | {"messages": figures.number},
+    )
+
+
+def _delay(times: list[int], delays: list[int]) -> Report | None:
+    figures = rates.figures_of([each * rates.NS for each in delays])
+    if figures is None:
+        return None
+    mean, low, high, deviation, count = figures
+    return Report(
+        f"average delay: {mean:.3f}\n\tmin: {low:.3f}s max: {high:.3f}s std dev: {deviation:.5f}s window: {count}",
+        [],
+        {"delay": mean, "min": low, "max": high, "std_dev": deviation, "window": count},
+    )
+
+
+def _no_figures(name: str) -> dict[str, Any]:
+    return dict.fromkeys([name, "min", "max", "std_dev"]) | {"window": 0}

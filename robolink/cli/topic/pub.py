@@ -1,0 +1,161 @@
+"""What `robolink topic pub` does."""
+
+from __future__ import annotations
+
+import itertools
+import re
+import sys
+import time
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robolink.cli.session import node_of, opened, say, shown
+from robolink.cli.topic.qos_options import QoSFlags
+from robolink.cli.topic.stamps import Stamped
+from robolink.cli.types import message_type
+from robolink.exceptions import DocumentError, RobolinkError, nearest
+from robolink.task import Future
+from robolink.wire import EndpointKind
+from robolink.yamlfile import parse
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+    from robolink.node import Node
+    from robolink.publisher import Publisher
+
+LOWEST_RATE = 1e-9
+"""Hz: a message in thirty years."""
+
+FOUND_WITHIN = 0.5
+"""Seconds in which a topic turns up whose type was not named."""
+
+INPUT = "<standard input>"
+LONGEST_INPUT = 64 * 2**20
+"""Bytes of standard input: a few pictures, as YAML."""
+
+_RULE = re.compile(r"^(?:---|\.\.\.)(?=\s|$)", re.MULTILINE)
+"""What stands between the documents of a YAML stream, and after each that `topic echo` writes."""
+
+
+class PublishError(RobolinkError, ValueError):
+    """A rate that is none, flags that do not go together, or no type for the topic."""
+
+
+class MatchTimeoutError(RobolinkError, TimeoutError):
+    """--max-wait-time-secs passed before enough subscriptions were there."""
+
+
+class Wish(NamedTuple):
+    """How often, how long, and for whom."""
+
+    rate: float = 1.0
+    times: int = 0
+    """Messages; 0 for no end."""
+    wait: int | None = None
+    """Subscriptions to wait for; by default one if `times` is given."""
+    max_wait: float | None = None
+    keep_alive: float = 0.1
+    """Seconds that the publisher stays after its last message, so that it arrives."""
+    print_every: int = 1
+    node_name: str = ""
+    qos: QoSFlags = QoSFlags()
+    sim_time: bool = False
+
+
+def run(topic: str, type_name: str, values: str | None, wish: Wish) -> None:
+    """Publish what `values` says, or standard input where they are None: one message after the other, in turn."""
+    if not LOWEST_RATE <= wish.rate < float("inf"):
+        raise PublishError(f"--rate: expected a number of Hz above 0, got {wish.rate:g}")
+    wait = (1 if wish.times else 0) if wish.wait is None else wish.wait
+    if wish.max_wait is not None and not wait:
+        raise PublishError("--max-wait-time-secs only says something with --wait-matching-subscriptions, -1 or --times")
+    documents = [parse(values, name="<values>")] if values is not None else list(documents_of(read_input()))
+    with opened() as context:
+        node = node_of(context, wish.node_name, describes=True)
+        name = node.resolve_topic_name(topic)
+        msg_type = _type_of(context, name, type_name)
+        messages = [Stamped(msg_type, each) for each in documents]
+        if wish.sim_time:
+            _follow_clock(node)
+        publisher = node.create_publisher(msg_type, name, wish.qos.over("default"))
+        _wait(node, publisher, wait, wish.max_wait)
+        say("publisher: beginning loop")
+        _loop(node, publisher, messages, wish)
+
+
+def read_input() -> str:
+    """Read standard input to its end. Raises DocumentError for what is no text, and for too much."""
+    raw = b"" if sys.stdin is None else sys.stdin.buffer.read(LONGEST_INPUT + 1)
+    if len(raw) > LONGEST_INPUT:
+        raise DocumentError(f"{INPUT}: more than {LONGEST_INPUT // 2**20} MiB")
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw[: error.start].count(b"\n") + 1
+        raise DocumentError(f"{INPUT}:{line}: not UTF-8 text") from None
+
+
+def documents_of(text: str) -> Iterator[Any]:
+    """Read each document of a YAML stream that is not empty. Raises DocumentError, also when there is none."""
+    parts = [each for each in _RULE.split(text) if each.strip()]
+    if not parts:
+        raise DocumentError(f"{INPUT}: there is nothing to publish in it")
+    for number, each in enumerate(parts, start=1):
+        yield parse(each.removeprefix("\n"), name=INPUT if len(parts) == 1 else f"{INPUT}, document {number}")
+
+
+def _type_of(context: Context, name: str, given: str) -> type[Any]:
+    """Give the type that was named, else the one that the topic has. Raises PublishError for an unknown topic."""
+    graph, ends = context.graph, (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
+    if given or graph.wait_for(lambda: bool(graph.endpoints(*ends, name=name)), FOUND_WITHIN):
+        return message_type(context, name, given)
+    near = nearest(name, {each.name for each in graph.endpoints(*ends)})
+    raise PublishError(f"nobody uses {shown(name)} yet{near}, so say its type: TOPIC TYPE VALUES")
+
+
+def _follow_clock(node: Node) -> None:
+    from robolink.parameter import Parameter
+
+    node.set_parameters([Parameter("use_sim_time", value=True)])
+
+
+def _wait(node: Node, publisher: Publisher[Any], count: int, longest: float | None) -> None:
+    """Wait until so many subscriptions are there; said once a second."""
+    graph, context = node.context.graph, node.context
+    end = None if longest is None else time.monotonic() + longest
+    while publisher.get_subscription_count() < count:
+        if not context.ok():
+            raise KeyboardInterrupt
+        left = 1.0 if end is None else min(end - time.monotonic(), 1.0)
+        if left <= 0:
+            found = publisher.get_subscription_count()
+            raise MatchTimeoutError(
+                f"timed out waiting for subscribers: expected {count}, but there are only {found} of"
+                f" {publisher.topic_name} with type {publisher.msg_type.__ros_type__}"
+            )
+        say(f"Waiting for at least {count} matching subscription(s)...")
+        graph.wait_for(lambda: publisher.get_subscription_count() >= count or not context.ok(), left)
+
+
+def _loop(node: Node, publisher: Publisher[Any], messages: list[Stamped], wish: Wish) -> None:
+    from robolink.executors import SingleThreadedExecutor
+
+    serial, turn, done = itertools.count(1), itertools.cycle(messages), Future[None]()
+    clock = node.get_clock()
+
+    def send() -> None:
+        number, each = next(serial), next(turn)
+        each.stamp(clock.now())
+        if wish.print_every and number % wish.print_every == 0:
+            say(f"publishing #{number}: {each.message!r}\n")
+        publisher.publish(each.message)
+        if number == wish.times:
+            done.set_result(None)
+
+    send()
+    with SingleThreadedExecutor(context=node.context) as executor:
+        executor.add_node(node)
+        if not done.done():
+            node.create_timer(1.0 / wish.rate, lambda: None if done.done() else send())
+            executor.spin_until_future_complete(done)
+        executor.spin_until_future_complete(Future(), timeout_sec=wish.keep_alive)

@@ -1,0 +1,70 @@
+"""Why nothing comes on a topic: what commands that wait tell after a second, as far as the graph shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from robolink.cli import elsewhere
+from robolink.cli.session import full_name, shown
+from robolink.context import Context
+from robolink.exceptions import nearest
+from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.wire import NO_HASH, EndpointKind, EndpointToken
+
+PATIENCE = 1.0
+"""Seconds of silence after which the reason is given."""
+
+
+class Wanted(NamedTuple):
+    """What is listened for; any type where none is said."""
+
+    type_name: str = ""
+    type_hash: str = ""
+    qos: QoSProfile | None = None
+
+
+def why_silent(context: Context, name: str, wanted: Wanted | None = None) -> str:
+    """Say in one line why nothing of what is wanted comes on a topic, named in full."""
+    wanted = wanted or Wanted()
+    publishers = context.graph.endpoints(EndpointKind.PUBLISHER, name=name)
+    if not publishers:
+        return _nobody(context, name)
+    of_type = [each for each in publishers if wanted.type_name in ("", each.type_name)]
+    if not of_type:
+        types = " and ".join(sorted({each.type_name for each in publishers}))
+        return f"nothing will come: {name} is published as {types}, not as {wanted.type_name}"
+    same = [each for each in of_type if wanted.type_hash in ("", NO_HASH, each.type_hash) or each.type_hash == NO_HASH]
+    if not same:
+        return (
+            f"nothing will come: {_names(of_type)} has another definition of {wanted.type_name}"
+            f" (its hash is {of_type[0].type_hash}, ours is {wanted.type_hash})"
+        )
+    return f"waiting: {name} is published by {_names(same)}, {_what_it_sent(same, wanted.qos)}"
+
+
+def _what_it_sent(publishers: list[EndpointToken], qos: QoSProfile | None) -> str:
+    keeps = any(each.qos.durability is DurabilityPolicy.TRANSIENT_LOCAL for each in publishers)
+    asked = qos is not None and qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+    if keeps and asked:
+        return "which has sent nothing yet"
+    if keeps:
+        return (
+            "which has sent nothing since this began; what it sent before was kept for those who ask for it"
+            " (durability transient_local)"
+        )
+    if asked:
+        return "which has sent nothing since this began, and keeps nothing for late joiners (durability volatile)"
+    return "which has sent nothing since this began"
+
+
+def _nobody(context: Context, name: str) -> str:
+    topics = sorted({each.name for each in context.graph.endpoints(EndpointKind.PUBLISHER)})
+    where = f"domain {context.get_domain_id()}"
+    other = elsewhere.hint(elsewhere.domains_with(context, name, EndpointKind.PUBLISHER))
+    return f"waiting for a publisher of {shown(name)}: nobody publishes it on {where} yet{nearest(name, topics)}{other}"
+
+
+def _names(publishers: Iterable[EndpointToken]) -> str:
+    names = sorted({full_name(each) for each in publishers})
+    return names[0] if len(names) == 1 else f"{names[0]} and {len(names) - 1} more"
