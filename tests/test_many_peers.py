@@ -1,0 +1,77 @@
+"""A session that has just been opened lists every token of a large system, each time."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack
+
+import pytest
+
+from robolink.transport.zenoh import ZenohTransport
+
+pytestmark = pytest.mark.processes
+
+PROCESSES, SESSIONS, NODES, TOPICS, LOOKS = 5, 6, 30, 200, 10
+
+PROGRAM = """
+import sys
+from robolink.transport.zenoh import ZenohTransport
+sessions = [ZenohTransport(int(sys.argv[1]), environ={}) for _ in range(int(sys.argv[2]))]
+for number, token in enumerate(sys.argv[3:]):
+    sessions[number % len(sessions)].announce(token)
+print("ready", flush=True)
+sys.stdin.read()
+"""
+
+
+def all_tokens(domain: int) -> list[str]:
+    """Those of the nodes and those of a publisher for each topic."""
+    nodes = [f"@ros2_lv/{domain}/a/{number}/{number}/NN/%/%/node_{number}" for number in range(NODES)]
+    type_ = f"std_msgs::msg::dds_::String_/RIHS01_{'0' * 64}/::,10:,:,:,,"
+    return nodes + [
+        f"@ros2_lv/{domain}/a/{topic % NODES}/{NODES + topic}/MP/%/%/node_{topic % NODES}/%topic_{topic}/{type_}"
+        for topic in range(TOPICS)
+    ]
+
+
+@pytest.fixture
+def system(domain: int) -> Iterator[list[str]]:
+    """Thirty sessions in several processes that each announce a part of the tokens; gives all."""
+    tokens = all_tokens(domain)
+    with ExitStack() as stack:
+        started = []
+        for number in range(PROCESSES):
+            command = [sys.executable, "-c", PROGRAM, str(domain), str(SESSIONS), *tokens[number::PROCESSES]]
+            process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+            stack.enter_context(process)
+            stack.callback(process.kill)
+            started.append(process)
+        for process in started:
+            assert process.stdout
+            assert process.stdout.readline() == "ready\n"
+        yield sorted(tokens)
+
+
+def test_each_look_lists_all(system: list[str], domain: int) -> None:
+    looks = []
+    for _ in range(LOOKS):
+        session = ZenohTransport(domain, environ={})
+        looks.append(session.tokens(f"@ros2_lv/{domain}/**"))
+        session.close()
+    assert [len(look) for look in looks] == [len(system)] * LOOKS
+    assert all(look == system for look in looks)
+
+
+def test_a_look_right_after_others_have_come(system: list[str], domain: int) -> None:
+    sessions = [ZenohTransport(domain, environ={}) for _ in range(5)]
+    own = [f"@ros2_lv/{domain}/b/{number}/{number}/NN/%/%/late_{number}" for number in range(5)]
+    for session, token in zip(sessions, own, strict=True):
+        session.announce(token)
+    sessions.append(ZenohTransport(domain, environ={}))
+    try:
+        assert sessions[-1].tokens(f"@ros2_lv/{domain}/**") == sorted([*system, *own])
+    finally:
+        for session in sessions:
+            session.close()
