@@ -255,3 +255,20 @@ def test_echo_shows_it_from_another_process_and_folder(
         with Command(domain, "topic", "echo", "--once", "--json", "/cart", "Cart") as echo:
             assert echo.end() == 0
             assert msgspec.json.decode(echo.lines[0].text) == {"wheels": [{"radius": 0.5}], "label": "hay"}
+
+
+@pytest.mark.processes
+def test_a_publisher_that_waits_says_what_its_type_is(
+    domain: int, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for part in ("nodes", "interfaces/carts_of_mine/msg"):
+        (tmp_path / part).mkdir(parents=True)
+    (tmp_path / "interfaces/carts_of_mine/msg/Cart.msg").write_text("string label\n")
+    monkeypatch.chdir(tmp_path)
+    with Command(domain, "topic", "pub", "--once", "/cart", "carts_of_mine/Cart", "{label: hay}") as pub:
+        pub.wait_for("Waiting for at least 1")
+        monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
+        with Command(domain, "topic", "echo", "--once", "/cart") as echo:
+            assert echo.end() == 0
+            assert [each.text for each in echo.lines] == ["label: hay", "---"]
+        assert pub.end() == 0

@@ -13,7 +13,9 @@ from robolink.cli.session import node_of, opened, say, shown
 from robolink.cli.topic.qos_options import QoSFlags
 from robolink.cli.topic.stamps import Stamped
 from robolink.cli.types import message_type
+from robolink.event_handler import PublisherEventCallbacks
 from robolink.exceptions import DocumentError, RobolinkError, nearest
+from robolink.executors import Executor, SingleThreadedExecutor
 from robolink.task import Future
 from robolink.wire import EndpointKind
 from robolink.yamlfile import parse
@@ -77,10 +79,14 @@ def run(topic: str, type_name: str, values: str | None, wish: Wish) -> None:
         messages = [Stamped(msg_type, each) for each in documents]
         if wish.sim_time:
             _follow_clock(node)
-        publisher = node.create_publisher(msg_type, name, wish.qos.over("default"))
-        _wait(node, publisher, wait, wish.max_wait)
-        say("publisher: beginning loop")
-        _loop(node, publisher, messages, wish)
+        # The event does nothing but end a turn of the executor: somebody has come.
+        events = PublisherEventCallbacks(matched=lambda _: None)
+        publisher = node.create_publisher(msg_type, name, wish.qos.over("default"), event_callbacks=events)
+        with SingleThreadedExecutor(context=context) as executor:
+            executor.add_node(node)
+            _wait(executor, publisher, wait, wish.max_wait)
+            say("publisher: beginning loop")
+            _loop(node, executor, publisher, messages, wish)
 
 
 def read_input() -> str:
@@ -119,27 +125,27 @@ def _follow_clock(node: Node) -> None:
     node.set_parameters([Parameter("use_sim_time", value=True)])
 
 
-def _wait(node: Node, publisher: Publisher[Any], count: int, longest: float | None) -> None:
-    """Wait until so many subscriptions are there; said once a second."""
-    graph, context = node.context.graph, node.context
+def _wait(executor: Executor, publisher: Publisher[Any], count: int, longest: float | None) -> None:
+    """Spin until so many subscriptions are there; said once a second.
+
+    Who comes may first ask this node what its type is: hence no mere waiting.
+    """
     end = None if longest is None else time.monotonic() + longest
     while publisher.get_subscription_count() < count:
-        if not context.ok():
-            raise KeyboardInterrupt
-        left = 1.0 if end is None else min(end - time.monotonic(), 1.0)
-        if left <= 0:
+        if end is not None and time.monotonic() >= end:
             found = publisher.get_subscription_count()
             raise MatchTimeoutError(
                 f"timed out waiting for subscribers: expected {count}, but there are only {found} of"
                 f" {publisher.topic_name} with type {publisher.msg_type.__ros_type__}"
             )
         say(f"Waiting for at least {count} matching subscription(s)...")
-        graph.wait_for(lambda: publisher.get_subscription_count() >= count or not context.ok(), left)
+        told = time.monotonic()
+        until = told + 1.0 if end is None else min(end, told + 1.0)
+        while publisher.get_subscription_count() < count and time.monotonic() < until:
+            executor.spin_once(timeout_sec=max(0.0, until - time.monotonic()))
 
 
-def _loop(node: Node, publisher: Publisher[Any], messages: list[Stamped], wish: Wish) -> None:
-    from robolink.executors import SingleThreadedExecutor
-
+def _loop(node: Node, executor: Executor, publisher: Publisher[Any], messages: list[Stamped], wish: Wish) -> None:
     serial, turn, done = itertools.count(1), itertools.cycle(messages), Future[None]()
     clock = node.get_clock()
 
@@ -153,9 +159,7 @@ def _loop(node: Node, publisher: Publisher[Any], messages: list[Stamped], wish: 
             done.set_result(None)
 
     send()
-    with SingleThreadedExecutor(context=node.context) as executor:
-        executor.add_node(node)
-        if not done.done():
-            node.create_timer(1.0 / wish.rate, lambda: None if done.done() else send())
-            executor.spin_until_future_complete(done)
-        executor.spin_until_future_complete(Future(), timeout_sec=wish.keep_alive)
+    if not done.done():
+        node.create_timer(1.0 / wish.rate, lambda: None if done.done() else send())
+        executor.spin_until_future_complete(done)
+    executor.spin_until_future_complete(Future(), timeout_sec=wish.keep_alive)
