@@ -65,7 +65,10 @@ class Service(Receiver):
             self._close()
 
     def deliver(self, arrived: Any) -> None:
-        """Keep a request; the one that must give way ends without an answer."""
+        """Keep a request; the one that must give way, or comes too late, ends without an answer."""
+        if self._destroyed:
+            self._transport.accept(arrived).close()
+            return
         waiting = self.mailbox.waiting
         if len(waiting) == MOST_WAITING:
             self._transport.accept(waiting[0]).close()
@@ -134,6 +137,7 @@ class Service(Receiver):
         self._destroyed = True
         self._close()
         self.detach()
+        self._parking.sweep()
         while len(self.mailbox):
             self._transport.accept(self.mailbox.take()).close()
 

@@ -253,6 +253,17 @@ def test_a_service_destroyed_in_its_own_callback_still_answers(
         done(executor, second)
 
 
+def test_whoever_waits_is_told_when_a_service_goes_that_nobody_spins(
+    context: Context, node: Node, executor: SingleThreadedExecutor
+) -> None:
+    idle = Node("idle", context=context)
+    service = idle.create_service(Trigger, "never", lambda _, response: response)
+    future = node.create_client(Trigger, "never").call_async(Trigger.Request())
+    idle.destroy_service(service)
+    with pytest.raises(ServiceError, match="went away"):
+        done(executor, future)
+
+
 def test_a_flood_of_requests_is_bounded(node: Node, server: Node, executor: SingleThreadedExecutor) -> None:
     client = node.create_client(SetBool, "switch")
     futures = [client.call_async(ON) for _ in range(MOST_WAITING + 2)]
