@@ -131,6 +131,16 @@ def test_a_noun_without_a_verb_is_helped(args: list[str], capsys: pytest.Capture
     assert "Commands:" in capsys.readouterr().err
 
 
+def test_a_network_is_asked_for_before_the_command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("ROBOLINK_NETWORK", "localhost")
+    assert main(["--network", "nowhere", "topic", "list"]) == 1
+    assert "no network or file 'nowhere'" in capsys.readouterr().err
+    assert main(["--network", "off", "topic", "list"]) == 0
+    assert capsys.readouterr() == ("", "")
+
+
 def test_the_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--version"]) == 0
     assert capsys.readouterr().out.startswith("robolink 0.")

@@ -41,5 +41,10 @@ def test_the_node_stops_before_what_is_near(monkeypatch: pytest.MonkeyPatch) -> 
     context.shutdown()
 
 
+def test_a_type_of_ones_own_has_its_fields() -> None:
+    basket = module(PROGRAMS[1]).Basket(label="red", weights=[0.5])
+    assert (basket.label, list(basket.weights)) == ("red", [0.5])
+
+
 def test_the_test_passes() -> None:
-    module(PROGRAMS[1]).test_the_robot_wanders()
+    module(PROGRAMS[2]).test_the_robot_wanders()

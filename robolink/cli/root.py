@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
@@ -97,8 +98,14 @@ def root(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
+    network: Annotated[
+        str,
+        typer.Option(metavar="NET", help="localhost, subnet, off, a router (tcp/HOST:7447) or a file of Zenoh's."),
+    ] = "",
 ) -> None:
     """ROS 2 nodes from pip install: run them, launch them, see and send what they publish."""
+    if network:
+        os.environ["ROBOLINK_NETWORK"] = network  # for the processes that a launch starts, too
 
 
 def command() -> Any:
