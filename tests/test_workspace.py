@@ -27,6 +27,7 @@ from robolink.workspace import (
     list_worlds,
     load_module,
     load_node,
+    workspace_of,
 )
 
 NODE = """
@@ -74,6 +75,13 @@ def test_a_users_node_is_found_from_below_its_workspace(write: Write) -> None:
     assert find_node(str(path)).spec == str(path)
     assert find_node("line_follower:main").spec == f"{path}:main"
     assert find_node(f"{path}:main").attribute == "main"
+
+
+@pytest.mark.parametrize(("other", "is_one"), [("configs", True), ("interfaces", True), ("src", False)])
+def test_what_makes_a_folder_a_workspace(tmp_path: Path, other: str, is_one: bool) -> None:
+    for part in ("nodes", f"{other}/deep"):
+        (tmp_path / part).mkdir(parents=True)
+    assert workspace_of(tmp_path / other / "deep") == (tmp_path if is_one else None)
 
 
 def test_a_users_file_shadows_a_built_in_one(write: Write, home: Path) -> None:

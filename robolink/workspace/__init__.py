@@ -1,4 +1,4 @@
-"""The workspace: a folder with `nodes/` and `configs/`, found (`find`) and loaded (`load`) by name, and its types."""
+"""The workspace: a folder of nodes, systems and types, found (`find`) and loaded (`load`) by name."""
 
 from robolink.workspace.find import (
     VARIABLE,

@@ -1,9 +1,9 @@
 """Find nodes, launch files and worlds by name.
 
-A workspace is a folder with two of `nodes/`, `configs/` and `interfaces/`. A name is looked up (1) as a path, (2) in the nearest
-workspace: the one asked for, `ROBOLINK_WORKSPACE`, or the working directory's or a parent's, (3) among the entry
-points `robolink.nodes` of installed packages, (4) in the workspace that comes with robolink. `_` and `-` in names
-are the same.
+A workspace is a folder with two of `nodes/`, `configs/` and `interfaces/`. A name is looked up (1) as a path, (2) in
+the nearest workspace: the one asked for, `ROBOLINK_WORKSPACE`, or the working directory's or a parent's, (3) among
+the entry points `robolink.nodes` of installed packages, (4) in the workspace that comes with robolink. `_` and `-`
+in names are the same.
 """
 
 from __future__ import annotations
