@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import _thread
+import contextlib
 import itertools
 import os
+import queue
 import sys
 import threading
 import time
@@ -24,6 +27,9 @@ if TYPE_CHECKING:
 
 LAST_DOMAIN = 232
 """ROS 2's domain ids end here."""
+
+TOLD_WITHIN = 2.0
+"""Seconds in which whoever is told of the end must have done with it, before the network is left."""
 
 
 class ContextError(RobolinkError, RuntimeError):
@@ -55,6 +61,8 @@ class Context:
         self._initialized = self._ok = self._closed = False
         self._domain_id = 0
         self._callbacks: list[Callable[[], Any]] = []
+        self._teller = 0
+        self._told: queue.SimpleQueue[None] = queue.SimpleQueue()
         self._nodes: weakref.WeakSet[Any] = weakref.WeakSet()
 
     def init(
@@ -146,12 +154,23 @@ class Context:
         return self._ok
 
     def interrupt(self) -> None:
-        """End the spinning, as Ctrl-C does, but stay connected: a program may still send its last words."""
+        """End the spinning, as Ctrl-C does, but stay connected: a program may still send its last words.
+
+        A signal's handler may call this at any moment, within anything that the main thread does: whoever wants to
+        know of the end is told on a thread of its own, since the main thread may hold the very lock that it needs.
+        """
         if not self._ok:
             return
         self.interrupted = True
         self._ok = False
-        self._tell()
+        _thread.start_new_thread(self._tell_now, ())  # threading's own start has locks, too
+
+    def _tell_now(self) -> None:
+        self._teller = _thread.get_ident()
+        try:
+            self._tell()
+        finally:
+            self._told.put(None)
 
     def shutdown(self) -> None:
         """End it: spinning stops and the network is left. Raises ContextError (RuntimeError) when it is not there."""
@@ -161,6 +180,9 @@ class Context:
             was_ok, self._ok, self._closed = self._ok, False, True
         if was_ok:
             self._tell()
+        elif self.interrupted and self._teller != _thread.get_ident():
+            with contextlib.suppress(queue.Empty):
+                self._told.get(timeout=TOLD_WITHIN)
         self._close()
 
     def try_shutdown(self) -> None:

@@ -53,9 +53,9 @@ def init(
 def get_global_executor() -> Executor:
     """Give the executor that `spin` uses when it is given none; it lasts as long as the default context."""
     global _executor
-    if _executor is None:
+    if _executor is None or _executor.context is not get_default_context():
+        _forget_executor()
         _executor = SingleThreadedExecutor()
-        _executor.context.on_shutdown(_forget_executor)
     return _executor
 
 

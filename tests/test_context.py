@@ -151,6 +151,31 @@ def test_an_interrupted_context_still_publishes(bus: Bus) -> None:
     other.shutdown()
 
 
+def test_an_interrupt_may_come_while_its_own_thread_holds_any_lock() -> None:
+    context, lock, told = made(), threading.Lock(), list[str]()
+    context.init([])
+
+    def on_end() -> None:
+        with lock:
+            told.append("end")
+
+    context.on_shutdown(on_end)
+    with lock:  # what the main thread is in the middle of when a signal comes
+        context.interrupt()
+    context.shutdown()
+    assert told == ["end"]
+
+
+def test_whoever_is_told_of_an_interrupt_may_end_the_context() -> None:
+    context = made()
+    context.init([])
+    context.on_shutdown(context.try_shutdown)
+    context.interrupt()
+    context.try_shutdown()
+    with pytest.raises(NotInitializedException):
+        _ = context.transport
+
+
 def test_two_threads_may_end_a_context() -> None:
     context, refused = made(), list[ContextError]()
     context.init([])
