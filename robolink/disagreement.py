@@ -21,7 +21,10 @@ _SHOWN = len("RIHS01_") + 8
 
 
 class Disagreements:
-    """What one node has been told: of each other node and type once, under the name of a topic or service."""
+    """What one node has been told: of each other node and type once, under the name of a topic or service.
+
+    Only whoever tells the graph's news calls it: one at a time.
+    """
 
     def __init__(self, logger_name: str) -> None:
         self._logger_name = logger_name
@@ -39,7 +42,8 @@ class Disagreements:
 
 
 def _explained(own: EndpointToken, other: EndpointToken) -> str:
-    node = "it also" if own[1:3] == other[1:3] else other.full_node_name
+    same_node = (own.session, own.node_id) == (other.session, other.node_id)
+    node = "it also" if same_node else other.full_node_name
     here, there = _ACTS[own.kind], _ACTS[other.kind]
     if own.type_name != other.type_name:
         return (

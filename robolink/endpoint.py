@@ -72,8 +72,8 @@ class Endpoint:
         """Called for each end that comes with another type."""
         self.warns = True
         """Whether the node logs a warning about such an end."""
-        self.on_other: Callable[[bytes, bool], object] = lambda gid, alive: None
-        """Called with the gid of each end that comes or goes, and whether it came."""
+        self.on_other: Callable[[bool], object] = lambda came: None
+        """Called for each end that comes or goes, with whether it came."""
         self.speak_humble: Callable[[str], object] = lambda key: None
         """Called once, with the second key to use, when a Humble peer is at the other end."""
         self.humble_key = self.key if self.type_hash == NO_HASH else ""
@@ -85,7 +85,7 @@ class Endpoint:
     def announce(self) -> None:
         """Get to know the other ends, and show this one to everybody."""
         graph = self.context.graph
-        self._following = graph.follow(self.name, self._on_endpoint)
+        self._following = graph.follow(self.name, OTHER_END[self.token.kind], self._on_other_end)
         self._announced = graph.announce(self.token)
 
     def count_others(self) -> int:
@@ -96,17 +96,15 @@ class Endpoint:
             for gid, other in found
         )
 
-    def _on_endpoint(self, gid: bytes, token: EndpointToken, alive: bool) -> None:
-        """Hear of an endpoint of the same name, on any thread."""
-        if token.kind is not OTHER_END[self.token.kind]:
-            return
+    def _on_other_end(self, gid: bytes, token: EndpointToken, alive: bool) -> None:
+        """Hear, on any thread, of somebody at the other end of this name."""
         if not alive:
             if self.others.pop(gid, None) is not None:
-                self.on_other(gid, False)
+                self.on_other(False)
         elif self.token.understands(token):
             self._meet(token)
             self.others[gid] = token
-            self.on_other(gid, True)
+            self.on_other(True)
         else:
             if self.warns:
                 self._disagreements.tell(self.token, token)

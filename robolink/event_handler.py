@@ -162,8 +162,9 @@ class EventHandler(Entity):
                 before.current_count_change + current,
             )
             self._happened = not self._destroyed
-        if self.executor is not None:
-            self.executor.post(self)
+        executor = self.executor  # another thread may take it away meanwhile
+        if executor is not None:
+            executor.post(self)
 
     def attach(self, executor: Executor, queued: int = 0) -> None:
         """Belong to this executor; what happened before counts."""

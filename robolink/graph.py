@@ -6,7 +6,7 @@ import functools
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TypeVar
 
@@ -21,6 +21,8 @@ Token = NodeToken | EndpointToken
 NamesAndTypes = list[tuple[str, list[str]]]
 Follower = Callable[[bytes, EndpointToken, bool], object]
 """Told the gid and token of an endpoint of one topic or service, and whether it came or went."""
+Place = tuple[str, EndpointKind]
+"""A topic's or service's name, and which of its ends are meant."""
 
 SETTLED_WITHIN = 0.1
 """Seconds; it takes 2 ms."""
@@ -42,8 +44,7 @@ class Graph:
         self._transport, self._domain_id = transport, domain_id
         self._index = _Index()
         self._changed = threading.Condition()
-        self._listeners: tuple[_Listening, ...] = ()
-        self._followers: dict[str, tuple[_Listening, ...]] = {}
+        self._followers: dict[Place, tuple[_Following, ...]] = {}
         self._news: deque[Callable[[], object]] = deque()
         self._telling = threading.Lock()
         self._settling = threading.Lock()
@@ -83,33 +84,26 @@ class Graph:
                 return
             (self._index.add if alive else self._index.remove)(gid, token)
             self._changed.notify_all()
-            self._news.extend(listening.news() for listening in self._listeners)
             if isinstance(token, EndpointToken):
-                followers = self._followers.get(token.name, ())
+                followers = self._followers.get((token.name, token.kind), ())
                 self._news.extend(each.news(gid, token, alive) for each in followers)
         self._tell()
 
     # Who wants to know
 
-    def listen(self, listener: Callable[[], object]) -> Handle:
-        """Call `listener()` after each change, until the handle is closed, on the thread that brings the change."""
-        listening = _Listening(listener, self._stop_listening)
-        with self._changed:
-            self._listeners = (*self._listeners, listening)
-        return listening
+    def follow(self, name: str, kind: EndpointKind, follower: Follower) -> Handle:
+        """Call `follower(gid, token, alive)` for each end of this kind of a topic or service, those there first.
 
-    def follow(self, name: str, follower: Follower) -> Handle:
-        """Call `follower(gid, token, alive)` for each endpoint of one topic or service, those already there first.
-
-        One call at a time and in order, on the thread that brings the change; until the handle is closed.
+        One call at a time and in order, until the handle is closed: on the thread that brings the change, or on one
+        that is just telling of another; so it may begin after this has returned.
         """
-        listening = _Listening(follower, functools.partial(self._stop_following, name))
+        place = (name, kind)
+        following = _Following(follower, functools.partial(self._stop_following, place))
         with self._changed:
-            self._followers[name] = (*self._followers.get(name, ()), listening)
-            known = self._index.by_name.get(name, {})
-            self._news.extend(listening.news(gid, token, True) for gid, token in known.items())
+            self._followers[place] = (*self._followers.get(place, ()), following)
+            self._news.extend(following.news(gid, token, True) for gid, token in self._index.at(place).items())
         self._tell()
-        return listening
+        return following
 
     def _tell(self) -> None:
         # Outside the lock, since followers declare and publish; and nobody waits for whoever tells already.
@@ -121,17 +115,13 @@ class Graph:
                 self._telling.release()
             self.wake()  # what followers have done since may be what somebody waits for
 
-    def _stop_listening(self, listening: _Listening) -> None:
+    def _stop_following(self, place: Place, following: _Following) -> None:
         with self._changed:
-            self._listeners = tuple(each for each in self._listeners if each is not listening)
-
-    def _stop_following(self, name: str, listening: _Listening) -> None:
-        with self._changed:
-            rest = tuple(each for each in self._followers.get(name, ()) if each is not listening)
+            rest = tuple(each for each in self._followers.get(place, ()) if each is not following)
             if rest:
-                self._followers[name] = rest
+                self._followers[place] = rest
             else:
-                self._followers.pop(name, None)
+                self._followers.pop(place, None)
 
     def wait_for(self, condition: Callable[[], bool], timeout: float | None) -> bool:
         """Wait, in real time, until `condition()` holds; look whenever something changed."""
@@ -154,13 +144,14 @@ class Graph:
     def endpoints(self, *kinds: EndpointKind, name: str | None = None) -> list[EndpointToken]:
         """All endpoints of these kinds; of one topic or service, if named."""
         with self._knowing() as index:
-            table = index.endpoints if name is None else index.by_name.get(name, {})
-            return [each for each in table.values() if each.kind in kinds]
+            if name is None:
+                return [each for each in index.endpoints.values() if each.kind in kinds]
+            return [each for kind in kinds for each in index.at((name, kind)).values()]
 
     def gids(self, kind: EndpointKind, name: str) -> list[tuple[bytes, EndpointToken]]:
         """All endpoints of this kind that one topic or service has, each with its gid."""
         with self._knowing() as index:
-            return [(gid, each) for gid, each in index.by_name.get(name, {}).items() if each.kind is kind]
+            return list(index.at((name, kind)).items())
 
     def of_node(self, node_name: str, namespace: str, kind: EndpointKind) -> list[EndpointToken]:
         """The endpoints of a node."""
@@ -215,7 +206,7 @@ class _Index:
         self.tokens: dict[bytes, Token] = {}
         self.nodes: dict[bytes, NodeToken] = {}
         self.endpoints: dict[bytes, EndpointToken] = {}
-        self.by_name: dict[str, dict[bytes, EndpointToken]] = {}
+        self.by_place: dict[Place, dict[bytes, EndpointToken]] = {}
         self.by_node: dict[tuple[str, str], dict[bytes, Token]] = {}
 
     def add(self, gid: bytes, token: Token) -> None:
@@ -223,7 +214,7 @@ class _Index:
         self.by_node.setdefault((token.node_name, token.namespace), {})[gid] = token
         if isinstance(token, EndpointToken):
             self.endpoints[gid] = token
-            self.by_name.setdefault(token.name, {})[gid] = token
+            self.by_place.setdefault((token.name, token.kind), {})[gid] = token
         else:
             self.nodes[gid] = token
 
@@ -232,30 +223,33 @@ class _Index:
         _drop(self.by_node, (token.node_name, token.namespace), gid)
         if isinstance(token, EndpointToken):
             del self.endpoints[gid]
-            _drop(self.by_name, token.name, gid)
+            _drop(self.by_place, (token.name, token.kind), gid)
         else:
             del self.nodes[gid]
 
+    def at(self, place: Place) -> Mapping[bytes, EndpointToken]:
+        return self.by_place.get(place, {})
 
-class _Listening:
+
+class _Following:
     """Somebody who is told, until closed."""
 
-    def __init__(self, listener: Callable[..., object], stop: Callable[[_Listening], None]) -> None:
-        self._listener: Callable[..., object] | None = listener
+    def __init__(self, follower: Follower, stop: Callable[[_Following], None]) -> None:
+        self._follower: Follower | None = follower
         self._stop = stop
 
-    def news(self, *change: object) -> Callable[[], object]:
+    def news(self, gid: bytes, token: EndpointToken, alive: bool) -> Callable[[], object]:
         """What the teller calls in its turn."""
-        return functools.partial(self._tell, change)
+        return functools.partial(self._tell, gid, token, alive)
 
-    def _tell(self, change: tuple[object, ...]) -> None:
-        listener = self._listener
-        if listener is not None:
-            listener(*change)
+    def _tell(self, gid: bytes, token: EndpointToken, alive: bool) -> None:
+        follower = self._follower
+        if follower is not None:
+            follower(gid, token, alive)
 
     def close(self) -> None:
-        """Be told no more; what is just being told ends. Safe to call twice."""
-        self._listener = None
+        """Be told no more; another thread may be in the midst of telling. Safe to call twice."""
+        self._follower = None
         self._stop(self)
 
 

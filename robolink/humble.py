@@ -7,6 +7,7 @@ message comes twice, with the same attachment.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
@@ -49,6 +50,7 @@ class Copies:
     def __init__(self, endpoint_of: Callable[[bytes], EndpointToken | None]) -> None:
         self._endpoint_of = endpoint_of
         self._seen: dict[bytes, None] = {}
+        self._lock = threading.Lock()  # callbacks of a reentrant group run side by side
 
     def comes_twice(self, attachment: bytes) -> bool:
         """Whether this, from Humble's key, comes to the other one too, as far as its sender is known."""
@@ -59,8 +61,9 @@ class Copies:
 
     def check(self, attachment: bytes) -> None:
         """Raise CopyError for a message that was here before: then its sender was not known yet."""
-        if attachment in self._seen:
-            raise CopyError
-        self._seen[attachment] = None
-        if len(self._seen) > MOST_REMEMBERED:
-            self._seen.pop(next(iter(self._seen)), None)
+        with self._lock:
+            if attachment in self._seen:
+                raise CopyError
+            self._seen[attachment] = None
+            if len(self._seen) > MOST_REMEMBERED:
+                del self._seen[next(iter(self._seen))]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from robolink.context import Context
 from robolink.exceptions import NodeNameNonExistentError, nearest
 from robolink.graph import NamesAndTypes, names_and_types
+from robolink.names import join
 from robolink.qos import resolved
 from robolink.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from robolink.type_hash import TypeHash
@@ -29,8 +30,8 @@ class NodeGraph:
         return names_and_types(self._context.graph.endpoints(EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION))
 
     def get_service_names_and_types(self) -> NamesAndTypes:
-        """All services, each with its types."""
-        return names_and_types(self._context.graph.endpoints(EndpointKind.SERVICE))
+        """All services that are served or called, each with its types."""
+        return names_and_types(self._context.graph.endpoints(EndpointKind.SERVICE, EndpointKind.CLIENT))
 
     def get_node_names(self) -> list[str]:
         """The names of all nodes, without namespaces."""
@@ -38,7 +39,7 @@ class NodeGraph:
 
     def get_fully_qualified_node_names(self) -> list[str]:
         """The names of all nodes."""
-        return [f"{each.namespace.rstrip('/')}/{each.node_name}" for each in self._context.graph.nodes()]
+        return [each.full_node_name for each in self._context.graph.nodes()]
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         """Name and namespace of each node."""
@@ -71,7 +72,7 @@ class NodeGraph:
     def _by_node(self, node_name: str, namespace: str, kind: EndpointKind) -> NamesAndTypes:
         graph = self._context.graph
         if not graph.has_node(node_name, namespace):
-            full = f"{namespace.rstrip('/')}/{node_name}"
+            full = join(namespace, node_name)
             raise NodeNameNonExistentError(
                 f"no node named '{full}'{nearest(full, self.get_fully_qualified_node_names())}"
             )

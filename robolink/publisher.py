@@ -67,7 +67,7 @@ class Publisher(Generic[MsgT]):
         self._outlets.add(key)
         self._put = self._outlets.put
 
-    def _on_other(self, gid: bytes, came: bool) -> None:
+    def _on_other(self, came: bool) -> None:
         matched = {QoSPublisherEventType.RCL_PUBLISHER_MATCHED}
         tell_handlers(self.event_handlers, matched, total=int(came), current=1 if came else -1)
 
@@ -119,7 +119,7 @@ class _Outlets:
         first = self._transport.advertise(endpoint.key, qos)
         self._all = [first]
         self._closed = False
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()  # re-entrant: a signal handler that logs interrupts whoever publishes a log
         self._kept: deque[tuple[bytes, bytes]] | None = None
         self.put: Callable[[bytes, bytes], None] = first.put
         """Send a payload with its attachment; another function after `add`."""

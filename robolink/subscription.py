@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import threading
 from collections.abc import Callable
 from enum import Enum
 from typing import Any, Generic, TypedDict, TypeVar
@@ -170,7 +171,7 @@ class Subscription(Receiver, Generic[MsgT]):
         if callbacks.message_lost:
             self._count_lost()
 
-    def _on_other(self, gid: bytes, came: bool) -> None:
+    def _on_other(self, came: bool) -> None:
         matched = {QoSSubscriptionEventType.RCL_SUBSCRIPTION_MATCHED}
         tell_handlers(self.event_handlers, matched, total=int(came), current=1 if came else -1)
 
@@ -270,11 +271,13 @@ class _Gaps:
 
     def __init__(self) -> None:
         self._last: dict[bytes, int] = {}
+        self._lock = threading.Lock()  # callbacks of a reentrant group run side by side
 
     def before(self, sender: Attachment) -> int:
         """How many of its messages are missing before this one."""
-        last = self._last.pop(sender.gid, sender.sequence)
-        self._last[sender.gid] = max(last, sender.sequence)  # the one heard last is last
-        if len(self._last) > MOST_SENDERS:
-            del self._last[next(iter(self._last))]
+        with self._lock:
+            last = self._last.pop(sender.gid, sender.sequence)
+            self._last[sender.gid] = max(last, sender.sequence)  # the one heard last is last
+            if len(self._last) > MOST_SENDERS:
+                del self._last[next(iter(self._last))]
         return max(0, sender.sequence - last - 1)

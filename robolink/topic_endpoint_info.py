@@ -80,8 +80,6 @@ class TopicEndpointInfo:
     __hash__ = None  # type: ignore[assignment]  # mutable and compared by value, like a list
 
     def __str__(self) -> str:
-        qos = self.qos_profile
-        depth = f" ({qos.depth})" if qos.history is HistoryPolicy.KEEP_LAST else ""
         return "\n".join(
             [
                 f"Node name: {self.node_name}",
@@ -90,13 +88,21 @@ class TopicEndpointInfo:
                 f"Topic type hash: {self.topic_type_hash}",
                 f"Endpoint type: {self.endpoint_type.name}",
                 f"GID: {'.'.join(f'{byte:02x}' for byte in self.endpoint_gid)}",
-                "QoS profile:",
-                f"  Reliability: {qos.reliability.name}",
-                f"  History (Depth): {qos.history.name}{depth}",
-                f"  Durability: {qos.durability.name}",
-                f"  Lifespan: {qos.lifespan}",
-                f"  Deadline: {qos.deadline}",
-                f"  Liveliness: {qos.liveliness.name}",
-                f"  Liveliness lease duration: {qos.liveliness_lease_duration}",
+                *qos_lines(self.qos_profile),
             ]
         )
+
+
+def qos_lines(profile: QoSProfile) -> list[str]:
+    """Give a profile as `ros2 topic info -v` shows it."""
+    depth = f" ({profile.depth})" if profile.history is HistoryPolicy.KEEP_LAST else ""
+    return [
+        "QoS profile:",
+        f"  Reliability: {profile.reliability.name}",
+        f"  History (Depth): {profile.history.name}{depth}",
+        f"  Durability: {profile.durability.name}",
+        f"  Lifespan: {profile.lifespan}",
+        f"  Deadline: {profile.deadline}",
+        f"  Liveliness: {profile.liveliness.name}",
+        f"  Liveliness lease duration: {profile.liveliness_lease_duration}",
+    ]

@@ -11,7 +11,6 @@ from robolink.callback_groups import MutuallyExclusiveCallbackGroup
 from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor, ParameterType
 from robolink.message import Service, type_hash, type_name
 from robolink.message.description import described, to_message
-from robolink.message.text import text_of
 from robolink.parameter import Parameter
 from robolink.wire import NO_HASH
 
@@ -131,4 +130,6 @@ def _source(cls: type[Any]) -> dict[str, str]:
     _, kind, short = type_name(cls).split("/")
     if kind != "msg" and "_" in short:
         return {"type_name": type_name(cls), "encoding": "implicit", "raw_file_contents": ""}
+    from robolink.message.text import text_of  # late: most nodes are never asked
+
     return {"type_name": type_name(cls), "encoding": kind, "raw_file_contents": text_of(cls)}

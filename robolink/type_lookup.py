@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from robolink.exceptions import MessageError, NotFoundError, RobolinkError
+from robolink.exceptions import ExternalShutdownException, MessageError, NotFoundError, RobolinkError
 from robolink.interfaces import find_announced
 from robolink.message import Service, type_hash
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken
@@ -35,7 +35,8 @@ def type_of(context: Context, endpoint: EndpointToken) -> type[Any]:
     the endpoint's node is asked at its service ``~/get_type_description``, then other nodes that use the type; what
     they answer must have the endpoint's hash. Takes up to 1.5 s for each of at most three nodes.
 
-    Raises TypeLookupError, which says what to do, and MessageError for a definition in the workspace that is wrong.
+    Raises TypeLookupError, which says what to do, MessageError for a definition in the workspace that is wrong, and
+    ExternalShutdownException when the context ends meanwhile.
     """
     installed = _installed(endpoint.type_name)
     if installed is not None and endpoint.type_hash in (NO_HASH, type_hash(installed)):
@@ -46,6 +47,8 @@ def type_of(context: Context, endpoint: EndpointToken) -> type[Any]:
             if not served:
                 raise TypeLookupError(f"it does not serve {SERVICE}")
             return _ask(context, node_name, endpoint)
+        except ExternalShutdownException:  # Ctrl-C, which says nothing of the node
+            raise
         except (RobolinkError, TimeoutError) as error:
             refusals.append(f"{node_name}: {_one_line(error)}")
     raise TypeLookupError(_what_to_do(endpoint, installed, refusals))
@@ -62,17 +65,13 @@ def _nodes_with(context: Context, endpoint: EndpointToken) -> Iterator[tuple[str
     """Yield the endpoint's own node, then others that use the same type and serve descriptions; and whether they do."""
     tokens = context.graph.endpoints(*EndpointKind)
     serving = {each.name for each in tokens if each.kind is EndpointKind.SERVICE and each.type_name == SERVICE_TYPE}
-    own = _node_name(endpoint)
+    own = endpoint.full_node_name
     yield own, f"{own}/{SERVICE}" in serving
     named = [each for each in tokens if each.type_name == endpoint.type_name]
     same = [each for each in named if endpoint.type_hash in (NO_HASH, each.type_hash)]
-    others = {_node_name(each) for each in same} - {own}
+    others = {each.full_node_name for each in same} - {own}
     for name in sorted(name for name in others if f"{name}/{SERVICE}" in serving)[: MOST_ASKED - 1]:
         yield name, True
-
-
-def _node_name(endpoint: EndpointToken) -> str:
-    return f"{endpoint.namespace.rstrip('/')}/{endpoint.node_name}"
 
 
 def _ask(context: Context, node_name: str, endpoint: EndpointToken) -> type[Any]:

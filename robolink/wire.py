@@ -15,6 +15,7 @@ import xxhash
 from robolink.constants import S_TO_NS
 from robolink.duration import Duration, Infinite
 from robolink.exceptions import WireError
+from robolink.names import join
 from robolink.qos import (
     DurabilityPolicy,
     HistoryPolicy,
@@ -96,6 +97,11 @@ class NodeToken(NamedTuple):
     namespace: str
     node_name: str
 
+    @property
+    def full_node_name(self) -> str:
+        """Namespace and name."""
+        return join(self.namespace, self.node_name)
+
 
 class EndpointToken(NamedTuple):
     """What a node announces about a publisher, subscription, service or client that it owns."""
@@ -117,7 +123,7 @@ class EndpointToken(NamedTuple):
     @property
     def full_node_name(self) -> str:
         """Namespace and name of the node that owns it."""
-        return f"{self.namespace.rstrip('/')}/{self.node_name}"
+        return join(self.namespace, self.node_name)
 
     def understands(self, other: EndpointToken) -> bool:
         """Whether both mean the same type: by name and hash, or by name where one is a Humble peer's."""
@@ -194,9 +200,9 @@ def parse_key(text: str) -> DataKey:
     )
 
 
-def graph_pattern(domain: int) -> str:
-    """Give the key expression that all tokens of a domain match."""
-    return f"{_GRAPH}/{_number(domain)}/**"
+def graph_pattern(domain: int | None = None) -> str:
+    """Give the key expression that all tokens of a domain match; without one, those of all domains."""
+    return f"{_GRAPH}/**" if domain is None else f"{_GRAPH}/{_number(domain)}/**"
 
 
 def format_token(token: NodeToken | EndpointToken) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -139,6 +140,23 @@ def test_a_network_is_asked_for_before_the_command(
     assert "no network or file 'nowhere'" in capsys.readouterr().err
     assert main(["--network", "off", "topic", "list"]) == 0
     assert capsys.readouterr() == ("", "")
+
+
+def test_an_output_that_has_not_every_letter_gets_escapes_that_json_knows(
+    write: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (write("nodes/none.py", "").parents[1] / "interfaces/zoo/msg").mkdir(parents=True)
+    (write("configs/none.yaml", "").parents[1] / "interfaces/zoo/msg/Owl.msg").write_text("# né 🦉\n", "utf-8")
+    monkeypatch.setenv("PYTHONIOENCODING", "ascii")  # as cp1252 behind a pipe on Windows
+    code, out, err = outcome("interface", "show", "--json", "zoo/msg/Owl")
+    assert (code, err) == (0, "")
+    assert "né 🦉" in json.loads(out)["text"]
+    assert outcome("interface", "show", "zoo/msg/Owl")[:2] == (0, "# n\\u00e9 \\ud83e\\udd89\n")
+
+
+def test_an_error_writes_nothing_that_a_terminal_obeys(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["topic", "info", "/a\x1b[2J\u202e\x9b"]) == 1
+    assert "/a\\x1b[2J\\u202e\\x9b" in capsys.readouterr().err
 
 
 def test_the_version(capsys: pytest.CaptureFixture[str]) -> None:

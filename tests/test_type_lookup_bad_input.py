@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from robolink import Context, Node, Parameter
+from robolink.exceptions import ExternalShutdownException
 from robolink.interfaces.type_description_interfaces.msg import Field, FieldType
 from robolink.interfaces.type_description_interfaces.srv import GetTypeDescription
 from robolink.message import type_name
@@ -111,6 +112,15 @@ def test_what_a_stranger_says_is_fit_for_a_terminal(robot: Node, looker: Context
     assert "refused: ?[2J ?[2J" in str(caught.value)
     assert str(caught.value).isprintable()
     assert len(str(caught.value)) < 700
+
+
+def test_ctrl_c_is_no_answer_of_a_node(robot: Node, looker: Context) -> None:
+    def answer(_: Any, response: Any) -> Any:
+        looker.interrupt()
+        return response
+
+    with spinning(answering(robot, answer)), pytest.raises(ExternalShutdownException):
+        type_of(looker, seen(looker, "/cart"))
 
 
 def test_a_message_is_not_taken_for_a_service(robot: Node, looker: Context) -> None:

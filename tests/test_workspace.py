@@ -27,6 +27,7 @@ from robolink.workspace import (
     list_worlds,
     load_module,
     load_node,
+    user_workspace,
     workspace_of,
 )
 
@@ -104,6 +105,19 @@ def test_everything_is_listed_but_private_files(write: Write) -> None:
     assert "_shared" not in names
     assert names == sorted(names)
     assert "lap" in [each.stem for each in list_launches()]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps a folder that is a working directory")
+def test_a_working_directory_that_is_gone_is_no_workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "gone").mkdir()
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.chdir(tmp_path / "gone")
+    (tmp_path / "gone").rmdir()
+    try:
+        assert user_workspace() is None
+        assert find_node("world").path == built_in_workspace() / "nodes/world.py"
+    finally:
+        os.chdir(tmp_path)
 
 
 def test_a_workspace_can_be_asked_for(

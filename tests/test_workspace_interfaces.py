@@ -20,6 +20,7 @@ from robolink.exceptions import DefinitionError, MessageError, NotFoundError
 from robolink.interfaces import find, names
 from robolink.interfaces.geometry_msgs.msg import Point, Pose
 from robolink.message import Action, Service, decode, encode, type_hash
+from robolink.message.text import text_of
 from robolink.workspace import VARIABLE, InterfaceImportError, load_module, load_node, use_interfaces
 from robolink.workspace import find_node as find_node_file
 from robolink.workspace.interfaces import DEEPEST, FINDER, WORKSPACE_TYPES, WorkspaceTypes
@@ -228,6 +229,35 @@ def test_what_is_no_text_is_refused(write: Write) -> None:
     interfaces.add_source(WORKSPACE_TYPES)
     with pytest.raises(DefinitionError, match=r"Wrong\.msg:1:1: cannot be read"):
         find("zoo_msgs/Wrong")
+
+
+def test_a_mark_of_windows_editors_is_not_shown(write: Write) -> None:
+    write("zoo_msgs/msg/Marked.msg", "\ufeffint32 x\n")
+    interfaces.add_source(WORKSPACE_TYPES)
+    assert text_of(find("zoo_msgs/Marked")) == "int32 x\n"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has neither")
+@pytest.mark.parametrize("kind", ["pipe", "endless"])
+def test_what_never_ends_is_not_read(write: Write, kind: str) -> None:
+    path = write("zoo_msgs/msg/Odd.msg", "")
+    path.unlink()
+    if kind == "pipe":
+        os.mkfifo(path)
+    else:
+        path.symlink_to("/dev/zero")
+    interfaces.add_source(WORKSPACE_TYPES)
+    with pytest.raises(DefinitionError, match=r"Odd\.msg:1:1: cannot be read: it is no file"):
+        find("zoo_msgs/Odd")
+
+
+def test_a_file_that_is_too_large_is_refused_unread(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = write("zoo_msgs/msg/Large.msg", "")
+    with path.open("wb") as file:
+        file.truncate(10**12)  # no byte of it is on the disk
+    interfaces.add_source(WORKSPACE_TYPES)
+    with pytest.raises(DefinitionError, match=r"Large\.msg:1:1: cannot be read: 1000000000000 bytes are too many"):
+        find("zoo_msgs/Large")
 
 
 def test_messages_too_deep_within_each_other_are_refused(write: Write) -> None:

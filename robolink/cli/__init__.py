@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import contextlib
 import os
 import sys
@@ -24,6 +25,8 @@ def main(args: Sequence[str] | None = None) -> int:
     `args` the process is the command's own, and ends here where that saves the time to close a session.
     """
     given = sys.argv[1:] if args is None else list(args)
+    if args is None:
+        _write_any_letter()
     if os.environ.get(COMPLETION):
         code = _complete(given)
         if args is None:
@@ -43,9 +46,26 @@ def complain(error: object, code: int = 1) -> int:
     """Print one line on stderr; give the exit code."""
     if isinstance(error, NameValidationException):  # its text has a line for the caret
         error = f"invalid {error.name_type} '{error.name[:200]}': {error.error_msg} (at index {error.invalid_index})"
-    line = " ".join(str(error).split("\n"))
+    text = " ".join(str(error).split("\n"))
+    line = "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
     print(f"robolink: {line}", file=sys.stderr)  # noqa: T201 - this is what the user is told
     return code
+
+
+def _write_any_letter() -> None:
+    """Have standard output take letters that its encoding has not (ASCII, cp1252 behind a pipe on Windows), escaped."""
+    codecs.register_error("robolink", _escaped)
+    reconfigure = getattr(sys.stdout, "reconfigure", None)  # None stands for an output that is closed
+    if reconfigure is not None:
+        reconfigure(errors="robolink")
+
+
+def _escaped(error: UnicodeError) -> tuple[str, int]:
+    r"""Write characters as \uXXXX, two for those beyond 16 bits: what JSON reads back."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    units = error.object[error.start : error.end].encode("utf-16-be", "surrogatepass").hex()
+    return "".join(f"\\u{units[at : at + 4]}" for at in range(0, len(units), 4)), error.end
 
 
 def _outcome(args: list[str]) -> int:

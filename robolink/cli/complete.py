@@ -29,7 +29,7 @@ def node_names(incomplete: str) -> list[str]:
     """Give the full names of the nodes that are there."""
     from robolink.wire import NodeToken
 
-    return _names(incomplete, lambda each: _full_name(each) if isinstance(each, NodeToken) else None)
+    return _names(incomplete, lambda each: each.full_node_name if isinstance(each, NodeToken) else None)
 
 
 def topic_names(incomplete: str) -> list[str]:
@@ -129,9 +129,7 @@ def _types_of(name: Any, incomplete: str, *kinds: Any) -> list[str]:
 def _type_names(incomplete: str, *kinds: str) -> list[str]:
     with contextlib.suppress(Exception):
         from robolink.interfaces import names
-        from robolink.workspace import use_interfaces
 
-        use_interfaces()
         full = [name for kind in kinds for name in names(kind)]
         short = "/" not in incomplete and incomplete[:1].isupper()  # Twist stands for geometry_msgs/msg/Twist
         return _offered((each.rpartition("/")[2] for each in full) if short else full, incomplete)
@@ -140,10 +138,6 @@ def _type_names(incomplete: str, *kinds: str) -> list[str]:
 
 def _offered(names: Iterable[str], incomplete: str) -> list[str]:
     return sorted({each for each in names if each.startswith(incomplete) and _SAFE.fullmatch(each)})
-
-
-def _full_name(token: Token) -> str:
-    return f"{token.namespace.rstrip('/')}/{token.node_name}"
 
 
 def announced() -> list[Token]:

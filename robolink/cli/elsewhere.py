@@ -13,8 +13,6 @@ from robolink.wire import EndpointKind, EndpointToken, graph_pattern, parse_toke
 if TYPE_CHECKING:
     from robolink.context import Context
 
-ALL_DOMAINS = "@ros2_lv/**"
-
 MOST = 4
 """So many other domains of this machine are joined for a look: each takes some 0.1 s."""
 
@@ -29,7 +27,7 @@ def domains_with(context: Context, name: str, *kinds: EndpointKind) -> list[int]
     this machine's loopback interface. What cannot be joined is left out.
     """
     own = context.get_domain_id()
-    found = set(_announced(context.transport.tokens(ALL_DOMAINS), name, kinds))
+    found = set(_announced(context.transport.tokens(graph_pattern()), name, kinds))
     if context.transport.url.startswith("zenoh"):
         for domain in _met_on_this_machine(own):
             with contextlib.suppress(RobolinkError):

@@ -35,11 +35,11 @@ def list_nodes(
     as_json: Annotated[bool, typer.Option("--json", help="A JSON array.")] = False,
 ) -> None:
     """List the nodes by their full names."""
-    from robolink.cli.session import full_name, looking, nodes, say, say_json
+    from robolink.cli.session import looking, nodes, say, say_json
 
     with looking() as context:
         found = [each for each in nodes(context) if show_all or not each.node_name.startswith("_")]
-    names = sorted(map(full_name, found))
+    names = sorted(each.full_node_name for each in found)
     if as_json:
         say_json(names)
     elif count:
@@ -79,14 +79,14 @@ def info(
 
 def of_node(tokens: list[Token], name: str, domain: int) -> tuple[int, list[EndpointToken]]:
     """Count the nodes of a full name, and give their endpoints. Raises NotFoundError for an unknown name."""
-    from robolink.cli.session import full_name, shown
+    from robolink.cli.session import shown
     from robolink.exceptions import NotFoundError
     from robolink.wire import EndpointToken, NodeToken
 
-    names = [full_name(each) for each in tokens if isinstance(each, NodeToken)]
+    names = [each.full_node_name for each in tokens if isinstance(each, NodeToken)]
     if name not in names:
         raise NotFoundError("node", shown(name), names, f"domain {domain}")
-    own = [each for each in tokens if isinstance(each, EndpointToken) and full_name(each) == name]
+    own = [each for each in tokens if isinstance(each, EndpointToken) and each.full_node_name == name]
     return names.count(name), own
 
 

@@ -108,11 +108,6 @@ def endpoints(context: Context, *kinds: EndpointKind) -> list[EndpointToken]:
     return [each for each in tokens(context) if isinstance(each, EndpointToken) and (not kinds or each.kind in kinds)]
 
 
-def full_name(token: Token) -> str:
-    """Give the full name of a node, or of the node that has an endpoint: its namespace and name."""
-    return f"{token.namespace.rstrip('/')}/{token.node_name}"
-
-
 def absolute(name: str) -> str:
     """Give a name with its leading slash: commands take names without it too."""
     return name if name.startswith("/") else f"/{name}"

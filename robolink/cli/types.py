@@ -6,15 +6,13 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import NotFoundError, RobolinkError
-from robolink.interfaces import find
+from robolink.interfaces import find, is_named
 from robolink.message import type_hash
 from robolink.type_lookup import type_of
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken
 
 if TYPE_CHECKING:
     from robolink.context import Context
-
-__all__ = ["SeveralTypesError", "message_type", "service_type", "type_of"]
 
 
 class SeveralTypesError(RobolinkError, ValueError):
@@ -54,7 +52,7 @@ def _given(context: Context, here: list[EndpointToken], kind: str, given: str) -
     try:
         installed = find(given, kind)
     except NotFoundError:
-        same = [each for each in here if _is_named(each.type_name, given)]
+        same = [each for each in here if is_named(each.type_name, given)]
         if not same:
             raise
         return type_of(context, _first(same))
@@ -62,12 +60,6 @@ def _given(context: Context, here: list[EndpointToken], kind: str, given: str) -
     if not same or {each.type_hash for each in same} & {NO_HASH, type_hash(installed)}:
         return installed
     return type_of(context, _first(same))
-
-
-def _is_named(type_name: str, given: str) -> bool:
-    """Whether ``pkg/msg/Name`` is what ``Name``, ``pkg/Name`` or the whole name means."""
-    package, *_, short = type_name.split("/")
-    return given.replace(".", "/") in (short, f"{package}/{short}", type_name)
 
 
 def _first(ends: Iterable[EndpointToken]) -> EndpointToken:

@@ -17,7 +17,7 @@ from typing import Any, Protocol
 from robolink.exceptions import MessageError, NotFoundError
 from robolink.interfaces._standard import STANDARD
 
-__all__ = ["Source", "add_source", "find", "find_announced", "names", "register", "remove_source"]
+__all__ = ["Source", "add_source", "find", "find_announced", "is_named", "names", "register", "remove_source"]
 
 KINDS = {"msg": "message", "srv": "service", "action": "action"}
 """What a type name's middle part stands for."""
@@ -77,6 +77,12 @@ def find_announced(name: str) -> type[Any]:
         found: type[Any] = getattr(find(f"{package}/action/{action}", "action").Impl, ACTION_PARTS[part])
         return found
     return find(name, kind if kind in KINDS else "msg")
+
+
+def is_named(type_name: str, given: str) -> bool:
+    """Whether ``std_srvs/srv/Trigger`` is what ``Trigger``, ``std_srvs/Trigger`` or the whole name means."""
+    package, *_, short = type_name.split("/")
+    return given.replace(".", "/") in (short, f"{package}/{short}", type_name)
 
 
 def names(kind: str = "msg") -> list[str]:

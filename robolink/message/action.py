@@ -13,7 +13,6 @@ class Fibonacci(Action):
 
 from __future__ import annotations
 
-import importlib
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import msgspec
@@ -52,16 +51,19 @@ class _ImplOfAction:
 
 
 def _impl(action: type[Action]) -> ActionImpl:
-    uuid = importlib.import_module("robolink.interfaces.unique_identifier_msgs.msg").UUID
-    time = importlib.import_module("robolink.interfaces.builtin_interfaces.msg").Time
-    send_goal_request = {"goal_id": uuid, "goal": action.Goal}
+    from robolink.interfaces.action_msgs.msg import GoalStatusArray
+    from robolink.interfaces.action_msgs.srv import CancelGoal
+    from robolink.interfaces.builtin_interfaces.msg import Time
+    from robolink.interfaces.unique_identifier_msgs.msg import UUID
+
+    send_goal_request = {"goal_id": UUID, "goal": action.Goal}
     get_result_response = {"status": int8, "result": action.Result}
     return ActionImpl(
-        SendGoalService=_service(action, "SendGoal", send_goal_request, {"accepted": boolean, "stamp": time}),
-        GetResultService=_service(action, "GetResult", {"goal_id": uuid}, get_result_response),
-        FeedbackMessage=_message(action, "FeedbackMessage", {"goal_id": uuid, "feedback": action.Feedback}),
-        CancelGoalService=importlib.import_module("robolink.interfaces.action_msgs.srv").CancelGoal,
-        GoalStatusMessage=importlib.import_module("robolink.interfaces.action_msgs.msg").GoalStatusArray,
+        SendGoalService=_service(action, "SendGoal", send_goal_request, {"accepted": boolean, "stamp": Time}),
+        GetResultService=_service(action, "GetResult", {"goal_id": UUID}, get_result_response),
+        FeedbackMessage=_message(action, "FeedbackMessage", {"goal_id": UUID, "feedback": action.Feedback}),
+        CancelGoalService=CancelGoal,
+        GoalStatusMessage=GoalStatusArray,
     )
 
 

@@ -11,7 +11,7 @@ from robolink.exceptions import DefinitionError, MessageError, NotFoundError
 from robolink.message import literals
 from robolink.message.annotations import FieldType
 from robolink.message.base import Message
-from robolink.message.definition import Definition, Field, Section
+from robolink.message.definition import LARGEST, Definition, Field, Section
 from robolink.message.description import (
     BOUNDED_STRING,
     NESTED,
@@ -102,7 +102,6 @@ UNSUPPORTED = {
 """Type ids that type_description_interfaces knows and no .msg file can say."""
 MOST_TYPES, MOST_FIELDS = 1_000, 20_000
 """Of one description: types that it refers to, and fields of them all."""
-LARGEST = 2**32 - 1
 
 
 def checked_class(description: TypeDescription, expected_hash: str, resolve: Resolve | None = None) -> type[Any]:

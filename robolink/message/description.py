@@ -5,7 +5,6 @@ The description's form and the hash are REP 2016's: SHA-256 of the description a
 
 from __future__ import annotations
 
-import importlib
 from typing import Any
 
 import msgspec
@@ -137,14 +136,17 @@ def type_name(cls: type[Any]) -> str:
 
 def to_message(description: TypeDescription) -> Any:
     """Put a description into a type_description_interfaces/msg/TypeDescription."""
-    msg = _interfaces()
+    from robolink.interfaces.type_description_interfaces import msg
+
     return msg.TypeDescription(
-        type_description=_individual(msg, description),
-        referenced_type_descriptions=[_individual(msg, each) for each in description.referenced],
+        type_description=_individual(description),
+        referenced_type_descriptions=[_individual(each) for each in description.referenced],
     )
 
 
-def _individual(msg: Any, description: TypeDescription) -> Any:
+def _individual(description: TypeDescription) -> Any:
+    from robolink.interfaces.type_description_interfaces import msg
+
     fields = []
     for field in description.fields:
         kind = msg.FieldType(**{name: getattr(field, name) for name in HASHED})
@@ -164,8 +166,3 @@ def _from_individual(message: Any) -> TypeDescription:
         kind = {name: getattr(field.type, name) for name in HASHED}
         fields.append(FieldDescription(field.name, **kind, default_value=field.default_value))
     return TypeDescription(message.type_name, tuple(fields))
-
-
-def _interfaces() -> Any:
-    """The messages stand on the floor above, made of this one's classes."""
-    return importlib.import_module("robolink.interfaces.type_description_interfaces.msg")

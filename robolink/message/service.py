@@ -11,7 +11,6 @@ class SetBool(Service):
 
 from __future__ import annotations
 
-import importlib
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolink.exceptions import MessageError
@@ -30,9 +29,10 @@ class _EventOfService:
 
 
 def _event_type(service: type[Service]) -> type[Message]:
-    info = importlib.import_module("robolink.interfaces.service_msgs.msg").ServiceEventInfo
+    from robolink.interfaces.service_msgs.msg import ServiceEventInfo
+
     annotations = {
-        "info": info,
+        "info": ServiceEventInfo,
         "request": Annotated[Sequence[service.Request], AtMost(1)],  # type: ignore[name-defined]
         "response": Annotated[Sequence[service.Response], AtMost(1)],  # type: ignore[name-defined]
     }

@@ -91,7 +91,10 @@ def user_workspace(workspace: Folder = None) -> Path | None:
     """
     asked = workspace or os.environ.get(VARIABLE)
     if not asked:
-        return workspace_of(Path.cwd())
+        try:
+            return workspace_of(Path.cwd())
+        except FileNotFoundError:  # the working directory has been deleted
+            return None
     folder = Path(asked).expanduser()
     if not folder.is_dir():
         raise NotFoundError("workspace folder", str(asked))

@@ -7,6 +7,7 @@ that `robolink run` or `robolink launch` starts, and anywhere after `use_interfa
 from __future__ import annotations
 
 import functools
+import stat
 import sys
 import threading
 from collections.abc import Iterator
@@ -107,11 +108,21 @@ def _build(path: Path, type_name: str) -> type[Any]:
     from robolink.message.building import build
     from robolink.message.definition import parse
 
+    return build(parse(_read(path), type_name, str(path)), interfaces.find)
+
+
+def _read(path: Path) -> str:
+    """Read an interface file, without the mark at its beginning that some editors of Windows write."""
+    from robolink.message.definition import LONGEST_TEXT
+
     try:
-        text = path.read_text(encoding="utf-8")
+        found = path.stat()
+        if stat.S_ISREG(found.st_mode) and found.st_size <= 4 * LONGEST_TEXT:  # no character takes more bytes
+            return path.read_text(encoding="utf-8-sig")
     except (OSError, ValueError) as error:
         raise DefinitionError(f"{path}:1:1: cannot be read: {error}") from None
-    return build(parse(text, type_name, str(path)), interfaces.find)
+    wrong = f"{found.st_size} bytes are too many" if stat.S_ISREG(found.st_mode) else "it is no file"
+    raise DefinitionError(f"{path}:1:1: cannot be read: {wrong}")
 
 
 WORKSPACE_TYPES = WorkspaceTypes()

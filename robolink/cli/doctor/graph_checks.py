@@ -45,7 +45,7 @@ def nodes(facts: Facts) -> Verdict:
     busy = collections.Counter((each.session, each.node_id) for each in _endpoints(tokens))
     homes: dict[str, list[NodeToken]] = {}
     for node in _nodes(tokens):
-        homes.setdefault(_owner(node), []).append(node)
+        homes.setdefault(node.full_node_name, []).append(node)
     warnings = []
     for name, same in sorted(homes.items()):
         sessions = {each.session for each in same}
@@ -73,7 +73,7 @@ def _types(facts: Facts, noun: str, verbs: dict[EndpointKind, str]) -> Verdict:
     for name, ends in named.items():
         owners: dict[EndpointKind, dict[Variant, list[str]]] = {kind: {} for kind in verbs}
         for each in ends:
-            owners[each.kind].setdefault((each.type_name, each.type_hash), []).append(_owner(each))
+            owners[each.kind].setdefault((each.type_name, each.type_hash), []).append(each.full_node_name)
         giving, taking = owners.values()
         apart = {each for pair in itertools.product(giving, taking) if _differ(*pair) for each in pair}
         if apart:
@@ -106,7 +106,7 @@ def topics(facts: Facts) -> Verdict:
     published = [name for name, found in ends.items() if any(each.kind is PUBLISHER for each in found)]
     warnings = []
     for name, found in ends.items():
-        waiting = [_owner(each) for each in found if not _is_command(each)]
+        waiting = [each.full_node_name for each in found if not _is_command(each)]
         if name not in published and waiting and not _hidden(name) and name not in SILENT_TOPICS:
             warnings.append(f"{name} has no publisher; {listed(waiting)} subscribed to it{nearest(name, published)}")
     return Verdict(f"{count(len(published), 'topic')} published, nobody waits in vain", warnings=tuple(warnings))
@@ -120,10 +120,10 @@ def services(facts: Facts) -> Verdict:
     warnings = []
     for name, found in ends.items():
         shown = f"action {name.removesuffix(SEND_GOAL)}" if name.endswith(SEND_GOAL) else f"service {name}"
-        clients = [_owner(each) for each in found if each.kind is CLIENT and not _is_command(each)]
+        clients = [each.full_node_name for each in found if each.kind is CLIENT and not _is_command(each)]
         if name not in served and clients and (not _hidden(name) or name.endswith(SEND_GOAL)):
             warnings.append(f"{shown} has no server; {listed(clients)} waits for it{nearest(name, served)}")
-        servers = [_owner(each) for each in found if each.kind is SERVICE]
+        servers = [each.full_node_name for each in found if each.kind is SERVICE]
         if len(set(servers)) > 1:
             warnings.append(f"{shown} has {len(servers)} servers, and each does every call: {listed(servers)}")
     return Verdict(f"{count(len(served), 'service')} served, nobody waits in vain", warnings=tuple(warnings))
@@ -132,8 +132,8 @@ def services(facts: Facts) -> Verdict:
 def clock(facts: Facts) -> Verdict:
     """Simulated time comes from one source, where somebody runs on it."""
     ends = [each for each in _endpoints(facts.seen.tokens) if each.name == "/clock"]
-    sources = [_owner(each) for each in ends if each.kind is PUBLISHER]
-    users = [_owner(each) for each in ends if each.kind is SUBSCRIPTION and not _is_command(each)]
+    sources = [each.full_node_name for each in ends if each.kind is PUBLISHER]
+    users = [each.full_node_name for each in ends if each.kind is SUBSCRIPTION and not _is_command(each)]
     if len(sources) > 1:
         return Verdict("", (f"{len(sources)} publishers on /clock ({listed(sources)}): time jumps between them",))
     if users and not sources:
@@ -146,9 +146,9 @@ def qos(facts: Facts) -> Verdict:
     ends = _by_name(each for each in _endpoints(facts.seen.tokens) if each.kind in (PUBLISHER, SUBSCRIPTION))
     warnings = []
     for name, found in ends.items():
-        forgetful = [_owner(each) for each in found if each.kind is PUBLISHER and not _latched(each)]
+        forgetful = [each.full_node_name for each in found if each.kind is PUBLISHER and not _latched(each)]
         waiting = [each for each in found if each.kind is SUBSCRIPTION and not _is_command(each)]
-        asking = [_owner(each) for each in waiting if _latched(each)]
+        asking = [each.full_node_name for each in waiting if _latched(each)]
         if forgetful and asking:
             warnings.append(
                 f"{name}: {listed(asking)} asks for what was published before (TRANSIENT_LOCAL), "
@@ -160,8 +160,8 @@ def qos(facts: Facts) -> Verdict:
 def distributions(facts: Facts) -> Verdict:
     """All nodes speak of types in the same way: Humble's have no hashes."""
     ends = [each for each in _endpoints(facts.seen.tokens) if not _is_command(each)]
-    humble = {_owner(each) for each in ends if each.type_hash == NO_HASH}
-    others = {_owner(each) for each in ends} - humble
+    humble = {each.full_node_name for each in ends if each.type_hash == NO_HASH}
+    others = {each.full_node_name for each in ends} - humble
     if humble and others:
         newer = f"{listed(others)} of a newer ROS 2"
         warning = f"{listed(humble)} of ROS 2 Humble (no type hashes) and {newer}: they meet only where robolink is one"
@@ -182,10 +182,6 @@ def _by_name(ends: Iterable[EndpointToken]) -> dict[str, list[EndpointToken]]:
     for each in ends:
         found.setdefault(each.name, []).append(each)
     return dict(sorted(found.items()))
-
-
-def _owner(token: NodeToken | EndpointToken) -> str:
-    return f"{token.namespace.rstrip('/')}/{token.node_name}"
 
 
 def _latched(end: EndpointToken) -> bool:

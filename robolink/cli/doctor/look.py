@@ -28,8 +28,6 @@ from robolink.wire import (
 if TYPE_CHECKING:
     from robolink.transport.base import Transport
 
-ALL_DOMAINS = "@ros2_lv/**"
-
 LIST_WITHIN = 0.6
 """Seconds that two listings of what is announced have to agree."""
 
@@ -91,9 +89,9 @@ def _seen(transport: Transport, domain: int) -> Seen:
 def _listed(transport: Transport) -> list[str]:
     """List what is announced, until two listings agree: on a busy machine the first may be incomplete."""
     deadline = time.monotonic() + LIST_WITHIN
-    found = transport.tokens(ALL_DOMAINS)
+    found = transport.tokens(graph_pattern())
     while time.monotonic() < deadline:
-        before, found = found, transport.tokens(ALL_DOMAINS)
+        before, found = found, transport.tokens(graph_pattern())
         if found == before:
             break
     return found
@@ -154,6 +152,5 @@ def _answered(
             stamp = unpack_attachment(transport.read(arrived).attachment).timestamp
         except RobolinkError:  # no reply of a ROS 2 node: it says nothing of its clock
             continue
-        name = f"{server.namespace.rstrip('/')}/{server.node_name}"
-        found.append(ClockOffset(name, (stamp - (sent + received) / 2) / 1e9, (received - sent) / 2e9))
+        found.append(ClockOffset(server.full_node_name, (stamp - (sent + received) / 2) / 1e9, (received - sent) / 2e9))
     return tuple(found)

@@ -114,7 +114,7 @@ def _middleware(facts: Facts) -> list[tuple[str, str]]:
 
 def _nodes(facts: Facts) -> list[tuple[str, str]]:
     nodes = sorted(each for each in facts.seen.tokens if isinstance(each, NodeToken))
-    return [("node", f"{_owner(each)} (session {each.session[:8]})") for each in nodes] or [("node", "none")]
+    return [("node", f"{each.full_node_name} (session {each.session[:8]})") for each in nodes] or [("node", "none")]
 
 
 def _topics(facts: Facts) -> list[tuple[str, str]]:
@@ -144,8 +144,8 @@ def _pairs(facts: Facts) -> list[tuple[str, str]]:
         for taking in (each for each in hearing if each.name == giving.name):
             items += [
                 ("topic [type]", f"{giving.name} [{giving.type_name}]"),
-                ("publisher node", _owner(giving)),
-                ("subscriber node", _owner(taking)),
+                ("publisher node", giving.full_node_name),
+                ("subscriber node", taking.full_node_name),
                 ("compatibility status", _status(giving, taking)),
             ]
     return items or [("compatibility status", "No publisher/subscriber pairs found")]
@@ -160,7 +160,3 @@ def _status(giving: EndpointToken, taking: EndpointToken) -> str:
 
 def _endpoints(facts: Facts) -> list[EndpointToken]:
     return [each for each in facts.seen.tokens if isinstance(each, EndpointToken)]
-
-
-def _owner(token: NodeToken | EndpointToken) -> str:
-    return f"{token.namespace.rstrip('/')}/{token.node_name}"

@@ -139,9 +139,7 @@ def _kinds(*only: bool) -> list[str]:
 
 def _names(kind: str) -> list[str]:
     from robolink.interfaces import names
-    from robolink.workspace import use_interfaces
 
-    use_interfaces()
     return names(kind)
 
 

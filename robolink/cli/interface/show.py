@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from robolink.cli.show import Style, as_yaml, plain
 from robolink.exceptions import MessageError, NotFoundError, TransportError
-from robolink.interfaces import KINDS, find, find_announced, names
+from robolink.interfaces import KINDS, find, find_announced, is_named, names
 from robolink.message import Message, to_builtins, type_hash
 from robolink.message.definition import ELEMENT_LINE, SECTIONS, VALUE, parse
 from robolink.message.text import text_of
-from robolink.workspace import use_interfaces
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -31,7 +30,6 @@ def type_named(name: str) -> type[Any]:
     """
     if len(name) > LONGEST:
         raise MessageError(f"'{name[:77]}...' is no type name: it has {len(name)} characters")
-    use_interfaces()
     try:
         return _installed(name.replace(".", "/"))
     except NotFoundError as error:
@@ -81,27 +79,22 @@ def _from_graph(name: str) -> type[Any] | None:
         with opened() as context:
             ends = context.graph.endpoints(*EndpointKind)
             for each in ends:
-                if _means(name, each.type_name):
+                if is_named(each.type_name, name):
                     return type_of(context, each)
             return _action_from_graph(context, name, ends)
     except TransportError:
         return None
 
 
-def _means(name: str, type_name: str) -> bool:
-    package, *_, short = type_name.split("/")
-    return name in (type_name, f"{package}/{short}", short)
-
-
 def _action_from_graph(context: Context, name: str, ends: list[EndpointToken]) -> type[Any] | None:
     """Put an action together from its services and topic."""
-    from robolink.message import Action
+    from robolink.message.making import action_class
     from robolink.type_lookup import type_of
 
-    parts = {}
+    parts, type_name = {}, ""
     for suffix, path in _ACTION.items():
         using = [
-            each for each in ends if _means(name, each.type_name.removesuffix(suffix)) and suffix in each.type_name
+            each for each in ends if is_named(each.type_name.removesuffix(suffix), name) and suffix in each.type_name
         ]
         if not using:
             return None
@@ -109,8 +102,8 @@ def _action_from_graph(context: Context, name: str, ends: list[EndpointToken]) -
         message, field = path
         holder = getattr(found, message) if message else found
         parts[field.capitalize()] = holder.__ros_fields__[field].message
-        short = using[0].type_name.rpartition("/")[2].removesuffix(suffix)
-    return type(short, (Action,), {"__module__": __name__, "__qualname__": short, **parts})
+        type_name = using[0].type_name.removesuffix(suffix)
+    return action_class(type_name, parts, doc=None, text=None)
 
 
 _ACTION = {

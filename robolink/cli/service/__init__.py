@@ -75,8 +75,8 @@ def find(
     as_json: AsJson = False,
 ) -> None:
     """List the services of a type."""
-    from robolink.cli.service.call import is_named
     from robolink.cli.session import is_hidden, looking, say, say_json
+    from robolink.interfaces import is_named
 
     with looking() as context:
         services = {name: types for name, types in _types(context).items() if hidden or not is_hidden(name)}

@@ -12,6 +12,7 @@ from robolink.cli import show
 from robolink.cli.elsewhere import domains_with, hint
 from robolink.cli.session import node_of, opened, say, shown, tell
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
+from robolink.interfaces import find, is_named
 from robolink.wire import EndpointKind
 
 if TYPE_CHECKING:
@@ -85,9 +86,6 @@ def run(service: str, type_: str, values: str, manner: Manner) -> None:
     Raises CallError when nobody answers in time, ServiceError when the server goes away or answers what is no
     answer, NotFoundError for an unknown type, DocumentError or EncodeError for a wrong request.
     """
-    from robolink.workspace import use_interfaces
-
-    use_interfaces()
     with opened() as context:
         from robolink.executors import SingleThreadedExecutor
 
@@ -133,8 +131,6 @@ def _wait_for_type(context: Context, asked: Asked, manner: Manner, deadline: flo
 
 def _check_early(asked: Asked) -> None:
     """Find what is wrong with the request before anybody waits for the service, where its type is installed."""
-    from robolink.interfaces import find
-
     if asked.type_:
         with contextlib.suppress(NotFoundError):  # the server may know it
             request_of(find(asked.type_, "srv"), asked.values)
@@ -201,16 +197,7 @@ def _sleep(executor: Executor, until: float) -> None:
 
 def _server_of(executor: Executor, client: Client) -> str:
     """Name who serves, as far as is known."""
-    from robolink.cli.session import full_name
-
     found = executor.context.graph.endpoints(EndpointKind.SERVICE, name=client.srv_name)
-    return (
-        f"{client.srv_name} of {full_name(found[0])}" if found else f"{client.srv_name}, which nobody serves any more"
-    )
-
-
-def is_named(type_name: str, given: str) -> bool:
-    """Whether ``std_srvs/srv/Trigger`` is what ``Trigger``, ``std_srvs/Trigger`` or the whole name means."""
-    package, _, rest = type_name.partition("/")
-    short = rest.rpartition("/")[2]
-    return given.replace(".", "/") in (short, f"{package}/{short}", type_name)
+    if not found:
+        return f"{client.srv_name}, which nobody serves any more"
+    return f"{client.srv_name} of {found[0].full_node_name}"

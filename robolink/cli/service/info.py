@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from robolink.cli.session import absolute, announced, full_name, looking, say, say_json, shown
+from robolink.cli.session import absolute, announced, looking, say, say_json, shown
 from robolink.exceptions import NotFoundError
-from robolink.qos import HistoryPolicy
+from robolink.topic_endpoint_info import qos_lines
 from robolink.wire import EndpointKind, EndpointToken, gid_of
 
 if TYPE_CHECKING:
@@ -50,13 +50,12 @@ def _ends(tokens: dict[str, Token], name: str, where: str) -> list[End]:
     ends = [each for each in found if each.token.name == name]
     if not ends:
         raise NotFoundError("service", shown(name), {each.token.name for each in found}, where)
-    return sorted(ends, key=lambda each: (full_name(each.token), each.gid))
+    return sorted(ends, key=lambda each: (each.token.full_node_name, each.gid))
 
 
 def described(end: End) -> str:
     """Give the lines that ros2 prints for an endpoint."""
-    token, qos = end.token, end.token.qos
-    depth = f" ({qos.depth})" if qos.history is HistoryPolicy.KEEP_LAST else ""
+    token = end.token
     return "\n".join(
         [
             f"Node name: {token.node_name}",
@@ -65,14 +64,7 @@ def described(end: End) -> str:
             f"Service type hash: {token.type_hash}",
             f"Endpoint type: {ROLES[token.kind]}",
             f"GID: {end.gid}",
-            "QoS profile:",
-            f"  Reliability: {qos.reliability.name}",
-            f"  History (Depth): {qos.history.name}{depth}",
-            f"  Durability: {qos.durability.name}",
-            f"  Lifespan: {qos.lifespan}",
-            f"  Deadline: {qos.deadline}",
-            f"  Liveliness: {qos.liveliness.name}",
-            f"  Liveliness lease duration: {qos.liveliness_lease_duration}",
+            *qos_lines(token.qos),
         ]
     )
 
@@ -80,7 +72,7 @@ def described(end: End) -> str:
 def _as_json(ends: list[End]) -> dict[str, list[dict[str, str]]]:
     return {
         f"{role.lower()}s": [
-            {"node": full_name(token), "type": token.type_name, "hash": token.type_hash, "gid": gid}
+            {"node": token.full_node_name, "type": token.type_name, "hash": token.type_hash, "gid": gid}
             for token, gid in ends
             if token.kind is kind
         ]

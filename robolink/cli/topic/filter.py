@@ -16,7 +16,7 @@ import warnings
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from robolink.cli.topic.filter_functions import FUNCTIONS, METHODS, OPERATORS, comparable, simple, truth
+from robolink.cli.topic.filter_functions import FUNCTIONS, METHODS, OPERATORS, comparable, simple, takes, truth
 from robolink.exceptions import RobolinkError, nearest
 from robolink.message.annotations import FieldType
 
@@ -248,15 +248,22 @@ class _Compiler:
         called = node.func
         if isinstance(called, ast.Name) and called.id in FUNCTIONS:
             function = FUNCTIONS[called.id]
+            self._check_count(node, called.id, takes(function))
             return lambda _: function
         if isinstance(called, ast.Attribute) and called.attr in METHODS:
             method, holder = METHODS[called.attr], self.part(called.value, depth)
             if holder.kind is None or holder.kind.shape != "one" or holder.kind.base not in ("string", "wstring"):
                 raise self.refused(called, f".{called.attr}() needs a text before it")
+            self._check_count(node, called.attr, takes(method, of_text=True))
             get = holder.value
             return lambda message: functools.partial(method, get(message))
         name = self.said(called)
         raise self.refused(called, f"no function '{name}'{nearest(name, FUNCTIONS)}; there is {_listed()}")
+
+    def _check_count(self, node: ast.Call, name: str, wanted: int | None) -> None:
+        if wanted is not None and len(node.args) != wanted:
+            plural = "" if wanted == 1 else "s"
+            raise self.refused(node, f"{name}() takes {wanted} argument{plural} in a filter, got {len(node.args)}")
 
 
 def _listed() -> str:

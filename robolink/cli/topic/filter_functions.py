@@ -8,6 +8,9 @@ import operator
 from collections.abc import Callable
 from typing import Any
 
+CO_VARARGS = 0x04
+"""The flag of a function's code that takes any number of arguments; `inspect` is slow to import."""
+
 MOST_BITS = 4096
 """Of an integer: beyond, what is computed is refused."""
 
@@ -150,3 +153,9 @@ METHODS: dict[str, Callable[..., Any]] = {
     "upper": lambda text: text.upper(),
 }
 """What a text can be asked."""
+
+
+def takes(function: Any, *, of_text: bool = False) -> int | None:
+    """Give how many arguments one of these functions takes, beside its text if it is `of_text`; None for any number."""
+    code = function.__code__
+    return None if code.co_flags & CO_VARARGS else code.co_argcount - of_text

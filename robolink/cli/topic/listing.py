@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import contextlib
 import re
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli.session import absolute, endpoints, is_hidden, looking, say, say_json, shown, tell
+from robolink.cli.session import absolute, announced, endpoints, is_hidden, looking, say, say_json, shown, tell
 from robolink.duration import Infinite
-from robolink.exceptions import MessageError, NotFoundError, WireError, nearest
+from robolink.exceptions import MessageError, NotFoundError, nearest
 from robolink.graph import names_and_types
-from robolink.qos import HistoryPolicy, QoSProfile
+from robolink.interfaces import is_named
+from robolink.qos import QoSProfile
+from robolink.topic_endpoint_info import qos_lines
 from robolink.validate_full_topic_name import validate_full_topic_name
-from robolink.wire import EndpointKind, EndpointToken, gid_of, graph_pattern, parse_token
+from robolink.wire import EndpointKind, EndpointToken, gid_of
 
 if TYPE_CHECKING:
     from robolink.context import Context
-    from robolink.duration import Duration
 
 End = tuple[bytes, EndpointToken]
 """One end of a topic, with the gid that its announcement gives it."""
@@ -77,7 +77,7 @@ def find_topics(type_: str, *, count: bool, hidden: bool, json: bool) -> None:
         )
     with looking() as context:
         ends = [each for each in _ends(context) if hidden or not is_hidden(each.name)]
-    names = sorted({each.name for each in ends if _is_named(each.type_name, type_)})
+    names = sorted({each.name for each in ends if is_named(each.type_name, type_)})
     if json:
         say_json(len(names) if count else names)
     elif count:
@@ -99,26 +99,20 @@ def _of_topic(context: Context, topic: str) -> tuple[str, list[End]]:
     """Give a topic's full name and its ends. Raises NotFoundError for one that nobody announces."""
     name = absolute(topic)
     validate_full_topic_name(name)
-    ends: list[End] = []
-    for text in context.transport.tokens(graph_pattern(context.get_domain_id())):
-        with contextlib.suppress(WireError):
-            token = parse_token(text)
-            if isinstance(token, EndpointToken) and token.kind in _KINDS:
-                ends.append((gid_of(text), token))
-    found = sorted((each for each in ends if each[1].name == name), key=_by_node)
+    ends = {
+        text: token
+        for text, token in announced(context).items()
+        if isinstance(token, EndpointToken) and token.kind in _KINDS
+    }
+    found = sorted(((gid_of(text), each) for text, each in ends.items() if each.name == name), key=_by_node)
     if not found:
-        known = {each.name for _, each in ends}
+        known = {each.name for each in ends.values()}
         raise NotFoundError("topic", shown(name), known, f"domain {context.get_domain_id()}")
     return name, found
 
 
 def _by_node(end: End) -> tuple[str, str, str, int]:
     return end[1].namespace, end[1].node_name, end[1].session, end[1].endpoint_id
-
-
-def _is_named(type_name: str, asked: str) -> bool:
-    package, *_, short = type_name.split("/")
-    return asked.replace(".", "/") in (short, f"{package}/{short}", type_name)
 
 
 def _spellings(ends: list[EndpointToken]) -> set[str]:
@@ -148,8 +142,6 @@ def _details(ends: list[EndpointToken]) -> dict[str, Any]:
 
 def _endpoint_text(gid: bytes, end: EndpointToken) -> str:
     """Spell one end of a topic as `ros2 topic info -v` does."""
-    qos = end.qos
-    keeps_last = qos.history is HistoryPolicy.KEEP_LAST
     return "\n".join(
         [
             f"Node name: {end.node_name}",
@@ -158,14 +150,7 @@ def _endpoint_text(gid: bytes, end: EndpointToken) -> str:
             f"Topic type hash: {end.type_hash}",
             f"Endpoint type: {_KINDS[end.kind].upper()}",
             f"GID: {gid.hex('.')}",
-            "QoS profile:",
-            f"  Reliability: {qos.reliability.name}",
-            f"  History (Depth): {f'KEEP_LAST ({qos.depth})' if keeps_last else qos.history.name}",
-            f"  Durability: {qos.durability.name}",
-            f"  Lifespan: {_span(qos.lifespan)}",
-            f"  Deadline: {_span(qos.deadline)}",
-            f"  Liveliness: {qos.liveliness.name}",
-            f"  Liveliness lease duration: {_span(qos.liveliness_lease_duration)}",
+            *qos_lines(end.qos),
         ]
     )
 
@@ -191,7 +176,3 @@ def _qos_data(qos: QoSProfile) -> dict[str, Any]:
         | {"depth": qos.depth}
         | {name: None if (span := getattr(qos, name)) == Infinite else span.nanoseconds / 1e9 for name in spans}
     )
-
-
-def _span(span: Duration) -> str:
-    return "Infinite" if span == Infinite else f"{span.nanoseconds} nanoseconds"

@@ -145,8 +145,8 @@ def _noted(publisher: EndpointToken, window: rates.Window) -> Take:
 
 def _filtered(context: Context, text: str) -> Callable[[EndpointToken, rates.Window], Take]:
     from robolink.cli.topic.filter import compile_filter
-    from robolink.cli.types import type_of
     from robolink.message import decoder
+    from robolink.type_lookup import type_of
 
     def how(publisher: EndpointToken, window: rates.Window) -> Take:
         msg_type = type_of(context, publisher)
@@ -163,7 +163,7 @@ def _filtered(context: Context, text: str) -> Callable[[EndpointToken, rates.Win
 
 
 def _delayed(context: Context, publisher: EndpointToken, window: rates.Window) -> Take:
-    from robolink.cli.types import type_of
+    from robolink.type_lookup import type_of
 
     stamp_of, read = stamp_reader(type_of(context, publisher)), context.transport.read
     leniently = Leniently(lambda _: True)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from robolink.cli import elsewhere
-from robolink.cli.session import full_name, shown
+from robolink.cli.session import shown
 from robolink.context import Context
 from robolink.exceptions import nearest
 from robolink.qos import DurabilityPolicy, QoSProfile
@@ -66,5 +66,5 @@ def _nobody(context: Context, name: str) -> str:
 
 
 def _names(publishers: Iterable[EndpointToken]) -> str:
-    names = sorted({full_name(each) for each in publishers})
+    names = sorted({each.full_node_name for each in publishers})
     return names[0] if len(names) == 1 else f"{names[0]} and {len(names) - 1} more"
