@@ -11,13 +11,13 @@ import pytest
 
 from robolink import Context, Node, Parameter, interfaces, type_lookup
 from robolink.cli import main
-from robolink.cli.types import SeveralTypesError, message_type, service_type, type_of
+from robolink.cli.types import SeveralTypesError, message_type, service_type
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.interfaces import find_announced
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.message import Message, Service, string, type_hash, type_name
-from robolink.type_lookup import TypeLookupError
+from robolink.type_lookup import TypeLookupError, type_of
 from robolink.wire import NO_HASH
 from tests.carts import Cart, Haul, Load, Wheel, announced, seen, spinning
 from tests.commands import Command
