@@ -47,9 +47,9 @@ def type_of(context: Context, endpoint: EndpointToken) -> type[Any]:
             if not served:
                 raise TypeLookupError(f"it does not serve {SERVICE}")
             return _ask(context, node_name, endpoint)
-        except ExternalShutdownException:  # Ctrl-C, which says nothing of the node
-            raise
         except (RobolinkError, TimeoutError) as error:
+            if not context.ok():  # Ctrl-C, which says nothing of the node
+                raise ExternalShutdownException(f"{endpoint.name}: ended while its type was asked for") from error
             refusals.append(f"{node_name}: {_one_line(error)}")
     raise TypeLookupError(_what_to_do(endpoint, installed, refusals))
 
