@@ -16,7 +16,7 @@ class CallbackGroup:
 
     def add_entity(self, entity: Any) -> None:
         """Make an entity a member."""
-        self.entities.add(weakref.ref(entity))
+        self.entities.add(weakref.ref(entity, self.entities.discard))
 
     def has_entity(self, entity: Any) -> bool:
         """Whether it is a member."""

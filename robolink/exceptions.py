@@ -76,6 +76,14 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return f" (did you mean '{close[0]}'?)" if close else ""
 
 
+def shown(text: str, longest: int = 100) -> str:
+    """Give a stranger's text as an error shows it: on one line, nothing that moves a terminal, not endless."""
+    part = text if len(text) <= longest else text[: longest - 3] + "..."
+    if part.isprintable():
+        return part
+    return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in part)
+
+
 class NotInitializedException(RobolinkError, RuntimeError):
     """robolink was used before `init()` or after `shutdown()`."""
 

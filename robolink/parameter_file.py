@@ -15,7 +15,7 @@ from typing import cast
 import yaml
 
 from robolink import yamltext
-from robolink.exceptions import DocumentError, nearest
+from robolink.exceptions import DocumentError, nearest, shown
 from robolink.names import NODE_NAME_RULES, find_problem
 from robolink.parameter_overrides import Override, Scalar, Value
 from robolink.yamlfile import DocumentNotFoundError, read_text
@@ -161,7 +161,7 @@ class _Reader:
 
     def error(self, node: yaml.Node, message: str) -> ParameterFileError:
         place = yamltext.place(self.name, node.start_mark)
-        return ParameterFileError(f"{place}: {yamltext.shown(message, 200)}")
+        return ParameterFileError(f"{place}: {shown(message, 200)}")
 
 
 def _found(node: yaml.Node) -> str:

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from robolink.exceptions import ExternalShutdownException, MessageError, NotFoundError, RobolinkError
+from robolink.exceptions import ExternalShutdownException, MessageError, NotFoundError, RobolinkError, shown
 from robolink.interfaces import find_announced
 from robolink.message import Service, type_hash
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken
@@ -50,7 +50,7 @@ def type_of(context: Context, endpoint: EndpointToken) -> type[Any]:
         except (RobolinkError, TimeoutError) as error:
             if not context.ok():  # Ctrl-C, which says nothing of the node
                 raise ExternalShutdownException(f"{endpoint.name}: ended while its type was asked for") from error
-            refusals.append(f"{node_name}: {_one_line(error)}")
+            refusals.append(f"{node_name}: {shown(str(error), 300)}")
     raise TypeLookupError(_what_to_do(endpoint, installed, refusals))
 
 
@@ -125,10 +125,3 @@ def _what_to_do(endpoint: EndpointToken, installed: type[Any] | None, refusals: 
 
 def _short(hash_text: str) -> str:
     return hash_text[:15]
-
-
-def _one_line(error: Exception) -> str:
-    """What a stranger's node said, fit for a terminal."""
-    text = " ".join(str(error).split())
-    shown = "".join(each if each.isprintable() else "?" for each in text)
-    return shown if len(shown) <= 300 else shown[:297] + "..."

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Generic, TypeAlias, TypeVar
 
 import msgspec
 
-from robolink.exceptions import DocumentError, nearest
+from robolink.exceptions import DocumentError, nearest, shown
 
 if TYPE_CHECKING:
     import yaml
@@ -60,8 +60,6 @@ class Document(Generic[T]):
         A path is `"$.robots[0].pose"`, or its steps `["robots", 0, "pose"]` where keys hold dots. When it ends
         in something that is not in the text, such as a default, the nearest mapping above is the place.
         """
-        from robolink.yamltext import shown
-
         steps = _steps(path) if isinstance(path, str) else list(path)
         node = self._node(steps, key)
         where = f"{self.name}:1:1"
@@ -263,14 +261,12 @@ def _worded(text: str, node: yaml.Node | None) -> str:
     """Say "expected float, got 'fast'" for msgspec's "Expected `float`, got `str`"."""
     import yaml
 
-    from robolink import yamltext
-
     text = re.sub(r"\b(object|array|null)\b", lambda match: _PLAIN_WORDS[match[1]], text).replace("`", "")
     if text.startswith("Expected"):
         text = "e" + text[1:]
     if not isinstance(node, yaml.ScalarNode) or node.value == "":
         return text
-    found = f"'{yamltext.shown(node.value)}'"
+    found = f"'{shown(node.value)}'"
     return re.sub(r", got .*", "", text) + f", got {found}" if text.startswith("expected") else text
 
 

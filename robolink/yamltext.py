@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 import yaml
 
-from robolink.exceptions import DocumentError
+from robolink.exceptions import DocumentError, shown
 
 MAX_DEPTH = 64
 MAX_REPEATED = 100_000
@@ -198,13 +198,6 @@ def kind(node: yaml.Node) -> str:
 
 
 _KINDS: dict[type[yaml.Node], str] = {yaml.MappingNode: "mapping", yaml.SequenceNode: "list"}
-
-
-def shown(text: str, limit: int = 60) -> str:
-    """Spell a text for an error: one line, not too long."""
-    if not text.isprintable():
-        text = "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
-    return text if len(text) <= limit else text[: limit - 1] + "…"
 
 
 def _int(text: str) -> int:

@@ -133,6 +133,18 @@ def test_it_knows_what_it_has(node: Node) -> None:
     assert node.entities() == [subscription, *node.services]
 
 
+def test_nothing_is_left_in_a_node_of_what_it_has_destroyed(node: Node) -> None:
+    before = len(node.default_callback_group.entities)
+    for number in range(3):
+        assert node.destroy_publisher(node.create_publisher(Int32, f"topic{number}", 10))
+        assert node.destroy_subscription(node.create_subscription(Int32, f"topic{number}", lambda _: None, 10))
+        assert node.destroy_service(node.create_service(Trigger, "reset", lambda _, response: response))
+        assert node.destroy_client(node.create_client(Trigger, "reset"))
+        assert node.destroy_timer(node.create_timer(1.0, lambda: None))
+    gc.collect()
+    assert len(node.default_callback_group.entities) == before
+
+
 def test_destroying_a_node_takes_it_from_the_network_and_the_executor(bus: Bus, node: Node) -> None:
     with SingleThreadedExecutor(context=node.context) as executor:
         executor.add_node(node)

@@ -115,6 +115,20 @@ def test_the_process_at_the_rendezvous_port_may_die(zenoh_net: Network, domain: 
     assert newcomer.next() == ear.next() == b"welcome"
 
 
+def test_who_comes_for_a_moment_after_that_sees_those_who_are_left(zenoh_net: Network, domain: int) -> None:
+    with process(domain, WAIT) as holder:
+        first, second = zenoh_net.session(), zenoh_net.session()
+        first.announce("@ros2_lv/0/a/x")
+        second.announce("@ros2_lv/0/b/y")
+        until(lambda: len(first.tokens(GRAPH)) == len(second.tokens(GRAPH)) == 2)
+        holder.kill()
+        holder.wait(PATIENCE)
+    for _ in range(5):  # commands, each of which takes the port and leaves it again
+        command = ZenohTransport(domain, environ={})
+        assert command.tokens(GRAPH) == ["@ros2_lv/0/a/x", "@ros2_lv/0/b/y"]
+        command.close()
+
+
 FROZEN_PEER = """
 import signal, time
 os.kill(int(sys.argv[2]), signal.SIGSTOP)

@@ -79,8 +79,7 @@ def info(
 
 def of_node(tokens: list[Token], name: str, domain: int) -> tuple[int, list[EndpointToken]]:
     """Count the nodes of a full name, and give their endpoints. Raises NotFoundError for an unknown name."""
-    from robolink.cli.session import shown
-    from robolink.exceptions import NotFoundError
+    from robolink.exceptions import NotFoundError, shown
     from robolink.wire import EndpointToken, NodeToken
 
     names = [each.full_node_name for each in tokens if isinstance(each, NodeToken)]

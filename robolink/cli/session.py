@@ -113,12 +113,6 @@ def absolute(name: str) -> str:
     return name if name.startswith("/") else f"/{name}"
 
 
-def shown(name: str, longest: int = 200) -> str:
-    """Give a name as a message shows it: of one line, and not endless."""
-    text = name if len(name) <= longest else name[:longest] + "..."
-    return text if text.isprintable() else ascii(text)[1:-1]
-
-
 def is_hidden(name: str) -> bool:
     """Whether ros2 does not show this name unless asked: a part of it begins with an underscore."""
     return any(part.startswith("_") for part in name.split("/"))

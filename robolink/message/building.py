@@ -7,7 +7,7 @@ from typing import Any
 
 import msgspec
 
-from robolink.exceptions import DefinitionError, MessageError, NotFoundError
+from robolink.exceptions import DefinitionError, MessageError, NotFoundError, shown
 from robolink.message import literals
 from robolink.message.annotations import FieldType
 from robolink.message.base import Message
@@ -25,7 +25,7 @@ from robolink.message.description import (
     type_hash,
 )
 from robolink.message.making import DEEPEST, MessageParts, action_class, message_class, service_class
-from robolink.message.spelling import is_part, shortened, split_type_name, wrong_name
+from robolink.message.spelling import is_part, split_type_name, wrong_name
 
 Resolve = Callable[[str], type[Message]]
 """Gives the message class of a full type name; raises NotFoundError or MessageError when there is none."""
@@ -111,7 +111,7 @@ def checked_class(description: TypeDescription, expected_hash: str, resolve: Res
     """
     found = hash_of(description)
     if found != expected_hash:
-        name = shortened(description.type_name)
+        name = shown(description.type_name)
         raise MessageError(f"the description of {name} has the hash {found}, not {expected_hash[:100]}")
     return class_of_description(description, resolve)
 
@@ -174,7 +174,7 @@ class _Maker:
         if name in self.made:
             return self.made[name]
         if name not in self.types:
-            raise MessageError(f"{self._user()} refers to {shortened(name)}, which is not described")
+            raise MessageError(f"{self._user()} refers to {shown(name)}, which is not described")
         _, kind, short = split_type_name(name)
         if kind != "msg" and not is_part(kind, short):
             raise MessageError(f"{name} is described as a message, which no {kind} type is")
@@ -206,7 +206,7 @@ class _Maker:
         defaults: dict[str, Any] = {}
         placeholder = (FieldDescription(PLACEHOLDER, TYPE_IDS["uint8"]),)
         for field in description.fields if description.fields != placeholder else ():
-            where = f"{description.type_name}.{shortened(field.name)}"
+            where = f"{description.type_name}.{shown(field.name)}"
             wrong = wrong_name("field", field.name)
             if wrong:
                 raise MessageError(f"{description.type_name}: {wrong}")
@@ -220,7 +220,7 @@ class _Maker:
     def _field_type(self, field: FieldDescription, where: str) -> FieldType:
         base, shape, bounded = _kind(field.type_id, where)
         if (base == "") != bool(field.nested_type_name):
-            nested = shortened(field.nested_type_name)
+            nested = shown(field.nested_type_name)
             raise MessageError(f"{where}: type id {field.type_id} with the nested type '{nested}'")
         sizes = {"size": field.capacity, "string_bound": field.string_capacity}
         for what, wanted in (("size", shape in ("array", "bounded")), ("string_bound", bounded)):

@@ -13,11 +13,11 @@ from typing import Any, NoReturn
 
 import msgspec
 
-from robolink.exceptions import DefinitionError, MessageError, nearest
+from robolink.exceptions import DefinitionError, MessageError, nearest, shown
 from robolink.message import literals
 from robolink.message.annotations import FieldType
 from robolink.message.description import TYPE_IDS
-from robolink.message.spelling import is_part, shortened, split_type_name, wrong_name
+from robolink.message.spelling import is_part, split_type_name, wrong_name
 
 SECTIONS = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
 """What the types of a file's sections add to the name of the file's type."""
@@ -209,8 +209,7 @@ class _SectionReader:
         assert found is not None  # any text matches that neither begins with a space nor with #
         type_text, name, rest = found["type"], found["name"], found["rest"]
         if not name:
-            shown = shortened(type_text)
-            self.reader.fail(number, indent + 1, f"'{shown}' alone is no field: write a type and a name")
+            self.reader.fail(number, indent + 1, f"'{shown(type_text)}' alone is no field: write a type and a name")
         column = found.start("rest") + 1
         value, behind = _split_comment(rest)
         kind = self._type(type_text, number, indent + 1, constant=value.startswith("="))
@@ -244,7 +243,7 @@ class _SectionReader:
         except MessageError as error:
             self.reader.fail(number, column, str(error))
         if constant and (kind.base not in TYPE_IDS or kind.shape != "one" or kind.string_bound):
-            self.reader.fail(number, column, f"a constant of type {shortened(text)}: only primitive types have any")
+            self.reader.fail(number, column, f"a constant of type {shown(text)}: only primitive types have any")
         if kind.base == self.reader.type_name:
             self.reader.fail(number, column, f"{self.reader.type_name} cannot contain itself")
         return kind
@@ -254,12 +253,12 @@ def field_type(text: str, package: str) -> FieldType:
     """Read a type as a field of a message in `package` may have it: ``string<=5[<=3]``. Raises MessageError."""
     found = TYPE.fullmatch(text)
     if found is None:
-        raise MessageError(f"'{shortened(text)}' is no type: write float64, float64[], float64[3], float64[<=3] ...")
+        raise MessageError(f"'{shown(text)}' is no type: write float64, float64[], float64[3], float64[<=3] ...")
     base = found["base"] if found["base"] in TYPE_IDS else _nested(found["base"], package)
     bound = 0
     if found["bound"] is not None:
         if base not in ("string", "wstring"):
-            raise MessageError(f"'{shortened(text)}': only string and wstring can be bounded so")
+            raise MessageError(f"'{shown(text)}': only string and wstring can be bounded so")
         bound = _count(found["bound"], text)
     if found["size"] is None:
         return FieldType(base=base, string_bound=bound)
@@ -272,18 +271,18 @@ def field_type(text: str, package: str) -> FieldType:
 def _count(digits: str, text: str) -> int:
     if re.fullmatch(r"[0-9]{1,10}", digits) and 0 < int(digits) <= LARGEST:
         return int(digits)
-    raise MessageError(f"'{shortened(text)}': a size or bound is a whole number from 1 to {LARGEST}")
+    raise MessageError(f"'{shown(text)}': a size or bound is a whole number from 1 to {LARGEST}")
 
 
 def _nested(text: str, package: str) -> str:
     """Give the full name of a message type: ``Point``, ``pkg/Point`` and ``pkg/msg/Point`` are possible."""
     if text.startswith("@"):
-        raise MessageError(f"'{shortened(text)}': annotations belong to .idl files")
+        raise MessageError(f"'{shown(text)}': annotations belong to .idl files")
     parts = text.split("/")
     if len(parts) == 1:
         if text[:1].islower():
             meant = f" (did you mean '{MEANT[text]}'?)" if text in MEANT else nearest(text[:80], TYPE_IDS)
-            raise MessageError(f"'{shortened(text)}' is no type{meant}")
+            raise MessageError(f"'{shown(text)}' is no type{meant}")
         full_name = f"{package}/msg/{text}"
     else:
         full_name = f"{parts[0]}/msg/{parts[1]}" if len(parts) == 2 else text

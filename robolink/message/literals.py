@@ -13,8 +13,8 @@ from typing import Any
 
 import msgspec
 
+from robolink.exceptions import shown
 from robolink.message.annotations import NUMERIC, FieldType
-from robolink.message.spelling import shortened
 
 INTEGER = re.compile(r"[+-]?(?:[0-9](?:_?[0-9])*|0[xX](?:_?[0-9a-fA-F])+|0[oO](?:_?[0-7])+|0[bB](?:_?[01])+)")
 FLOAT = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf|infinity|nan)", re.IGNORECASE)
@@ -36,7 +36,7 @@ def read(kind: FieldType, text: str) -> Any:
     if kind.shape == "one":
         return _one(kind, text)
     if not (text.startswith("[") and text.endswith("]") and len(text) > 1):
-        raise ValueError(f"'{shortened(text)}' is no array: write [1, 2]")
+        raise ValueError(f"'{shown(text)}' is no array: write [1, 2]")
     return elements(kind, text[1:-1])
 
 
@@ -48,7 +48,7 @@ def elements(kind: FieldType, text: str) -> list[Any]:
     while at < len(text):
         found = ELEMENT.match(text, at)
         if found is None:
-            raise ValueError(f"element {len(values)}: '{shortened(text[at:].strip())}' is no {one}")
+            raise ValueError(f"element {len(values)}: '{shown(text[at:].strip())}' is no {one}")
         try:
             values.append(_one(one, found[1].rstrip()))
         except ValueError as error:
@@ -66,20 +66,20 @@ def _one(kind: FieldType, text: str) -> Any:
         return checked(kind, _string(text))
     if kind.base == "bool":
         if text.lower() not in BOOLS:
-            raise ValueError(f"'{shortened(text)}' is no bool: write true or false")
+            raise ValueError(f"'{shown(text)}' is no bool: write true or false")
         return BOOLS[text.lower()]
     if NUMERIC.get(kind.base) in ("f", "d"):
         if not FLOAT.fullmatch(text):
-            raise ValueError(f"'{shortened(text)}' is no {kind.base}: write a number such as 0.5 or 1e-3")
+            raise ValueError(f"'{shown(text)}' is no {kind.base}: write a number such as 0.5 or 1e-3")
         if math.isinf(float(text)) and any(each.isdigit() for each in text):
-            raise ValueError(f"{shortened(text)} is too large for {kind.base}")
+            raise ValueError(f"{shown(text)} is too large for {kind.base}")
         return checked(kind, float(text))
     return checked(kind, _integer(kind.base, text))
 
 
 def _integer(base: str, text: str) -> int:
     if len(text) > LONGEST_NUMBER or not INTEGER.fullmatch(text):
-        raise ValueError(f"'{shortened(text)}' is no {base}: write a whole number such as 10, -3 or 0x1F")
+        raise ValueError(f"'{shown(text)}' is no {base}: write a whole number such as 10, -3 or 0x1F")
     try:
         return int(text)  # leading zeros do not make it octal
     except ValueError:
@@ -93,7 +93,7 @@ def checked(kind: FieldType, value: Any) -> Any:
         length = len(value.encode("utf-16-le")) // 2 if wide else len(value.encode())
         if kind.string_bound and length > kind.string_bound:
             what = "UTF-16 units" if wide else "bytes"
-            raise ValueError(f"'{shortened(value)}' has {length} {what}; {kind} takes {kind.string_bound}")
+            raise ValueError(f"'{shown(value)}' has {length} {what}; {kind} takes {kind.string_bound}")
         return value
     code = NUMERIC.get(kind.base, "B")
     try:
@@ -102,7 +102,7 @@ def checked(kind: FieldType, value: Any) -> Any:
         size = struct.calcsize("<" + code) * 8
         low, high = (-(2 ** (size - 1)), 2 ** (size - 1) - 1) if code.islower() else (0, 2**size - 1)
         limits = f"it takes {low} to {high}" if code not in "fd" else "its largest number is 3.4028235e38"
-        raise ValueError(f"{shortened(str(value))} does not fit {kind.base}: {limits}") from None
+        raise ValueError(f"{shown(str(value))} does not fit {kind.base}: {limits}") from None
     return value
 
 
@@ -110,14 +110,14 @@ def _string(text: str) -> str:
     for quote in "\"'":
         if len(text) > 1 and text.startswith(quote) and text.endswith(quote):
             if not re.fullmatch(QUOTED, text, re.DOTALL):
-                raise ValueError(f"{shortened(text)} has a {quote} within: write \\{quote}")
+                raise ValueError(f"{shown(text)} has a {quote} within: write \\{quote}")
             text = text[1:-1]
             break
     text = ESCAPE.sub(_escaped, text)
     try:
         text.encode()
     except UnicodeEncodeError:
-        raise ValueError(f"'{shortened(text)}' is not valid Unicode") from None
+        raise ValueError(f"'{shown(text)}' is not valid Unicode") from None
     return text
 
 
@@ -169,7 +169,7 @@ def as_rosidl_said(kind: FieldType, text: str) -> Any:
     """Read what `as_rosidl_says` wrote. Raises ValueError."""
     if kind.shape != "one":
         if not (text.startswith("(") and text.endswith(")")):
-            raise ValueError(f"'{shortened(text)}' is no default of {kind}")
+            raise ValueError(f"'{shown(text)}' is no default of {kind}")
         return elements(kind, text[1:-1])
     return checked(kind, text) if kind.base in ("string", "wstring") else _one(kind, text)
 

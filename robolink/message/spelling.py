@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from robolink.exceptions import MessageError
+from robolink.exceptions import MessageError, shown
 
 LOWER = r"[a-z](?:_?[a-z0-9])*"
 PATTERNS = {"package": LOWER, "type": r"[A-Z][A-Za-z0-9]*", "field": LOWER, "constant": r"[A-Z](?:_?[A-Z0-9])*"}
@@ -32,10 +32,10 @@ def wrong_name(what: str, name: str) -> str:
     "'maxSpeed' is no field name: lower case letters, digits and single underscores, as in max_speed"
     """
     if len(name) > LONGEST:
-        return f"'{shortened(name)}' is {len(name)} characters long; a name has at most {LONGEST}"
+        return f"'{shown(name)}' is {len(name)} characters long; a name has at most {LONGEST}"
     if re.fullmatch(PATTERNS[what], name):
         return ""
-    return f"'{shortened(name)}' is no {what} name: {RIGHT[what]}"
+    return f"'{shown(name)}' is no {what} name: {RIGHT[what]}"
 
 
 def split_type_name(name: str) -> tuple[str, str, str]:
@@ -45,7 +45,7 @@ def split_type_name(name: str) -> tuple[str, str, str]:
     """
     parts = name.split("/")
     if len(parts) != 3 or parts[1] not in ("msg", "srv", "action"):
-        raise MessageError(f"'{shortened(name)}' is no full type name; it should look like my_msgs/msg/WheelSpeeds")
+        raise MessageError(f"'{shown(name)}' is no full type name; it should look like my_msgs/msg/WheelSpeeds")
     package, kind, short = parts
     wrong = wrong_name("package", package) or (not is_part(kind, short) and wrong_name("type", short))
     if wrong:
@@ -56,9 +56,3 @@ def split_type_name(name: str) -> tuple[str, str, str]:
 def is_part(kind: str, short: str) -> bool:
     """Whether a type is the part of a service or action, by its kind and name: ``srv``, ``SetBool_Request``."""
     return kind != "msg" and len(short) <= LONGEST and re.fullmatch(PART, short) is not None
-
-
-def shortened(text: str) -> str:
-    """`text` as an error shows it: on one line and not too long."""
-    shown = text if len(text) <= 60 else text[:57] + "..."
-    return shown if shown.isprintable() else repr(shown)[1:-1]

@@ -26,6 +26,10 @@ ROS_ROUTER = "tcp/127.0.0.1:7447"
 NAMES = ("localhost", "subnet", "off")
 """Networks that can be asked for by name; an endpoint of a router or a file of Zenoh's settings do as well."""
 
+SOUGHT_EVERY = 0.1
+"""Seconds: so often a session whose rendezvous has gone looks whether somebody else has taken the port."""
+
+_OFTEN = f"retry_period_init_ms=50;retry_period_max_ms={SOUGHT_EVERY * 1000:.0f};retry_period_increase_factor=2"
 _HIGHEST_DOMAIN = 232
 _RANGES = {"": "localhost", "SYSTEM_DEFAULT": "localhost", "LOCALHOST": "localhost", "SUBNET": "subnet", "OFF": "off"}
 _ENDPOINT = re.compile(r"(tcp|tls|quic|ws)/\S+:\d+")
@@ -107,9 +111,7 @@ _BASE: dict[str, Any] = {
 
 def _localhost(port: int, holds_port: bool, platform: str) -> dict[str, Any]:
     loopback = _LOOPBACK.get(platform)
-    peers = [f"tcp/127.0.0.1:{port}"]
-    if loopback:
-        peers.append(ROS_ROUTER)
+    peers = _holder(port, holds_port) + ([ROS_ROUTER] if loopback else [])
     # Windows names its interfaces in ways that cannot be known before a link is up, so that there is no access
     # control there, and without it a session follows gossip to other machines (seen on Linux). A ROS 2 router is
     # what brings such gossip in: on Windows it has to be asked for, `--network tcp/127.0.0.1:7447`.
@@ -118,11 +120,16 @@ def _localhost(port: int, holds_port: bool, platform: str) -> dict[str, Any]:
 
 
 def _subnet(port: int, holds_port: bool) -> dict[str, Any]:
-    peers = [f"tcp/127.0.0.1:{port}", ROS_ROUTER]
+    peers = [*_holder(port, holds_port), ROS_ROUTER]
     # A group of its own: what else speaks Zenoh here (224.0.0.224:7446) is not drawn in.
     return _meeting("0.0.0.0", port, holds_port, peers) | {
         "scouting": _scouting(delay=200, multicast={"enabled": True, "address": f"224.0.0.224:{port}"})
     }
+
+
+def _holder(port: int, holds_port: bool) -> list[str]:
+    """Give whom to seek at the rendezvous port: nobody, for who is there; else whoever has it, now and later."""
+    return [] if holds_port else [f"tcp/127.0.0.1:{port}#{_OFTEN}"]
 
 
 def _meeting(host: str, port: int, holds_port: bool, peers: list[str]) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import queue
 import sys
 import time
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import zenoh
 
@@ -38,6 +38,9 @@ RUNTIME = "(rx:(worker_threads:1),tx:(handover:rx))"
 LINK_WITHIN = 1.0
 """Seconds in which whoever holds the rendezvous port has to answer; it takes 2 ms."""
 
+REUNION = network.SOUGHT_EVERY + 0.05
+"""Seconds in which those that are left of an earlier holder of the rendezvous port find the new one."""
+
 _ZenohSample = zenoh.Sample
 _sample = functools.partial(tuple.__new__, Sample)  # half the time of Sample(), whose __new__ is Python
 
@@ -54,7 +57,8 @@ class ZenohTransport(Transport):
         self.url = "zenoh://"
         lifetime.refuse_if_forked()
         self._holdings = handles.Holdings()
-        self._session, self._claim = _join(domain, network, os.environ if environ is None else environ)
+        self._session, self._claim, holds_port = _join(domain, network, os.environ if environ is None else environ)
+        self._met_at = time.monotonic() + (REUNION if holds_port else 0.0)
         self.session_id = str(self._session.info.zid())
         lifetime.watch_over(self)
 
@@ -93,7 +97,11 @@ class ZenohTransport(Transport):
         return handles.ZenohWatch(self._holdings, subscriber, changes)
 
     def tokens(self, pattern: str) -> list[str]:
-        """List the tokens that match `pattern`, sorted: also those of peers that this session only just found."""
+        """List the tokens that match `pattern`, sorted: also those of peers that this session only just found.
+
+        A session that has just taken the rendezvous port waits for those that may still be there without one.
+        """
+        time.sleep(max(0.0, self._met_at - time.monotonic()))
         arrived: queue.SimpleQueue[Any] = queue.SimpleQueue()
         subscriber = self._try(pattern, declare.declare_watch, pattern, declare.direct(arrived.put))
         try:
@@ -202,7 +210,13 @@ def _settled(
     return changes.alive
 
 
-def _join(domain: int, asked: str | None, environ: Mapping[str, str]) -> tuple[zenoh.Session, network.PortClaim | None]:
+class _Joined(NamedTuple):
+    session: zenoh.Session
+    claim: network.PortClaim | None = None
+    holds_port: bool = False
+
+
+def _join(domain: int, asked: str | None, environ: Mapping[str, str]) -> _Joined:
     os.environ.setdefault("ZENOH_RUNTIME", RUNTIME)  # Zenoh reads it when the first session is opened
     if "RUST_LOG" in environ:
         show_log: Callable[[], object] = zenoh.try_init_log_from_env
@@ -216,23 +230,23 @@ def _join(domain: int, asked: str | None, environ: Mapping[str, str]) -> tuple[z
     try:
         if network.meets_at_port(value, environ):
             return _meet(port, open_session)
-        return open_session(False), None  # nobody would look for it at the rendezvous port
+        return _Joined(open_session(False))  # nobody would look for it at the rendezvous port
     except zenoh.ZError as error:
         raise TransportError(f"cannot join the network '{value}': {network.reason(error)}") from None
 
 
-def _meet(port: int, open_session: Callable[[bool], zenoh.Session]) -> tuple[zenoh.Session, network.PortClaim]:
+def _meet(port: int, open_session: Callable[[bool], zenoh.Session]) -> _Joined:
     """Hold the rendezvous port, or meet whoever does."""
     for _ in range(2):  # twice, since the holder may leave in between
         claim = network.PortClaim(port)
         if claim.granted:
             try:
-                return open_session(True), claim
+                return _Joined(open_session(True), claim, True)
             except zenoh.ZError:  # taken
                 claim.release()
         session = open_session(False)
         if _linked(session):
-            return session, claim
+            return _Joined(session, claim)
         lifetime.finish(functools.partial(declare.quietly, session.close), CLOSE_WITHIN)
     raise TransportError(
         f"port {port} is taken by a program that does not answer as a robolink session does: "

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from robolink.cli.doctor.facts import Facts
+from robolink.exceptions import shown
 
 OK, WARNING, ERROR, UNKNOWN = "ok", "warning", "error", "unknown"
 
@@ -34,7 +35,7 @@ class Verdict(NamedTuple):
     @property
     def findings(self) -> list[str]:
         """What is wrong, the worst first, shortened where there is a lot of it."""
-        found = [_shortened(each) for each in (*self.errors, *self.warnings)]
+        found = [shown(each, LONGEST) for each in (*self.errors, *self.warnings)]
         rest = len(found) - MOST_SHOWN
         return [*found[:MOST_SHOWN], f"and {rest} more"] if rest > 0 else found
 
@@ -66,8 +67,3 @@ def listed(names: Iterable[str], most: int = 4) -> str:
     found = sorted(set(names))
     shown = [*found[:most], f"{len(found) - most} more"] if len(found) > most else found
     return " and ".join(filter(None, (", ".join(shown[:-1]), shown[-1]))) if shown else ""
-
-
-def _shortened(text: str) -> str:
-    safe = "".join(each if each.isascii() and each.isprintable() else "?" for each in text)
-    return safe if len(safe) <= LONGEST else safe[: LONGEST - 3] + "..."

@@ -149,8 +149,8 @@ def _types(context: Context) -> dict[str, list[str]]:
 
 def _known(context: Context, service: str, services: dict[str, list[str]]) -> str:
     """Give the full name of a service. Raises NotFoundError when there is none."""
-    from robolink.cli.session import absolute, shown
-    from robolink.exceptions import NotFoundError
+    from robolink.cli.session import absolute
+    from robolink.exceptions import NotFoundError, shown
 
     name = absolute(service)
     if name not in services:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.cli import show
 from robolink.cli.elsewhere import domains_with, hint
-from robolink.cli.session import node_of, opened, say, shown, tell
-from robolink.exceptions import NotFoundError, RobolinkError, nearest
+from robolink.cli.session import node_of, opened, say, tell
+from robolink.exceptions import NotFoundError, RobolinkError, nearest, shown
 from robolink.interfaces import find, is_named
 from robolink.wire import EndpointKind
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from robolink.cli.session import absolute, announced, looking, say, say_json, shown
-from robolink.exceptions import NotFoundError
+from robolink.cli.session import absolute, announced, looking, say, say_json
+from robolink.exceptions import NotFoundError, shown
 from robolink.topic_endpoint_info import qos_lines
 from robolink.wire import EndpointKind, EndpointToken, gid_of
 

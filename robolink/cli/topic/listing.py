@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli.session import absolute, announced, endpoints, is_hidden, looking, say, say_json, shown, tell
+from robolink.cli.session import absolute, announced, endpoints, is_hidden, looking, say, say_json, tell
 from robolink.duration import Infinite
-from robolink.exceptions import MessageError, NotFoundError, nearest
+from robolink.exceptions import MessageError, NotFoundError, nearest, shown
 from robolink.graph import names_and_types
 from robolink.interfaces import is_named
 from robolink.qos import QoSProfile

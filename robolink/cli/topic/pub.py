@@ -9,12 +9,12 @@ import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.cli.session import node_of, opened, say, shown
+from robolink.cli.session import node_of, opened, say
 from robolink.cli.topic.qos_options import QoSFlags
 from robolink.cli.topic.stamps import Stamped
 from robolink.cli.types import message_type
 from robolink.event_handler import PublisherEventCallbacks
-from robolink.exceptions import DocumentError, RobolinkError, nearest
+from robolink.exceptions import DocumentError, RobolinkError, nearest, shown
 from robolink.executors import Executor, SingleThreadedExecutor
 from robolink.task import Future
 from robolink.wire import EndpointKind

@@ -6,9 +6,8 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from robolink.cli import elsewhere
-from robolink.cli.session import shown
 from robolink.context import Context
-from robolink.exceptions import nearest
+from robolink.exceptions import nearest, shown
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken
 
