@@ -27,7 +27,10 @@ QUIET = 0.03
 """Seconds without news after which no more peers are expected."""
 
 PATIENCE = 0.5
-"""Seconds after which the list of tokens is given as it is."""
+"""Seconds without any news after which peers that have not answered are taken for frozen."""
+
+LONGEST = 3.0
+"""Seconds in which even a busy machine's peers have told what they announce."""
 
 CLOSE_WITHIN = 0.15
 """Seconds that closing may take before it goes on in the background."""
@@ -183,29 +186,36 @@ def _settled(
     arrived: queue.SimpleQueue[Any], ask: Callable[[Callable[[], object], float], object], peers: Callable[[], set[str]]
 ) -> set[str]:
     """Collect tokens until all peers have told theirs and no more peers turn up."""
-    changes, deadline = handles.Changes(lambda token, alive: None), time.monotonic() + PATIENCE
+    changes, known = handles.Changes(lambda token, alive: None), set[str]()
+    begin = news = time.monotonic()
 
-    def collect(longest: float) -> bool:
-        """Take what comes until nothing does for so long; whether it was because the peers have answered."""
-        while (left := deadline - time.monotonic()) > 0:
+    def left() -> float:
+        return min(news + PATIENCE, begin + LONGEST) - time.monotonic()
+
+    def collect(quiet: float) -> None:
+        """Take what comes, until the peers have answered or nothing has come for so long."""
+        nonlocal news
+        while (longest := min(left(), quiet)) > 0:
             try:
-                sample = arrived.get(timeout=min(left, longest))
+                sample = arrived.get(timeout=longest)
             except queue.Empty:
-                return False
+                return
             if sample is None:
-                return True
+                return
+            news = time.monotonic()
             changes(sample)
-        return False
 
     was_quiet = False
-    while (left := deadline - time.monotonic()) > 0:
+    while left() > 0:
         before = peers()
+        if not before <= known:
+            news, known = time.monotonic(), known | before
         # Silence alone proves nothing: a busy peer is silent too. Its answer comes after all its tokens.
-        ask(functools.partial(arrived.put, None), left)
-        collect(left)
+        ask(functools.partial(arrived.put, None), LONGEST)
+        collect(LONGEST)
         if was_quiet and peers() == before:
             break
-        collect(QUIET)
+        collect(max(QUIET, (time.monotonic() - begin) / 2))  # what has taken long so far may have longer gaps
         was_quiet = True
     return changes.alive
 
