@@ -159,6 +159,13 @@ def test_an_error_writes_nothing_that_a_terminal_obeys(capsys: pytest.CaptureFix
     assert "/a\\x1b[2J\\u202e\\x9b" in capsys.readouterr().err
 
 
+def test_an_error_about_a_huge_argument_is_not_huge(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["topic", "hz", "/a", "--window", "9" + 100_000 * "a"]) == 2
+    line = capsys.readouterr().err
+    assert len(line) < 2000
+    assert line.endswith("(see 'robolink topic hz --help')\n")
+
+
 def test_the_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--version"]) == 0
     assert capsys.readouterr().out.startswith("robolink 0.")

@@ -37,13 +37,17 @@ from robolink.interfaces.unique_identifier_msgs.msg import UUID
 from robolink.message import (
     Action,
     Message,
+    Sequence,
     action_type,
     decode,
     encode,
+    float32,
     float64,
+    int32,
     string,
     type_hash,
     type_name,
+    uint8,
 )
 
 HASHES: dict[str, str] = json.loads((Path(__file__).parent / "data" / "type_hashes.json").read_text())
@@ -285,6 +289,26 @@ def test_two_messages_share_no_default() -> None:
     one, other = LaserScan(), LaserScan()
     one.ranges.append(1.0)
     assert list(other.ranges) == []
+
+
+@pytest.mark.parametrize(
+    ("annotation", "default", "report"),
+    [
+        (int32, "x", "a default that does not fit: .*Odd.size: expected int32, got 'x'"),
+        (uint8, 300, "expected uint8, got 300"),
+        (float32, 1e300, "expected float32, got 1e[+]300"),
+        (string, 5, "expected string, got 5"),
+        (string, "\ud800", "is not valid Unicode"),
+        (Sequence[int32], [1, "x"], "expected int32, got 'x'"),
+        (Twist, Twist(), "can have no default: only primitive types"),
+        (Sequence[Twist], [Twist()], "can have no default: only primitive types"),
+    ],
+)
+def test_a_default_that_does_not_fit_is_refused_with_the_class(annotation: Any, default: Any, report: str) -> None:
+    with pytest.raises(MessageError, match=report):
+
+        class Odd(Message):
+            size: annotation = default
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 COMPLETION = "_ROBOLINK_COMPLETE"
 """The variable in which a shell says that it wants to know how to go on."""
 
+LONGEST_LINE = 2000
+"""Characters of an error that are shown: an argument that it names can be as long as a file."""
+
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run a command; give the exit code: 1 after an error, 2 after wrong usage, 130 after Ctrl-C.
@@ -47,6 +50,8 @@ def complain(error: object, code: int = 1) -> int:
     if isinstance(error, NameValidationException):  # its text has a line for the caret
         error = f"invalid {error.name_type} '{error.name[:200]}': {error.error_msg} (at index {error.invalid_index})"
     text = " ".join(str(error).split("\n"))
+    if len(text) > LONGEST_LINE:
+        text = f"{text[: LONGEST_LINE // 2]} ... {text[-LONGEST_LINE // 4 :]}"
     line = "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
     print(f"robolink: {line}", file=sys.stderr)  # noqa: T201 - this is what the user is told
     return code

@@ -60,6 +60,7 @@ class MessageMeta(msgspec.StructMeta):
         annotations = ros.evaluate(_annotations(namespace), namespace["__module__"], sys._getframe(1))
         fields, constants = _read(annotations, namespace, full_name)
         defaults = {field: namespace[field] for field in fields if field in namespace}
+        _check_defaults(full_name, fields, defaults)
         for field, kind in fields.items():
             namespace[field] = _default(kind, namespace.get(field, msgspec.NODEFAULT))
         for constant in constants:
@@ -120,6 +121,18 @@ def _read(
         else:
             constants[name] = (ros.field_type(constant, f"{type_name}.{name}"), namespace[name])
     return fields, constants
+
+
+def _check_defaults(type_name: str, fields: dict[str, FieldType], defaults: dict[str, Any]) -> None:
+    for name, value in defaults.items():
+        from robolink.message.check import explain_value  # late: it needs this module, and few types state any
+
+        kind, where = fields[name], f"{type_name}.{name}"
+        if kind.message is not None:
+            raise MessageError(f"{where}: {kind} can have no default: only primitive types and arrays of them can")
+        wrong = explain_value(kind, value, where)
+        if wrong:
+            raise MessageError(f"a default that does not fit: {wrong}")
 
 
 def _default(kind: FieldType, given: Any) -> Any:

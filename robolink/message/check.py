@@ -17,6 +17,11 @@ def explain(cls: type[Message], message: Any) -> str:
     return next(_wrong_in(cls, message, name), "")
 
 
+def explain_value(kind: FieldType, value: Any, path: str) -> str:
+    """Say what of one field's value does not fit; '' if all does."""
+    return next(_wrong(kind, value, path), "")
+
+
 def _wrong_in(cls: type[Message], message: Any, path: str) -> Iterator[str]:
     if not isinstance(message, cls):
         yield _expected(path, cls.__ros_type__, message)
