@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import queue
 import random
 import threading
 import time
@@ -46,8 +48,12 @@ def test_payload_and_attachment_cross_unchanged(net: Network, qos: QoSProfile, s
     outlet, ear = net.session().advertise(CHATTER, qos), Ear(net.session(), qos=qos)
     reach(outlet, ear)
     payload, attachment = random.Random(size).randbytes(size), bytes(range(33))
-    outlet.put(payload, attachment)
-    assert ear.session.read(ear.arrived.get(timeout=PATIENCE)) == (payload, attachment)
+    for _ in range(5):  # on a busy machine a large one may be dropped: a publisher does not wait for its network
+        outlet.put(payload, attachment)
+        with contextlib.suppress(queue.Empty):
+            assert ear.session.read(ear.arrived.get(timeout=PATIENCE / 5)) == (payload, attachment)
+            return
+    raise AssertionError("it never came")
 
 
 def test_every_subscription_gets_every_sample_once(net: Network) -> None:
