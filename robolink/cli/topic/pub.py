@@ -158,8 +158,17 @@ def _loop(node: Node, executor: Executor, publisher: Publisher[Any], messages: l
         if number == wish.times:
             done.set_result(None)
 
+    def send_again() -> None:
+        if done.done():
+            return
+        try:
+            send()
+        except (RobolinkError, OSError) as error:  # the command's own error, no callback's: a closed pipe
+            done.set_exception(error)
+
     send()
     if not done.done():
-        node.create_timer(1.0 / wish.rate, lambda: None if done.done() else send())
+        node.create_timer(1.0 / wish.rate, send_again)
         executor.spin_until_future_complete(done)
+        done.result()
     executor.spin_until_future_complete(Future(), timeout_sec=wish.keep_alive)
