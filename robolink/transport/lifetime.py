@@ -30,7 +30,7 @@ LAST_WAIT = 0.5
 """Seconds that the exit waits for sessions that are still closing; one with 30 peers takes 0.3 s."""
 
 _open: weakref.WeakSet[Mortal] = weakref.WeakSet()
-_unfinished: list[threading.Thread] = []
+_unfinished: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
 _armed = False
 _forked = False
 
@@ -55,7 +55,13 @@ def finish(work: Callable[[], object], within: float) -> None:
         work()
         return
     thread.join(within)
-    _unfinished[:] = [each for each in (*_unfinished, thread) if each.is_alive()]
+    if thread.is_alive():
+        _unfinished.add(thread)
+
+
+def outlive(thread: threading.Thread) -> None:
+    """Have the exit wait for a thread that is inside Zenoh until its session has been closed."""
+    _unfinished.add(thread)
 
 
 def bury(remains: object) -> None:
@@ -82,7 +88,7 @@ def _wait_for_the_unfinished() -> None:
     # A thread that comes back from Zenoh while the interpreter ends aborts the process (Python < 3.14). So most get
     # the time that they need; what takes longer, 10 s for a frozen peer, is not back before the process is gone.
     deadline = time.monotonic() + LAST_WAIT
-    for thread in _unfinished:
+    for thread in list(_unfinished):
         thread.join(max(0, deadline - time.monotonic()))
 
 

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import zenoh
 
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from robolink.transport import lifetime
 from robolink.transport.base import Sink
 
 MOST_BETWEEN = 1 << 16
@@ -66,7 +67,9 @@ def declare_subscriber(session: zenoh.Session, key: str, gate: Sink, qos: QoSPro
         recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if reliable else None,
         subscriber_detection=True,
     )
-    threading.Thread(target=_hand_on, args=(subscriber.handler, gate), name="robolink latched", daemon=True).start()
+    thread = threading.Thread(target=_hand_on, args=(subscriber.handler, gate), name="robolink latched", daemon=True)
+    lifetime.outlive(thread)
+    thread.start()
     return subscriber
 
 
