@@ -192,15 +192,18 @@ class EventHandler(Entity):
         self.detach()
 
 
+_OLDER_NAME = "QoSEventHandler is the older name of EventHandler: use that"
+
+
 class QoSEventHandler(EventHandler):
     """The older name of EventHandler."""
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
-        warnings.warn("QoSEventHandler is deprecated, use EventHandler instead.", DeprecationWarning, stacklevel=2)
+        warnings.warn(_OLDER_NAME, DeprecationWarning, stacklevel=2)
         super().__init_subclass__(**kwargs)
 
     def __init__(self, **kwargs: Any) -> None:
-        warnings.warn("QoSEventHandler is deprecated, use EventHandler instead.", DeprecationWarning, stacklevel=2)
+        warnings.warn(_OLDER_NAME, DeprecationWarning, stacklevel=2)
         super().__init__(**kwargs)
 
 

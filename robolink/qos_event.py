@@ -4,4 +4,4 @@ import warnings
 
 from robolink.event_handler import *  # noqa: F403
 
-warnings.warn("importing 'qos_event' is deprecated; import 'event_handler' instead", stacklevel=2)
+warnings.warn("robolink.qos_event is the older name of robolink.event_handler: import that", stacklevel=2)

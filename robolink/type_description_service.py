@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import MutuallyExclusiveCallbackGroup
+from robolink.exceptions import shown
 from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor, ParameterType
 from robolink.message import Service, type_hash, type_name
 from robolink.message.description import described, to_message
@@ -46,11 +47,11 @@ class TypeDescriptionService:
     ) -> GetTypeDescription.Response:
         asked = "" if request.type_hash == NO_HASH else request.type_hash
         if asked and not HASH.fullmatch(asked):
-            return _refused(response, "Failed to parse type hash")
+            return _refused(response, f"expected a type hash such as RIHS01_ and 64 hex digits, got {shown(asked)}")
         for each in self._types():
             if (type_hash(each) == asked) if asked else (type_name(each) == request.type_name):
                 return _described(response, each, request.include_type_sources)
-        return _refused(response, "Type not currently in use by this node")
+        return _refused(response, f"this node does not use {shown(asked or request.type_name)}")
 
     def _types(self) -> Iterator[type[Any]]:
         node = self._node()
@@ -73,7 +74,7 @@ def _enabled(node: Node) -> bool:
         descriptor = ParameterDescriptor(
             name=name,
             type=ParameterType.PARAMETER_BOOL,
-            description="If enabled, start the ~/get_type_description service.",
+            description=f"Whether ~/{SERVICE_NAME} tells others what this node's types are made of.",
             read_only=True,
         )
         node.declare_parameter(name, True, descriptor)

@@ -199,7 +199,7 @@ def test_twins_are_shown_together_with_a_warning(node: Node, announce: Announce,
     assert main(["node", "info", "/lab/robot"]) == 0
     out, err = capsys.readouterr()
     assert "    /arm: std_srvs/srv/SetBool\n    /spin: std_srvs/srv/Trigger\n" in out
-    assert err == 'There are 2 nodes in the graph with the exact name "/lab/robot". This is what they do together.\n'
+    assert err == "2 nodes are named /lab/robot: this is what they do together\n"
 
 
 @pytest.mark.parametrize(

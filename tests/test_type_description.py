@@ -141,7 +141,8 @@ def test_it_gives_the_sources(node: Node, ask: Asker) -> None:
 def test_it_does_not_describe_what_the_node_does_not_use(node: Node, ask: Asker) -> None:
     publisher = node.create_publisher(Cart, "cart", 10)
     for answer in (ask.about(Trigger), ask("sensor_msgs/msg/LaserScan"), ask("")):
-        assert (answer.successful, answer.failure_reason) == (False, "Type not currently in use by this node")
+        assert not answer.successful
+        assert answer.failure_reason.startswith("this node does not use ")
     assert ask.about(Cart).successful
     node.destroy_publisher(publisher)
     assert not ask.about(Cart).successful
@@ -153,7 +154,8 @@ def test_it_does_not_describe_what_the_node_does_not_use(node: Node, ask: Asker)
 def test_what_is_no_hash_is_refused(node: Node, ask: Asker, text: str) -> None:
     node.create_publisher(Cart, "cart", 10)
     answer = ask(type_name(Cart), text)
-    assert (answer.successful, answer.failure_reason) == (False, "Failed to parse type hash")
+    assert not answer.successful
+    assert answer.failure_reason.startswith("expected a type hash such as RIHS01_")
 
 
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

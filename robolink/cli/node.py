@@ -65,7 +65,7 @@ def info(
     with looking() as context:
         count, found = of_node(tokens(context), name, context.get_domain_id())
     if count > 1:
-        tell(f'There are {count} nodes in the graph with the exact name "{name}". This is what they do together.')
+        tell(f"{count} nodes are named {name}: this is what they do together")
     sections = sections_of(found, hidden)
     if as_json:
         lists = {title.lower().replace(" ", "_"): dict(listed) for title, listed in sections}
