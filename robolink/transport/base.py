@@ -105,7 +105,8 @@ class Transport(ABC):
         """List the tokens that match `pattern` now, sorted: also those of peers that this session only just found.
 
         A session of long standing knows them all; one that has just been opened waits until nothing more comes
-        (some 50 ms, 0.5 s at the most). Not from within `on_change` nor a sink.
+        (some 50 ms; half a second where a peer is frozen, 3 s at the most on a busy machine).
+        Not from within `on_change` nor a sink.
         """
 
     @abstractmethod
