@@ -23,8 +23,8 @@ from robolink.message import Action, Service, decode, encode, type_hash
 from robolink.message.text import text_of
 from robolink.workspace import VARIABLE, InterfaceImportError, load_module, load_node, use_interfaces
 from robolink.workspace import find_node as find_node_file
-from robolink.workspace.interfaces import DEEPEST, FINDER, WORKSPACE_TYPES, WorkspaceTypes
-from robolink.workspace.modules import ModuleFinder
+from robolink.workspace.interfaces import DEEPEST, WORKSPACE_TYPES, WorkspaceTypes
+from robolink.workspace.modules import FINDER, ModuleFinder
 from tests.commands import ROBOLINK
 
 Write = Callable[[str, str], Path]
@@ -163,7 +163,7 @@ def test_the_workspaces_version_of_a_standard_type_wins_and_a_copy_changes_nothi
     write("geometry_msgs/msg/Vector3.msg", "float64 x\nfloat64 y\nfloat64 z # the very same\n")
     interfaces.add_source(WORKSPACE_TYPES)
     flat: Any = find("Point")
-    assert flat.get_fields_and_field_types() == {"x": "float64", "y": "float64"}
+    assert flat.get_fields_and_field_types() == {"x": "double", "y": "double"}
     assert type_hash(flat) != type_hash(Point)
     assert find("Vector3").__module__ == "robolink.interfaces.geometry_msgs.msg"
     assert find("Pose") is Pose

@@ -25,6 +25,7 @@ import msgspec
 from robolink.exceptions import EncodeError, MessageError
 from robolink.message import annotations as ros
 from robolink.message.annotations import FieldType
+from robolink.message.slot_types import SlotTypes, idl_name
 from robolink.message.spelling import wrong_name
 
 ZEROS: dict[str, Any] = {"bool": False, "byte": b"\x00", "string": "", "wstring": ""}
@@ -78,6 +79,8 @@ class MessageMeta(msgspec.StructMeta):
         cls = super().__new__(
             mcls, name, bases, namespace, eq=False, forbid_unknown_fields=True, gc=cycles or not fields
         )
+        # rosidl's slots: programs walk them for the names of the fields
+        cls.__slots__ = tuple(f"_{field}" for field in fields)  # type: ignore[attr-defined]
         for field, kind in converted.items():
             setattr(cls, field, (_FixedNumbers if kind.shape == "array" else _Numbers)(cls, field, kind))
         return cls
@@ -274,19 +277,29 @@ if TYPE_CHECKING:
 
         def __init_subclass__(cls, *, type_name: str | None = None) -> None: ...
 
+        SLOT_TYPES: tuple[Any, ...]
+        """An object for each field that says what it holds, as rosidl_parser.definition has them."""
+
         @classmethod
         def get_fields_and_field_types(cls) -> dict[str, str]:
-            """Each field's name and its type, as a .msg file would say it."""
+            """Each field's name and its type, as rosidl says it: ``double``, ``sequence<float>``."""
 
 else:
 
     class Message(msgspec.Struct, metaclass=MessageMeta, type_name="robolink/msg/Message"):
         """A ROS message. Fields are keyword arguments; each has ROS's default."""
 
+        SLOT_TYPES = SlotTypes()
+
         @classmethod
         def get_fields_and_field_types(cls) -> dict[str, str]:
-            """Each field's name and its type, as rclpy says it (``sequence<float>`` is ``float32[]`` here)."""
-            return {name: str(kind) for name, kind in cls.__ros_fields__.items()}
+            """Each field's name and its type, as rosidl says it: ``double``, ``sequence<float>``."""
+            return {name: idl_name(kind) for name, kind in cls.__ros_fields__.items()}
+
+        def __getattr__(self, name: str) -> Any:
+            if name[1:] in self.__ros_fields__ and name[0] == "_":  # what `__slots__` calls a field
+                return getattr(self, name[1:])
+            raise AttributeError(f"{self.__ros_type__} has no field {name!r}, only {', '.join(self.__ros_fields__)}")
 
         def __eq__(self, other: object) -> bool:
             if other.__class__ is not self.__class__:
