@@ -31,6 +31,8 @@ format: $(READY)
 bench: $(READY)  ## Speed beside peers, in one run each
 	$(BIN)/python benchmarks/messaging.py
 	$(BIN)/python benchmarks/commands.py
+	$(BIN)/python benchmarks/simulation.py
+	$(BIN)/python benchmarks/tf2.py
 
 $(READY): pyproject.toml
 	$(PYTHON) -m venv $(VENV)

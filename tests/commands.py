@@ -14,7 +14,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, NamedTuple
 
-PATIENCE = 20.0
+PATIENCE = 30.0
 MARK = "ROBOLINK_TEST_COMMAND"
 
 if sys.platform == "win32":
@@ -23,6 +23,20 @@ else:
     APART, CONTROL_C = 0, signal.SIGINT
 
 ROBOLINK = (sys.executable, "-m", "robolink")
+
+PATIENT = """
+import sys
+from robolink import type_lookup
+from robolink.cli import main
+from robolink.cli.service import call
+from robolink.cli.topic import silence
+
+type_lookup.ANSWER_WITHIN = call.PATIENCE = silence.PATIENCE = 20.0
+sys.exit(main())
+"""
+"""The command, told that the machine is busy: no answer comes too late, and a wait of a second needs no explanation."""
+
+BUSY_ROBOLINK = (sys.executable, "-c", PATIENT)
 
 TERMINAL = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))"
 """Runs a command on a terminal of its own, on which it presses the keys that it reads. Not on Windows."""
@@ -36,9 +50,17 @@ class Line(NamedTuple):
 
 
 class Command:
-    """A running command; `typed` is what it reads, nothing by default."""
+    """A running command; with `merged`, its errors are among its lines, as on a terminal."""
 
-    def __init__(self, domain: int, *args: str, program: tuple[str, ...] = ROBOLINK, has_input: bool = False) -> None:
+    def __init__(
+        self,
+        domain: int,
+        *args: str,
+        program: tuple[str, ...] = ROBOLINK,
+        has_input: bool = False,
+        merged: bool = False,
+        folder: Path | None = None,
+    ) -> None:
         self.mark = uuid.uuid4().hex
         environ = {"ROS_DOMAIN_ID": str(domain), "PYTHONUNBUFFERED": "1", "NO_COLOR": "1", MARK: self.mark}
         self.started = time.monotonic()
@@ -47,14 +69,15 @@ class Command:
             env={**os.environ, **environ},
             stdin=subprocess.PIPE if has_input else subprocess.DEVNULL,
             stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            stderr=subprocess.STDOUT if merged else subprocess.PIPE,
+            cwd=folder,
             creationflags=APART,
         )
         self.lines: list[Line] = []
         self.errors: list[Line] = []
-        self._new: queue.SimpleQueue[Line] = queue.SimpleQueue()
+        self._new: queue.SimpleQueue[Line | None] = queue.SimpleQueue()
         followed = ((self.process.stdout, self.lines), (self.process.stderr, self.errors))
-        self._threads = [threading.Thread(target=self._follow, args=each, daemon=True) for each in followed]
+        self._threads = [threading.Thread(target=self._follow, args=each, daemon=True) for each in followed if each[0]]
         for thread in self._threads:
             thread.start()
 
@@ -64,6 +87,8 @@ class Command:
             lines.append(line)
             if lines is self.lines:
                 self._new.put(line)
+        if lines is self.lines:
+            self._new.put(None)
 
     def wait_for(self, text: str) -> Line:
         """Wait for a line that has this in it."""
@@ -71,7 +96,9 @@ class Command:
             try:
                 line = self._new.get(timeout=PATIENCE)
             except queue.Empty:
-                raise AssertionError(f"no '{text}' in {self.lines}, {self.errors}") from None
+                line = None
+            if line is None:
+                raise AssertionError(f"no '{text}' in {self.lines}, {self.errors}")
             if text in line.text:
                 return line
 

@@ -1,18 +1,56 @@
-"""Networks, contexts and executors for tests: in memory, and over Zenoh on a domain that nobody else uses."""
+"""Networks, contexts and executors for tests: in memory, and over Zenoh on a domain that nobody else uses.
+
+What a `long_run` names is started as soon as it is known that its test will run, and that test comes last.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from robolink import Context, VirtualTime, logging, try_shutdown
 from robolink.executors import SingleThreadedExecutor
 from robolink.impl.log_output import Record, output
+from robolink.transport import zenoh
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.transport.zenoh import ZenohTransport
 from tests.domains import free_domain
+from tests.long_runs import LongRun
 from tests.transports import Network
+
+# However slow a machine is, that is no fault of what is tested.
+settings.register_profile("patient", settings(), deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("patient")
+
+LONG_RUNS = pytest.StashKey[dict[tuple[Any, ...], LongRun]]()
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the long runs last."""
+    items.sort(key=lambda item: item.get_closest_marker("long_run") is not None)
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Start the long runs."""
+    if not session.config.option.collectonly:
+        marks = [item.get_closest_marker("long_run") for item in session.items]
+        session.config.stash[LONG_RUNS] = {mark.args: LongRun(*mark.args) for mark in marks if mark}
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """End those that still run, since a test failed or was interrupted."""
+    for run in session.config.stash.get(LONG_RUNS, {}).values():
+        run.close()
+
+
+@pytest.fixture
+def long_run(request: pytest.FixtureRequest) -> LongRun:
+    """The run that the test's mark names."""
+    mark = request.node.get_closest_marker("long_run")
+    return request.config.stash[LONG_RUNS][mark.args]
 
 
 @pytest.fixture
@@ -39,6 +77,13 @@ def zenoh_net(domain: int) -> Iterator[Network]:
     network = Network(lambda: ZenohTransport(domain, environ={}))
     yield network
     network.close()
+
+
+@pytest.fixture
+def patient_looks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Looks at the graph wait for those, too, whom a machine that does ten things at once holds up for a while."""
+    for name, seconds in {"QUIET": 0.3, "REUNION": 0.5, "PATIENCE": 5.0, "LONGEST": 30.0, "LINK_WITHIN": 30.0}.items():
+        monkeypatch.setattr(zenoh, name, seconds)
 
 
 @pytest.fixture(autouse=True)

@@ -16,7 +16,7 @@ from robolink.executors import SingleThreadedExecutor
 from robolink.transport import network
 from robolink.transport.zenoh import ZenohTransport
 
-PATIENCE = 10.0
+PATIENCE = 30.0
 
 
 T = TypeVar("T")

@@ -13,7 +13,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO
 
-PATIENCE = 10.0
+PATIENCE = 30.0
 
 if sys.platform == "win32":
     _APART, _CONTROL_C = subprocess.CREATE_NEW_PROCESS_GROUP, signal.CTRL_BREAK_EVENT

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import xxhash
 import zenoh
 
-PATIENCE = 10.0
+PATIENCE = 30.0
 
 ROUTER: dict[str, Any] = {
     "mode": "router",

@@ -9,7 +9,7 @@ from robolink import Future, Node
 from robolink.executors import Executor
 from robolink.interfaces.std_msgs.msg import Int32
 
-PATIENCE = 5.0
+PATIENCE = 30.0
 
 T = TypeVar("T")
 

@@ -9,8 +9,9 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -50,7 +51,7 @@ SERVICE = EndpointKind.SERVICE
 HASH = "RIHS01_" + "a" * 64
 PARAMETERS = "rcl_interfaces/srv/GetParameters"
 PLAIN = QoSProfile(depth=10)
-PATIENCE = 5.0
+PATIENCE = 30.0
 
 
 @pytest.fixture(autouse=True)
@@ -121,18 +122,36 @@ def free_port() -> int:
 
 def test_ports_are_told_apart_at_once() -> None:
     free, routers = free_port(), free_port()
-    with stranger() as silent, stranger(says=b"SSH-2.0-OpenSSH_9.2\r\n") as chatty, zenoh_router(routers) as session:
+    with ExitStack() as stack:
+        silent = [stack.enter_context(stranger()) for _ in range(20)]
+        chatty = stack.enter_context(stranger(says=b"SSH-2.0-OpenSSH_9.2\r\n"))
+        session = stack.enter_context(zenoh_router(routers))
         begin = time.monotonic()
-        found = listening([free, silent, chatty, routers], within=0.3)
-        assert time.monotonic() - begin < 0.6
+        found = listening([free, *silent, chatty, routers], within=0.5)
+        assert time.monotonic() - begin < 5.0  # one after the other, the silent ones take 10 s
     assert found == {
-        silent: Port(silent, probes.SILENT),
+        **{each: Port(each, probes.SILENT) for each in silent},
         chatty: Port(chatty, probes.STRANGER),
         routers: Port(routers, probes.ROUTER, session),
     }
 
 
 def test_a_stranger_that_hangs_up_is_a_stranger() -> None:
+    with stranger(says=b"") as port:
+        assert listening([port], within=PATIENCE)[port].role == probes.STRANGER
+
+
+def test_a_busy_machine_has_its_time_to_say_hello(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Saying hello to hundreds of ports may take longer than an answer may: no answer is missed by that."""
+
+    class Late(probes._Greeting):
+        def __init__(self, number: int, host: str) -> None:
+            super().__init__(number, host)
+            clock["now"] += 100.0
+
+    clock = {"now": 0.0}
+    monkeypatch.setattr(probes, "_Greeting", Late)
+    monkeypatch.setattr(probes, "time", SimpleNamespace(monotonic=lambda: clock["now"]))
     with stranger(says=b"") as port:
         assert listening([port], within=PATIENCE)[port].role == probes.STRANGER
 
@@ -260,7 +279,7 @@ def test_a_node_is_asked_for_the_time(robot: Node) -> None:
     (found,) = look.look(ahead.url, 7).clocks
     assert found.node == "/far"
     assert abs(found.seconds - 5.0) <= found.uncertainty + 1e-3
-    assert found.uncertainty < 1.0
+    assert found.uncertainty < 4.0
 
 
 @pytest.mark.parametrize("reply", [None, b"", b"x" * 40])
@@ -273,7 +292,7 @@ def test_who_does_not_tell_the_time_is_not_waited_for(robot: Node, reply: bytes 
     transport = announce_clock(robot, refuse)
     begin = time.monotonic()
     assert look.look(transport.url, 7).clocks == ()
-    assert time.monotonic() - begin < 1.0
+    assert time.monotonic() - begin < 5.0
 
 
 def announce_clock(robot: Node, on_query: Callable[[Query], object]) -> Transport:
@@ -323,7 +342,16 @@ def routers_port(monkeypatch: pytest.MonkeyPatch) -> int:
     return port
 
 
+@pytest.fixture
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A doctor who gives a busy machine its time."""
+    for name in ("ANSWER_WITHIN", "LOOK_WITHIN", "COUNT_WITHIN"):
+        monkeypatch.setattr(facts, name, 10.0)
+    monkeypatch.setattr(look, "CLOCKS_WITHIN", 10.0)
+
+
 @pytest.mark.processes
+@pytest.mark.usefixtures("patient")
 def test_nodes_of_another_process_are_seen(on_domain: int, routers_port: int, tmp_path: Path, capsys: Captured) -> None:
     with Program(tmp_path, TALKER, on_domain) as talker:
         assert talker.line() == "ready"
@@ -337,6 +365,7 @@ def test_nodes_of_another_process_are_seen(on_domain: int, routers_port: int, tm
 
 
 @pytest.mark.processes
+@pytest.mark.usefixtures("patient")
 def test_nodes_on_another_domain_are_pointed_at(
     on_domain: int, routers_port: int, tmp_path: Path, capsys: Captured
 ) -> None:
@@ -364,6 +393,7 @@ def test_a_stranger_on_the_routers_port_breaks_nothing(on_domain: int, routers_p
     assert (code, found["router"], found["announcements"]) == (1, "error", "ok")
 
 
+@pytest.mark.usefixtures("patient")
 def test_a_ros_2_router_and_the_nodes_behind_it_are_seen(
     on_domain: int, routers_port: int, capsys: Captured, zenoh_net: Network
 ) -> None:
@@ -382,6 +412,7 @@ def test_a_router_that_is_asked_for_and_is_not_there(monkeypatch: pytest.MonkeyP
     assert (code, found["router"], found["announcements"]) == (1, "error", "error")
 
 
+@pytest.mark.usefixtures("patient")
 def test_a_router_that_is_asked_for_answers(monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
     port = free_port()
     monkeypatch.setenv("ROBOLINK_NETWORK", f"tcp/127.0.0.1:{port}")

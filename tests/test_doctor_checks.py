@@ -25,7 +25,7 @@ PUBLISHER, SUBSCRIPTION = EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION
 SERVICE, CLIENT = EndpointKind.SERVICE, EndpointKind.CLIENT
 HASH, OTHER_HASH = "RIHS01_" + "a" * 64, "RIHS01_" + "b" * 64
 PLAIN = QoSProfile(depth=10)
-PATIENCE = 5.0
+PATIENCE = 30.0
 PARAMETERS = "rcl_interfaces/srv/GetParameters"
 STRING, INT32 = "std_msgs/msg/String", "std_msgs/msg/Int32"
 
@@ -330,7 +330,7 @@ def test_a_big_system_is_judged_in_no_time() -> None:
     begin = time.perf_counter()
     for check in graph_checks.GRAPH_CHECKS:
         check.decide(seeing(*ends))
-    assert time.perf_counter() - begin < 1.0
+    assert time.perf_counter() - begin < 10.0  # 0.1 s; each end with each other takes a minute
 
 
 @given(st.lists(st.text(max_size=3)))

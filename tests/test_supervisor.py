@@ -27,6 +27,8 @@ from robolink.supervisor.policy import Ask, Policy, Say, Step
 from robolink.supervisor.printer import Printer, prefixes
 from robolink.supervisor.process import Child
 
+PATIENCE = 30.0
+
 posix_only = pytest.mark.skipif(sys.platform == "win32", reason="signals and process groups are POSIX's")
 INTERRUPT, TERMINATE, KILL = Step.INTERRUPT, Step.TERMINATE, Step.KILL
 
@@ -168,7 +170,7 @@ def test_bytes_reach_a_pipe_unchanged_and_nobody_waits_for_a_broken_one() -> Non
         for _ in range(5000):
             printer.line("a", b"x" * 100)
         printer.close()
-        assert broken.wait(5)
+        assert broken.wait(PATIENCE)
         os.dup2(os.open(os.devnull, os.O_WRONLY), writing)  # so that what is buffered can be flushed
 
 
@@ -177,7 +179,7 @@ def test_a_terminal_that_stands_still_does_not_hold_us_up() -> None:
 
     class Still(io.StringIO):
         def write(self, text: str) -> int:
-            go_on.wait(10)
+            go_on.wait(PATIENCE)
             return super().write(text)
 
     output = Still()
@@ -193,7 +195,9 @@ def test_a_terminal_that_stands_still_does_not_hold_us_up() -> None:
 # --- running --------------------------------------------------------------------------------------------------
 
 SAY_READY = "import signal, sys, time, os, subprocess\nsay = lambda *a: print(*a, flush=True)\n"
-FOR_EVER = "say('ready')\nwhile True: time.sleep(100)"
+DOZE = "while True: time.sleep(0.02)\n"
+"""Sleeps for ever. A signal that comes just before a long sleep begins would be noticed only at its end."""
+FOR_EVER = "say('ready')\n" + DOZE
 IGNORES = "signal.signal(signal.SIGINT, signal.SIG_IGN)\n"
 
 
@@ -201,16 +205,27 @@ def python(name: str, code: str, *, interactive: bool = False) -> Process:
     return Process(name, [sys.executable, "-c", SAY_READY + textwrap.dedent(code)], interactive=interactive)
 
 
-def run(*processes: Process, patience: float = 5.0, duration: float | None = None) -> tuple[int, list[str]]:
+def until_there(path: Path) -> str:
+    """The code with which one process waits for another."""
+    return f"while not os.path.exists({str(path)!r}): time.sleep(0.01)\n"
+
+
+def there(path: Path) -> str:
+    """The code that ends such a wait."""
+    return f"open({str(path)!r}, 'w').close()\n"
+
+
+def run(*processes: Process, patience: float = PATIENCE) -> tuple[int, list[str]]:
     output = io.StringIO()
-    code = Supervisor(processes, output=output, patience=patience).run(duration)
+    code = Supervisor(processes, output=output, patience=patience).run()
     return code, output.getvalue().splitlines()
 
 
-def test_output_is_whole_whoever_prints_and_however_long() -> None:
-    chatty = "for i in range(300): print(i); print(i, file=sys.stderr)\ntime.sleep(0.3)"
-    long = "print('x' * 300_000); sys.stdout.flush(); sys.stdout.buffer.write(b'\\xff\\n'); say('end'); time.sleep(9)"
-    code, lines = run(python("a", chatty), python("b", long))
+def test_output_is_whole_whoever_prints_and_however_long(tmp_path: Path) -> None:
+    said = tmp_path / "said"
+    chatty = "for i in range(300): print(i); print(i, file=sys.stderr)\n" + until_there(said)
+    long = "print('x' * 300_000); sys.stdout.flush(); sys.stdout.buffer.write(b'\\xff\\n'); say('end')\n"
+    code, lines = run(python("a", chatty), python("b", long + there(said) + FOR_EVER))
     assert code == 0
     assert [line for line in lines if line.startswith("[a]")] == [f"[a] {i // 2}" for i in range(600)]
     assert [line for line in lines if line.startswith("[b]")][:3] == ["[b] " + "x" * 300_000, "[b] \ufffd", "[b] end"]
@@ -250,12 +265,13 @@ def test_a_program_that_is_not_there_stops_the_others() -> None:
 
 
 @posix_only
-def test_a_process_that_ignores_the_interrupt_is_terminated() -> None:
-    stubborn = python("b", IGNORES + "say('ready')\ntime.sleep(100)")
-    waiting = python("a", "time.sleep(0.4); raise SystemExit(4)")
-    code, lines = run(waiting, stubborn, patience=0.2)
+def test_a_process_that_ignores_the_interrupt_is_terminated(tmp_path: Path) -> None:
+    deaf = tmp_path / "deaf"
+    stubborn = python("b", IGNORES + there(deaf) + FOR_EVER)
+    waiting = python("a", until_there(deaf) + "raise SystemExit(4)")
+    code, lines = run(waiting, stubborn, patience=1.0)
     assert code == 4
-    assert lines[-2:] == ["[launch] a ended with exit code 4", "[launch] still running after 0.2 s: b"]
+    assert lines[-2:] == ["[launch] a ended with exit code 4", "[launch] still running after 1 s: b"]
 
 
 class FakeChild:
@@ -328,7 +344,7 @@ class Launcher:
     def wait_for(self, text: str) -> str:
         """Wait for a line that holds the text, give the words behind it, and never give that line again."""
         while not (found := [line for line in self.said if text in line]):
-            self.said.append(self.lines.get(timeout=10))
+            self.said.append(self.lines.get(timeout=PATIENCE))
         self.said.remove(found[0])
         return found[0].partition(text)[2].strip()
 
@@ -337,14 +353,14 @@ class Launcher:
         return [*self.said, *(self.lines.get() for _ in range(self.lines.qsize()))]
 
     def end(self) -> int:
-        code = self.process.wait(10)
-        self.reader.join(10)
+        code = self.process.wait(PATIENCE)
+        self.reader.join(PATIENCE)
         return code
 
 
 @contextmanager
 def launched(
-    codes: dict[str, str], *, patience: float = 5.0, first: str = "", terminal: int | None = None
+    codes: dict[str, str], *, patience: float = PATIENCE, first: str = "", terminal: int | None = None
 ) -> Iterator[Launcher]:
     launcher = Launcher(codes, patience, first, terminal)
     try:
@@ -365,8 +381,8 @@ def state(pid: int) -> str:
     return shown.stdout.strip()[:1]
 
 
-def wait_until(condition: Callable[[], bool], timeout: float = 10.0) -> bool:
-    deadline = time.monotonic() + timeout
+def wait_until(condition: Callable[[], bool]) -> bool:
+    deadline = time.monotonic() + PATIENCE
     while not condition():
         if time.monotonic() > deadline:
             return False
@@ -385,9 +401,8 @@ def test_ctrl_c_stops_all_in_order_with_one_interrupt_each() -> None:
             say("interrupted")
             raise SystemExit(0)
         signal.signal(signal.SIGINT, count)
-        say("ready")
-        while True: time.sleep(100)
     """
+    counting = textwrap.dedent(counting) + FOR_EVER
     with launched({"a": counting, "b": counting}) as launcher:
         launcher.wait_for("ready")
         launcher.wait_for("ready")
@@ -461,14 +476,14 @@ def test_a_watching_program_ends_in_order_when_the_launcher_is_killed(tmp_path: 
         assert watch_lifeline()
         try:
             say("ready")
-            time.sleep(100)
+            {DOZE}
         except KeyboardInterrupt:
             open({str(tmp_path / "orderly")!r}, "w").close()
     """
     with launched({"a": code}) as launcher:
         launcher.wait_for("ready")
         launcher.process.kill()
-        assert wait_until((tmp_path / "orderly").exists, timeout=1.5)
+        assert wait_until((tmp_path / "orderly").exists)
 
 
 @posix_only

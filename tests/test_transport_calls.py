@@ -215,6 +215,7 @@ def test_a_watch_may_act_on_what_it_sees(net: Network) -> None:
     assert [seen.get(timeout=PATIENCE) for _ in range(2)] == ["@ros2_lv/0/a/ping", "@ros2_lv/0/a/pong"]
 
 
+@pytest.mark.usefixtures("patient_looks")
 def test_a_newcomer_lists_all_tokens(net: Network) -> None:
     tokens = []
     for number in range(4):
@@ -225,5 +226,5 @@ def test_a_newcomer_lists_all_tokens(net: Network) -> None:
     session.announce("@ros2_lv/7/else")
     begin = time.monotonic()
     assert net.session().tokens(GRAPH) == tokens
-    assert time.monotonic() - begin < 1
+    assert time.monotonic() - begin < 5
     assert net.session().tokens("@ros2_lv/8/**") == []

@@ -77,7 +77,7 @@ def publish():
 
 threading.Thread(target=publish, daemon=True).start()
 for _ in range(100):
-    arrived.get(timeout=5)
+    arrived.get(timeout=30)
 """
 
 
@@ -115,6 +115,7 @@ def test_the_process_at_the_rendezvous_port_may_die(zenoh_net: Network, domain: 
     assert newcomer.next() == ear.next() == b"welcome"
 
 
+@pytest.mark.usefixtures("patient_looks")
 def test_who_comes_for_a_moment_after_that_sees_those_who_are_left(zenoh_net: Network, domain: int) -> None:
     with process(domain, WAIT) as holder:
         first, second = zenoh_net.session(), zenoh_net.session()
@@ -144,7 +145,7 @@ while time.monotonic() - progress[-1] < 0.2:
     time.sleep(0.01)
 begin = time.monotonic()
 session.close()
-print(len(progress) > 10, time.monotonic() - begin < 0.2)
+print(len(progress) > 10, time.monotonic() - begin < 3)  # Zenoh itself waits for 5 s
 """
 
 

@@ -220,7 +220,7 @@ def test_a_megabyte_is_refused_at_once(parse: Callable[[str], object]) -> None:
         with pytest.raises(WireError) as caught:
             parse(hostile)
         assert len(str(caught.value)) < 400
-    assert time.perf_counter() - begin < 0.1
+    assert time.perf_counter() - begin < 5.0  # 2 ms; what goes back at every character takes minutes
 
 
 def test_a_megabyte_is_not_announced() -> None:

@@ -11,7 +11,7 @@ from typing import Any
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from robolink.transport import Outlet, Query, Sample, Transport
 
-PATIENCE = 5.0
+PATIENCE = 30.0
 CHATTER = "0/chatter/std_msgs::msg::dds_::String_/TypeHashNotSupported"
 OTHER = "0/other/std_msgs::msg::dds_::String_/TypeHashNotSupported"
 ADD = "0/add_two_ints/example_interfaces::srv::dds_::AddTwoInts_/TypeHashNotSupported"

@@ -55,12 +55,11 @@ class Holder(NamedTuple):
 
 
 def listening(numbers: Iterable[int], within: float, host: str = HOST) -> dict[int, Port]:
-    """Say hello to these ports, all at once; give those that listen. Takes `within` seconds at most.
+    """Say hello to these ports, all at once; give those that listen. They have `within` seconds to answer.
 
     Raises OSError for a host that is not known.
     """
     found: dict[int, Port] = {}
-    deadline = time.monotonic() + within
     with contextlib.ExitStack() as stack:
         waiting = stack.enter_context(selectors.DefaultSelector())
         for number in numbers:
@@ -68,6 +67,7 @@ def listening(numbers: Iterable[int], within: float, host: str = HOST) -> dict[i
             stack.callback(greeting.socket.close)
             if greeting.begun:
                 waiting.register(greeting.socket, selectors.EVENT_WRITE, greeting)
+        deadline = time.monotonic() + within
         while waiting.get_map() and (left := deadline - time.monotonic()) > 0:
             for key, _ in waiting.select(left):
                 _advance(waiting, key.data, found)
