@@ -1,0 +1,348 @@
+"""Action clients: they send goals, hear how far these are, cancel them, and ask what came of them."""
+
+from __future__ import annotations
+
+import random
+import uuid
+import weakref
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from robolink.action import graph
+from robolink.action.client_goal_handle import ClientGoalHandle as ClientGoalHandle
+from robolink.action.client_goal_handle import key_of
+from robolink.action.states import ENDED
+from robolink.callback_groups import CallbackGroup
+from robolink.client import Client
+from robolink.entity import NOTHING, Entity
+from robolink.exceptions import ServiceError
+from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatusArray
+from robolink.interfaces.action_msgs.msg import GoalStatus as GoalStatus
+from robolink.interfaces.action_msgs.srv import CancelGoal
+from robolink.interfaces.unique_identifier_msgs.msg import UUID
+from robolink.message import action_type as checked_action_type
+from robolink.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
+from robolink.subscription import Subscription
+from robolink.task import Future
+from robolink.waitable import Waitable
+
+if TYPE_CHECKING:
+    from robolink.message import Action, Message
+    from robolink.node import Node
+
+
+class ActionClient(Waitable):
+    """Sends goals to the servers of one action.
+
+    The callback group is that of the feedback callbacks; answers come whatever the groups do.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: type[Any],
+        action_name: str,
+        *,
+        callback_group: CallbackGroup | None = None,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_sub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008 - rclpy's
+        status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
+    ) -> None:
+        """Make it. Raises ValueError for a bad name or a class that is no action."""
+        super().__init__(callback_group or node.default_callback_group)
+        self._node, self._action_type = node, checked_action_type(action_type)
+        self._action_name = node.resolve_topic_name(action_name)
+        self._logger = node.get_logger().get_child("action_client")
+        self._goal_handles: weakref.WeakValueDictionary[bytes, ClientGoalHandle] = weakref.WeakValueDictionary()
+        self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
+        self._statuses: dict[bytes, int] = {}
+        self._parts: list[Client | Subscription[Any]] = []
+        try:
+            self._declare_topics(feedback_sub_qos_profile, status_sub_qos_profile)
+            self._declare_clients(result_service_qos_profile, cancel_service_qos_profile, goal_service_qos_profile)
+        except BaseException:
+            self.destroy()
+            raise
+        # In virtual time a program does the same each time, byte for byte.
+        virtual = node.context.time.virtual
+        self._random = random.Random(self._goal_client._endpoint.gid) if virtual else random.SystemRandom()
+        node.add_waitable(self)
+
+    def _declare_topics(self, feedback: QoSProfile, status: QoSProfile) -> None:
+        impl = self._action_type.Impl
+        self._subscription(graph.STATUS, impl.GoalStatusMessage, self._on_status, status)
+        self._feedback = self._subscription(graph.FEEDBACK, impl.FeedbackMessage, self._on_feedback, feedback)
+
+    def _declare_clients(self, result: QoSProfile, cancel: QoSProfile, goal: QoSProfile) -> None:
+        impl = self._action_type.Impl
+        self._result_client = self._client(graph.GET_RESULT, impl.GetResultService, result)
+        self._cancel_client = self._client(graph.CANCEL_GOAL, impl.CancelGoalService, cancel)
+        self._goal_client = self._client(graph.SEND_GOAL, impl.SendGoalService, goal)
+
+    def _subscription(
+        self, part: str, msg_type: type[Message], callback: Callable[[Any], Any], qos: QoSProfile
+    ) -> Subscription[Any]:
+        name = self._node.resolve_topic_name(graph.part_name(self._action_name, part))
+        made = Subscription(self._node._owner, msg_type, name, callback, self.callback_group, qos)
+        made.serves = True  # feedback goes on while a callback waits for a result
+        self._parts.append(made)
+        return made
+
+    def _client(self, part: str, srv_type: type[Any], qos: QoSProfile) -> Client:
+        name = self._node.resolve_service_name(graph.part_name(self._action_name, part))
+        made = Client(self._node._owner, srv_type, name, qos, self.callback_group)
+        made.gives_way = False  # a goal is accepted before its feedback comes, and that comes before its result
+        self._parts.append(made)
+        return made
+
+    @property
+    def action_type(self) -> type[Action]:
+        """The class of the action."""
+        return self._action_type
+
+    # Goals
+
+    def send_goal(self, goal: Any, **kwargs: Any) -> Any:
+        """Send a goal and wait for its end; gives ``status`` and ``result``, STATUS_UNKNOWN if it is rejected.
+
+        Takes what `send_goal_async` takes. In a callback as well: what serves goes on meanwhile. Raises TypeError for
+        another type of goal, ServiceError (a RuntimeError) when nobody serves the action, when the server goes away,
+        or when only what this very call keeps from serving could answer.
+        """
+        request = self._request(goal, **kwargs)
+        try:
+            handle = self._handle(request.goal_id, self._goal_client.call(request))
+            if handle.accepted:
+                return self._get_result(handle)
+            return self._action_type.Impl.GetResultService.Response(status=GoalStatus.STATUS_UNKNOWN)
+        finally:
+            self._stop_feedback(request.goal_id)
+
+    def send_goal_async(
+        self, goal: Any, feedback_callback: Callable[[Any], Any] | None = None, goal_uuid: UUID | None = None
+    ) -> Future[ClientGoalHandle]:
+        """Send a goal; the future gets its handle when a server has accepted or rejected it.
+
+        ``feedback_callback(message)`` is called with ``message.feedback`` until the result is there. The goal's id is
+        a random one by default. Raises TypeError for another type of goal or id.
+
+        The future gets a ServiceError (a RuntimeError) when the server goes away before it has answered. A goal that
+        is sent while there is no server is lost, and its future stays open, as in rclpy: see `wait_for_server`.
+        """
+        request = self._request(goal, feedback_callback, goal_uuid)
+        failed = self._not_answered if self.server_is_ready() else self._not_served
+
+        def on_failure(error: BaseException) -> ServiceError | None:
+            self._feedback_callbacks.pop(key_of(request.goal_id), None)
+            return failed(error)
+
+        return self._ask(self._goal_client, request, lambda answer: self._handle(request.goal_id, answer), on_failure)
+
+    def _request(
+        self, goal: Any, feedback_callback: Callable[[Any], Any] | None = None, goal_uuid: UUID | None = None
+    ) -> Any:
+        if not isinstance(goal, self._action_type.Goal):
+            raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}")
+        if goal_uuid is None:
+            goal_uuid = UUID(uuid=list(uuid.UUID(int=self._random.getrandbits(128), version=4).bytes))
+        elif not isinstance(goal_uuid, UUID):
+            raise TypeError(f"goal_uuid: expected a unique_identifier_msgs.msg.UUID, got {goal_uuid!r:.80}")
+        if feedback_callback is not None:
+            self._feedback_callbacks[key_of(goal_uuid)] = feedback_callback
+        request: Any = self._action_type.Impl.SendGoalService.Request
+        return request(goal_id=goal_uuid, goal=goal)
+
+    def _handle(self, goal_id: UUID, response: Any) -> ClientGoalHandle:
+        """Make the handle of a goal that was answered. Raises RuntimeError when there is another of its id."""
+        key, handle = key_of(goal_id), ClientGoalHandle(self, goal_id, response)
+        if not handle.accepted:
+            self._feedback_callbacks.pop(key, None)
+            return handle
+        handle._status = self._statuses.get(key, handle._status)
+        if self._goal_handles.setdefault(key, handle) is not handle:
+            raise RuntimeError(f"{self._action_name}: two goals were accepted with the same id: {handle}")
+        return handle
+
+    def _not_answered(self, error: BaseException) -> ServiceError:
+        return ServiceError(f"action {self._action_name}: the goal was not answered: {error}")
+
+    def _not_served(self, error: BaseException) -> None:
+        self._logger.warning(
+            f"{self._action_name}: nobody serves this action: the goal went nowhere, and its future stays open;"
+            " call wait_for_server() before sending one"
+        )
+
+    def _cancel_goal(self, goal_handle: ClientGoalHandle) -> CancelGoal.Response:
+        response: CancelGoal.Response = self._cancel_client.call(_cancel_request(goal_handle))
+        return response
+
+    def _cancel_goal_async(self, goal_handle: ClientGoalHandle) -> Future[CancelGoal.Response]:
+        def failed(error: BaseException) -> ServiceError:
+            return ServiceError(f"{self._named(goal_handle)}: no answer to the wish to cancel it: {error}")
+
+        return self._ask(self._cancel_client, _cancel_request(goal_handle), lambda answer: answer, failed)
+
+    def _get_result(self, goal_handle: ClientGoalHandle) -> Any:
+        try:
+            return self._ended(goal_handle, self._result_client.call(self._result_request(goal_handle)))
+        finally:
+            self._stop_feedback(goal_handle.goal_id)
+
+    def _get_result_async(self, goal_handle: ClientGoalHandle) -> Future[Any]:
+        def ended(answer: Any) -> Any:
+            self._feedback_callbacks.pop(key_of(goal_handle.goal_id), None)
+            return self._ended(goal_handle, answer)
+
+        def failed(error: BaseException) -> ServiceError:
+            self._feedback_callbacks.pop(key_of(goal_handle.goal_id), None)
+            goal_handle._status = GoalStatus.STATUS_UNKNOWN
+            return ServiceError(f"{self._named(goal_handle)}: no result: {error}")
+
+        return self._ask(self._result_client, self._result_request(goal_handle), ended, failed)
+
+    def _result_request(self, goal_handle: ClientGoalHandle) -> Any:
+        _check_handle(goal_handle)
+        request: Any = self._action_type.Impl.GetResultService.Request
+        return request(goal_id=goal_handle.goal_id)
+
+    def _ended(self, goal_handle: ClientGoalHandle, answer: Any) -> Any:
+        goal_handle._status = answer.status
+        self._goal_handles.pop(key_of(goal_handle.goal_id), None)
+        return answer
+
+    def _ask(
+        self,
+        client: Client,
+        request: Message,
+        answered: Callable[[Any], Any],
+        failed: Callable[[BaseException], BaseException | None],
+    ) -> Future[Any]:
+        """Call a service; the future gets ``answered(response)``, or ``failed(error)``, or nothing if that is None."""
+        response = client.try_call_async(request)
+        future: Future[Any] = Future(executor=self._node.executor)
+
+        def pass_on() -> None:
+            if future.cancelled():
+                return
+            future._set_executor(self._node.executor)  # there may not have been one before
+            error = response.exception()
+            if error is None:
+                self._feedback.gives_way = True
+                _complete(future, answered, response.result())
+                self._release_feedback()
+            elif (reason := failed(error)) is not None:
+                future.set_exception(reason)
+
+        def give_up() -> None:
+            if future.cancelled():
+                client.remove_pending_request(response)
+
+        response.when_done(pass_on)
+        future.when_done(give_up)
+        return future
+
+    def _named(self, goal_handle: ClientGoalHandle) -> str:
+        return f"action {self._action_name}, goal {key_of(goal_handle.goal_id).hex()}"
+
+    # What servers tell
+
+    def _on_feedback(self, message: Any) -> Any:
+        """Call the callback of the goal that it is about; a coroutine, if that is one."""
+        callback = self._feedback_callbacks.get(key_of(message.goal_id))
+        return callback(message) if callback is not None else None
+
+    def _on_status(self, message: GoalStatusArray) -> None:
+        self._statuses = {key_of(each.goal_info.goal_id): each.status for each in message.status_list}
+        for key, status in self._statuses.items():
+            handle = self._goal_handles.get(key)
+            if handle is not None:
+                handle._status = status
+                if status in ENDED:
+                    self._goal_handles.pop(key, None)
+
+    def _release_feedback(self) -> None:
+        """Let feedback come once those have had their turn who waited for the answer that has just come."""
+        executor = self._node.executor
+        if executor is None:
+            self._feedback.gives_way = False
+        else:
+            executor.post(_Release(self._feedback))
+
+    def _stop_feedback(self, goal_id: UUID) -> None:
+        """Forget a feedback callback, once it has been called with what has arrived so far."""
+        key, executor = key_of(goal_id), self._node.executor
+        if executor is None:
+            self._feedback_callbacks.pop(key, None)
+        elif key in self._feedback_callbacks:
+            executor.inbox.sweep()
+            executor.create_task(self._feedback_callbacks.pop, key, None)
+
+    # Whether anybody serves
+
+    def server_is_ready(self) -> bool:
+        """Whether somebody serves this action with this type: all five parts of it."""
+        clients = (each for each in self._parts if isinstance(each, Client))
+        topics = (each for each in self._parts if isinstance(each, Subscription))
+        return all(each.service_is_ready() for each in clients) and all(each.get_publisher_count() for each in topics)
+
+    def wait_for_server(self, timeout_sec: float | None = None) -> bool:
+        """Wait until somebody serves; whether so within `timeout_sec` seconds. The end of the context ends it."""
+        context = self._node.context
+        if context.time.virtual and timeout_sec is not None:
+            if not self.server_is_ready():
+                context.time.sleep(int(timeout_sec * 1e9))
+        else:
+            context.graph.wait_for(lambda: self.server_is_ready() or not context.ok(), timeout_sec)
+        return self.server_is_ready()
+
+    # What the node and the executor do with it
+
+    def entities(self) -> list[Entity]:
+        """Give what an executor runs."""
+        return [*self._parts]
+
+    def interfaces(self) -> list[type[Any]]:
+        """Give the message and service classes that the action is made of."""
+        return [getattr(self._action_type.Impl, each) for each in self._action_type.Impl.__struct_fields__]
+
+    def destroy(self) -> None:
+        """Ask no more: futures under way will not be completed."""
+        for part in self._parts:
+            part.destroy()
+        self._node.remove_waitable(self)
+
+
+class _Release(Entity):
+    """Marks a place among what is ready: a subscription gives way until it is reached."""
+
+    serves = True
+
+    def __init__(self, subscription: Subscription[Any]) -> None:
+        super().__init__()
+        self._subscription = subscription
+
+    def take(self) -> Any:
+        """Have the subscription give way no longer; there is nothing to execute."""
+        self._subscription.gives_way = False
+        return NOTHING
+
+
+def _complete(future: Future[Any], function: Callable[[Any], Any], value: Any) -> None:
+    try:
+        result = function(value)
+    except RuntimeError as error:
+        future.set_exception(error)
+    else:
+        future.set_result(result)
+
+
+def _check_handle(goal_handle: ClientGoalHandle) -> None:
+    if not isinstance(goal_handle, ClientGoalHandle):
+        raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")
+
+
+def _cancel_request(goal_handle: ClientGoalHandle) -> CancelGoal.Request:
+    _check_handle(goal_handle)
+    return CancelGoal.Request(goal_info=GoalInfo(goal_id=goal_handle.goal_id))

@@ -1,0 +1,342 @@
+"""Action servers: they accept goals or not, execute them, and tell what comes of them."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import traceback
+from collections.abc import Callable
+from enum import Enum
+from typing import TYPE_CHECKING, Any
+
+from robolink.action import graph
+from robolink.action.cancel import goals_to_cancel
+from robolink.action.parts import Executions, LateService, run_to_its_end
+from robolink.action.results import Results
+from robolink.action.server_goal_handle import ServerGoalHandle as ServerGoalHandle
+from robolink.action.states import GoalEvent as GoalEvent
+from robolink.action.states import RCLError as RCLError
+from robolink.callback_groups import CallbackGroup
+from robolink.entity import Entity
+from robolink.exceptions import (
+    EncodeError,
+    ExternalShutdownException,
+    ROSInterruptException,
+    TransportClosedError,
+    TransportError,
+)
+from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
+from robolink.interfaces.action_msgs.srv import CancelGoal
+from robolink.interfaces.unique_identifier_msgs.msg import UUID
+from robolink.message import Message, encode
+from robolink.message import action_type as checked_action_type
+from robolink.publisher import Publisher
+from robolink.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
+from robolink.service import RequestHeader
+from robolink.waitable import Waitable
+
+if TYPE_CHECKING:
+    from robolink.message import Action
+    from robolink.node import Node
+
+
+class GoalResponse(Enum):
+    """What a goal callback answers."""
+
+    REJECT = 1
+    ACCEPT = 2
+
+
+class CancelResponse(Enum):
+    """What a cancel callback answers."""
+
+    REJECT = 1
+    ACCEPT = 2
+
+
+def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
+    """Execute each goal at once."""
+    goal_handle.execute()
+
+
+def default_goal_callback(goal_request: Any) -> GoalResponse:
+    """Accept every goal."""
+    return GoalResponse.ACCEPT
+
+
+def default_cancel_callback(cancel_request: ServerGoalHandle) -> CancelResponse:
+    """Let nobody cancel."""
+    return CancelResponse.REJECT
+
+
+class ActionServer(Waitable):
+    """Serves one action of a node.
+
+    ``execute_callback(goal_handle)`` does what the goal asks, says how it ended (`succeed`, `abort`, `canceled`) and
+    returns the action's ``Result``. It may block while a MultiThreadedExecutor spins, or be a coroutine function. A
+    goal whose callback raises, or ends without saying how, is aborted.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: type[Any],
+        action_name: str,
+        execute_callback: Callable[[ServerGoalHandle], Any],
+        *,
+        callback_group: CallbackGroup | None = None,
+        goal_callback: Callable[[Any], Any] | None = default_goal_callback,
+        handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None = default_handle_accepted_callback,
+        cancel_callback: Callable[[ServerGoalHandle], Any] | None = default_cancel_callback,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_pub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008 - rclpy's
+        status_pub_qos_profile: QoSProfile = qos_profile_action_status_default,
+        result_timeout: float = 10,
+    ) -> None:
+        """Make it. Results are kept for `result_timeout` seconds after a goal's end; below 0, for ever.
+
+        The callback group is that of the goal, accepted and cancel callbacks; the executor runs `execute_callback`
+        outside all groups. Raises ValueError for a bad name or a class that is no action, TypeError for an
+        `execute_callback` that cannot be called.
+        """
+        super().__init__(callback_group or node.default_callback_group)
+        self.register_handle_accepted_callback(handle_accepted_callback)
+        self.register_goal_callback(goal_callback)
+        self.register_cancel_callback(cancel_callback)
+        self.register_execute_callback(execute_callback)
+        self._node, self._action_type = node, checked_action_type(action_type)
+        self._action_name = node.resolve_topic_name(action_name)
+        self._logger = node.get_logger().get_child("action_server")
+        self._lock = threading.RLock()
+        """Guards the goals and their states."""
+        self._goal_handles: dict[bytes, ServerGoalHandle] = {}
+        self._destroyed = False
+        self._executions = Executions(self._execute_goal)
+        self._results = Results(self._answer_result, self._forget, result_timeout, self.callback_group, node)
+        self._parts: list[Publisher[Any] | LateService] = []
+        try:
+            self._declare_topics(feedback_pub_qos_profile, status_pub_qos_profile)
+            self._declare_services(result_service_qos_profile, cancel_service_qos_profile, goal_service_qos_profile)
+        except BaseException:
+            self.destroy()
+            raise
+        node.add_waitable(self)
+
+    def _declare_topics(self, feedback: QoSProfile, status: QoSProfile) -> None:
+        impl = self._action_type.Impl
+        self._feedback = self._publisher(graph.FEEDBACK, impl.FeedbackMessage, feedback)
+        self._status = self._publisher(graph.STATUS, impl.GoalStatusMessage, status)
+
+    def _declare_services(self, result: QoSProfile, cancel: QoSProfile, goal: QoSProfile) -> None:
+        impl = self._action_type.Impl
+        self._result_service = self._service(graph.GET_RESULT, impl.GetResultService, self._on_get_result, result)
+        self._cancel_service = self._service(graph.CANCEL_GOAL, impl.CancelGoalService, self._on_cancel, cancel)
+        self._goal_service = self._service(graph.SEND_GOAL, impl.SendGoalService, self._on_goal, goal)
+
+    def _publisher(self, part: str, msg_type: type[Message], qos: QoSProfile) -> Publisher[Any]:
+        name = self._node.resolve_topic_name(graph.part_name(self._action_name, part))
+        made = Publisher(self._node._owner, msg_type, name, qos)
+        self._parts.append(made)
+        return made
+
+    def _service(self, part: str, srv_type: type[Any], callback: Callable[..., Any], qos: QoSProfile) -> LateService:
+        name = self._node.resolve_service_name(graph.part_name(self._action_name, part))
+        made = LateService(self._node._owner, srv_type, name, callback, self.callback_group, qos)
+        self._parts.append(made)
+        return made
+
+    @property
+    def action_type(self) -> type[Action]:
+        """The class of the action."""
+        return self._action_type
+
+    # Requests
+
+    async def _on_goal(self, request: Any, header: RequestHeader) -> None:
+        """Accept a goal or not, answer, and hand it over then."""
+        wanted = bytes(request.goal_id.uuid) not in self._goal_handles and await self._is_wanted(request.goal)
+        handle = self._accept(request.goal_id, request.goal) if wanted else None
+        response: Any = self._action_type.Impl.SendGoalService.Response(accepted=handle is not None)
+        if handle is not None:
+            response.stamp = handle._goal_info.stamp
+        self._answer(self._goal_service, response, header)
+        if handle is not None:
+            await run_to_its_end(self._handle_accepted_callback, handle)
+
+    async def _is_wanted(self, goal: Any) -> bool:
+        response = await run_to_its_end(self._goal_callback, goal)
+        if not isinstance(response, GoalResponse):
+            self._logger.warning(
+                f"{self._action_name}: a goal is rejected, since the goal callback returned {response!r:.80},"
+                " which is no GoalResponse"
+            )
+        return response is GoalResponse.ACCEPT
+
+    def _accept(self, goal_id: UUID, goal: Any) -> ServerGoalHandle | None:
+        """Keep a goal; None if another one has its id, or the server has been destroyed meanwhile."""
+        key = bytes(goal_id.uuid)
+        with self._lock:
+            if self._destroyed or key in self._goal_handles:
+                return None
+            stamp = self._node.get_clock().now().to_msg()
+            handle = ServerGoalHandle(self, GoalInfo(goal_id=goal_id, stamp=stamp), goal)
+            self._goal_handles[key] = handle
+            self._results.expect(key)
+            self._publish_status()
+        return handle
+
+    async def _on_cancel(self, request: CancelGoal.Request, header: RequestHeader) -> None:
+        with self._lock:
+            code, meant = goals_to_cancel(request.goal_info, self._statuses())
+        canceling = [each for each in meant if await self._cancel(bytes(each.goal_id.uuid))]
+        if meant and not canceling:
+            code = CancelGoal.Response.ERROR_REJECTED
+        response = CancelGoal.Response(return_code=code, goals_canceling=canceling)
+        self._answer(self._cancel_service, response, header)
+
+    async def _cancel(self, key: bytes) -> bool:
+        """Ask whether a goal may be cancelled, and have it so; whether it is being cancelled now."""
+        handle = self._goal_handles.get(key)
+        if handle is None or await run_to_its_end(self._cancel_callback, handle) is not CancelResponse.ACCEPT:
+            return False
+        try:
+            handle._update_state(GoalEvent.CANCEL_GOAL)
+        except RCLError:  # it ended while the callback was deciding
+            return False
+        return True
+
+    async def _on_get_result(self, request: Any, header: RequestHeader) -> None:
+        key = bytes(request.goal_id.uuid)
+        if not self._results.ask(key, header):
+            self._logger.warning(f"{self._action_name}: somebody wants the result of {key.hex()}: unknown, or expired")
+            unknown = self._action_type.Impl.GetResultService.Response(status=GoalStatus.STATUS_UNKNOWN)
+            self._answer_result(unknown, header)
+
+    def _answer_result(self, response: Any, header: RequestHeader) -> None:
+        self._answer(self._result_service, response, header)
+
+    def _answer(self, service: LateService, response: Message, header: RequestHeader) -> None:
+        try:
+            service.send_response(response, header)
+        except TransportError as error:
+            self._logger.warning(f"{service.srv_name}: could not answer: {error}")
+
+    # Execution
+
+    def notify_execute(
+        self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
+    ) -> None:
+        """Have the executor run a goal's callback, by default the one that was registered."""
+        self._executions.add(execute_callback or self._execute_callback, goal_handle)
+
+    async def _execute_goal(self, callback: Callable[[ServerGoalHandle], Any], handle: ServerGoalHandle) -> None:
+        """Run a goal's callback to its end, whatever comes; the goal has ended and has a result then."""
+        try:
+            result = await run_to_its_end(callback, handle)
+        except ExternalShutdownException:  # Ctrl-C is no fault of the callback
+            self._end(handle, self._action_type.Result())
+            raise
+        except Exception as error:  # noqa: BLE001 - the goal has failed, not the node
+            if not isinstance(error, ROSInterruptException) or self._node.context.ok():
+                text = "".join(traceback.format_exception(error)).rstrip()
+                self._logger.error(f"{self._named(handle)}: an exception in its execute callback\n{text}")
+            self._end(handle, self._action_type.Result())
+        else:
+            self._end(handle, self._checked(handle, result))
+
+    def _checked(self, handle: ServerGoalHandle, result: Any) -> Message:
+        """Give the result, or an empty one in place of what is none: the client waits for something."""
+        wanted = self._action_type.Result
+        try:
+            if not isinstance(result, wanted):
+                raise TypeError(f"expected {wanted.__name__}, got {result!r:.80}")
+            encode(result)
+        except (TypeError, EncodeError) as error:
+            self._logger.error(f"{self._named(handle)}: its execute callback returned no result: {error}")
+            return wanted()
+        return result
+
+    def _end(self, handle: ServerGoalHandle, result: Message) -> None:
+        with self._lock:
+            if handle.is_active:
+                self._logger.warning(f"{self._named(handle)}: aborted, since its callback did not say how it ended")
+                handle.abort()
+        self._set_result(handle, result)
+
+    def notify_goal_done(self) -> None:
+        """See to the goals that ended without having been executed: they have an empty result."""
+        for handle in list(self._goal_handles.values()):
+            if not (handle.is_active or handle._executed):
+                self._set_result(handle, self._action_type.Result())
+
+    def _set_result(self, handle: ServerGoalHandle, result: Message) -> None:
+        response = self._action_type.Impl.GetResultService.Response(status=handle.status, result=result)
+        self._results.set(bytes(handle.goal_id.uuid), response)
+
+    def _forget(self, key: bytes) -> None:
+        """Be told that a goal's result has expired."""
+        with self._lock:
+            self._goal_handles.pop(key).destroy()
+
+    # Topics
+
+    def _statuses(self) -> list[GoalStatus]:
+        return [GoalStatus(goal_info=each._goal_info, status=each.status) for each in self._goal_handles.values()]
+
+    def _publish_status(self) -> None:
+        self._publish(self._status, GoalStatusArray(status_list=self._statuses()))
+
+    def _publish_feedback(self, goal_id: UUID, feedback: Message) -> None:
+        message = self._action_type.Impl.FeedbackMessage(goal_id=goal_id, feedback=feedback)
+        self._publish(self._feedback, message)
+
+    def _publish(self, publisher: Publisher[Any], message: Message) -> None:
+        with contextlib.suppress(TransportClosedError):  # the context ends just now
+            publisher.publish(message)
+
+    def _named(self, handle: ServerGoalHandle) -> str:
+        return f"{self._action_name}: goal {bytes(handle.goal_id.uuid).hex()}"
+
+    # Callbacks
+
+    def register_handle_accepted_callback(self, handle_accepted_callback: Callable[..., Any] | None) -> None:
+        """Hand each accepted goal's handle to this function, which executes it, now or later; None: at once."""
+        self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
+
+    def register_goal_callback(self, goal_callback: Callable[..., Any] | None) -> None:
+        """Have this function say, by a GoalResponse, whether a goal is accepted; None: each is."""
+        self._goal_callback = goal_callback or default_goal_callback
+
+    def register_cancel_callback(self, cancel_callback: Callable[..., Any] | None) -> None:
+        """Have this function say, by a CancelResponse, whether a goal handle's goal may be cancelled; None: never."""
+        self._cancel_callback = cancel_callback or default_cancel_callback
+
+    def register_execute_callback(self, execute_callback: Callable[..., Any]) -> None:
+        """Have this function execute goals from now on. Raises TypeError for what cannot be called."""
+        if not callable(execute_callback):
+            raise TypeError(f"the execute callback must be callable, got {execute_callback!r:.80}")
+        self._execute_callback = execute_callback
+
+    # What the node and the executor do with it
+
+    def entities(self) -> list[Entity]:
+        """Give what an executor runs."""
+        services = [each for each in self._parts if isinstance(each, LateService)]
+        return [*services, self._executions, self._results.timer]
+
+    def interfaces(self) -> list[type[Any]]:
+        """Give the message and service classes that the action is made of."""
+        return [getattr(self._action_type.Impl, each) for each in self._action_type.Impl.__struct_fields__]
+
+    def destroy(self) -> None:
+        """Serve no more: goals are forgotten, and whoever waits for a result learns that none comes."""
+        with self._lock:
+            self._destroyed = True
+            for handle in self._goal_handles.values():
+                handle.destroy()
+        self._results.close()
+        for part in self._parts:
+            part.destroy()
+        self._node.remove_waitable(self)

@@ -1,0 +1,154 @@
+"""robolink action: see which actions there are, and send goals."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from robolink.cli import complete
+from robolink.cli.action import names
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+
+app = typer.Typer(no_args_is_help=True, help="See which actions there are, and send goals.")
+
+Action = Annotated[
+    str,
+    typer.Argument(help="Name of the action, such as /dock.", metavar="ACTION", autocompletion=names.action_names),
+]
+ShowTypes = Annotated[bool, typer.Option("--show-types", "-t", help="Also show the types.")]
+AsJson = Annotated[bool, typer.Option("--json", help="JSON, for programs.")]
+Count = Annotated[bool, typer.Option("--count-actions", "-c", help="Only say how many there are.")]
+
+
+@app.callback()
+def _noun() -> None:
+    """See which actions there are, and send goals."""
+
+
+@app.command("list")
+def list_actions(show_types: ShowTypes = False, count: Count = False, as_json: AsJson = False) -> None:
+    """List the actions that are served or that have a client."""
+    from robolink.cli.session import looking, say, say_json
+
+    with looking() as context:
+        actions = _types(context)
+    if as_json:
+        say_json(actions)
+    elif count:
+        say(str(len(actions)))
+    else:
+        for name, types in actions.items():
+            say(f"{name} [{', '.join(types)}]" if show_types else name)
+
+
+@app.command("type")
+def show_type(action: Action, as_json: AsJson = False) -> None:
+    """Show the type of an action."""
+    from robolink.cli.session import absolute, looking, say, say_json
+    from robolink.exceptions import NotFoundError, shown
+
+    name = absolute(action)
+    with looking() as context:
+        actions = _types(context)
+    if name not in actions:
+        raise NotFoundError("action", shown(name), actions, f"domain {context.get_domain_id()}")
+    if as_json:
+        say_json(actions[name])
+    else:
+        say("\n".join(actions[name]))
+
+
+@app.command("find")
+def find(
+    type_: Annotated[
+        str,
+        typer.Argument(
+            help="Fibonacci or example_interfaces/action/Fibonacci.",
+            metavar="TYPE",
+            autocompletion=complete.action_types,
+        ),
+    ],
+    count: Count = False,
+    as_json: AsJson = False,
+) -> None:
+    """List the actions of a type."""
+    from robolink.cli.session import looking, say, say_json
+    from robolink.interfaces import is_named
+
+    with looking() as context:
+        actions = _types(context)
+    found = [name for name, types in actions.items() if any(is_named(each, type_) for each in types)]
+    if as_json:
+        say_json(found)
+    elif count:
+        say(str(len(found)))
+    else:
+        for name in found:
+            say(name)
+
+
+@app.command("info")
+def show_info(
+    action: Action,
+    show_types: ShowTypes = False,
+    count: Annotated[bool, typer.Option("--count", "-c", help="Only say how many there are.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Show which nodes serve an action, and which are its clients."""
+    from robolink.cli.action.info import show
+
+    show(action, types=show_types, count=count, as_json=as_json)
+
+
+@app.command("send_goal")
+def send_goal(
+    ctx: typer.Context,
+    action: Action,
+    type_: Annotated[
+        str,
+        typer.Argument(
+            help="Its type; found out when left out.", metavar="[TYPE]", autocompletion=names.type_of_action
+        ),
+    ] = "",
+    values: Annotated[
+        str | None, typer.Argument(help="The goal in YAML, such as '{order: 10}'.", metavar="[VALUES]")
+    ] = None,
+    from_stdin: Annotated[bool, typer.Option("--stdin", help="Read the goal from standard input.")] = False,
+    feedback: Annotated[bool, typer.Option("--feedback", "-f", help="Also show the feedback.")] = False,
+    timeout: Annotated[
+        float, typer.Option("--timeout", metavar="S", help="Give up when no server has answered after so many seconds.")
+    ] = 5.0,
+    node_name: Annotated[
+        str, typer.Option("--node-name", "-n", metavar="NAME", help="Name of the node that sends it.")
+    ] = "",
+    as_json: Annotated[bool, typer.Option("--json", help="A line of JSON for each thing that is shown.")] = False,
+) -> int:
+    """Send a goal and show what comes of it. Ctrl-C cancels the goal. Exits with 1 unless it succeeds."""
+    from robolink.cli.action import goal
+    from robolink.cli.service.call import is_type, read_stdin
+
+    if values is None and not is_type(type_):  # ACTION VALUES: the type was left out
+        type_, values = "", type_
+    if from_stdin and values:
+        ctx.fail("either VALUES or --stdin, not both")
+    if not 0 < timeout <= 1e9:
+        ctx.fail(f"--timeout: expected a number of seconds above 0, got {timeout:g}")
+    manner = goal.Manner(feedback, timeout, as_json, node_name)
+    return goal.run(action, type_, read_stdin() if from_stdin else values or "", manner)
+
+
+def _types(context: Context) -> dict[str, list[str]]:
+    """Give every action with its types, sorted."""
+    from robolink.action.graph import actions
+    from robolink.cli.session import endpoints
+    from robolink.graph import names_and_types
+    from robolink.wire import EndpointKind
+
+    ends = endpoints(context)
+    of = {kind: [each for each in ends if each.kind is kind] for kind in EndpointKind}
+    services = names_and_types(of[EndpointKind.SERVICE] + of[EndpointKind.CLIENT])
+    topics = names_and_types(of[EndpointKind.PUBLISHER] + of[EndpointKind.SUBSCRIPTION])
+    return dict(actions(services, topics))

@@ -1,0 +1,48 @@
+"""What `robolink action info` shows: which nodes serve an action, and which are its clients."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robolink.cli.node import sections_of
+from robolink.cli.session import absolute, endpoints, looking, say, say_json
+from robolink.exceptions import NotFoundError, shown
+
+if TYPE_CHECKING:
+    from robolink.wire import EndpointToken
+
+TITLES = {"Action clients": "Action Clients", "Action servers": "Action Servers"}
+"""What is printed, and the section of `node info` that it comes from."""
+
+
+def show(action: str, *, types: bool, count: bool, as_json: bool) -> None:
+    """Show it. Raises NotFoundError for an action that nobody serves and that has no clients."""
+    name = absolute(action)
+    with looking() as context:
+        nodes = _nodes(endpoints(context))
+    users = {
+        title: {node: used[title][name] for node, used in nodes.items() if name in used[title]} for title in TITLES
+    }
+    if not any(users.values()):
+        known = {each for used in nodes.values() for actions in used.values() for each in actions}
+        raise NotFoundError("action", shown(name), known, f"domain {context.get_domain_id()}")
+    if as_json:
+        say_json({"name": name, **{title.lower().replace(" ", "_"): found for title, found in users.items()}})
+        return
+    say(f"Action: {name}")
+    for title, found in users.items():
+        say(f"{title}: {len(found)}")
+        for node, its_types in found.items() if not count else ():
+            say(f"    {node} [{', '.join(its_types)}]" if types else f"    {node}")
+
+
+def _nodes(ends: list[EndpointToken]) -> dict[str, dict[str, dict[str, list[str]]]]:
+    """Give, for each node, the actions that it is a client of and that it serves, each with its types."""
+    of_node: dict[str, list[EndpointToken]] = {}
+    for each in ends:
+        of_node.setdefault(each.full_node_name, []).append(each)
+    found = {}
+    for node in sorted(of_node):
+        sections = dict(sections_of(of_node[node], hidden=True))
+        found[node] = {title: dict(sections[section]) for title, section in TITLES.items()}
+    return found

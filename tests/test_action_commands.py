@@ -1,0 +1,468 @@
+"""action list, type, find, info and send_goal: ros2's output, Ctrl-C, why nobody answers, and completion."""
+
+from __future__ import annotations
+
+import io
+import json
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from robolink import Context, Node
+from robolink.action import ActionClient, ActionServer, CancelResponse, GoalResponse
+from robolink.action.server import ServerGoalHandle
+from robolink.cli import complete, main
+from robolink.cli.action import goal, names
+from robolink.executors import MultiThreadedExecutor
+from robolink.interfaces.example_interfaces.action import Fibonacci
+from robolink.message import Action, Message, float64, type_name
+from tests.commands import Command
+from tests.programs import Program
+from tests.seen_by_commands import a_node_that_commands_see, made, press_ctrl_c, when_said
+
+Captured = pytest.CaptureFixture[str]
+
+PATIENCE = 30.0
+TYPE = "example_interfaces/action/Fibonacci"
+WAITING = "Waiting for an action server to become available...\n"
+SENDING = "Sending goal:\n     order: 3\n\n"
+ID = "Goal accepted with ID: " + "07" * 16 + "\n\n"
+FEEDBACK = "Feedback:\n    sequence:\n- 0\n- 1\n\n"
+RESULT = "Result:\n    sequence:\n- 0\n- 1\n- 1\n- 2\n\nGoal finished with status: SUCCEEDED\n"
+
+
+class Polish(Action):
+    """An action that is not installed."""
+
+    class Goal(Message):
+        pressure: float64
+
+    class Result(Message):
+        shine: float64
+
+    class Feedback(Message):
+        shine: float64
+
+
+POLISH = type_name(Polish)
+
+
+@pytest.fixture
+def node(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
+    with a_node_that_commands_see(monkeypatch) as robot:
+        yield robot
+
+
+@contextmanager
+def spinning(node: Node) -> Iterator[None]:
+    executor = MultiThreadedExecutor(4, context=node.context)
+    executor.add_node(node)
+    thread = threading.Thread(target=executor.spin)
+    thread.start()
+    try:
+        yield
+    finally:
+        executor.shutdown()
+        thread.join(PATIENCE)
+
+
+class Sums:
+    """What executes the goals of /lab/sums: for an order below 0 it goes on until it is cancelled."""
+
+    def __init__(self) -> None:
+        self.canceled = threading.Event()
+        self.cancel_response = CancelResponse.ACCEPT
+
+    def __call__(self, handle: ServerGoalHandle) -> Fibonacci.Result:
+        handle.publish_feedback(Fibonacci.Feedback(sequence=[0, 1]))
+        if handle.request.order == 0:
+            handle.abort()
+            return Fibonacci.Result()
+        if handle.request.order < 0:
+            while not handle.is_cancel_requested:
+                assert not self.canceled.wait(0.005)
+            handle.canceled()
+            self.canceled.set()
+            return Fibonacci.Result()
+        handle.succeed()
+        return Fibonacci.Result(sequence=[0, 1, 1, 2])
+
+    def accept(self, asked: Fibonacci.Goal) -> GoalResponse:
+        return GoalResponse.ACCEPT if asked.order < 10 else GoalResponse.REJECT
+
+    def cancel(self, handle: ServerGoalHandle) -> CancelResponse:
+        return self.cancel_response
+
+
+@pytest.fixture
+def sums() -> Sums:
+    return Sums()
+
+
+@pytest.fixture
+def served(node: Node, sums: Sums, monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
+    """The node /lab/robot serves /lab/sums; goals have the id 0707..."""
+    monkeypatch.setattr("uuid.uuid4", lambda: SimpleNamespace(bytes=b"\7" * 16))
+    ActionServer(node, Fibonacci, "sums", sums, goal_callback=sums.accept, cancel_callback=sums.cancel)
+    with spinning(node):
+        yield node
+        sums.canceled.set()
+
+
+@pytest.fixture
+def busy(node: Node) -> Node:
+    ActionServer(node, Fibonacci, "sums", print)
+    ActionServer(node, Polish, "/polish", print)
+    ActionClient(node, Fibonacci, "/elsewhere")
+    ActionClient(made(node.context, "panel"), Fibonacci, "/lab/sums")
+    return node
+
+
+@pytest.fixture
+def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reasons are given at once."""
+    monkeypatch.setattr(goal, "PATIENCE", 0.01)
+    monkeypatch.setattr(goal, "_SLICE", 0.01)
+
+
+# --- list, type, find, info ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("words", "shown"),
+    [
+        (["list"], ["/elsewhere", "/lab/sums", "/polish"]),
+        (["list", "-c"], ["3"]),
+        (["list", "-t"], [f"/elsewhere [{TYPE}]", f"/lab/sums [{TYPE}]", f"/polish [{POLISH}]"]),
+        (["type", "/lab/sums"], [TYPE]),
+        (["type", "lab/sums"], [TYPE]),
+        (["find", TYPE], ["/elsewhere", "/lab/sums"]),
+        (["find", "Fibonacci", "--count-actions"], ["2"]),
+        (["find", "Nothing"], []),
+        (
+            ["info", "/lab/sums"],
+            ["Action: /lab/sums", "Action clients: 1", "    /panel", "Action servers: 1", "    /lab/robot"],
+        ),
+        (["info", "lab/sums", "-c"], ["Action: /lab/sums", "Action clients: 1", "Action servers: 1"]),
+        (
+            ["info", "/polish", "-t"],
+            [
+                "Action: /polish",
+                "Action clients: 0",
+                "Action servers: 1",
+                f"    /lab/robot [{POLISH}]",
+            ],
+        ),
+    ],
+)
+@pytest.mark.usefixtures("busy")
+def test_actions_are_shown_as_ros2_shows_them(words: list[str], shown: list[str], capsys: Captured) -> None:
+    assert main(["action", *words]) == 0
+    assert capsys.readouterr() == ("".join(f"{each}\n" for each in shown), "")
+
+
+@pytest.mark.parametrize(
+    ("words", "value"),
+    [
+        (["list"], {"/elsewhere": [TYPE], "/lab/sums": [TYPE], "/polish": [POLISH]}),
+        (["type", "/lab/sums"], [TYPE]),
+        (["find", "Polish"], ["/polish"]),
+        (
+            ["info", "/lab/sums"],
+            {"name": "/lab/sums", "action_clients": {"/panel": [TYPE]}, "action_servers": {"/lab/robot": [TYPE]}},
+        ),
+    ],
+)
+@pytest.mark.usefixtures("busy")
+def test_programs_read_json(words: list[str], value: Any, capsys: Captured) -> None:
+    assert main(["action", *words, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == value
+
+
+@pytest.mark.parametrize("verb", ["type", "info"])
+@pytest.mark.usefixtures("busy")
+def test_an_action_that_is_not_there(verb: str, capsys: Captured) -> None:
+    assert main(["action", verb, "/lab/sum"]) == 1
+    assert capsys.readouterr() == (
+        "",
+        "robolink: no action named '/lab/sum' in domain 7 (did you mean '/lab/sums'?)\n",
+    )
+
+
+@pytest.mark.usefixtures("busy")
+def test_node_info_lists_actions_and_hides_what_they_are_made_of(capsys: Captured) -> None:
+    assert main(["node", "info", "/lab/robot"]) == 0
+    out = capsys.readouterr().out
+    servers = f"  Action Servers:\n    /lab/sums: {TYPE}\n    /polish: {POLISH}\n"
+    assert out.endswith(f"{servers}  Action Clients:\n    /elsewhere: {TYPE}\n")
+    assert "/_action/" not in out
+
+
+# --- send_goal ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("words", [["Fibonacci", "{order: 3}"], [TYPE, "order: 3"], ["{order: 3}"]])
+@pytest.mark.usefixtures("served")
+def test_a_goal_is_sent_and_shown_as_ros2_does(words: list[str], capsys: Captured) -> None:
+    assert main(["action", "send_goal", "/lab/sums", *words]) == 0
+    assert capsys.readouterr() == (WAITING + SENDING + ID + RESULT, "")
+
+
+@pytest.mark.usefixtures("served")
+def test_feedback_is_shown_if_asked_for(capsys: Captured) -> None:
+    assert main(["action", "send_goal", "lab/sums", "{order: 3}", "-f"]) == 0
+    out = capsys.readouterr().out
+    assert out.replace(FEEDBACK, "") == WAITING + SENDING + ID + RESULT
+    assert out.count(FEEDBACK) == 1
+
+
+@pytest.mark.usefixtures("served")
+def test_a_goal_comes_from_standard_input(monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    monkeypatch.setattr(sys, "stdin", io.StringIO("order: 3\n"))
+    assert main(["action", "send_goal", "/lab/sums", "--stdin"]) == 0
+    assert SENDING in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("served")
+def test_programs_read_a_line_for_each_thing(capsys: Captured) -> None:
+    assert main(["action", "send_goal", "/lab/sums", "{order: 3}", "-f", "--json"]) == 0
+    lines = [json.loads(each) for each in capsys.readouterr().out.splitlines()]
+    assert {"feedback": {"sequence": [0, 1]}} in lines
+    assert [each for each in lines if "feedback" not in each] == [
+        {"goal_id": "07" * 16, "accepted": True},
+        {"status": "SUCCEEDED", "result": {"sequence": [0, 1, 1, 2]}},
+    ]
+
+
+@pytest.mark.parametrize(("order", "end"), [(10, "Goal was rejected.\n"), (0, "Goal finished with status: ABORTED\n")])
+@pytest.mark.usefixtures("served")
+def test_a_goal_that_does_not_succeed_is_exit_code_1(order: int, end: str, capsys: Captured) -> None:
+    assert main(["action", "send_goal", "/lab/sums", f"order: {order}"]) == 1
+    out, err = capsys.readouterr()
+    assert out.endswith(end)
+    assert err == ""
+
+
+@pytest.mark.usefixtures("served")
+def test_ctrl_c_cancels_the_goal(sums: Sums, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    when_said(monkeypatch, goal, "say", lambda text: press_ctrl_c(text) if text.startswith("Goal acc") else None)
+    before = signal.getsignal(signal.SIGTERM)
+    assert main(["action", "send_goal", "/lab/sums", "order: -1"]) == 130
+    assert capsys.readouterr().out.endswith(f"{ID}Canceling goal...\nGoal canceled.\n")
+    assert sums.canceled.wait(PATIENCE)
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+@pytest.mark.usefixtures("served")
+def test_ctrl_c_with_a_server_that_goes_on(sums: Sums, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    sums.cancel_response = CancelResponse.REJECT
+    when_said(monkeypatch, goal, "say", lambda text: press_ctrl_c(text) if text.startswith("Goal acc") else None)
+    assert main(["action", "send_goal", "/lab/sums", "order: -1"]) == 130
+    assert capsys.readouterr().err == "robolink: the goal is not cancelled: the server goes on\n"
+
+
+@pytest.mark.usefixtures("served")
+def test_a_reader_that_goes_away_cancels_the_goal_too(sums: Sums, monkeypatch: pytest.MonkeyPatch) -> None:
+    def vanish(text: str) -> None:
+        if not text.startswith(("Waiting", "Sending")):
+            raise BrokenPipeError
+
+    when_said(monkeypatch, goal, "say", vanish)
+    with pytest.raises(BrokenPipeError):
+        goal.run("/lab/sums", "", "order: -1", goal.Manner())
+    assert sums.canceled.wait(PATIENCE)
+
+
+def test_a_type_that_is_not_installed_is_asked_of_the_server(node: Node, capsys: Captured) -> None:
+    def polish(handle: ServerGoalHandle) -> Polish.Result:
+        handle.succeed()
+        return Polish.Result(shine=2 * handle.request.pressure)
+
+    ActionServer(node, Polish, "/polish", polish)
+    with spinning(node):
+        assert main(["action", "send_goal", "/polish", "{pressure: 1.5}"]) == 0
+        assert "Result:\n    shine: 3.0\n" in capsys.readouterr().out
+        assert main(["action", "send_goal", "/polish", POLISH, "{force: 1}"]) == 1
+    assert capsys.readouterr().err == "robolink: Polish_Goal: no field 'force'; it has pressure\n"
+
+
+def test_what_only_looks_like_an_action_is_told(node: Node, capsys: Captured) -> None:
+    node.create_service(Polish.Impl.SendGoalService, "/odd/_action/send_goal", print)
+    node.create_service(Polish.Impl.CancelGoalService, "/odd/_action/cancel_goal", print)
+    node.create_service(Fibonacci.Impl.GetResultService, "/odd/_action/get_result", print)
+    node.create_publisher(Fibonacci.Impl.FeedbackMessage, "/odd/_action/feedback", 10)
+    node.create_publisher(Fibonacci.Impl.GoalStatusMessage, "/odd/_action/status", 10)
+    with spinning(node):
+        assert main(["action", "send_goal", "/odd", "{}"]) == 1
+    assert (
+        "action Polish: Result must be a class inside it, got example_interfaces/action/Fib" in capsys.readouterr().err
+    )
+
+
+# --- send_goal: what is wrong with it -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([TYPE, "{ordr: 3}"], "Fibonacci_Goal: no field 'ordr' (did you mean 'order'?); it has order"),
+        ([TYPE, "{order: x}"], "Fibonacci_Goal.order: expected int32, got 'x'"),
+        ([TYPE, "[1]"], "Fibonacci_Goal: expected a mapping of order, got [1]"),
+        (["std_msgs/msg/String"], "'std_msgs/msg/String' is the name of a message type; an action type is asked for"),
+    ],
+)
+@pytest.mark.usefixtures("node")
+def test_a_wrong_goal_is_told_before_anybody_waits(words: list[str], said: str, capsys: Captured) -> None:
+    assert main(["action", "send_goal", "/nobody", *words]) == 1
+    assert capsys.readouterr() == ("", f"robolink: {said}\n")
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--timeout", "0"], "--timeout: expected a number of seconds above 0, got 0"),
+        (["--timeout", "nan"], "--timeout: expected a number of seconds above 0, got nan"),
+        (["Fibonacci", "{}", "--stdin"], "either VALUES or --stdin, not both"),
+    ],
+)
+@pytest.mark.usefixtures("node")
+def test_wrong_usage_is_exit_code_2(options: list[str], said: str, capsys: Captured) -> None:
+    assert main(["action", "send_goal", "/x", *options]) == 2
+    assert capsys.readouterr() == ("", f"robolink: {said} (see 'robolink action send_goal --help')\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["/lab/sum"], "nobody serves the action /lab/sum on domain 7 (did you mean '/lab/sums'?)"),
+        (["/lab/sums", "Polish"], f"/lab/sums is served as {TYPE}, not as Polish"),
+    ],
+)
+@pytest.mark.usefixtures("served", "impatient")
+def test_who_waits_for_a_server_is_told_why_and_gives_up(words: list[str], reason: str, capsys: Captured) -> None:
+    assert main(["action", "send_goal", *words, "--timeout", "0.2"]) == 1
+    assert capsys.readouterr() == (WAITING, f"waiting: {reason}\nrobolink: gave up after 0.2 s: {reason}\n")
+
+
+@pytest.mark.usefixtures("impatient")
+def test_a_server_on_another_domain_is_told(node: Node, capsys: Captured) -> None:
+    other = Context(transport=node.context.transport.url)
+    other.init([], domain_id=5)
+    with other:
+        ActionServer(made(other, "far"), Fibonacci, "/sums", print)
+        assert main(["action", "send_goal", "/sums", "--timeout", "0.1", "--json"]) == 1
+    reason = "nobody serves the action /sums on domain 7; it is on domain 5: set ROS_DOMAIN_ID=5"
+    assert capsys.readouterr() == ("", f"waiting: {reason}\nrobolink: gave up after 0.1 s: {reason}\n")
+
+
+def test_a_server_that_never_answers(node: Node, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    monkeypatch.setattr(goal, "CANCELED_WITHIN", 0.05)
+    ActionServer(node, Fibonacci, "/sums", print)  # and nobody spins
+    assert main(["action", "send_goal", "/sums", "order: 3", "--timeout", "0.1"]) == 1
+    out, err = capsys.readouterr()
+    assert out == f"{WAITING}{SENDING}Canceling goal...\n"
+    assert err.splitlines() == [
+        "robolink: the goal is not cancelled: no answer within 0.05 s",
+        "robolink: /sums did not answer within 0.1 s whether it accepts the goal",
+    ]
+
+
+@pytest.mark.usefixtures("served")
+def test_a_server_that_goes_away(node: Node, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    def leave(text: str) -> None:
+        if text.startswith("Goal accepted"):
+            next(node.waitables).destroy()
+
+    when_said(monkeypatch, goal, "say", leave)
+    assert main(["action", "send_goal", "/lab/sums", "order: -1"]) == 1
+    assert "robolink: action /lab/sums, goal " + "07" * 16 + ": no result: " in capsys.readouterr().err
+
+
+# --- completion ---------------------------------------------------------------------------------------------------
+
+
+def test_names_and_types_are_completed(busy: Node, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(complete, "WITHIN", PATIENCE)
+    assert names.action_names("") == ["/lab/sums", "/polish"]
+    assert names.action_names("pol") == ["polish"]
+    asked: Any = SimpleNamespace(params={"action": "polish"})
+    assert names.type_of_action(asked, "") == [POLISH]
+    asked.params["action"] = "/nobody"
+    assert names.type_of_action(asked, "example_interfaces/action/F") == [TYPE]
+    assert complete.action_types("Fibo") == ["Fibonacci"]
+
+
+# --- real processes -----------------------------------------------------------------------------------------------
+
+
+SERVER = """
+    import time
+
+    import robolink as rclpy
+    from robolink.action import ActionServer, CancelResponse
+    from robolink.callback_groups import ReentrantCallbackGroup
+    from robolink.executors import ExternalShutdownException, MultiThreadedExecutor
+    from robolink.interfaces.example_interfaces.action import Fibonacci
+
+
+    def execute(goal_handle):
+        feedback = Fibonacci.Feedback(sequence=[0, 1])
+        while not goal_handle.is_cancel_requested:
+            if len(feedback.sequence) > goal_handle.request.order > 0:
+                goal_handle.succeed()
+                return Fibonacci.Result(sequence=feedback.sequence)
+            if len(feedback.sequence) < 40:
+                feedback.sequence.append(feedback.sequence[-1] + feedback.sequence[-2])
+            goal_handle.publish_feedback(feedback)
+            time.sleep(0.02)
+        goal_handle.canceled()
+        print("canceled")
+        return Fibonacci.Result(sequence=feedback.sequence)
+
+
+    rclpy.init()
+    node = rclpy.create_node("server")
+    server = ActionServer(
+        node,
+        Fibonacci,
+        "fibonacci",
+        execute,
+        callback_group=ReentrantCallbackGroup(),
+        cancel_callback=lambda goal_handle: CancelResponse.ACCEPT,
+    )
+    print("ready")
+    try:
+        rclpy.spin(node, executor=MultiThreadedExecutor(4))
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+"""
+
+
+@pytest.mark.processes
+def test_goals_cross_from_process_to_process(domain: int, tmp_path: Path) -> None:
+    with Program(tmp_path, SERVER, domain) as server:
+        assert server.line() == "ready"
+        with Command(domain, "action", "send_goal", "/fibonacci", "Fibonacci", "{order: 3}", "-f") as sender:
+            assert sender.end() == 0
+        text = "\n".join(each.text for each in sender.lines)
+        assert "Feedback:\n    sequence:\n- 0\n- 1\n- 1\n" in text
+        assert text.endswith("Goal finished with status: SUCCEEDED")
+        with Command(domain, "action", "send_goal", "/fibonacci", "{order: -1}", "-f") as sender:
+            sender.wait_for("Feedback:")
+            sender.interrupt()
+            assert server.line() == "canceled"
+            assert sender.end() == 130
+        assert sender.lines[-1].text == "Goal canceled."
+        assert not sender.errors
+        with Command(domain, "action", "send_goal", "/fibonacci", "{order: -1}", "-f") as sender:
+            sender.wait_for("Feedback:")
+            server.kill()
+            assert sender.end() == 1
+        assert "no result" in sender.errors[-1].text
