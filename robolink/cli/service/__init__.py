@@ -138,6 +138,37 @@ def call_service(
     call.run(service, type_, call.read_stdin() if from_stdin else values or "", manner)
 
 
+@app.command("echo")
+def echo_events(
+    ctx: typer.Context,
+    service: Service,
+    type_: Annotated[
+        str,
+        typer.Argument(
+            help="Its type; found out when left out.", metavar="[TYPE]", autocompletion=complete.type_of_service
+        ),
+    ] = "",
+    once: Annotated[bool, typer.Option("--once", help="Show one event and end.")] = False,
+    csv: Annotated[bool, typer.Option("--csv", help="All values of an event in a line, between commas.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="A line of JSON for each event.")] = False,
+    full_length: Annotated[bool, typer.Option("--full-length", "-f", help="Shorten nothing.")] = False,
+    length: Annotated[
+        int, typer.Option("--truncate-length", "-l", metavar="N", help="Shorten what is longer.", min=0)
+    ] = 128,
+    no_arr: Annotated[bool, typer.Option("--no-arr", help="Of sequences, show only type and length.")] = False,
+    no_str: Annotated[bool, typer.Option("--no-str", help="Of texts, show only the length.")] = False,
+    flow: Annotated[bool, typer.Option("--flow-style", help="YAML in one line: {a: [1, 2]}.")] = False,
+) -> None:
+    """Show what a service and its clients say to each other, where introspection is on; until Ctrl-C."""
+    from robolink.cli.service import echo
+    from robolink.cli.show import Style
+
+    if csv and as_json:
+        ctx.fail("--csv and --json do not go together")
+    style = Style(None if full_length else length, not no_arr, not no_str, flow)
+    echo.run(service, type_, echo.Format(style, csv, as_json), once=once)
+
+
 def _types(context: Context) -> dict[str, list[str]]:
     """Give every service with its types, sorted; also those that are only called, as in ros2."""
     from robolink.cli.session import endpoints

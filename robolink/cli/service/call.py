@@ -168,7 +168,7 @@ def _why_absent(context: Context, asked: Asked) -> str:
 def _call(client: Client, executor: Executor, request: Any, manner: Manner, deadline: float) -> None:
     if not manner.json:
         say(f"requester: making request: {request!r}\n")
-    future = client.call_async(request)
+    future = client.try_call_async(request)
     _spin(executor, future, min(PATIENCE, deadline - time.monotonic()))
     if not future.done() and time.monotonic() < deadline:
         tell(f"waiting: {_server_of(executor, client)} has not answered yet")

@@ -1,0 +1,112 @@
+"""robolink lifecycle: see in which states managed nodes are, and move them on."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from robolink.cli import complete
+
+app = typer.Typer(no_args_is_help=True, help="See in which states managed nodes are, and move them on.")
+
+TRANSITIONS = ["configure", "activate", "deactivate", "cleanup", "shutdown"]
+_NODE = {"metavar": "NODE", "autocompletion": complete.node_names}
+
+Node = Annotated[str, typer.Argument(help="Name of the node, such as /camera.", **_NODE)]
+Hidden = Annotated[bool, typer.Option("--include-hidden-nodes", help="Also nodes that begin with _.")]
+AsJson = Annotated[bool, typer.Option("--json", help="JSON, for programs.")]
+
+
+@app.callback()
+def _noun() -> None:
+    """See in which states managed nodes are, and move them on."""
+
+
+@app.command("nodes")
+def list_nodes(
+    show_all: Annotated[bool, typer.Option("--all", "-a", help="Also those that begin with _.")] = False,
+    count: Annotated[bool, typer.Option("--count-nodes", "-c", help="Only say how many there are.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """List the managed nodes."""
+    from robolink.cli.lifecycle import ask
+    from robolink.cli.session import looking, say, say_json
+
+    with looking() as context:
+        names = ask.managed(context, hidden=show_all)
+    if as_json:
+        say_json(names)
+    elif count:
+        say(str(len(names)))
+    elif names:
+        say("\n".join(names))
+
+
+@app.command("get")
+def get(
+    node: Annotated[str, typer.Argument(help="Name of a node; all when left out.", **_NODE)] = "",
+    hidden: Hidden = False,
+    as_json: AsJson = False,
+) -> None:
+    """Show the state of a managed node, or of all of them."""
+    from robolink.cli.lifecycle import ask
+    from robolink.cli.session import looking, say, say_json, tell
+
+    with looking() as context:
+        names = [ask.known(context, node)] if node else ask.managed(context, hidden=hidden)
+        states, failed = ask.states(context, names)
+    if node and failed:
+        raise failed[0]
+    for error in failed:
+        tell(f"robolink: {error}")
+    if as_json:
+        say_json({name: {"id": state.id, "label": state.label} for name, state in states.items()})
+    else:
+        for name, state in states.items():
+            say(f"{'' if node else name + ': '}{state.label} [{state.id}]")
+    if failed:
+        raise typer.Exit(1)
+
+
+@app.command("list")
+def list_transitions(
+    node: Node,
+    show_all: Annotated[bool, typer.Option("--all", "-a", help="All transitions, whatever the state.")] = False,
+    hidden: Hidden = False,
+    as_json: AsJson = False,
+) -> None:
+    """List the transitions that a managed node can make now."""
+    from robolink.cli.lifecycle import ask
+    from robolink.cli.session import looking, say, say_json
+
+    with looking() as context:
+        found = ask.transitions(context, ask.known(context, node), every=show_all)
+    if as_json:
+        say_json([ask.as_data(each) for each in found])
+        return
+    for each in found:
+        start, goal = each.start_state.label, each.goal_state.label
+        say(f"- {each.transition.label} [{each.transition.id}]\n\tStart: {start}\n\tGoal: {goal}")
+
+
+@app.command("set")
+def set_state(
+    node: Node,
+    transition: Annotated[
+        str,
+        typer.Argument(
+            help="Its name or number, such as configure.",
+            metavar="TRANSITION",
+            autocompletion=lambda incomplete: [each for each in TRANSITIONS if each.startswith(incomplete)],
+        ),
+    ],
+    hidden: Hidden = False,
+) -> None:
+    """Have a managed node make a transition."""
+    from robolink.cli.lifecycle import ask
+    from robolink.cli.session import looking, say
+
+    with looking() as context:
+        ask.make_transition(context, ask.known(context, node), transition)
+    say("Transitioning successful")

@@ -1,0 +1,131 @@
+"""Asks the services of managed nodes for the commands."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from robolink.cli.elsewhere import domains_with, hint
+from robolink.cli.session import absolute, is_hidden, node_of
+from robolink.exceptions import RobolinkError, ServiceError, nearest, shown
+from robolink.executors import SingleThreadedExecutor
+from robolink.interfaces.lifecycle_msgs.srv import ChangeState, GetAvailableTransitions, GetState
+from robolink.wire import EndpointKind
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+    from robolink.interfaces.lifecycle_msgs.msg import State, TransitionDescription
+
+ANSWER_WITHIN = 5.0
+"""Seconds that a node has to say something of itself."""
+
+CHANGE_WITHIN = 60.0
+"""Seconds that a transition may take: its callback may open a device, or load a map."""
+
+STATE = "/get_state"
+"""What follows a managed node's name in that of the service by which it is known."""
+
+
+class LifecycleCommandError(RobolinkError, RuntimeError):
+    """A node is not there, is not managed, does not answer, or refuses a transition."""
+
+
+def managed(context: Context, *, hidden: bool) -> list[str]:
+    """Give the full names of the managed nodes, sorted; those that begin with _ only if `hidden`."""
+    served = context.graph.endpoints(EndpointKind.SERVICE)
+    names = {
+        each.name.removesuffix(STATE)
+        for each in served
+        if each.type_name == GetState.__ros_type__ and each.name.endswith(STATE)
+    }
+    nodes = {each.full_node_name for each in context.graph.nodes()}
+    return sorted(each for each in names & nodes if hidden or not is_hidden(each))
+
+
+def known(context: Context, node: str) -> str:
+    """Give the full name of a managed node. Raises LifecycleCommandError when there is none of this name."""
+    name, names = absolute(node), managed(context, hidden=True)
+    if name in names:
+        return name
+    if name in {each.full_node_name for each in context.graph.nodes()}:
+        raise LifecycleCommandError(f"{name} is not managed: it does not serve {name}{STATE}")
+    elsewhere = hint(domains_with(context, name + STATE, EndpointKind.SERVICE))
+    near = elsewhere or nearest(name, [each for each in names if not is_hidden(each)])
+    raise LifecycleCommandError(f"no node named '{shown(name)}' in domain {context.get_domain_id()}{near}")
+
+
+def states(context: Context, names: Iterable[str]) -> tuple[dict[str, State], list[RobolinkError]]:
+    """Give the states of nodes, and the errors of those that do not say."""
+    answers = _ask(context, GetState, {f"{name}{STATE}": GetState.Request() for name in names})
+    found = {
+        name.removesuffix(STATE): answer.current_state
+        for name, answer in answers.items()
+        if not isinstance(answer, RobolinkError)
+    }
+    return found, [answer for answer in answers.values() if isinstance(answer, RobolinkError)]
+
+
+def transitions(context: Context, node: str, *, every: bool = False) -> list[TransitionDescription]:
+    """Give the transitions that a node can make now, or all that it has."""
+    service = "get_transition_graph" if every else "get_available_transitions"
+    request = GetAvailableTransitions.Request()
+    return list(_ask_one(context, GetAvailableTransitions, f"{node}/{service}", request).available_transitions)
+
+
+def make_transition(context: Context, node: str, wanted: str) -> None:
+    """Have a node make a transition, by its name or number. Raises LifecycleCommandError unless that succeeds."""
+    there = [each.transition for each in transitions(context, node)]
+    chosen = [each for each in there if each.label == wanted] or [each for each in there if str(each.id) == wanted]
+    if not chosen:
+        listed = ", ".join(f"{each.label} [{each.id}]" for each in there) or "none"
+        raise LifecycleCommandError(f"Unknown transition '{shown(wanted)}' requested, available ones are: {listed}")
+    request = ChangeState.Request(transition=chosen[0])
+    if not _ask_one(context, ChangeState, f"{node}/change_state", request, CHANGE_WITHIN).success:
+        now = states(context, [node])[0].get(node)
+        after = f"; it is {now.label} [{now.id}] now" if now is not None else ""
+        raise LifecycleCommandError(f"Transitioning failed: {node} did not {chosen[0].label}{after}")
+
+
+def as_data(each: TransitionDescription) -> dict[str, Any]:
+    """Give a transition as plain data."""
+    return {
+        "id": each.transition.id,
+        "label": each.transition.label,
+        "start": each.start_state.label,
+        "goal": each.goal_state.label,
+    }
+
+
+def _ask_one(context: Context, srv_type: type[Any], service: str, request: Any, within: float = ANSWER_WITHIN) -> Any:
+    answer = _ask(context, srv_type, {service: request}, within)[service]
+    if isinstance(answer, RobolinkError):
+        raise answer
+    return answer
+
+
+def _ask(
+    context: Context, srv_type: type[Any], requests: dict[str, Any], within: float = ANSWER_WITHIN
+) -> dict[str, Any]:
+    """Call services, all at once; give the response of each, or the error."""
+    deadline = time.monotonic() + within
+    with SingleThreadedExecutor(context=context) as executor:
+        asker = node_of(context)
+        executor.add_node(asker)
+        futures = {name: asker.create_client(srv_type, name).call_async(each) for name, each in requests.items()}
+        for future in futures.values():
+            executor.spin_until_future_complete(future, timeout_sec=max(0.0, deadline - time.monotonic()))
+            if not context.ok():
+                raise KeyboardInterrupt
+        answers = {name: _answer(name, future, within) for name, future in futures.items()}
+        asker.destroy_node()
+    return answers
+
+
+def _answer(service: str, future: Any, within: float) -> Any:
+    if not future.done():
+        return LifecycleCommandError(f"no answer within {within:g} s from {service}: does the node spin?")
+    try:
+        return future.result()
+    except ServiceError as error:
+        return error

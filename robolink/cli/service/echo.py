@@ -1,0 +1,68 @@
+"""What `robolink service echo` does."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from robolink.cli import show
+from robolink.cli.session import node_of, opened, say, tell
+from robolink.cli.types import service_type
+from robolink.exceptions import RobolinkError
+from robolink.executors import SingleThreadedExecutor
+from robolink.interfaces.service_msgs.msg import ServiceEventInfo
+from robolink.qos import qos_profile_services_default
+from robolink.service_introspection import SUFFIX
+from robolink.task import Future
+
+NAMES = {number: name for name, (_, number) in ServiceEventInfo.__ros_constants__.items()}
+"""What each number of an event means."""
+
+
+class Format(NamedTuple):
+    """How events are shown."""
+
+    style: show.Style = show.Style()
+    csv: bool = False
+    json: bool = False
+
+    def text(self, event: Any) -> str:
+        """Give an event as it is shown: as ros2 does it, with a name in place of its number but for CSV."""
+        if self.csv:
+            return show.as_csv(event, self.style)
+        event.info.event_type = NAMES.get(event.info.event_type, event.info.event_type)
+        return show.as_json(event) if self.json else f"{show.as_yaml(event, self.style)}\n---"
+
+
+def run(service: str, type_: str, form: Format, *, once: bool = False) -> None:
+    """Show what a service and its clients say to each other, until Ctrl-C; one event if `once`.
+
+    Raises NotFoundError for an unknown service or type.
+    """
+    done: Future[None] = Future()
+
+    def on_event(event: Any) -> None:
+        if done.done():
+            return
+        try:
+            say(form.text(event))
+        except (RobolinkError, OSError) as error:  # a closed pipe
+            done.set_exception(error)
+            return
+        if once:
+            done.set_result(None)
+
+    with opened() as context:
+        node = node_of(context)
+        name = node.resolve_service_name(service)
+        events = service_type(context, name, type_).Event
+        subscription = node.create_subscription(events, name + SUFFIX, on_event, qos_profile_services_default)
+        if subscription.get_publisher_count() < 1:
+            tell(
+                f"No publishers on topic '{name}{SUFFIX}'; is service introspection on the client or server enabled?"
+                " (node.create_service(...).configure_introspection(...))"
+            )
+        with SingleThreadedExecutor(context=context) as executor:
+            executor.add_node(node)
+            executor.spin_until_future_complete(done)
+        if done.done():
+            done.result()

@@ -1,0 +1,58 @@
+"""Filled messages of test_msgs, for tests: `get_test_msg("Arrays")` gives some of each value that a field can have."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable
+from typing import Any
+
+from robolink.exceptions import NotFoundError
+from robolink.message import FieldType, Message
+
+Filler = Callable[[FieldType], Any]
+
+_TEXTS = {"low": "", "middle": "Hello, wörld!", "high": "\N{HIRAGANA LETTER A}" * 7}  # 21 of the 22 bytes there may be
+_FLOATS = {"low": -1.125, "middle": 1.125, "high": 2.0**100}
+_BITS = {"int8": 8, "int16": 16, "int32": 32, "int64": 64}
+
+
+def get_test_msg(message_name: str) -> list[Message]:
+    """Give four messages of a type: as it is when new, and with the lowest, middle and highest value in each field.
+
+    Sequences have no elements, two, and as many as they may have or three. Raises NotFoundError for an unknown name.
+    """
+    module = importlib.import_module("robolink.interfaces.test_msgs.msg")
+    cls: Any = getattr(module, message_name, None)
+    if not hasattr(cls, "__ros_fields__"):
+        raise NotFoundError("message", message_name, vars(module), "test_msgs")
+    return [cls(), *(_filled(cls, level) for level in ("low", "middle", "high"))]
+
+
+def _filled(cls: type[Any], level: str) -> Any:
+    return cls(**{name: _value(kind, level) for name, kind in cls.__ros_fields__.items()})
+
+
+def _value(kind: FieldType, level: str) -> Any:
+    if kind.shape == "one":
+        return _one(kind, level)
+    count = {"low": 0, "middle": 2, "high": 3}[level]
+    return [_one(kind, level) for _ in range(kind.size if kind.shape == "array" else count)]
+
+
+def _one(kind: FieldType, level: str) -> Any:
+    if kind.message is not None:
+        return _filled(kind.message, level)
+    base = kind.base
+    if base in ("string", "wstring"):
+        return _TEXTS[level]
+    if base in ("float32", "float64"):
+        return _FLOATS[level]
+    if base == "bool":
+        return level != "low"
+    if base == "byte":
+        return {"low": b"\x00", "middle": b"\x7f", "high": b"\xff"}[level]
+    if base in _BITS:
+        half = 1 << (_BITS[base] - 1)
+        return {"low": -half, "middle": 0, "high": half - 1}[level]
+    bits = _BITS[base.removeprefix("u")] if base != "char" else 8
+    return {"low": 0, "middle": 1, "high": (1 << bits) - 1}[level]

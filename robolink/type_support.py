@@ -1,0 +1,53 @@
+"""Checks whether a class is a message, service or action type, and rclpy's names for such types in annotations."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+from robolink.exceptions import MessageError, NoTypeSupportImportedException
+from robolink.message import Message, Service, message_type, service_type
+
+Msg, Srv = Message, Service
+MsgT = TypeVar("MsgT", bound=Message)
+SrvT = TypeVar("SrvT", bound=type[Service])
+SrvRequestT = TypeVar("SrvRequestT", bound=Message)
+SrvResponseT = TypeVar("SrvResponseT", bound=Message)
+SrvEventT = TypeVar("SrvEventT", bound=Message)
+
+
+class WrongTypeError(MessageError, RuntimeError):
+    """A class is a type of another kind than the one that is asked for."""
+
+
+def check_for_type_support(msg_or_srv_type: type[Any]) -> None:
+    """Pass if it is a message, service or action class.
+
+    Raises AttributeError for what is none, NoTypeSupportImportedException for a class that rosidl has made whose
+    compiled part cannot be loaded. Robolink's own classes have no such part: their codec comes from their annotations.
+    """
+    if isinstance(msg_or_srv_type, type) and hasattr(msg_or_srv_type, "__ros_type__"):
+        return
+    if not hasattr(msg_or_srv_type, "_TYPE_SUPPORT"):
+        raise AttributeError(f"{msg_or_srv_type!r} is no class of a ROS 2 message, service or action")
+    if msg_or_srv_type._TYPE_SUPPORT is None:
+        msg_or_srv_type.__import_type_support__()
+    if msg_or_srv_type._TYPE_SUPPORT is None:
+        raise NoTypeSupportImportedException(f"the compiled part of {msg_or_srv_type!r} cannot be loaded")
+
+
+def check_is_valid_msg_type(msg_type: type[Any]) -> None:
+    """Pass if it is a message class. Raises WrongTypeError (a RuntimeError), and what the check above raises."""
+    check_for_type_support(msg_type)
+    try:
+        message_type(msg_type)
+    except MessageError:
+        raise WrongTypeError(f"{msg_type!r} is no message class, but one of a service or action") from None
+
+
+def check_is_valid_srv_type(srv_type: type[Any]) -> None:
+    """Pass if it is a service class. Raises WrongTypeError (a RuntimeError), and what the first check raises."""
+    check_for_type_support(srv_type)
+    try:
+        service_type(srv_type)
+    except MessageError:
+        raise WrongTypeError(f"{srv_type!r} is no service class, but one of a message or action") from None
