@@ -1,0 +1,128 @@
+"""What comes on /tf and /tf_static, and from whom: for commands that look at it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from robolink.callback_groups import ReentrantCallbackGroup
+from robolink.cli.topic.silence import Wanted, why_silent
+from robolink.exceptions import RobolinkError
+from robolink.executors import SingleThreadedExecutor
+from robolink.interfaces.tf2_msgs.msg import TFMessage
+from robolink.node import Node
+from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.subscription import MessageInfo, Subscription
+from robolink.task import Future
+from robolink.tf2.core import CACHE_TIME, nanoseconds
+from robolink.tf2.rigid import Rigid
+from robolink.tf2.tree import Tree
+from robolink.wire import EndpointKind, unpack_attachment
+
+TOPICS = ("/tf", "/tf_static")
+DEPTH = 1000
+QOS = {False: QoSProfile(depth=DEPTH), True: QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)}
+
+LAST = 1000
+"""Delays of so many transforms of a link are kept."""
+
+
+class NoTransformsError(RobolinkError, TimeoutError):
+    """Nobody sent a transform while a command listened."""
+
+
+class Seen:
+    """One frame in one parent, as one node publishes it."""
+
+    def __init__(self, child: str, parent: str, sender: str, static: bool) -> None:
+        self.child, self.parent, self.sender, self.static = child, parent, sender, static
+        self.stamps: list[int] = []
+        """Nanoseconds, in the order of arrival; the last of them."""
+        self.arrivals: list[int] = []
+        """When they came: nanoseconds of this computer's clock."""
+
+    def add(self, stamp: int, now: int) -> None:
+        """Note one more."""
+        for kept, new in ((self.stamps, stamp), (self.arrivals, now)):
+            kept.append(new)
+            del kept[:-LAST]
+
+    @property
+    def rate(self) -> float | None:
+        """Transforms a second, by their arrival; None of a single one."""
+        spent = self.arrivals[-1] - self.arrivals[0]
+        return (len(self.arrivals) - 1) * 1e9 / spent if spent else None
+
+    @property
+    def delays(self) -> list[float]:
+        """Seconds from stamp to arrival."""
+        return [(came - stamp) / 1e9 for came, stamp in zip(self.arrivals, self.stamps, strict=True)]
+
+
+class Watch:
+    """Listens on a command's node, and notes what comes: each link by child, parent and sender."""
+
+    def __init__(self, node: Node, topics: tuple[str, str] = TOPICS) -> None:
+        self.node, self.topics = node, tuple(node.resolve_topic_name(each) for each in topics)
+        self.links: dict[tuple[str, str, str, bool], Seen] = {}
+        self.refused: dict[tuple[str, str, str, str], int] = {}
+        """How many were refused: by parent, child, sender and the reason."""
+        self.tree = Tree(CACHE_TIME)
+        self.on_news: Callable[[], object] | None = None
+        """Called after each message."""
+        self._names: dict[bytes, str] = {}
+        for topic, static in zip(self.topics, (False, True), strict=True):
+            heard = _Heard(node._owner, TFMessage, topic, self._taker(static), ReentrantCallbackGroup(), QOS[static])
+            node._add(heard, node._subscriptions)
+        self._executor = SingleThreadedExecutor(context=node.context)
+        self._executor.add_node(node)
+
+    def listen(self, span: float, until: Future[Any] | None = None) -> None:
+        """Take in what comes for so many seconds, or until a future is done. Raises KeyboardInterrupt at the end."""
+        self._executor.spin_until_future_complete(until or Future(), timeout_sec=span)
+
+    def why_nothing(self) -> str:
+        """Say why nothing has come."""
+        graph = self.node.context.graph
+        published = [each for each in self.topics if graph.endpoints(EndpointKind.PUBLISHER, name=each)]
+        topic = (published or self.topics)[0]
+        return why_silent(self.node.context, topic, Wanted("tf2_msgs/msg/TFMessage", "", QOS[topic == self.topics[1]]))
+
+    def _taker(self, static: bool) -> Callable[[TFMessage, MessageInfo], None]:
+        def take(message: TFMessage, info: MessageInfo) -> None:
+            sender, now = self._name(info["sender"]), time.time_ns()  # type: ignore[typeddict-item]
+            for each in message.transforms:
+                self._note(each, sender, static, now)
+            if self.on_news is not None:
+                self.on_news()
+
+        return take
+
+    def _note(self, given: Any, sender: str, static: bool, now: int) -> None:
+        parent, child = given.header.frame_id.removeprefix("/"), given.child_frame_id.removeprefix("/")
+        place, turn, stamp = given.transform.translation, given.transform.rotation, nanoseconds(given.header.stamp)
+        rigid: Rigid = (place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w)
+        wrong = self.tree.insert(parent, child, stamp, rigid, static=static)
+        if wrong is not None:
+            why = "TF_OLD_DATA" if wrong[0] == "TF_OLD_DATA" else ": ".join(wrong)
+            self.refused[parent, child, sender, why] = self.refused.get((parent, child, sender, why), 0) + 1
+        if child and parent and child != parent:
+            link = (child, parent, sender, static)
+            self.links.setdefault(link, Seen(*link)).add(stamp, now)
+
+    def _name(self, gid: bytes) -> str:
+        """The full name of the node that has this gid; it is remembered, since nodes go."""
+        if gid not in self._names:
+            token = self.node.context.graph.endpoint_of(gid)
+            if token is None:
+                return "an unknown node"
+            self._names[gid] = token.full_node_name
+        return self._names[gid]
+
+
+class _Heard(Subscription[TFMessage]):
+    """A subscription that also tells who sent each message."""
+
+    def _info(self, attachment: bytes) -> MessageInfo:
+        return {**super()._info(attachment), "sender": unpack_attachment(attachment).gid}  # type: ignore[typeddict-unknown-key]

@@ -1,0 +1,106 @@
+"""Transforms between frames, over time: all that tf2_ros offers under one roof.
+
+A node that wants to know where things are has a Buffer and a TransformListener that fills it::
+
+    self.buffer = Buffer()
+    self.listener = TransformListener(self.buffer, self)
+    ...
+    self.buffer.lookup_transform("map", "base_link", Time())
+
+Everything is imported when it is first used: commands that only look at transforms need no action clients.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from robolink.interfaces.geometry_msgs.msg import TransformStamped
+    from robolink.tf2.buffer import Buffer
+    from robolink.tf2.buffer_client import BufferClient
+    from robolink.tf2.buffer_interface import (
+        BufferInterface,
+        ConvertRegistration,
+        NotImplementedException,
+        Stamped,
+        TransformRegistration,
+        TypeException,
+        convert,
+    )
+    from robolink.tf2.buffer_server import BufferServer
+    from robolink.tf2.core import BufferCore
+    from robolink.tf2.exceptions import (
+        ConnectivityException,
+        ExtrapolationException,
+        InvalidArgumentException,
+        LookupException,
+        TimeoutException,
+        TransformException,
+    )
+    from robolink.tf2.static_transform_broadcaster import StaticTransformBroadcaster
+    from robolink.tf2.transform_broadcaster import TransformBroadcaster
+    from robolink.tf2.transform_listener import TransformListener
+
+__all__ = [
+    "Buffer",
+    "BufferClient",
+    "BufferCore",
+    "BufferInterface",
+    "BufferServer",
+    "ConnectivityException",
+    "ConvertRegistration",
+    "ExtrapolationException",
+    "InvalidArgumentException",
+    "LookupException",
+    "NotImplementedException",
+    "Stamped",
+    "StaticTransformBroadcaster",
+    "TimeoutException",
+    "TransformBroadcaster",
+    "TransformException",
+    "TransformListener",
+    "TransformRegistration",
+    "TransformStamped",
+    "TypeException",
+    "convert",
+]
+
+_HOMES = {
+    "Buffer": "buffer",
+    "BufferClient": "buffer_client",
+    "BufferCore": "core",
+    "BufferInterface": "buffer_interface",
+    "BufferServer": "buffer_server",
+    "ConnectivityException": "exceptions",
+    "ConvertRegistration": "buffer_interface",
+    "ExtrapolationException": "exceptions",
+    "InvalidArgumentException": "exceptions",
+    "LookupException": "exceptions",
+    "NotImplementedException": "buffer_interface",
+    "Stamped": "buffer_interface",
+    "StaticTransformBroadcaster": "static_transform_broadcaster",
+    "TimeoutException": "exceptions",
+    "TransformBroadcaster": "transform_broadcaster",
+    "TransformException": "exceptions",
+    "TransformListener": "transform_listener",
+    "TransformRegistration": "buffer_interface",
+    "TransformStamped": "buffer_interface",
+    "TypeException": "buffer_interface",
+    "convert": "buffer_interface",
+}
+_ROOMS = frozenset(_HOMES.values()) | {"geometry", "point_cloud"}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _ROOMS:
+        return importlib.import_module(f"robolink.tf2.{name}")
+    if name not in _HOMES:
+        raise AttributeError(f"module 'robolink.tf2' has no attribute '{name}'")
+    value = getattr(importlib.import_module(f"robolink.tf2.{_HOMES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__, *_ROOMS})

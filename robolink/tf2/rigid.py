@@ -1,0 +1,86 @@
+"""Rigid transforms as seven floats, and what is done with them: for the few at a time that a lookup needs.
+
+A chain of ten costs less than half of what numpy takes, which is made for many at once (`benchmarks/tf2.py`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+Rigid: TypeAlias = tuple[float, float, float, float, float, float, float]
+"""x, y, z in metres, then the rotation as a unit quaternion x, y, z, w."""
+
+IDENTITY: Rigid = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+
+UNIT = 1e-12
+"""How far a quaternion's squared norm may be from 1 without being scaled."""
+
+NEARLY_EQUAL = 1.0 - 1e-9
+"""The cosine of half an angle so small that the straight way between two rotations is as good as the arc."""
+
+
+def compose(outer: Rigid, inner: Rigid) -> Rigid:
+    """Give the transform that applies `inner` first and `outer` then."""
+    ox, oy, oz, x, y, z, w = outer
+    ix, iy, iz, a, b, c, d = inner
+    # v + 2 w (q x v) + 2 q x (q x v), with t = 2 (q x v)
+    tx, ty, tz = 2.0 * (y * iz - z * iy), 2.0 * (z * ix - x * iz), 2.0 * (x * iy - y * ix)
+    return (
+        ox + ix + w * tx + y * tz - z * ty,
+        oy + iy + w * ty + z * tx - x * tz,
+        oz + iz + w * tz + x * ty - y * tx,
+        w * a + x * d + y * c - z * b,
+        w * b - x * c + y * d + z * a,
+        w * c + x * b - y * a + z * d,
+        w * d - x * a - y * b - z * c,
+    )
+
+
+def inverse(given: Rigid) -> Rigid:
+    """Give the transform that undoes `given`."""
+    px, py, pz, x, y, z, w = given
+    tx, ty, tz = 2.0 * (z * py - y * pz), 2.0 * (x * pz - z * px), 2.0 * (y * px - x * py)
+    return (
+        -(px + w * tx - y * tz + z * ty),
+        -(py + w * ty - z * tx + x * tz),
+        -(pz + w * tz - x * ty + y * tx),
+        -x,
+        -y,
+        -z,
+        w,
+    )
+
+
+def between(one: Rigid, other: Rigid, ratio: float) -> Rigid:
+    """Give what lies on the way from `one` (ratio 0) to `other` (1): a line for the place, an arc for the rotation."""
+    rest = 1.0 - ratio
+    ax, ay, az, a, b, c, d = one
+    bx, by, bz, e, f, g, h = other
+    x, y, z = rest * ax + ratio * bx, rest * ay + ratio * by, rest * az + ratio * bz
+    dot = a * e + b * f + c * g + d * h
+    cosine = abs(dot)
+    if cosine < NEARLY_EQUAL:
+        half = math.acos(cosine)
+        sine = math.sin(half)
+        rest, ratio = math.sin(rest * half) / sine, math.sin(ratio * half) / sine
+    if dot < 0.0:  # q and -q are one rotation: go the short way round
+        ratio = -ratio
+    return unit((x, y, z, rest * a + ratio * e, rest * b + ratio * f, rest * c + ratio * g, rest * d + ratio * h))
+
+
+def unit(given: Rigid) -> Rigid:
+    """Scale the quaternion to length 1 where it is off."""
+    px, py, pz, x, y, z, w = given
+    square = x * x + y * y + z * z + w * w
+    if abs(square - 1.0) <= UNIT:
+        return given
+    scale = 1.0 / math.sqrt(square)
+    return (px, py, pz, x * scale, y * scale, z * scale, w * scale)
+
+
+def signed(given: Rigid) -> Rigid:
+    """Choose between q and -q as tf2 does: w is positive where it is beyond a half, else the largest of x, y, z is."""
+    px, py, pz, x, y, z, w = given
+    leading = w if w * w > 0.25 else max((x, y, z), key=abs)
+    return given if leading >= 0.0 else (px, py, pz, -x, -y, -z, -w)

@@ -1,0 +1,31 @@
+"""Sending transforms that never change: once, and kept for those who come later."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from copy import deepcopy
+from typing import TYPE_CHECKING
+
+from robolink.interfaces.geometry_msgs.msg import TransformStamped
+from robolink.interfaces.tf2_msgs.msg import TFMessage
+from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.tf2.transform_broadcaster import as_list
+
+if TYPE_CHECKING:
+    from robolink.node import Node
+
+
+class StaticTransformBroadcaster:
+    """Publishes transforms on /tf_static; each message has all that were ever sent, the newest of each child frame."""
+
+    def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.pub_tf = node.create_publisher(TFMessage, "/tf_static", latched if qos is None else qos)
+        self.net_message = TFMessage()
+
+    def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - tf2's name
+        """Publish a transform, or several; another one of the same child frame takes its place."""
+        kept = {each.child_frame_id: each for each in self.net_message.transforms}
+        kept.update({each.child_frame_id: deepcopy(each) for each in as_list(transform)})
+        self.net_message.transforms = list(kept.values())
+        self.pub_tf.publish(self.net_message)
