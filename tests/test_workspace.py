@@ -215,6 +215,31 @@ def test_a_script_is_run_as_python_does(write: Write, capsys: pytest.CaptureFixt
     assert capsys.readouterr().out == "hello __main__\n"
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        NODE + "import robolink\ndef go(): print('ran')\ngo()\n",
+        NODE + "def main(): print('ran')\nmain()\n",
+        NODE + "async def go(): print('ran')\nimport asyncio\nasyncio.run(go())\n",
+        NODE + "from types import SimpleNamespace\nrclpy = SimpleNamespace(init=print)\nrclpy.init('ran')\n",
+        NODE + "import contextlib\ndef init(): return contextlib.nullcontext()\nwith init():\n    print('ran')\n",
+        NODE + "def main(): pass\nfor each in range(1):\n    create_node = print\n    create_node('ran')\n",
+    ],
+)
+def test_a_script_that_acts_as_it_is_read_is_run_once(
+    text: str, write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = loaded(write("a.py", text))
+    assert capsys.readouterr().out == ""
+    run()
+    assert capsys.readouterr().out == "ran\n"
+
+
+def test_what_a_file_only_prepares_makes_it_no_script(write: Write) -> None:
+    text = "import logging\ndef made(): return 3\nlogging.getLogger('x').setLevel(30)\nCOUNT = made()\n"
+    assert issubclass(loaded(write("a.py", NODE + text)), Node)
+
+
 def test_structs_of_a_node_file_know_their_annotations(write: Write) -> None:
     path = write(
         "a.py",

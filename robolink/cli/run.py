@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from collections.abc import Mapping
+from typing import Annotated, Any, NamedTuple
 
 import typer
 import typer.core
@@ -11,19 +12,74 @@ from robolink.cli import complete
 
 ROS_ARGS = "--ros-args"
 META = "robolink.ros_args"
+FIXED = "robolink.after_two_dashes"
 
 app = typer.Typer()
 
 
+class Parts(NamedTuple):
+    """A command line in its parts."""
+
+    own: list[str]
+    """The options of this command, with their values; the last may want one that is not there."""
+    words: list[str]
+    """What names the node, and what its program gets."""
+    fixed: list[str]
+    """What came after `--`: the program's in any case."""
+    is_cut_off: bool = False
+    """Whether the last option wants a value."""
+
+
 class RunCommand(typer.core.TyperCommand):
-    """A command that leaves all from `--ros-args` on alone: that is for the node."""
+    """A command that leaves alone what is for the node: all from `--ros-args` on, after `--`, and unknown options."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Part the arguments; `ctx.meta` keeps those for ROS."""
+        """Part the arguments; `ctx.meta` keeps those for ROS, and how many came after `--`."""
         at = args.index(ROS_ARGS) if ROS_ARGS in args else len(args)
         ctx.meta[META] = args[at:]
-        rest: list[str] = super().parse_args(ctx, args[:at])
-        return rest
+        options = [(name, each) for each in self.get_params(ctx) for name in each.opts if name.startswith("-")]
+        parts = part(args[:at], {name: not getattr(each, "is_flag", False) for name, each in options})
+        ctx.meta[FIXED] = len(parts.fixed)
+        rest = [] if parts.is_cut_off else ["--", *parts.words, *parts.fixed]
+        left: list[str] = super().parse_args(ctx, [*parts.own, *rest])
+        return left
+
+
+def part(args: list[str], takes_value: Mapping[str, bool]) -> Parts:
+    """Part arguments into this command's options, the words and options of the program, and what comes after `--`.
+
+    An option that this command has not is the program's if it comes after the program's name. One that is nearly one
+    of this command's stays with it, which refuses it: a slip of the fingers would go unnoticed otherwise.
+    """
+    own: list[str] = []
+    words: list[str] = []
+    rest = iter(args)
+    for each in rest:
+        name, equals, _ = each.partition("=")
+        if each == "--":
+            break
+        if not each.startswith("-") or each == "-":
+            words.append(each)
+        elif name in takes_value:
+            own.append(each)
+            if takes_value[name] and not equals:
+                value = next(rest, None)
+                if value is None:
+                    return Parts(own, words, [], is_cut_off=True)
+                own.append(value)
+        elif each[:2] in takes_value or not words or _is_slip(name, takes_value):
+            own.append(each)
+        else:
+            words.append(each)
+    return Parts(own, words, list(rest))
+
+
+def _is_slip(name: str, known: Mapping[str, bool]) -> bool:
+    if not name.startswith("--"):
+        return False
+    import difflib
+
+    return any(each.startswith(name) for each in known) or bool(difflib.get_close_matches(name, known, 1, 0.8))
 
 
 @app.command(cls=RunCommand)
@@ -31,10 +87,19 @@ def run(
     ctx: typer.Context,
     node: Annotated[
         str,
-        typer.Argument(metavar="NAME|FILE[:FUNCTION]", help="The node to run.", autocompletion=complete.runnable_nodes),
+        typer.Argument(
+            metavar="NAME|FILE[:FUNCTION]|PACKAGE EXECUTABLE",
+            help="The node to run.",
+            autocompletion=complete.runnable_nodes,
+        ),
     ] = "",
     args: Annotated[
-        list[str] | None, typer.Argument(metavar="[ARGS]...", help="For the program; after -- whatever they are.")
+        list[str] | None,
+        typer.Argument(
+            metavar="[ARGS]...",
+            help="For the program; after -- whatever they are.",
+            autocompletion=complete.package_executables,
+        ),
     ] = None,
     parameters: Annotated[
         list[str] | None, typer.Option("--param", "-p", metavar="NAME:=VALUE", help="Set a parameter.")
@@ -51,7 +116,7 @@ def run(
     workspace: Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Where to look first.")] = "",
     show_list: Annotated[bool, typer.Option("--list", help="List the nodes that there are.")] = False,
 ) -> None:
-    """Run a node: by name, or from a file. All from --ros-args on goes to the node as ROS 2 has it."""
+    """Run a node: by name, from a file, or an executable of a package. All from --ros-args on is the node's."""
     from robolink.cli import runner
 
     if show_list:
@@ -60,7 +125,9 @@ def run(
     if not node:
         ctx.fail("which node? --list shows them")
     flags = ros_flags(name, namespace, parameters or [], remappings or [], params_files or [])
-    raise typer.Exit(runner.run(node, args or [], flags + ctx.meta[META], workspace or None))
+    given = args or []
+    asked = runner.Asked(node, given, len(given) - ctx.meta[FIXED])
+    raise typer.Exit(runner.run(asked, flags + ctx.meta[META], workspace or None))
 
 
 def ros_flags(

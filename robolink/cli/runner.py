@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import inspect
 import os
 import signal
 import sys
@@ -11,9 +12,10 @@ import traceback
 from collections.abc import Callable
 from pathlib import Path
 from types import FrameType, TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.exceptions import ExternalShutdownException, InterruptedByUser, RobolinkError
+from robolink.exceptions import ExternalShutdownException, InterruptedByUser, NotFoundError, RobolinkError
+from robolink.lacking import LackingNameError
 from robolink.signals import SignalHandlerOptions, get_current_signal_handlers_options
 from robolink.supervisor import watch_lifeline
 from robolink.workspace import (
@@ -21,9 +23,15 @@ from robolink.workspace import (
     NodeLoadError,
     NodeSource,
     built_in_workspace,
+    canonical,
+    executable,
+    executables,
     find_node,
+    find_package,
+    list_executables,
     list_nodes,
     load_node,
+    named_executables,
     user_workspace,
     workspace_of,
 )
@@ -35,7 +43,16 @@ INTERRUPTED, TERMINATED = 130, 143
 _PACKAGE = str(Path(__file__).resolve().parent.parent)
 
 
-def run(node: str, args: list[str], ros_args: list[str], workspace: str | None) -> int:
+class Asked(NamedTuple):
+    """What is to be run: the first word, those after it, and how many of these may name an executable."""
+
+    node: str
+    words: list[str]
+    before: int = 0
+    """The words that came before `--`."""
+
+
+def run(asked: Asked, ros_args: list[str], workspace: str | None) -> int:
     """Run a node until it ends; give the exit code.
 
     That is 0 for a Node class that Ctrl-C or SIGTERM ended, since nothing went wrong. A script decides itself;
@@ -46,13 +63,17 @@ def run(node: str, args: list[str], ros_args: list[str], workspace: str | None) 
         signal.signal(signal.SIGBREAK, signal.default_int_handler)  # what a launcher sends there
     watch_lifeline()
     terminated = _note_termination()
-    source = find_node(node, workspace=workspace)
+    source, args = found(asked, workspace)
     _settle(source, workspace)
+    _take_names()
     sys.argv = [str(source.path or source.name), *args, *ros_args]
     try:
         return _exit_code(lambda: _start(source))
     except (KeyboardInterrupt, ExternalShutdownException):
         return TERMINATED if terminated else INTERRUPTED
+    except LackingNameError as error:
+        _show(error)
+        return 1
     except RobolinkError:
         raise
     except Exception as error:  # noqa: BLE001 - it is the user's, and they want to see where
@@ -60,18 +81,45 @@ def run(node: str, args: list[str], ros_args: list[str], workspace: str | None) 
         return 1
 
 
+def found(asked: Asked, workspace: str | None) -> tuple[NodeSource, list[str]]:
+    """Give what is asked for and the program's own arguments.
+
+    Two words that name a package and an executable of it are that; else the first is a node's name or file, and the
+    second is the program's. Raises NotFoundError.
+    """
+    name, words = asked.node, asked.words
+    folder = find_package(name, workspace=workspace) if canonical(name).isidentifier() else None
+    if folder is not None and asked.before > 0:
+        source = executable(folder, words[0])
+        if source is not None:
+            return source, words[1:]
+    try:
+        return find_node(name, workspace=workspace), words
+    except NotFoundError:
+        if folder is None or not executables(folder):
+            raise
+        if asked.before > 0:
+            raise NotFoundError("executable", words[0], executables(folder), f"package {name}") from None
+        choices = " or ".join(each.name for each in named_executables(folder))
+        raise NodeLoadError(f"{name} is a package: say which of its executables, {choices}") from None
+
+
 def show_nodes(workspace: str | None) -> None:
-    """Print each node's name and what its file says of it."""
-    nodes = list_nodes(workspace=workspace)
-    width = max((len(each.name) for each in nodes), default=0)
-    for each in nodes:
-        print(f"{each.name:<{width}}  {_purpose(each)}".rstrip())  # noqa: T201
+    """Print each node's name, for one of a package with the package's, and what its file says of it."""
+    rows = [(each.name, each) for each in list_nodes(workspace=workspace)]
+    shown = {each.path for _, each in rows}
+    for package, nodes in list_executables(workspace=workspace).items():
+        rows += [(f"{package} {each.name}", each) for each in nodes if each.path not in shown]
+    width = max((len(name) for name, _ in rows), default=0)
+    for name, each in rows:
+        print(f"{name:<{width}}  {_purpose(each)}".rstrip())  # noqa: T201
 
 
 def spin(node_class: Callable[[], Node]) -> None:
     """Run a Node class until its context ends."""
     import robolink
 
+    _check_needs_nothing(node_class)
     with robolink.init(), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         node = node_class()
         if not hasattr(node, "_owner"):
@@ -81,6 +129,31 @@ def spin(node_class: Callable[[], Node]) -> None:
             robolink.spin(node)
         finally:
             node.destroy_node()
+
+
+def _check_needs_nothing(node_class: Callable[[], Node]) -> None:
+    """Raise NodeLoadError for a class that cannot be made without arguments: nobody is there to give them."""
+    try:
+        needed = [
+            each.name
+            for each in inspect.signature(node_class).parameters.values()
+            if each.default is each.empty and each.kind not in (each.VAR_POSITIONAL, each.VAR_KEYWORD)
+        ]
+    except (TypeError, ValueError):  # a signature that Python cannot tell
+        return
+    if needed:
+        name = getattr(node_class, "__name__", str(node_class))
+        listed = ", ".join(f"'{each}'" for each in needed)
+        raise NodeLoadError(
+            f"{name}.__init__ needs {listed}: give a default value, or write a main() that makes the node"
+        )
+
+
+def _take_names() -> None:
+    """Make rclpy and its companions robolink's, for what is run."""
+    from robolink import compat  # late: its import takes names already
+
+    compat.activate(compat.ALWAYS)
 
 
 def _note_termination() -> list[int]:
@@ -148,4 +221,5 @@ def _show(error: Exception) -> None:
 def _is_ours(trace: TracebackType) -> bool:
     file = trace.tb_frame.f_code.co_filename
     is_node = file.startswith(str(built_in_workspace() / "nodes"))
-    return not is_node and (file.startswith(("<frozen", _PACKAGE)) or Path(file).name == "runpy.py")
+    is_python = Path(file).name == "runpy.py" or Path(file).parent.name == "importlib"
+    return not is_node and (file.startswith(("<frozen", _PACKAGE)) or is_python)

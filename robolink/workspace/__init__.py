@@ -2,21 +2,23 @@
 
 from robolink.workspace.find import (
     VARIABLE,
-    Folder,
-    NodeSource,
     built_in_workspace,
-    canonical,
     find_launch,
     find_node,
+    find_package,
     find_world,
+    list_executables,
     list_launches,
     list_nodes,
+    list_packages,
     list_worlds,
     user_workspace,
     workspace_of,
 )
 from robolink.workspace.interfaces import InterfaceImportError, use_interfaces
 from robolink.workspace.load import NodeLoadError, load_module, load_node
+from robolink.workspace.packages import executable, executables, named_executables
+from robolink.workspace.source import Folder, NodeSource, canonical
 
 __all__ = [
     "VARIABLE",
@@ -26,14 +28,20 @@ __all__ = [
     "NodeSource",
     "built_in_workspace",
     "canonical",
+    "executable",
+    "executables",
     "find_launch",
     "find_node",
+    "find_package",
     "find_world",
+    "list_executables",
     "list_launches",
     "list_nodes",
+    "list_packages",
     "list_worlds",
     "load_module",
     "load_node",
+    "named_executables",
     "use_interfaces",
     "user_workspace",
     "workspace_of",

@@ -1,46 +1,26 @@
-"""Find nodes, launch files and worlds by name.
+"""Find nodes, launch files, worlds and packages by name.
 
-A workspace is a folder with two of `nodes/`, `configs/` and `interfaces/`. A name is looked up (1) as a path, (2) in
-the nearest workspace: the one asked for, `ROBOLINK_WORKSPACE`, or the working directory's or a parent's, (3) among
-the entry points `robolink.nodes` of installed packages, (4) in the workspace that comes with robolink. `_` and `-`
-in names are the same.
+A workspace is a folder with two of `nodes/`, `configs/` and `interfaces/`, or a ROS 2 one: a folder whose `src/` holds
+packages, or, where there is neither, a lone package. A name is looked up (1) as a path, (2) in the nearest workspace:
+the one asked for, `ROBOLINK_WORKSPACE`, or the working directory's or a parent's, (3) among the entry points
+`robolink.nodes` of installed packages, (4) in the workspace that comes with robolink. `_` and `-` in names are the
+same.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
 
 from robolink.exceptions import NotFoundError
-
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
+from robolink.workspace.packages import BUILT_IN, is_ros_workspace, named_executables, source_packages
+from robolink.workspace.source import Folder, NodeSource, canonical
 
 VARIABLE = "ROBOLINK_WORKSPACE"
 ENTRY_POINTS = "robolink.nodes"
 YAML = (".yaml", ".yml")
 PARTS = ("nodes", "configs", "interfaces")
-Folder: TypeAlias = "str | os.PathLike[str] | None"
-
-
-@dataclass(frozen=True)
-class NodeSource:
-    """Where a node comes from: a file and what in it (`attribute`, or '' for what it holds), or an entry point."""
-
-    name: str
-    path: Path | None = None
-    attribute: str = ""
-    entry_point: EntryPoint | None = None
-
-    @property
-    def spec(self) -> str:
-        """What finds this again from anywhere: `PATH`, `PATH:attribute` or a name."""
-        if self.path is None:
-            return self.name
-        return f"{self.path}:{self.attribute}" if self.attribute else str(self.path)
 
 
 def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
@@ -56,7 +36,36 @@ def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
     for source in _node_sources(workspace):
         if canonical(source.name) == asked:
             return NodeSource(source.name, source.path, attribute, source.entry_point)
-    raise _not_found("node", file, workspace, (each.name for each in list_nodes(workspace=workspace)))
+    raise _no_node(file, workspace)
+
+
+def find_package(name: str, *, workspace: Folder = None) -> Path | None:
+    """Give the folder of a package; None when there is none of that name."""
+    known = list_packages(workspace=workspace)
+    asked = canonical(name)
+    return known.get(name) or next((known[each] for each in known if canonical(each) == asked), None)
+
+
+def list_packages(*, workspace: Folder = None) -> dict[str, Path]:
+    """Give the packages that a name finds, each with its folder (see `robolink.workspace.packages`)."""
+    *own, built_in = _workspaces(workspace)
+    found: dict[str, Path] = {}
+    for folder in own:
+        found.update({name: each for name, each in source_packages(folder).items() if name not in found})
+        found.setdefault(folder.name, folder)
+    found.setdefault(BUILT_IN, built_in)
+    return found
+
+
+def list_executables(*, workspace: Folder = None) -> dict[str, list[NodeSource]]:
+    """Give what can be run in the packages of the user's workspace: package to what it names, else all it has."""
+    built_in = built_in_workspace()
+    found = {}
+    for package, folder in list_packages(workspace=workspace).items():
+        named = [] if folder == built_in else named_executables(folder)
+        if named:
+            found[package] = named
+    return found
 
 
 def find_launch(name: str, *, workspace: Folder = None) -> Path:
@@ -104,7 +113,9 @@ def user_workspace(workspace: Folder = None) -> Path | None:
 def workspace_of(path: Path) -> Path | None:
     """Give the nearest folder at or above `path` that is a workspace."""
     path = path.resolve()
-    return next((each for each in (path, *path.parents) if _is_workspace(each)), None)
+    above = (path, *path.parents)
+    nearest_one = next((each for each in above if _is_workspace(each)), None)
+    return nearest_one or next((each for each in above if (each / "package.xml").is_file()), None)
 
 
 def built_in_workspace() -> Path:
@@ -114,14 +125,9 @@ def built_in_workspace() -> Path:
     return shared if shared.is_dir() else package.parent
 
 
-def canonical(name: str) -> str:
-    """Spell a name so that equal ones are equal: `_` and `-` are the same."""
-    return name.replace("-", "_")
-
-
 def _is_workspace(folder: Path) -> bool:
     # One of them alone means nothing: many a folder has a `configs/`.
-    return sum((folder / part).is_dir() for part in PARTS) >= 2
+    return sum((folder / part).is_dir() for part in PARTS) >= 2 or is_ros_workspace(folder)
 
 
 def _workspaces(workspace: Folder) -> list[Path]:
@@ -205,6 +211,16 @@ def _yaml_files(inside: str, workspace: Folder) -> Iterator[Path]:
 def _unshadowed(sources: Iterable[NodeSource]) -> list[NodeSource]:
     first = {canonical(each.name): each for each in reversed(list(sources))}
     return list(first.values())
+
+
+def _no_node(name: str, workspace: Folder) -> NotFoundError:
+    error = _not_found("node", name, workspace, (each.name for each in list_nodes(workspace=workspace)))
+    for package, found in list_executables(workspace=workspace).items():
+        for each in found:
+            if canonical(each.name) == canonical(name):
+                error.args = (f"{error}; package {package} has one: robolink run {package} {each.name}",)
+                return error
+    return error
 
 
 def _not_found(kind: str, name: str, workspace: Folder, known: Iterable[str]) -> NotFoundError:

@@ -1,14 +1,14 @@
 """The types of a workspace: the `.msg`, `.srv` and `.action` files in `interfaces/PACKAGE/{msg,srv,action}/`.
 
-They are known by name (`robolink.interfaces.find`) and importable, `from my_msgs.msg import WheelSpeeds`, in every node
-that `robolink run` or `robolink launch` starts, and anywhere after `use_interfaces()`.
+Those of the packages in its `src/` belong to them. They are known by name (`robolink.interfaces.find`) and importable,
+`from my_msgs.msg import WheelSpeeds`, in every node that `robolink run` or `robolink launch` starts, and anywhere after
+`use_interfaces()`.
 """
 
 from __future__ import annotations
 
 import functools
 import stat
-import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,8 +17,10 @@ from typing import Any
 
 from robolink import interfaces
 from robolink.exceptions import DefinitionError, MessageError, NotFoundError
-from robolink.workspace.find import Folder, built_in_workspace, user_workspace
-from robolink.workspace.modules import Fill, ModuleFinder
+from robolink.workspace.find import built_in_workspace, user_workspace
+from robolink.workspace.modules import FINDER, Fill
+from robolink.workspace.packages import source_packages
+from robolink.workspace.source import Folder
 
 INTERFACES = "interfaces"
 DEEPEST = 48
@@ -46,25 +48,31 @@ class WorkspaceTypes:
         """Look into this workspace before all others."""
         self._added = [workspace, *(each for each in self._added if each != workspace)]
 
-    def folders(self) -> list[Path]:
-        """Give the folders of packages, in the order in which they are searched."""
-        user = user_workspace()
-        workspaces = [*self._added, *([user] if user is not None else []), built_in_workspace()]
-        return [each / INTERFACES for each in dict.fromkeys(workspaces)]
-
     def names(self, kind: str) -> dict[str, list[str]]:
         """Give the types of a kind: package to the names within it."""
         found: dict[str, list[str]] = {}
-        for folder in self.folders():
-            for package in _listed(folder):
-                shorts = (name.removesuffix(f".{kind}") for name in _listed(folder / package / kind, f".{kind}"))
+        for workspace in self._workspaces():
+            packages = [(name, workspace / INTERFACES / name) for name in _listed(workspace / INTERFACES)]
+            for package, folder in (*packages, *source_packages(workspace).items()):
+                shorts = (name.removesuffix(f".{kind}") for name in _listed(folder / kind, f".{kind}"))
                 found.setdefault(package, []).extend(shorts)
         return {package: shorts for package, shorts in found.items() if shorts}
 
     def places(self, package: str, kind: str = "") -> list[Path]:
         """Give the folders of a package, or of its types of a kind."""
-        found = [folder / package for folder in self.folders() if package in _listed(folder)]
+        found = []
+        for workspace in self._workspaces():
+            if package in _listed(workspace / INTERFACES):
+                found.append(workspace / INTERFACES / package)
+            source = source_packages(workspace).get(package)
+            if source is not None and any(each in interfaces.KINDS for each in _listed(source)):
+                found.append(source)
         return [each / kind for each in found if not kind or kind in _listed(each)]
+
+    def _workspaces(self) -> list[Path]:
+        """Give the workspaces in the order in which they are searched."""
+        user = user_workspace()
+        return list(dict.fromkeys([*self._added, *([user] if user is not None else []), built_in_workspace()]))
 
     def get(self, package: str, kind: str, short: str) -> type[Any] | None:
         """Give the class of a type, None when no workspace defines it. Raises DefinitionError."""
@@ -126,7 +134,6 @@ def _read(path: Path) -> str:
 
 
 WORKSPACE_TYPES = WorkspaceTypes()
-FINDER = ModuleFinder()
 
 
 def use_interfaces(workspace: Folder = None) -> None:
@@ -143,9 +150,7 @@ def use_interfaces(workspace: Folder = None) -> None:
         assert found is not None  # one was named
         WORKSPACE_TYPES.add(found)
     interfaces.add_source(WORKSPACE_TYPES)
-    if FINDER not in sys.meta_path:
-        FINDER.makers = [_interface_module]
-        sys.meta_path.insert(0, FINDER)
+    FINDER.add(_interface_module, first=True)
 
 
 def _interface_module(fullname: str) -> Fill | None:

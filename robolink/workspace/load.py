@@ -10,9 +10,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robolink.exceptions import NotFoundError, RobolinkError
-from robolink.workspace.find import NodeSource, workspace_of
+from robolink.exceptions import NotFoundError, RobolinkError, nearest
+from robolink.workspace.find import workspace_of
 from robolink.workspace.interfaces import use_interfaces
+from robolink.workspace.packages import import_roots, source_packages
+from robolink.workspace.source import NodeSource
 
 if TYPE_CHECKING:
     import ast
@@ -22,6 +24,10 @@ if TYPE_CHECKING:
     Runnable: TypeAlias = "type[Node] | Callable[[], Any]"
 
 
+RUNNING = frozenset(["init", "spin", "spin_once", "spin_until_future_complete", "create_node"])
+"""What is called by a file that runs nodes as it is read."""
+
+
 class NodeLoadError(RobolinkError, ImportError):
     """A file holds no node, or none that can be chosen, or is no Python."""
 
@@ -29,21 +35,26 @@ class NodeLoadError(RobolinkError, ImportError):
 def load_node(source: NodeSource) -> Runnable:
     """Give what runs a node: a subclass of `Node` to construct and spin, or something to call.
 
-    What a file holds is decided in this order: the attribute asked for; a script with a `__main__` guard, which
-    is run as Python runs it; a function `main`; its only Node class; a script without any of these, which is
-    run too. Raises `NodeLoadError`, `NotFoundError` for an attribute, and whatever the file itself raises.
+    What a file holds is decided in this order: the attribute asked for; a script, with a `__main__` guard or with
+    statements that run a node as the file is read, which is run as Python runs it; a function `main`; its only Node
+    class; a script without any of these, which is run too. Raises `NodeLoadError`, `NotFoundError` for an attribute,
+    and whatever the file itself raises.
     """
     if source.path is None:
         assert source.entry_point is not None
         use_interfaces()
         return _checked(source.entry_point.load(), source.entry_point.value)
-    if source.attribute:
-        return _attribute(load_module(source.path), source)
+    if source.module and not source.path.is_file():
+        near = nearest(source.path.name, (each.name for each in source.path.parent.glob("*.py")))
+        raise NodeLoadError(f"{source.name} is {source.module}, says its package, but there is no {source.path}{near}")
     tree = _parse(source.path)
-    if _has_guard(tree) or (not _defines(tree, "ClassDef") and not _defines(tree, "FunctionDef", "main")):
-        return _script(source.path)
-    module = load_module(source.path)
-    return module.main if _defines(tree, "FunctionDef", "main") else _only_node(module, source.path)
+    if source.attribute:
+        return _attribute(_loaded(source), source)
+    has_main = _defines(tree, "FunctionDef", "main")
+    if _has_guard(tree) or _acts(tree) or (not _defines(tree, "ClassDef") and not has_main):
+        return _script(source, source.path)
+    module = _loaded(source)
+    return module.main if has_main else _only_node(module, source.path)
 
 
 def load_module(path: Path) -> ModuleType:
@@ -71,6 +82,15 @@ def load_module(path: Path) -> ModuleType:
     return module
 
 
+def _loaded(source: NodeSource) -> ModuleType:
+    """Give the module of a node: one of a package by its name, any other file by its path."""
+    assert source.path is not None
+    if not source.module or source.root is None:
+        return load_module(source.path)
+    _reach(source.path.parent, source.root)
+    return importlib.import_module(source.module)
+
+
 def _parse(path: Path) -> ast.Module:
     """Parse a file without running it; a mistake becomes one line with its place."""
     import ast
@@ -91,27 +111,64 @@ def _has_guard(tree: ast.Module) -> bool:
     return any(isinstance(each, ast.If) and "__main__" in ast.unparse(each.test) for each in tree.body)
 
 
+def _acts(tree: ast.Module) -> bool:
+    """Whether statements outside of functions and classes make or spin nodes, or call a function of the file."""
+    import ast
+
+    own = {each.name for each in tree.body if isinstance(each, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef))}
+    for statement in tree.body:
+        if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            continue
+        called = {_called(each) for each in ast.walk(statement) if isinstance(each, ast.Call)}
+        if called & RUNNING or (isinstance(statement, ast.Expr) and called & own):
+            return True
+    return False
+
+
+def _called(call: ast.Call) -> str:
+    return str(getattr(call.func, "id", getattr(call.func, "attr", "")))
+
+
 def _defines(tree: ast.Module, kind: str, name: str | None = None) -> bool:
     return any(type(each).__name__ == kind and name in (None, getattr(each, "name", "")) for each in tree.body)
 
 
-def _script(path: Path) -> Callable[[], Any]:
-    """Give a function that runs a file as `python FILE` does."""
+def _script(source: NodeSource, path: Path) -> Callable[[], Any]:
+    """Give a function that runs a file as `python FILE` does, one of a package as `python -m MODULE`."""
 
     def run() -> None:
         import runpy
 
-        _reach(path.parent)
-        runpy.run_path(str(path), run_name="__main__")
+        if source.module and source.root is not None:
+            _reach(path.parent, source.root)
+            runpy.run_module(source.module, run_name="__main__", alter_sys=True)
+        else:
+            _reach(path.parent)
+            runpy.run_path(str(path), run_name="__main__")
 
     return run
 
 
-def _reach(folder: Path) -> None:
-    """Let what a file in this folder imports be found: its neighbours and the types of its workspace."""
-    use_interfaces(workspace_of(folder))
-    if str(folder) not in sys.path:
-        sys.path.append(str(folder))
+def _reach(folder: Path, root: Path | None = None) -> None:
+    """Let what a file in this folder imports be found: its neighbours, its package, and its workspace's.
+
+    The `root` of a package goes first, so that these files are found and not what was once installed of them.
+    """
+    workspace = workspace_of(folder)
+    use_interfaces(workspace)
+    if root is not None and str(root) not in sys.path:
+        sys.path.insert(0, str(root))
+    packages = source_packages(workspace).values() if workspace is not None else ()
+    for each in (folder, _above_package(folder), *(root for package in packages for root in import_roots(package))):
+        if str(each) not in sys.path:
+            sys.path.append(str(each))
+
+
+def _above_package(folder: Path) -> Path:
+    """Give the folder from which the modules in `folder` are imported with the names of their packages."""
+    while (folder / "__init__.py").is_file() and folder != folder.parent:
+        folder = folder.parent
+    return folder
 
 
 def _attribute(module: ModuleType, source: NodeSource) -> Runnable:

@@ -15,16 +15,25 @@ Maker: TypeAlias = Callable[[str], "Fill | None"]
 
 
 class ModuleFinder:
-    """Finds what its makers know, for `sys.meta_path`; it stands first there.
+    """Finds what its makers know, the first that knows a name, for `sys.meta_path`; it stands first there.
 
-    An installed module or package of the same name is found instead: nothing real is hidden. That is decided for each
-    module by itself: where a package `my_robot` is installed that has no `my_robot.msg`, a maker's `my_robot.msg` is
-    found in it. Only a folder that Python takes for a package though it has no `__init__.py` stands back, since
-    otherwise a mere folder of interface files named `my_msgs` in the working directory would be an empty package.
+    An installed module or package of the same name is found instead, unless `hides` says of the name that it is not
+    to be. That is decided for each module by itself: where a package `my_robot` is installed that has no
+    `my_robot.msg`, a maker's `my_robot.msg` is found in it. Only a folder that Python takes for a package though it
+    has no `__init__.py` stands back, since otherwise a mere folder of interface files named `my_msgs` in the working
+    directory would be an empty package.
     """
 
     def __init__(self) -> None:
         self.makers: list[Maker] = []
+        self.hides: Callable[[str], bool] = lambda _: False
+
+    def add(self, maker: Maker, *, first: bool = False) -> None:
+        """Ask this maker too, before or after those that are there; have Python ask this finder first."""
+        if maker not in self.makers:
+            self.makers.insert(0 if first else len(self.makers), maker)
+        if self not in sys.meta_path:
+            sys.meta_path.insert(0, self)
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
@@ -33,15 +42,17 @@ class ModuleFinder:
         fill = next(filter(None, (maker(fullname) for maker in self.makers)), None)
         if fill is None:
             return None
-        real = self._real(fullname, path, target)
+        real = None if self.hides(fullname) else self.real(fullname, path, target)
         if real is not None and real.loader is not None:
             return None
-        spec = ModuleSpec(fullname, _Filling(fill), is_package=True)  # type: ignore[arg-type]
+        spec = ModuleSpec(fullname, Filling(fill), is_package=True)  # type: ignore[arg-type]
         if real is not None and real.submodule_search_locations:
             spec.submodule_search_locations = list(real.submodule_search_locations)
         return spec
 
-    def _real(self, fullname: str, path: Sequence[str] | None, target: ModuleType | None) -> ModuleSpec | None:
+    def real(
+        self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
         """Give what is found without this finder; a folder without `__init__.py` has no loader."""
         for finder in sys.meta_path:
             if finder is not self and hasattr(finder, "find_spec"):
@@ -51,7 +62,7 @@ class ModuleFinder:
         return None
 
 
-class _Filling:
+class Filling:
     """Makes a module with a function that fills it. A loader without importlib.abc, which takes 2 ms to import."""
 
     def __init__(self, fill: Fill) -> None:
@@ -63,3 +74,7 @@ class _Filling:
     def exec_module(self, module: ModuleType) -> None:
         """Fill it."""
         self.fill(module)
+
+
+FINDER = ModuleFinder()
+"""The one finder of a process, for all that are no files: a workspace's types, and the names of `robolink.compat`."""

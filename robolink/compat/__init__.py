@@ -1,0 +1,65 @@
+"""ROS 2's own names: after `import robolink.compat`, `import rclpy` and its companions give robolink's modules.
+
+    import robolink.compat  # in a conftest.py, say; or pytest -p robolink.compat
+    import rclpy  # is robolink: the very same modules and classes
+    from geometry_msgs.msg import Twist
+
+`robolink run` does the same for what it runs. There are rclpy, the message packages, tf2_ros, tf2_py,
+tf2_geometry_msgs, tf2_sensor_msgs, tf_transformations, message_filters, sensor_msgs_py, rosidl_runtime_py and
+ament_index_python.
+
+**All or none.** These modules hand each other their classes, so they are robolink's together or not at all. Where a
+real rclpy is installed, the import above leaves all of them alone. `robolink run` does not: whoever asks robolink to
+run a program wants it on robolink's network, and has `ros2 run` and `python` for the other; a real rclpy is hidden
+from that one process. The variable ROBOLINK_COMPAT, or `activate`, decides otherwise: `always` takes robolink's in
+any case, `never` none, `auto` is the rule of the import. A file of the user's own that has one of these names
+(a `tf_transformations.py` beside the script) is found before robolink's; only rclpy itself is never taken from there.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+
+from robolink.compat.maker import MAKER, hidden
+from robolink.exceptions import RobolinkError
+from robolink.workspace.modules import FINDER
+
+VARIABLE = "ROBOLINK_COMPAT"
+AUTO, ALWAYS, NEVER = MODES = ("auto", "always", "never")
+
+__all__ = ["ALWAYS", "AUTO", "NEVER", "VARIABLE", "CompatError", "activate", "is_active"]
+
+
+class CompatError(RobolinkError, ImportError):
+    """ROS 2's names cannot be robolink's: the real rclpy is in use already, or what was asked for is no mode."""
+
+
+def activate(mode: str = AUTO) -> bool:
+    """Make ROS 2's names robolink's, by the rule above; say whether they are. ROBOLINK_COMPAT overrules `mode`.
+
+    Raises CompatError for an unknown mode, and for `always` when a real rclpy has been imported before.
+    """
+    mode = os.environ.get(VARIABLE) or mode
+    if mode not in MODES:
+        raise CompatError(f"{VARIABLE}: expected {', '.join(MODES)}, got '{mode}'")
+    if is_active():
+        return True
+    loaded = sys.modules.get("rclpy")
+    is_foreign = loaded is not None and loaded is not sys.modules["robolink"]
+    if mode == ALWAYS and is_foreign:
+        place = getattr(loaded, "__file__", None) or "elsewhere"
+        raise CompatError(f"rclpy has been imported from {place} before: import robolink.compat earlier")
+    if mode == NEVER or (mode == AUTO and (is_foreign or FINDER.real("rclpy") is not None)):
+        return False
+    FINDER.hides = hidden
+    FINDER.add(MAKER)
+    return True
+
+
+def is_active() -> bool:
+    """Whether ROS 2's names are robolink's in this process."""
+    return MAKER in FINDER.makers and FINDER in sys.meta_path
+
+
+activate()

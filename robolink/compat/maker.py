@@ -1,0 +1,161 @@
+"""Makes a module for each of ROS 2's names: robolink's own, put in its place; never a second copy of one."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import importlib.util
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from robolink.compat.names import ROOMS, instead_of, snake_case
+from robolink.interfaces import ACTION_PARTS, KINDS
+from robolink.interfaces._standard import STANDARD
+from robolink.lacking import LackingModuleError, lacking, names_in
+from robolink.workspace.modules import FINDER, Fill, Filling
+
+MESSAGES = frozenset(package for kind in KINDS for package in STANDARD[kind])
+TOPS = frozenset({*MESSAGES, *(name for name in ROOMS if "." not in name)})
+"""The top-level names that are robolink's."""
+
+
+def hidden(fullname: str) -> bool:
+    """Whether a name is robolink's, whatever else is installed by it."""
+    top, dot, _ = fullname.partition(".")
+    if top not in TOPS:
+        return False
+    if dot:
+        return _is_ours(sys.modules.get(top))
+    return top == "rclpy" or not _is_the_users_own(top)
+
+
+def maker(fullname: str) -> Fill | None:
+    """Give what fills the module of a name of ROS 2's. Raises LackingModuleError for one that robolink has not."""
+    top = fullname.partition(".")[0]
+    if top not in TOPS:
+        hint = instead_of(fullname) if top == fullname else ""
+        if hint and FINDER.real(fullname) is None:
+            raise LackingModuleError(fullname, list, hint)
+        return None
+    if not hidden(fullname):
+        return None
+    if fullname in ROOMS and not ROOMS[fullname]:
+        return _fill_package
+    parent, _, last = fullname.rpartition(".")
+    if last.startswith("_") and parent.partition(".")[0] in MESSAGES:
+        return functools.partial(_fill_private, fullname, _defined_in(fullname))
+    room = room_of(fullname)
+    if not room or not _is_there(room):
+        raise LackingModuleError(fullname, functools.partial(_modules_beside, fullname))
+    return functools.partial(_put, fullname, room)
+
+
+MAKER = maker
+
+
+def room_of(fullname: str) -> str:
+    """Give the module of robolink's that a name stands for; it need not be there. '' for none.
+
+    >>> room_of("rclpy.node"), room_of("geometry_msgs.msg")
+    ('robolink.node', 'robolink.interfaces.geometry_msgs.msg')
+    """
+    name, rest = fullname, ""
+    while name and name not in ROOMS:
+        name, _, last = name.rpartition(".")
+        rest = f".{last}{rest}"
+    if not name:
+        return f"robolink.interfaces.{fullname}"
+    return ROOMS[name] + rest if ROOMS[name] else ""
+
+
+def _is_there(room: str) -> bool:
+    try:
+        return importlib.util.find_spec(room) is not None
+    except ModuleNotFoundError:  # what it would be in is not there either
+        return False
+
+
+def _is_ours(module: ModuleType | None) -> bool:
+    loader = getattr(getattr(module, "__spec__", None), "loader", None)
+    return isinstance(loader, Filling) or getattr(module, "__name__", "").partition(".")[0] == "robolink"
+
+
+def _is_the_users_own(top: str) -> bool:
+    """Whether a module of this name is a file of the user's: not installed, neither by pip nor with ROS 1 or 2."""
+    spec = FINDER.real(top)
+    if spec is None or spec.loader is None or not spec.origin:
+        return False
+    return not {"site-packages", "dist-packages"} & set(Path(spec.origin).parts)
+
+
+def _put(fullname: str, room: str, _new: ModuleType) -> None:
+    """Put robolink's module in the place of the new one; what is asked of it and not there is answered well."""
+    module: Any = importlib.import_module(room)
+    sys.modules[fullname] = module
+    package, _, kind = fullname.partition(".")
+    holds_types = package in MESSAGES and kind in KINDS
+    if holds_types or any(name.startswith(f"{fullname}.") for name in ROOMS):
+        vars(module).setdefault("__path__", [])  # else Python asks no finder for geometry_msgs.msg._twist
+    if holds_types:
+        vars(module)["__all__"] = STANDARD[kind][package].split()
+    own = vars(module).get("__getattr__")
+    if module is not sys.modules["robolink"] and not isinstance(own, functools.partial):
+        module.__getattr__ = functools.partial(_asked, fullname, module, own)
+
+
+def _asked(fullname: str, module: ModuleType, own: Callable[[str], Any] | None, name: str) -> Any:
+    """Answer for a name that a module has not in it: its `own` answer to that, if it has any."""
+    try:
+        if own is not None:
+            return own(name)
+    except AttributeError:
+        pass
+    known = functools.partial(names_in, module)
+    raise lacking(fullname, name, known, sys._getframe(1), _home_of(fullname, name)) from None
+
+
+def _home_of(fullname: str, name: str) -> str:
+    """Say which other message package has a type of this name."""
+    package, _, kind = fullname.partition(".")
+    if package not in MESSAGES or kind not in KINDS:
+        return ""
+    homes = [f"{each}.{kind}" for each, types in STANDARD[kind].items() if name in types.split()]
+    return f"it is in {' and in '.join(homes)}" if homes else ""
+
+
+def _fill_package(module: ModuleType) -> None:
+    module.__getattr__ = functools.partial(_asked, module.__name__, module, None)  # type: ignore[method-assign]
+
+
+def _defined_in(fullname: str) -> list[str]:
+    """Give the types that rosidl defines in ``geometry_msgs.msg._twist``: those so spelled, there is one as a rule."""
+    package, kind, last = [*fullname.split("."), "", ""][:3]
+    types = STANDARD.get(kind, {}).get(package, "").split() if fullname.count(".") == 2 else []
+    found = [each for each in types if f"_{snake_case(each)}" == last]
+    if not found:
+        raise LackingModuleError(fullname, lambda: [f"_{snake_case(each)}" for each in types])
+    return found
+
+
+def _fill_private(fullname: str, types: Iterable[str], module: ModuleType) -> None:
+    public = importlib.import_module(fullname.rpartition(".")[0])
+    for short in types:
+        cls = getattr(public, short)
+        vars(module)[short] = cls
+        for part in ("Request", "Response", "Event", "Goal", "Result", "Feedback"):
+            if hasattr(cls, part):
+                vars(module)[f"{short}_{part}"] = getattr(cls, part)
+        if hasattr(cls, "Impl"):
+            vars(module).update({f"{short}_{end}": getattr(cls.Impl, name) for end, name in ACTION_PARTS.items()})
+    module.__getattr__ = functools.partial(_asked, fullname, module, None)  # type: ignore[method-assign]
+
+
+def _modules_beside(fullname: str) -> list[str]:
+    """Give the names that an import of the same package could have had."""
+    parent = fullname.rpartition(".")[0]
+    listed = [name.rpartition(".")[2] for name in ROOMS if name.rpartition(".")[0] == parent]
+    folders = getattr(sys.modules.get(room_of(parent)), "__path__", [])
+    return [*listed, *(each.stem for folder in folders for each in Path(folder).iterdir() if each.stem.isidentifier())]

@@ -1,0 +1,73 @@
+"""Which module of robolink's stands for which name of ROS 2's, and what to do instead where none does."""
+
+from __future__ import annotations
+
+import re
+
+ROOMS = {
+    "rclpy": "robolink",
+    "tf2_ros": "robolink.tf2",
+    "tf2_py": "robolink.tf2",
+    "tf2_geometry_msgs": "robolink.tf2.geometry",
+    "tf2_geometry_msgs.tf2_geometry_msgs": "robolink.tf2.geometry",
+    "tf2_sensor_msgs": "robolink.tf2.point_cloud",
+    "tf2_sensor_msgs.tf2_sensor_msgs": "robolink.tf2.point_cloud",
+    "tf_transformations": "robolink.transformations",
+    "message_filters": "robolink.message_filters",
+    "sensor_msgs_py": "",
+    "sensor_msgs_py.point_cloud2": "robolink.point_cloud2",
+    "rosidl_parser": "",
+    "rosidl_parser.definition": "robolink.message.slot_types",
+    "rosidl_runtime_py": "robolink.rosidl_runtime",
+    "ament_index_python": "robolink.ament_index",
+}
+"""Name to module; '' is a package with nothing in it. What is below a name is below its module."""
+
+INSTEAD = {
+    "cv_bridge": "numpy reads an Image: np.frombuffer(msg.data, np.uint8).reshape(msg.height, msg.width, -1)",
+    "launch": "a system is started by 'robolink launch' from a YAML file",
+    "launch_ros": "a system is started by 'robolink launch' from a YAML file",
+    "launch_testing": "a test makes its nodes itself, in memory and in virtual time",
+    "launch_pytest": "a test makes its nodes itself, in memory and in virtual time",
+    "webots_ros2_driver": "it belongs to a Webots that is installed; 'robolink run world' is a simulated robot",
+    "tf2_kdl": "tf2_geometry_msgs transforms the types of geometry_msgs, tf_transformations has the matrices",
+    "tf2_eigen": "tf2_geometry_msgs transforms the types of geometry_msgs, tf_transformations has the matrices",
+    "tf": "that is ROS 1: tf2_ros has the listener and the broadcaster, tf_transformations the angles",
+    "rospy": "that is ROS 1: rclpy is what ROS 2 has",
+    "roslib": "that is ROS 1, and ROS 2 needs nothing in its place",
+    "rosbag": "that is ROS 1",
+    "actionlib": "that is ROS 1: rclpy.action has ActionServer and ActionClient",
+    "rosbag2_py": "the package rosbags, from pip, reads and writes bags",
+    "nav2_simple_commander": "rclpy.action.ActionClient with nav2_msgs.action.NavigateToPose does what it does",
+    "ros2cli": "'robolink' is the command line",
+    "image_transport": "publish and subscribe to sensor_msgs.msg.Image or CompressedImage",
+    "image_geometry": "a CameraInfo holds the matrices: np.reshape(info.k, (3, 3))",
+    "controller_manager": "it needs ros2_control",
+    "moveit": "it needs MoveIt",
+}
+"""Names that programs for ROS 2 import and that robolink has not, each with what to do."""
+
+INTERFACES = r"[a-z][a-z0-9_]*_(?:msgs|interfaces|srvs|actions)"
+LINTERS = r"ament_(?:copyright|flake8|pep257|xmllint|mypy|cpplint|lint)"
+"""As text: a program that lacks nothing need not wait until they are compiled."""
+
+
+def instead_of(name: str) -> str:
+    """Say what to do in place of a top-level name that robolink has not; '' for a name that is not ROS's."""
+    if name in INSTEAD:
+        return INSTEAD[name]
+    if re.fullmatch(LINTERS, name):
+        return "it only checks how a package's files are written; ruff does"
+    if re.fullmatch(INTERFACES, name):
+        return f"put its files into interfaces/{name}/msg (srv, action) of your workspace, or the package into src/"
+    return ""
+
+
+def snake_case(type_name: str) -> str:
+    """Spell a type's name as rosidl names the module that defines it.
+
+    >>> snake_case("PointCloud2"), snake_case("TFMessage")
+    ('point_cloud2', 'tf_message')
+    """
+    parted = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", type_name)
+    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", parted).lower()

@@ -1,0 +1,61 @@
+"""The class that a namespaced type stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Protocol
+
+from robolink.exceptions import NotFoundError
+from robolink.interfaces import ACTION_PARTS, KINDS, find, find_announced, names
+
+
+class TypeNotFoundError(NotFoundError, AttributeError):  # type: ignore[misc]
+    """A package has no type of this name."""
+
+
+class PackageOfTypeNotFoundError(NotFoundError, ModuleNotFoundError):  # type: ignore[misc]
+    """There is no package of this name with types."""
+
+
+class Namespaced(Protocol):
+    """What rosidl_parser's NamespacedType is, and the one below."""
+
+    @property
+    def namespaces(self) -> Sequence[str]: ...  # noqa: D102 - package and kind
+
+    @property
+    def name(self) -> str: ...  # noqa: D102
+
+
+class NamespacedType(NamedTuple):
+    """A type's name in parts: ``(["std_msgs", "msg"], "String")``."""
+
+    namespaces: list[str]
+    name: str
+
+    def namespaced_name(self) -> tuple[str, ...]:
+        """Give all parts."""
+        return (*self.namespaces, self.name)
+
+
+def import_message_from_namespaced_type(message_type: Namespaced) -> Any:
+    """Give the class; also of the parts of an action, ``Fibonacci_FeedbackMessage``.
+
+    Raises TypeNotFoundError (an AttributeError), PackageOfTypeNotFoundError (a ModuleNotFoundError), both
+    NotFoundError, or MessageError (a ValueError) where the definition is wrong.
+    """
+    full = "/".join((*message_type.namespaces, message_type.name))
+    kind = message_type.namespaces[1] if len(message_type.namespaces) > 1 else "msg"
+    if kind not in KINDS:
+        raise TypeNotFoundError("kind of type", kind, KINDS, full)
+    try:
+        if kind == "action" and message_type.name.rpartition("_")[2] in ACTION_PARTS:
+            return find_announced(full)
+        return find(full, kind)
+    except NotFoundError as error:
+        package = message_type.namespaces[0]
+        known = [name.split("/") for each in KINDS for name in names(each)]
+        if all(parts[0] != package for parts in known):
+            raise PackageOfTypeNotFoundError("interface package", package, {parts[0] for parts in known}) from None
+        of_kind = [parts[2] for parts in known if parts[:2] == [package, kind]]
+        raise TypeNotFoundError(f"{error.kind}", message_type.name, of_kind, package) from None

@@ -1,0 +1,149 @@
+"""Packages and what can be run in them, as `ros2 run PACKAGE EXECUTABLE` names them, without a build.
+
+A package is one of these, in the order in which a name is looked for:
+
+1. a folder below a workspace's `src/` that holds a `package.xml` (its <name> counts) or a `setup.py` (then the
+   folder's name), as `ros2 pkg create` makes it; or that lone folder itself, when one stands in it;
+2. the workspace itself, by the name of its folder;
+3. `robolink`: what comes with it.
+
+Its executables are its console scripts, the scripts that its CMakeLists.txt installs, then the Python files of its
+module folder and of its `nodes/`, by their names without `.py`. `_` and `-` in names are the same.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from robolink.workspace.source import NodeSource, canonical
+
+BUILT_IN = "robolink"
+DEEPEST = 3
+"""Folders between `src/` and a package's own, at most."""
+MOST = 2000
+"""Folders that are looked into: a `src/` that has more is no workspace's."""
+IGNORE = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
+_NO_PACKAGES = ("build", "install", "log", "node_modules", "__pycache__")
+
+
+def source_packages(top: Path) -> dict[str, Path]:
+    """Give the packages in a workspace's `src/`, else `top` itself where it is one: name to folder.
+
+    The folders are looked through once a process.
+    """
+    return _source_packages(str(top))
+
+
+@functools.lru_cache(maxsize=64)
+def _source_packages(top: str) -> dict[str, Path]:
+    folder = Path(top)
+    found: dict[str, Path] = {}
+    left = [MOST]
+    for each in _packages_below(folder / "src", DEEPEST, left):
+        found.setdefault(_name_of(each), each)
+    if not found and _is_package(folder):
+        found[_name_of(folder)] = folder
+    return found
+
+
+def is_ros_workspace(folder: Path) -> bool:
+    """Whether a folder's `src/` holds a ROS 2 package; a `setup.py` alone is any Python project's."""
+    if not (folder / "src").is_dir():
+        return False
+    return any((each / "package.xml").is_file() for each in source_packages(folder).values() if each != folder)
+
+
+def forget_packages() -> None:
+    """Look through the folders again when they are next asked for."""
+    _source_packages.cache_clear()
+
+
+def executables(folder: Path) -> dict[str, NodeSource]:
+    """Give what can be run in a package: name to where it is."""
+    from robolink.workspace.setup_files import console_scripts, installed_scripts  # late: most runs read no setup.py
+
+    found = {path.stem: NodeSource(path.stem, path) for path in _public(folder / "nodes")}
+    for module_folder in _module_folders(folder):
+        for path in _public(module_folder):
+            module = f"{module_folder.name}.{path.stem}"
+            found[path.stem] = NodeSource(path.stem, path, module=module, root=module_folder.parent)
+    for name, path in installed_scripts(folder).items():
+        found[name] = NodeSource(name, path)
+    for name, (module, function) in console_scripts(folder).items():
+        root, path = _file_of(folder, module)
+        found[name] = NodeSource(name, path, function, module=module, root=root)
+    return found
+
+
+def executable(folder: Path, name: str) -> NodeSource | None:
+    """Give the executable of a package, None when it has none of that name."""
+    known = executables(folder)
+    asked = canonical(name)
+    return known.get(name) or next((known[each] for each in known if canonical(each) == asked), None)
+
+
+def named_executables(folder: Path) -> list[NodeSource]:
+    """Give the executables that a package names and those in its `nodes/`; where there are none, all that it has."""
+    known = sorted(executables(folder).values(), key=lambda each: each.name)
+    return [each for each in known if each.attribute or not each.module] or known
+
+
+def import_roots(folder: Path) -> list[Path]:
+    """Give the folders that must be on `sys.path` for a package's modules to be imported by their names."""
+    return list(dict.fromkeys(each.parent for each in _module_folders(folder)))
+
+
+def _packages_below(folder: Path, depth: int, left: list[int]) -> Iterator[Path]:
+    """Yield the packages in a folder, by name; there are none within a package."""
+    for each in _folders_in(folder):
+        left[0] -= 1
+        if left[0] < 0:
+            return
+        if _is_package(each):
+            yield each
+        elif depth > 1 and not any((each / mark).exists() for mark in IGNORE):
+            yield from _packages_below(each, depth - 1, left)
+
+
+def _folders_in(folder: Path) -> list[Path]:
+    try:
+        with os.scandir(folder) as entries:
+            names = sorted(each.name for each in entries if each.is_dir())
+    except OSError:
+        return []
+    return [folder / name for name in names if not name.startswith(".") and name not in _NO_PACKAGES]
+
+
+def _is_package(folder: Path) -> bool:
+    has = any((folder / each).is_file() for each in ("package.xml", "setup.py"))
+    return has and not any((folder / mark).exists() for mark in IGNORE)
+
+
+def _name_of(folder: Path) -> str:
+    from robolink.workspace.setup_files import package_name
+
+    return package_name(folder) or folder.name
+
+
+def _module_folders(folder: Path) -> list[Path]:
+    """Give the folder of a package's modules: it has the package's name, and stands in the package or in its src/."""
+    names = {canonical(_name_of(folder)), canonical(folder.name)}
+    inside = [each for each in (*_folders_in(folder), *_folders_in(folder / "src")) if canonical(each.name) in names]
+    return [each for each in inside if (each / "__init__.py").is_file() or any(_public(each))]
+
+
+def _public(folder: Path) -> list[Path]:
+    return sorted(each for each in folder.glob("*.py") if not each.name.startswith("_"))
+
+
+def _file_of(folder: Path, module: str) -> tuple[Path, Path]:
+    """Give the root and the file of a module, whether or not it is there."""
+    part = Path(*module.split("."))
+    for root in (folder, folder / "src"):
+        for file in (root / part.with_suffix(".py"), root / part / "__init__.py"):
+            if file.is_file():
+                return root, file
+    return folder, folder / part.with_suffix(".py")

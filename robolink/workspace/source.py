@@ -1,0 +1,40 @@
+"""Where a node comes from: a file, a module of a package, or an installed distribution."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+Folder: TypeAlias = "str | os.PathLike[str] | None"
+
+
+@dataclass(frozen=True)
+class NodeSource:
+    """Where a node comes from: a file and what in it (`attribute`, or '' for what it holds), or an entry point.
+
+    A file of a package is imported as `module`, with `root` on `sys.path`, so that it can import its neighbours.
+    """
+
+    name: str
+    path: Path | None = None
+    attribute: str = ""
+    entry_point: EntryPoint | None = None
+    module: str = ""
+    root: Path | None = None
+
+    @property
+    def spec(self) -> str:
+        """What finds this again from anywhere: `PATH`, `PATH:attribute` or a name."""
+        if self.path is None:
+            return self.name
+        return f"{self.path}:{self.attribute}" if self.attribute else str(self.path)
+
+
+def canonical(name: str) -> str:
+    """Spell a name so that equal ones are equal: `_` and `-` are the same."""
+    return name.replace("-", "_")

@@ -1,0 +1,417 @@
+"""Packages and their executables are found in a source tree, without a build and without running their setup.py."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robolink import interfaces
+from robolink.cli import main
+from robolink.cli.run import part
+from robolink.cli.runner import Asked, found
+from robolink.exceptions import NotFoundError, RobolinkError
+from robolink.workspace import (
+    VARIABLE,
+    NodeLoadError,
+    NodeSource,
+    built_in_workspace,
+    executable,
+    executables,
+    find_node,
+    find_package,
+    list_executables,
+    list_packages,
+    load_node,
+    workspace_of,
+)
+from robolink.workspace.interfaces import WORKSPACE_TYPES
+from robolink.workspace.modules import FINDER
+from robolink.workspace.packages import forget_packages, import_roots, source_packages
+from robolink.workspace.setup_files import _pyproject, _setup_cfg, _setup_py, console_scripts, installed_scripts
+from tests.ros_tree import write_package
+
+NODE = "from pkg_a.helpers import WORD\nfrom .helpers import WORD as SAME\ndef main(): return WORD + SAME\n"
+
+
+@pytest.fixture
+def top(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A ROS 2 workspace as the working directory: two packages of Python, one of types, and what is none."""
+    src = tmp_path / "ros2_ws/src"
+    write_package(
+        src,
+        "pkg_a",
+        {"helpers.py": "WORD = 'a'\n", "first.py": NODE, "second.py": "def main(): return 2\n"},
+        "first = pkg_a.first:main",
+    )
+    write_package(src / "repo/deeper", "pkg_b", {"run.py": "from pkg_a.helpers import WORD\ndef main(): return WORD\n"})
+    types = src / "pkg_interfaces"
+    (types / "msg").mkdir(parents=True)
+    (types / "package.xml").write_text("<package><name> pkg_interfaces </name></package>")
+    (types / "msg/Count.msg").write_text("int64 n\n")
+    (src / "off").mkdir()
+    (src / "off/COLCON_IGNORE").touch()
+    write_package(src / "off", "pkg_off", {})
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.chdir(src.parent)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    monkeypatch.setattr(sys, "meta_path", list(sys.meta_path))
+    monkeypatch.setattr(FINDER, "makers", list(FINDER.makers))
+    monkeypatch.setattr(interfaces, "_sources", ())
+    monkeypatch.setattr(WORKSPACE_TYPES, "_added", [])
+    forget_packages()
+    importlib.invalidate_caches()
+    yield src.parent.resolve()
+    for name in [each for each in sys.modules if each.startswith("pkg_")]:
+        del sys.modules[name]
+    forget_packages()
+
+
+def ran(*words: str, before: int | None = None) -> Any:
+    """What the function returns that `robolink run WORDS` finds."""
+    source, _ = found(Asked(words[0], list(words[1:]), len(words) - 1 if before is None else before), None)
+    runnable: Any = load_node(source)
+    return runnable()
+
+
+def test_packages_are_found_from_anywhere_in_the_tree(top: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for folder in (".", "src", "src/pkg_a", "src/pkg_a/pkg_a", "src/repo"):
+        monkeypatch.chdir(top / folder)
+        assert workspace_of(Path()) == top
+        assert list(list_packages()) == ["pkg_a", "pkg_interfaces", "pkg_b", "ros2_ws", "robolink"]
+    assert find_package("pkg-a") == top / "src/pkg_a"
+    assert find_package("pkg_off") is None
+    assert find_package("robolink") == built_in_workspace()
+
+
+@pytest.mark.usefixtures("top")
+def test_a_console_script_is_imported_as_a_module_of_its_package() -> None:
+    assert ran("pkg_a", "first") == "aa"
+    assert ran("pkg-a", "first", "and", "more") == "aa"
+    assert sys.modules["pkg_a.first"].__package__ == "pkg_a"
+
+
+@pytest.mark.usefixtures("top")
+def test_a_module_that_setup_py_does_not_name_runs_too() -> None:
+    assert ran("pkg_a", "second") == 2
+
+
+@pytest.mark.usefixtures("top")
+def test_packages_import_each_other() -> None:
+    assert ran("pkg_b", "run") == "a"
+
+
+def test_the_types_of_the_tree_are_importable(top: Path) -> None:
+    (top / "src/pkg_a/pkg_a/third.py").write_text(
+        "from pkg_interfaces.msg import Count\ndef main(): return Count(n=4)\n"
+    )
+    assert ran("pkg_a", "third").n == 4
+    assert "pkg_interfaces/msg/Count" in interfaces.names()
+
+
+def test_a_copy_that_was_installed_before_is_not_run(top: Path, tmp_path: Path) -> None:
+    write_package(tmp_path / "site", "pkg_a", {"first.py": "def main(): return 'old'\n"})
+    sys.path.insert(0, str(tmp_path / "site/pkg_a"))
+    assert ran("pkg_a", "first") == "aa"
+
+
+@pytest.mark.parametrize("path", ["src/pkg_a/pkg_a/by_path.py", "src/repo/deeper/pkg_b/pkg_b/by_path.py"])
+def test_a_file_of_a_package_that_is_run_by_its_path_finds_its_package(top: Path, path: str) -> None:
+    (top / path).write_text(
+        "from pkg_a.helpers import WORD\nfrom pkg_b import run\ndef main(): return WORD, run.main()\n"
+    )
+    assert ran(path) == ("a", "a")
+
+
+def test_a_script_in_a_package_runs_as_python_m_does(top: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (
+        "import sys\nfrom .helpers import WORD\nif __name__ == '__main__':\n    print(WORD, sys.argv[0] == __file__)\n"
+    )
+    (top / "src/pkg_a/pkg_a/script.py").write_text(text)
+    ran("pkg_a", "script")
+    assert capsys.readouterr().out == "a True\n"
+
+
+# --- which of the two is meant ----------------------------------------------------------------------------------
+
+
+def test_two_words_are_a_package_and_its_executable_only_if_both_are_there(top: Path) -> None:
+    (top / "nodes").mkdir()
+    for name in ("talker", "pkg_a", "ros2_ws"):
+        (top / f"nodes/{name}.py").write_text("def main(): pass\n")
+
+    def asked(*words: str, before: int | None = None) -> tuple[str, list[str]]:
+        count = len(words) - 1 if before is None else before
+        source, args = found(Asked(words[0], list(words[1:]), count), None)
+        return source.name, args
+
+    assert asked("talker", "first") == ("talker", ["first"])
+    assert asked("pkg_a", "first", "x") == ("first", ["x"])
+    assert asked("pkg_a", "frist", "x") == ("pkg_a", ["frist", "x"])  # the node of that name; the words are its own
+    assert asked("pkg_a", "first", before=0) == ("pkg_a", ["first"])  # robolink run pkg_a -- first
+    assert asked("pkg_a") == ("pkg_a", [])
+    assert asked("ros2_ws", "talker") == ("talker", [])
+    assert asked("robolink", "world", "--", "x") == ("world", ["--", "x"])
+
+
+@pytest.mark.usefixtures("top")
+@pytest.mark.parametrize(
+    ("words", "report"),
+    [
+        (["pkg_a", "frist"], "no executable named 'frist' in package pkg_a (did you mean 'first'?)"),
+        (["pkg_a"], "pkg_a is a package: say which of its executables, first"),
+        (["robolink", "wrold"], "no executable named 'wrold' in package robolink (did you mean 'world'?)"),
+        (["pkg_b", "--", "run"], "pkg_b is a package: say which of its executables, run"),
+        (["pkg_interfaces", "x"], "no node named 'pkg_interfaces' in {top} or robolink itself"),
+        (["pkg_c", "first"], "no node named 'pkg_c' in {top} or robolink itself"),
+        (
+            ["first"],
+            "no node named 'first' in {top} or robolink itself; package pkg_a has one: robolink run pkg_a first",
+        ),
+    ],
+)
+def test_what_is_not_there_is_one_line(
+    words: list[str], report: str, capsys: pytest.CaptureFixture[str], top: Path
+) -> None:
+    assert main(["run", *words]) == 1
+    assert capsys.readouterr().err == f"robolink: {report.format(top=top)}\n"
+
+
+def test_a_console_script_without_its_file_is_told_so(top: Path) -> None:
+    write_package(top / "src", "pkg_bad", {"firts.py": ""}, "first = pkg_bad.first:main", "odd = pkg_bad.firts:mian")
+    forget_packages()
+    missing = top / "src/pkg_bad/pkg_bad/first.py"
+    with pytest.raises(NodeLoadError) as caught:
+        ran("pkg_bad", "first")
+    said = f"first is pkg_bad.first, says its package, but there is no {missing} (did you mean 'firts.py'?)"
+    assert str(caught.value) == said
+    with pytest.raises(NotFoundError, match="no class or function named 'mian'"):
+        ran("pkg_bad", "odd")
+
+
+def test_a_lone_package_is_a_workspace_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = write_package(tmp_path, "alone", {"node.py": ""}, "node = alone.node:main")
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.chdir(folder / "alone")
+    assert workspace_of(Path()) == folder
+    assert find_package("alone") == folder
+    source = executable(folder, "node")
+    assert source is not None
+    assert (source.module, source.attribute, source.root) == ("alone.node", "main", folder)
+
+
+def test_any_python_project_is_no_workspace(tmp_path: Path) -> None:
+    (tmp_path / "src/thing").mkdir(parents=True)
+    (tmp_path / "src/thing/setup.py").touch()
+    assert workspace_of(tmp_path) is None
+    assert list(source_packages(tmp_path)) == ["thing"]
+
+
+def test_the_workspace_is_a_package_by_the_name_of_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    home = tmp_path / "meu_robo_py"
+    for folder in ("nodes", "configs"):
+        (home / folder).mkdir(parents=True)
+    (home / "nodes/primeiro_node.py").write_text("def main(args=None): return 1\n")
+    monkeypatch.chdir(home)
+    monkeypatch.delenv(VARIABLE, raising=False)
+    assert ran("meu_robo_py", "primeiro_node") == 1
+    assert ran("primeiro_node") == 1
+
+
+@pytest.mark.usefixtures("top")
+def test_they_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "--list"]) == 0
+    rows = [line.split("  ")[0] for line in capsys.readouterr().out.splitlines()]
+    assert rows[-2:] == ["pkg_a first", "pkg_b run"]  # a package without a list of its own has its modules
+    assert "world" in rows
+    assert {name: [each.name for each in nodes] for name, nodes in list_executables().items()} == {
+        "pkg_a": ["first"],
+        "pkg_b": ["run"],
+    }
+
+
+# --- what setup.py and the others say ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from setuptools import setup\nsetup(entry_points={'console_scripts': ['a = m.n:main', 'b=m.o:run']})",
+        "import setuptools\nsetuptools.setup(entry_points={'console_scripts': ('a = m.n:main', 'b=m.o:run')})",
+        "n = 'm'\nsetup(entry_points={'console_scripts': [f'a = {n}.n:main', 'b=' + n + '.o:run']})",
+        "E = {'console_scripts': ['a = m.n:main'] + ['b = m.o:run']}\nsetup(entry_points=E)",
+        "setup(entry_points={'console_scripts': 'a = m.n:main\\nb = m.o:run'})",
+        "setup(entry_points='[console_scripts]\\na = m.n:main\\nb = m.o:run\\n[other]\\nc = d:e\\n')",
+        "setup(entry_points={**more, 'console_scripts': ['a = m.n : main [extra]', 'b = m.o:run', x, 3, 'no']})",
+    ],
+)
+def test_console_scripts_of_a_setup_py(tmp_path: Path, text: str) -> None:
+    (tmp_path / "setup.py").write_text(text + "\nraise SystemExit('this is never run')\n")
+    assert console_scripts(tmp_path) == {"a": ("m.n", "main"), "b": ("m.o", "run")}
+
+
+def test_other_places_that_name_them(tmp_path: Path) -> None:
+    (tmp_path / "setup.cfg").write_text(
+        "[options.entry_points]\nconsole_scripts =\n  a = m.n:main\n  # no\n  b = m.o:run\n"
+    )
+    (tmp_path / "pyproject.toml").write_text(
+        '[project]\nname = "x = y"\n\n[project.scripts]  # here\nc = "m.p:main"\n'
+        '"d-e" = \'m.q:main\'\n[tool.x]\nf = "g:h"\n'
+    )
+    found = {"a": ("m.n", "main"), "b": ("m.o", "run"), "c": ("m.p", "main"), "d-e": ("m.q", "main")}
+    assert console_scripts(tmp_path) == found
+
+
+def test_scripts_that_cmake_installs(tmp_path: Path) -> None:
+    (tmp_path / "scripts").mkdir()
+    for name in ("drive.py", "turn.py", "tool.sh"):
+        (tmp_path / "scripts" / name).touch()
+    (tmp_path / "CMakeLists.txt").write_text(
+        "project(x)\n# install(PROGRAMS scripts/turn.py DESTINATION lib/x)\n"
+        "install(PROGRAMS\n  scripts/drive.py scripts/tool.sh scripts/gone.py\n  DESTINATION lib/${PROJECT_NAME}\n)\n"
+    )
+    assert installed_scripts(tmp_path) == {"drive.py": tmp_path / "scripts/drive.py"}
+    assert executable(tmp_path, "drive.py") == NodeSource("drive.py", tmp_path / "scripts/drive.py")
+
+
+def test_modules_may_lie_in_src_within_the_package(tmp_path: Path) -> None:
+    folder = write_package(tmp_path / "src", "deep", {}, "node = deep.node:main")
+    (folder / "src/deep").mkdir(parents=True)
+    (folder / "src/deep/node.py").touch()
+    source = executables(folder)["node"]
+    assert (source.path, source.root) == (folder / "src/deep/node.py", folder / "src")
+    assert folder / "src" in import_roots(folder)
+
+
+PIECES = st.lists(
+    st.sampled_from(
+        [
+            "setup(",
+            ")",
+            "{",
+            "}",
+            "[",
+            "]",
+            "entry_points=",
+            "'console_scripts'",
+            ":",
+            ",",
+            "'a=b:c'",
+            "import",
+            "+",
+            "*",
+            "\\",
+            "#",
+            "lambda",
+            "%(x)s",
+        ]
+    )
+    | st.sampled_from(["\n", "\t", "[project.scripts]", "[console_scripts]", "f'{x}'", "\0", "options.entry_points"])
+    | st.text(max_size=5),
+    max_size=30,
+)
+
+
+@given(PIECES)
+def test_any_text_gives_scripts_or_none(pieces: list[str]) -> None:
+    text = " ".join(pieces)
+    for reader in (_setup_py, _setup_cfg, _pyproject):
+        assert all(isinstance(each, str) for each in reader(text))
+
+
+def test_a_deep_or_endless_setup_py_is_none(tmp_path: Path) -> None:
+    for text in (
+        "setup(entry_points=" + "(" * 5000,
+        "a = a\nsetup(entry_points={'console_scripts': a})",
+        "x = " + "[" * 200,
+    ):
+        (tmp_path / "setup.py").write_text(text)
+        assert console_scripts(tmp_path) == {}
+
+
+# --- whose words are whose --------------------------------------------------------------------------------------
+
+KNOWN = {"-p": True, "--param": True, "--name": True, "--list": False, "--help": False}
+
+
+@pytest.mark.parametrize(
+    ("line", "own", "words", "fixed"),
+    [
+        ("talker -p a:=1 x", "-p a:=1", "talker x", ""),
+        ("-p a:=1 --name=n talker", "-p a:=1 --name=n", "talker", ""),
+        ("talker --rate 5 -v -p a:=1", "-p a:=1", "talker --rate 5 -v", ""),
+        ("pkg exe --flag -pa:=1 -- -p x", "-pa:=1", "pkg exe --flag", "-p x"),
+        ("--rate 5 talker", "--rate", "5 talker", ""),
+        ("talker --nam x", "--nam", "talker x", ""),
+        ("talker --lists", "--lists", "talker", ""),
+        ("talker - --list", "--list", "talker -", ""),
+    ],
+)
+def test_options_that_are_not_ours_are_the_programs(line: str, own: str, words: str, fixed: str) -> None:
+    assert part(line.split(), KNOWN) == (own.split(), words.split(), fixed.split(), False)
+
+
+def test_an_option_without_its_value_is_told() -> None:
+    assert part(["talker", "--rate", "--name"], KNOWN) == (["--name"], ["talker", "--rate"], [], True)
+
+
+@given(
+    st.lists(
+        st.sampled_from(["talker", "-p", "a:=1", "--name", "--name=x", "--list", "--", "-", "--rate", "-v", "", "="])
+    )
+)
+def test_no_word_is_lost(line: list[str]) -> None:
+    kept = [each for part_of_it in part(line, KNOWN)[:3] for each in part_of_it]
+    assert sorted(line) in (sorted(kept), sorted([*kept, "--"]))
+
+
+@pytest.mark.usefixtures("top")
+def test_unknown_options_reach_the_program(monkeypatch: pytest.MonkeyPatch) -> None:
+    import signal
+
+    from robolink.cli import runner
+
+    seen: list[list[str]] = []
+    monkeypatch.setattr(runner, "_start", lambda source: seen.append(sys.argv[1:]))
+    monkeypatch.setattr(runner, "_take_names", lambda: None)
+    monkeypatch.setattr(runner, "_note_termination", list)
+    monkeypatch.setattr(sys, "argv", [])
+    monkeypatch.setenv(VARIABLE, ".")
+    before = signal.getsignal(signal.SIGTERM)
+    line = ["run", "pkg_a", "first", "--rate", "5", "-p", "a:=1", "-x", "--", "-p", "--ros-args", "-r", "a:=b"]
+    assert main(line) == 0
+    assert seen == [["--rate", "5", "-x", "-p", "--ros-args", "-p", "a:=1", "--ros-args", "-r", "a:=b"]]
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+@pytest.mark.usefixtures("top")
+def test_the_shell_completes_packages_and_executables(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from robolink.cli import COMPLETION
+
+    monkeypatch.setenv(COMPLETION, "complete_bash")
+    for line, offered in (
+        ("robolink run pkg", ["pkg_a", "pkg_b"]),
+        ("robolink run pkg_a ", ["first"]),
+        ("robolink run pkg-a fi", ["first"]),
+        ("robolink run -p a:=1 pkg_a fi", ["first"]),
+        ("robolink run pkg_a first ", []),
+        ("robolink run world ", []),
+    ):
+        monkeypatch.setenv("COMP_WORDS", line)
+        monkeypatch.setenv("COMP_CWORD", str(len(line.split(" ")) - 1))
+        main([])
+        out, err = capsys.readouterr()
+        assert (out.split(), err) == (offered, "")
+
+
+def test_find_node_knows_no_packages(top: Path) -> None:
+    with pytest.raises(RobolinkError):
+        find_node("pkg_a")
