@@ -5,8 +5,8 @@ from __future__ import annotations
 import copy
 import threading
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias, overload
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, overload
 
 from robolink.exceptions import (
     InvalidParameterTypeException,
@@ -30,6 +30,7 @@ from robolink.parameter import (
     AllowableParameterValueT,
     Parameter,
 )
+from robolink.parameter_callbacks import ParameterCallbacks, Parameters
 from robolink.parameter_rules import (
     EMPTY_LIST,
     check_names,
@@ -41,17 +42,13 @@ from robolink.parameter_rules import (
     record,
     refusal,
 )
+from robolink.validate_parameter_name import validate_parameter_name
 
 if TYPE_CHECKING:
     from robolink.clock import Clock
 
-Parameters: TypeAlias = list[Parameter[Any]]
-PreSetCallback: TypeAlias = Callable[[Parameters], Parameters]
-OnSetCallback: TypeAlias = Callable[[Parameters], SetParametersResult]
-PostSetCallback: TypeAlias = Callable[[Parameters], None]
 
-
-class NodeParameters:
+class NodeParameters(ParameterCallbacks):
     """The part of a node that keeps its parameters.
 
     Any thread may read: what is stored is never changed but replaced as a whole, so that a reader sees all of an
@@ -75,11 +72,11 @@ class NodeParameters:
         """Begin without parameters. `overrides` go before the default values of what will be declared."""
         self._parameters: dict[str, Parameter[Any]] = {}
         self._descriptors: dict[str, ParameterDescriptor] = {}
+        self.declared_so_far: set[str] = set()
+        """The names of all that was ever declared, also of what was refused or is no longer there."""
         self._parameter_overrides = dict(overrides)
         self._allow_undeclared_parameters = allow_undeclared
-        self._pre_set_parameters_callbacks: list[PreSetCallback] = []
-        self._on_set_parameters_callbacks: list[OnSetCallback] = []
-        self._post_set_parameters_callbacks: list[PostSetCallback] = []
+        self._init_parameter_callbacks()
         self._parameters_lock = threading.Lock()
 
     # Declaring
@@ -151,6 +148,7 @@ class NodeParameters:
                     "a Parameter.Type or a ParameterDescriptor(dynamic_typing=True)",
                     stacklevel=3,
                 )
+        self.declared_so_far.update(parameter.name for parameter, _ in declarations)
         taken = [parameter.name for parameter, _ in declarations if parameter.name in self._parameters]
         if taken:
             raise ParameterAlreadyDeclaredException(taken)
@@ -254,7 +252,8 @@ class NodeParameters:
             raise TypeError(f"depth must be an int, got {depth!r}")
         if depth < 0:
             raise ValueError(f"depth must not be negative, got {depth}")
-        names = [name for name in self._parameters if is_listed(name, prefixes, depth)]
+        wanted = frozenset(prefixes)
+        names = [name for name in self._parameters if is_listed(name, wanted, depth)]
         parents = (name.rpartition(PARAMETER_SEPARATOR_STRING)[:2] for name in names)
         return ListParametersResult(names=names, prefixes=list(dict.fromkeys(each for each, dot in parents if dot)))
 
@@ -271,7 +270,8 @@ class NodeParameters:
     def set_parameters_atomically(self, parameter_list: Parameters) -> SetParametersResult:
         """Set all these parameters, or none, in one step with one event and one call of each callback.
 
-        Raises ParameterNotDeclaredException where one is undeclared and that is not allowed.
+        Raises ParameterNotDeclaredException where one is undeclared and that is not allowed, and
+        InvalidParameterException where it is allowed, but the name is empty.
         """
         return self._set_atomically(parameter_list)
 
@@ -287,6 +287,8 @@ class NodeParameters:
         undeclared = [each.name for each in parameters if each.name not in self._parameters]
         if undeclared and not self._allow_undeclared_parameters:
             raise self._not_declared(undeclared)
+        for name in undeclared:
+            validate_parameter_name(name)
         return self._apply(parameters)
 
     def _apply(self, parameters: Parameters, declaring: ParameterDescriptor | None = None) -> SetParametersResult:
@@ -363,36 +365,3 @@ class NodeParameters:
                 self._parameters = {**self._parameters, name: parameter}
             self._descriptors = {**self._descriptors, name: describing(parameter, copy.copy(descriptor))}
         return parameter.get_parameter_value()
-
-    # Callbacks
-
-    def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
-        """Have `callback` give the list of parameters to set in place of the one asked for, before all checks.
-
-        The latest added is called first; their lists are joined. Declaring does not call it.
-        """
-        self._pre_set_parameters_callbacks.insert(0, callback)
-
-    def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Have `callback` say whether parameters may be set or declared; the latest added is called first.
-
-        Its result refuses them by ``successful=False``, with the reason. Names that it does not know it should let
-        pass: other parts of the node may know them.
-        """
-        self._on_set_parameters_callbacks.insert(0, callback)
-
-    def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
-        """Have `callback` called with parameters that have been set or declared; the latest added is called first."""
-        self._post_set_parameters_callbacks.insert(0, callback)
-
-    def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
-        """Call it no longer. Raises ValueError when it was not added."""
-        self._pre_set_parameters_callbacks.remove(callback)
-
-    def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Call it no longer. Raises ValueError when it was not added."""
-        self._on_set_parameters_callbacks.remove(callback)
-
-    def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
-        """Call it no longer. Raises ValueError when it was not added."""
-        self._post_set_parameters_callbacks.remove(callback)

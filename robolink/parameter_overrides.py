@@ -21,6 +21,12 @@ class Override(NamedTuple):
     pattern: str
     name: str
     value: Value
+    is_typed: bool = False
+    """Whether it was typed on a command line, not read from a file."""
+
+    def is_meant_for(self, full_node_name: str) -> bool:
+        """Say whether a node should know it: it is for this node by name, or was typed for all of a program."""
+        return (self.is_typed or "*" not in self.pattern) and self.is_for(full_node_name)
 
     def is_for(self, full_node_name: str) -> bool:
         """Say whether the pattern fits a node such as `/arm/driver`."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from robolink.exceptions import InvalidParameterValueException
@@ -220,16 +220,18 @@ def check_names(names: Sequence[str]) -> None:
             raise TypeError(f"a parameter's name must be a str, got {name!r}")
 
 
-def is_listed(name: str, prefixes: Sequence[str], depth: int) -> bool:
+def is_listed(name: str, prefixes: Collection[str], depth: int) -> bool:
     """Say whether `list_parameters` names a parameter: it is one of the prefixes, or lies up to `depth` below one.
 
-    Without prefixes all names lie below. A depth of 0 has no end.
+    Without prefixes all names lie below. A depth of 0 has no end. Any number of prefixes, given as a set, takes the
+    same time: who asks may be anybody.
     """
     if not prefixes:
-        return _within(name, depth)
-    below = (name[len(each) + 1 :] for each in prefixes if name.startswith(each + PARAMETER_SEPARATOR_STRING))
-    return name in prefixes or any(_within(rest, depth) for rest in below)
-
-
-def _within(name: str, depth: int) -> bool:
-    return depth == 0 or name.count(PARAMETER_SEPARATOR_STRING) < depth
+        return depth == 0 or name.count(PARAMETER_SEPARATOR_STRING) < depth
+    above, dot, below = name, ".", 0
+    while dot and (depth == 0 or below <= depth):
+        if above in prefixes:
+            return True
+        above, dot, _ = above.rpartition(PARAMETER_SEPARATOR_STRING)
+        below += 1
+    return False

@@ -1,0 +1,161 @@
+"""robolink param: see and change the parameters of running nodes."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+import typer.core
+
+from robolink.cli import complete
+from robolink.cli.options import seconds
+
+app = typer.Typer(no_args_is_help=True, help="See and change the parameters of running nodes.")
+
+PREFIXES = "--param-prefixes"
+
+
+def _parameters(ctx: typer.Context, incomplete: str) -> list[str]:
+    from robolink.cli.param.names import of_node
+
+    return of_node(ctx, incomplete)
+
+
+Node = Annotated[
+    str, typer.Argument(help="Name of the node, such as /driver.", metavar="NODE", autocompletion=complete.node_names)
+]
+Parameter = Annotated[
+    str, typer.Argument(help="Name of the parameter.", metavar="PARAMETER", autocompletion=_parameters)
+]
+Hidden = Annotated[bool, typer.Option("--include-hidden-nodes", help="Also nodes that begin with _.")]
+Timeout = Annotated[float, seconds("--timeout", "Wait at most so long for the node to be there.")]
+AsJson = Annotated[bool, typer.Option("--json", help="JSON, for programs.")]
+
+
+class ListCommand(typer.core.TyperCommand):
+    """A command that takes several words behind `--param-prefixes`, as ros2 does."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Give each of these words the flag of its own that typer wants."""
+        rest: list[str] = super().parse_args(ctx, each_with_its_flag(args))
+        return rest
+
+
+def each_with_its_flag(args: list[str]) -> list[str]:
+    """Repeat the flag before each word that follows it.
+
+    >>> each_with_its_flag(["/node", "--param-prefixes", "a", "b", "--json"])
+    ['/node', '--param-prefixes', 'a', '--param-prefixes', 'b', '--json']
+    """
+    spread: list[str] = []
+    for arg in args:
+        is_more = not arg.startswith("-") and len(spread) > 1 and spread[-2] == PREFIXES
+        spread += [PREFIXES, arg] if is_more else [arg]
+    return spread
+
+
+@app.callback()
+def _noun() -> None:
+    """See and change the parameters of running nodes."""
+
+
+@app.command("list", cls=ListCommand)
+def list_parameters(
+    node: Annotated[
+        str, typer.Argument(help="Name of a node; all when left out.", autocompletion=complete.node_names)
+    ] = "",
+    hidden: Hidden = False,
+    prefixes: Annotated[
+        list[str] | None, typer.Option(PREFIXES, metavar="PREFIX...", help="Only those below these.")
+    ] = None,
+    show_types: Annotated[bool, typer.Option("--param-type", help="Also show the types.")] = False,
+    pattern: Annotated[str, typer.Option("--filter", metavar="REGEX", help="Only names that begin like this.")] = "",
+    as_json: AsJson = False,
+) -> None:
+    """List the parameters of a node, or of all nodes."""
+    from robolink.cli.param import read
+
+    wanted = read.Wanted(tuple(prefixes or ()), read.compiled(pattern), show_types, hidden)
+    read.show_list(node, wanted, as_json=as_json)
+
+
+@app.command("get")
+def get(
+    node: Node,
+    parameter: Parameter,
+    hidden: Hidden = False,
+    hide_type: Annotated[bool, typer.Option("--hide-type", help="Only the value.")] = False,
+    timeout: Timeout = 1.0,
+    as_json: AsJson = False,
+) -> None:
+    """Show the value of a parameter."""
+    from robolink.cli.param import read
+
+    read.show_value(node, parameter, timeout, hide_type=hide_type, as_json=as_json)
+
+
+@app.command("describe")
+def describe(
+    node: Node,
+    parameters: Annotated[
+        list[str], typer.Argument(help="Names of parameters.", metavar="PARAMETER...", autocompletion=_parameters)
+    ],
+    hidden: Hidden = False,
+    timeout: Timeout = 1.0,
+    as_json: AsJson = False,
+) -> None:
+    """Show what parameters are for, and what they can be."""
+    from robolink.cli.param import read
+
+    read.show_descriptors(node, parameters, timeout, as_json=as_json)
+
+
+@app.command("dump")
+def dump(node: Node, hidden: Hidden = False, timeout: Timeout = 1.0, as_json: AsJson = False) -> None:
+    """Write all parameters of a node as a parameter file."""
+    from robolink.cli.param import read
+
+    read.dump(node, timeout, as_json=as_json)
+
+
+# A value such as -0.5 is no option.
+@app.command("set", context_settings={"ignore_unknown_options": True})
+def set_parameter(
+    node: Node,
+    parameter: Parameter,
+    value: Annotated[str, typer.Argument(help="The value in YAML, such as 0.5, true or [1, 2].", metavar="VALUE")],
+    hidden: Hidden = False,
+    timeout: Timeout = 1.0,
+    as_json: AsJson = False,
+) -> None:
+    """Set a parameter."""
+    from robolink.cli.param import write
+
+    raise typer.Exit(write.set_one(node, parameter, value, timeout, as_json=as_json))
+
+
+@app.command("load")
+def load(
+    node: Node,
+    file: Annotated[str, typer.Argument(help="A parameter file.", metavar="FILE")],
+    hidden: Hidden = False,
+    no_wildcard: Annotated[
+        bool, typer.Option("--no-use-wildcard", help="Leave out what the file has for all nodes, as in /**.")
+    ] = False,
+    timeout: Timeout = 1.0,
+    as_json: AsJson = False,
+) -> None:
+    """Set the parameters of a node that a file has for it."""
+    from robolink.cli.param import write
+
+    raise typer.Exit(write.load(node, file, timeout, use_wildcard=not no_wildcard, as_json=as_json))
+
+
+@app.command("delete")
+def delete(
+    node: Node, parameter: Parameter, hidden: Hidden = False, timeout: Timeout = 1.0, as_json: AsJson = False
+) -> None:
+    """Undeclare a parameter; only those of dynamic type can be."""
+    from robolink.cli.param import write
+
+    raise typer.Exit(write.delete(node, parameter, timeout, as_json=as_json))

@@ -1,0 +1,137 @@
+"""Asks the parameter services of one node for the commands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from robolink.cli.elsewhere import domains_with, hint
+from robolink.cli.session import absolute, looking, node_of
+from robolink.exceptions import ExternalShutdownException, NotFoundError, RobolinkError, nearest, shown
+from robolink.interfaces.rcl_interfaces import srv
+from robolink.interfaces.rcl_interfaces.msg import (
+    Parameter,
+    ParameterDescriptor,
+    ParameterValue,
+    SetParametersResult,
+)
+from robolink.wire import EndpointKind
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+    from robolink.node import Node
+
+ANSWER_WITHIN = 5.0
+"""Seconds that a node has for an answer: it may be busy with a callback."""
+
+
+class ParameterCommandError(RobolinkError, RuntimeError):
+    """A node's parameters cannot be asked for: it does not serve them, or does not answer."""
+
+
+class Asked:
+    """A node whose parameters are asked for."""
+
+    def __init__(self, asker: Node, name: str) -> None:
+        self.name = name
+        self._asker = asker
+
+    def names(self, prefixes: Sequence[str] = ()) -> list[str]:
+        """Give the names of its parameters, sorted; of those below the prefixes, if there are any."""
+        request = srv.ListParameters.Request(prefixes=list(prefixes))
+        return sorted(self._call(srv.ListParameters, "list_parameters", request).result.names)
+
+    def values(self, names: Sequence[str]) -> list[ParameterValue]:
+        """Give the values. Raises NotFoundError for an unknown one, ParameterCommandError for one without value."""
+        found = list(self._call(srv.GetParameters, "get_parameters", srv.GetParameters.Request(names=names)).values)
+        if len(found) == len(names):
+            return found
+        self._check_known(names)
+        raise ParameterCommandError(f"{_listed(names)} of {self.name}: Parameter not set")
+
+    def settled_values(self, names: Sequence[str]) -> dict[str, ParameterValue]:
+        """Give the values of those parameters that have one; the type of the others is set, but no value yet."""
+        try:
+            return dict(zip(names, self.values(names), strict=True))
+        except ParameterCommandError:
+            if len(names) == 1:
+                return {}
+        half = len(names) // 2
+        return {**self.settled_values(names[:half]), **self.settled_values(names[half:])}
+
+    def descriptors(self, names: Sequence[str]) -> list[ParameterDescriptor]:
+        """Give the descriptors. Raises NotFoundError for an unknown parameter."""
+        request = srv.DescribeParameters.Request(names=names)
+        found = list(self._call(srv.DescribeParameters, "describe_parameters", request).descriptors)
+        if len(found) != len(names):
+            self._check_known(names)
+            raise ParameterCommandError(f"{self.name} does not describe {_listed(names)}")
+        return found
+
+    def set(self, parameters: Sequence[Parameter]) -> list[SetParametersResult]:
+        """Set parameters one by one; give a result for each."""
+        request = srv.SetParameters.Request(parameters=parameters)
+        results = list(self._call(srv.SetParameters, "set_parameters", request).results)
+        if len(results) != len(parameters):
+            raise ParameterCommandError(
+                f"{self.name}/set_parameters: expected {len(parameters)} results, got {len(results)}"
+            )
+        return results
+
+    def _check_known(self, names: Sequence[str]) -> None:
+        known = self.names()
+        for each in names:
+            if each not in known:
+                raise NotFoundError("parameter", shown(each), known, self.name)
+
+    def _call(self, srv_type: type[Any], name: str, request: Any) -> Any:
+        client = self._asker.create_client(srv_type, f"{self.name}/{name}")
+        try:
+            return client.call(request, timeout_sec=ANSWER_WITHIN)
+        except TimeoutError:
+            raise ParameterCommandError(
+                f"no answer within {ANSWER_WITHIN:g} s from {client.srv_name}: does the node spin?"
+            ) from None
+        except ExternalShutdownException:
+            raise KeyboardInterrupt from None
+        finally:
+            self._asker.destroy_client(client)
+
+
+@contextmanager
+def asking(node: str, timeout: float) -> Iterator[Asked]:
+    """Ask a node, by its full name or without its slash; wait `timeout` seconds for it to be there.
+
+    Raises NotFoundError when it is not, ParameterCommandError when it does not serve its parameters.
+    """
+    with looking() as context:
+        name = absolute(node)
+        if not serves(context, name, timeout):
+            raise _absent(context, name)
+        yield Asked(node_of(context), name)
+
+
+def serves(context: Context, name: str, timeout: float = 0.0) -> bool:
+    """Whether a node serves its parameters within `timeout` seconds."""
+
+    def is_there() -> bool:
+        return context.graph.count(EndpointKind.SERVICE, f"{name}/set_parameters") > 0
+
+    context.graph.wait_for(lambda: is_there() or not context.ok(), timeout)
+    if not context.ok():
+        raise KeyboardInterrupt
+    return is_there()
+
+
+def _absent(context: Context, name: str) -> RobolinkError:
+    known = [each.full_node_name for each in context.graph.nodes()]
+    if name in known:
+        return ParameterCommandError(f"{name} has no parameter services: it was made without them")
+    elsewhere = hint(domains_with(context, f"{name}/set_parameters", EndpointKind.SERVICE))
+    near = elsewhere or nearest(name, [each for each in known if "/_" not in each])
+    return ParameterCommandError(f"no node named '{shown(name)}' in domain {context.get_domain_id()}{near}")
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(f"'{shown(each)}'" for each in names)

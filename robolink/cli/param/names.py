@@ -1,0 +1,39 @@
+"""Completes the names of a node's parameters, by asking it."""
+
+from __future__ import annotations
+
+import contextlib
+import queue
+import threading
+from typing import Any
+
+from robolink.cli.complete import WITHIN, offered
+
+
+def of_node(ctx: Any, incomplete: str) -> list[str]:
+    """Give the parameters of the node that stands on the command line, as far as it answers in time."""
+    names: queue.SimpleQueue[list[str]] = queue.SimpleQueue()
+    node = str(ctx.params.get("node") or "")
+    # In the background, since neither the network nor the node need answer.
+    threading.Thread(target=_ask, args=(node, names), name="robolink completion", daemon=True).start()
+    with contextlib.suppress(queue.Empty):
+        return offered(names.get(timeout=2 * WITHIN), incomplete)
+    return []
+
+
+def _ask(node: str, names: queue.SimpleQueue[list[str]]) -> None:
+    from robolink.cli.param.ask import Asked, serves
+    from robolink.cli.session import absolute, node_of
+    from robolink.context import Context
+
+    context = Context()
+    try:
+        context.init(args=[])
+        name = absolute(node)
+        if serves(context, name):
+            names.put(Asked(node_of(context), name).names())
+    except Exception:  # noqa: BLE001, S110 - there is nothing to offer, and nobody to tell
+        pass
+    finally:
+        names.put([])
+        context.try_shutdown()

@@ -1,0 +1,146 @@
+"""What `robolink param` list, get, describe and dump do."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import typer
+
+from robolink.cli import show
+from robolink.cli.param.ask import Asked, asking, serves
+from robolink.cli.param.values import Type, as_file, in_json, label, plain, type_name
+from robolink.cli.session import is_hidden, looking, node_of, say, tell
+from robolink.exceptions import RobolinkError
+from robolink.parameter import parameter_value_to_python
+
+if TYPE_CHECKING:
+    from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor
+
+
+class Wanted(NamedTuple):
+    """Which parameters are listed, of which nodes, and whether with their types."""
+
+    prefixes: tuple[str, ...] = ()
+    pattern: re.Pattern[str] | None = None
+    types: bool = False
+    hidden_nodes: bool = False
+
+
+Found = dict[str, str]
+"""Names of parameters, each with its type if that is wanted."""
+
+
+def compiled(pattern: str) -> re.Pattern[str] | None:
+    """Compile what `--filter` says; wrong usage where that is no regular expression."""
+    try:
+        return re.compile(pattern) if pattern else None
+    except re.error as error:
+        raise typer.BadParameter(f"--filter: no regular expression: {error}") from None
+
+
+def show_list(node: str, wanted: Wanted, *, as_json: bool) -> None:
+    """List the parameters of one node, or of all that serve them."""
+    if node:
+        with asking(node, 0.0) as asked:
+            found = {asked.name: _listed(asked, wanted)}
+    else:
+        found = _of_all(wanted)
+    if as_json:
+        say(show.as_json({name: each if wanted.types else list(each) for name, each in found.items()}))
+        return
+    for name, parameters in found.items():
+        if not node and parameters:
+            say(f"{name}:")
+        for each, type_ in parameters.items():
+            say(f"  {each} (type: {type_})" if wanted.types else f"  {each}")
+
+
+def _of_all(wanted: Wanted) -> dict[str, Found]:
+    """Ask all nodes at once. One that cannot be asked is told of, and the others are listed."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    with looking() as context:
+        names = sorted({each.full_node_name for each in context.graph.nodes()})
+        names = [name for name in names if serves(context, name) and (wanted.hidden_nodes or not is_hidden(name))]
+        asker = node_of(context)
+        with ThreadPoolExecutor(max_workers=max(1, min(32, len(names)))) as pool:
+            futures = {name: pool.submit(_listed, Asked(asker, name), wanted) for name in names}
+        found = {}
+        for name, future in futures.items():
+            try:
+                found[name] = future.result()
+            except RobolinkError as error:
+                tell(f"robolink: {name}: {error}")
+    return found
+
+
+def _listed(asked: Asked, wanted: Wanted) -> Found:
+    names = [each for each in asked.names(wanted.prefixes) if wanted.pattern is None or wanted.pattern.match(each)]
+    if not wanted.types or not names:
+        return dict.fromkeys(names, "")
+    descriptors = asked.descriptors(names)
+    return {name: type_name(each.type) for name, each in zip(names, descriptors, strict=True)}
+
+
+def show_value(node: str, parameter: str, timeout: float, *, hide_type: bool, as_json: bool) -> None:
+    """Show one value. Raises NotFoundError when there is no such parameter."""
+    with asking(node, timeout) as asked:
+        value = asked.values([parameter])[0]
+    if as_json:
+        say(show.as_json({"name": parameter, "type": type_name(value.type), "value": plain(value)}))
+    elif value.type == Type.NOT_SET:
+        say("Parameter not set.")
+    else:
+        text = str(parameter_value_to_python(value))
+        say(text if hide_type else f"{label(value.type)} {text}")
+
+
+def show_descriptors(node: str, parameters: Sequence[str], timeout: float, *, as_json: bool) -> None:
+    """Show what parameters are for. Raises NotFoundError when there is one that the node has not."""
+    with asking(node, timeout) as asked:
+        descriptors = asked.descriptors(parameters)
+    if as_json:
+        say(show.as_json([_described(each) for each in descriptors]))
+        return
+    for each in descriptors:
+        say("\n".join(_lines(each)))
+
+
+def _described(descriptor: ParameterDescriptor) -> dict[str, Any]:
+    """Give a descriptor with ros2's name of the type, and one range, whichever it is."""
+    found = show.plain(descriptor)
+    limits = found.pop("floating_point_range") + found.pop("integer_range")
+    return {**found, "type": type_name(descriptor.type), "range": limits[0] if limits else None}
+
+
+def _lines(descriptor: ParameterDescriptor) -> list[str]:
+    lines = [f"Parameter name: {descriptor.name}", f"  Type: {type_name(descriptor.type)}"]
+    if descriptor.description:
+        lines.append(f"  Description: {descriptor.description}")
+    lines.append("  Constraints:")
+    if descriptor.read_only:
+        lines.append("    Read only: true")
+    ranges: list[Any] = [*descriptor.floating_point_range, *descriptor.integer_range]
+    for limits in ranges[:1]:
+        lines += [f"    Min value: {limits.from_value}", f"    Max value: {limits.to_value}"]
+        lines += [f"    Step: {limits.step}"] if limits.step else []
+    if descriptor.additional_constraints:
+        lines.append(f"    Additional constraints: {descriptor.additional_constraints}")
+    return lines
+
+
+def dump(node: str, timeout: float, *, as_json: bool) -> None:
+    """Write the values of all parameters that have one. A parameter file cannot hold arrays of bytes."""
+    with asking(node, timeout) as asked:
+        names = asked.names()
+        values = asked.settled_values(names) if names else {}
+    values = {name: each for name, each in values.items() if each.type != Type.NOT_SET}
+    if as_json:
+        say(show.as_json(in_json(values.items())))
+        return
+    for name in [name for name, each in values.items() if each.type == Type.BYTE_ARRAY]:
+        tell(f"robolink: left out '{name}': a parameter file cannot hold a byte array")
+        del values[name]
+    say(as_file(asked.name, in_json(values.items())))

@@ -1,0 +1,133 @@
+"""Values of parameters as the commands show and read them."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterable
+from typing import Any
+
+from robolink.exceptions import DocumentError
+from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor, ParameterValue
+from robolink.parameter import (
+    PARAMETER_SEPARATOR_STRING,
+    Parameter,
+    parameter_value_to_python,
+)
+from robolink.parameter_file import PARAMETERS_KEY, parse_parameter_value, parse_scalar
+
+Type = Parameter.Type
+
+# What ros2 calls the types, and what it writes before a value.
+NAMES = {
+    Type.NOT_SET: "not set",
+    Type.BOOL: "boolean",
+    Type.INTEGER: "integer",
+    Type.DOUBLE: "double",
+    Type.STRING: "string",
+    Type.BYTE_ARRAY: "byte array",
+    Type.BOOL_ARRAY: "boolean array",
+    Type.INTEGER_ARRAY: "integer array",
+    Type.DOUBLE_ARRAY: "double array",
+    Type.STRING_ARRAY: "string array",
+}
+
+
+def type_name(number: int) -> str:
+    """Give ros2's name of a type; a number that is none of them as it is."""
+    return NAMES[Type(number)] if number in NAMES else f"unknown ({number})"
+
+
+def label(number: int) -> str:
+    """Give what stands before a value: ``Double value is:``.
+
+    >>> label(Type.STRING_ARRAY)
+    'String values are:'
+    """
+    name = type_name(number).capitalize()
+    scalar = name.removesuffix(" array")
+    return f"{name} value is:" if scalar == name else f"{scalar} values are:"
+
+
+def plain(value: ParameterValue) -> Any:
+    """Give a value as JSON and YAML have it; bytes as numbers."""
+    found = parameter_value_to_python(value)
+    return [each[0] for each in found] if value.type == Type.BYTE_ARRAY else found
+
+
+def read(text: str, descriptor: ParameterDescriptor | None) -> ParameterValue:
+    """Read a value that was typed, for a parameter of this descriptor if that is known.
+
+    A text that is no single value of YAML is a string. Where the parameter's type is fixed, the value takes it if it
+    can: 1 is a double then, and 123 a string.
+    """
+    try:
+        value: Any = parse_parameter_value(text)
+    except DocumentError:
+        value = text
+    is_string = descriptor is not None and not descriptor.dynamic_typing and descriptor.type == Type.STRING
+    return fitting(text if is_string and not isinstance(value, str) else value, descriptor)
+
+
+def fitting(value: Any, descriptor: ParameterDescriptor | None) -> ParameterValue:
+    """Give a plain value the type that the descriptor fixes, where it can have it; else its own."""
+    type_ = Type.from_parameter_value(value)
+    if descriptor is not None and not descriptor.dynamic_typing:
+        wanted = descriptor.type
+        if wanted == Type.DOUBLE and type_ is Type.INTEGER:
+            value = float(value)
+        elif wanted == Type.DOUBLE_ARRAY and type_ is Type.INTEGER_ARRAY:
+            value = [float(each) for each in value]
+        elif wanted == Type.BYTE_ARRAY and type_ is Type.INTEGER_ARRAY and all(0 <= each < 256 for each in value):
+            value = [bytes([each]) for each in value]
+        if wanted in NAMES and Type(wanted).check(value):
+            return Parameter("", Type(wanted), value).get_parameter_value()
+    return Parameter("", value=value).get_parameter_value()
+
+
+def as_file(node: str, values: dict[str, Any]) -> str:
+    """Write plain values as a parameter file that gives them back; the dots of names become levels."""
+    import yaml
+
+    document = {node: {PARAMETERS_KEY: nested(values)}}
+    return yaml.dump(document, Dumper=_dumper(), default_flow_style=False, allow_unicode=True, width=2**31 - 1).rstrip()
+
+
+def nested(values: dict[str, Any]) -> dict[str, Any]:
+    """Put ``a.b`` below ``a``, unless that is a parameter itself, or a name has a part that is empty."""
+    tree: dict[str, Any] = {}
+    for name, value in values.items():
+        parts = name.split(PARAMETER_SEPARATOR_STRING)
+        above = {PARAMETER_SEPARATOR_STRING.join(parts[:at]) for at in range(1, len(parts))}
+        if above & values.keys() or not all(parts):
+            tree[name] = value
+            continue
+        place = tree
+        for part in parts[:-1]:
+            place = place.setdefault(part, {})
+        place[parts[-1]] = value
+    return tree
+
+
+@functools.cache
+def _dumper() -> Any:
+    import yaml
+
+    class Dumper(yaml.SafeDumper):
+        """Quotes what ROS 2 would read as something else than text, such as ``1e3``; YAML itself would not."""
+
+        def ignore_aliases(self, data: Any) -> bool:
+            """Write what is met twice twice: ROS 2 knows no aliases."""
+            return True
+
+    def text_node(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
+        is_text = parse_scalar(text) == text
+        odd = any(each in text for each in "\x85\u2028\u2029")  # breaks of a line for YAML alone
+        return dumper.represent_scalar("tag:yaml.org,2002:str", text, style='"' if odd else None if is_text else "'")
+
+    Dumper.add_representer(str, text_node)
+    return Dumper
+
+
+def in_json(values: Iterable[tuple[str, ParameterValue]]) -> dict[str, Any]:
+    """Give values by name, as `plain` has them."""
+    return {name: plain(value) for name, value in values}

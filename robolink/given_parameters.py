@@ -1,0 +1,80 @@
+"""Tells of parameters that were given to a program and that no node of it declares: most are misspelt.
+
+ROS 2 keeps silent about them. What is given to whoever wants it, the section ``/**`` of a file, is never told of.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from robolink.exceptions import ExternalShutdownException, nearest
+from robolink.logging import get_logger
+
+if TYPE_CHECKING:
+    from robolink.node import Node
+    from robolink.parameter_overrides import Override
+
+ALIKE = 0.75
+"""How alike a given name and a declared one must be (difflib's ratio) to be told of before the end."""
+
+
+class GivenParameters:
+    """What of the command line of a context the nodes have not declared so far.
+
+    When nodes begin to spin, only a name is told of that is nearly that of a parameter which was declared and not
+    given: another may still be declared, as by a lifecycle node when it is configured. The rest follows at the end.
+    """
+
+    def __init__(self) -> None:
+        self._open: dict[tuple[str, str], tuple[Override, str]] = {}
+        self._seen: set[tuple[str, str]] = set()
+        self._declared: set[str] = set()
+
+    def expect(self, node: Node, overrides: Iterable[Override]) -> None:
+        """Note what is given to a new node."""
+        full_name = node.get_fully_qualified_name()
+        for each in overrides:
+            key = (each.pattern, each.name)
+            if key not in self._seen and each.is_meant_for(full_name):
+                self._seen.add(key)
+                self._open[key] = each, node.get_logger().name
+
+    def look(self, node: Node) -> None:
+        """Note what a node has declared by now; at its end, at the latest."""
+        if not self._open:
+            return
+        full_name, declared = node.get_fully_qualified_name(), node.declared_so_far
+        self._declared |= declared
+        for key, (each, _) in list(self._open.items()):
+            if each.name in declared and each.is_for(full_name):
+                del self._open[key]
+
+    def warn_of_typos(self, nodes: Iterable[Node]) -> None:
+        """Warn, once, of names that are nearly those of parameters that the nodes have."""
+        if not self._open:
+            return
+        import difflib  # late: few programs are given any parameters
+
+        for node in nodes:
+            self.look(node)
+        names = self._declared - {name for _, name in self._seen}
+        for key, (each, logger) in list(self._open.items()):
+            near = difflib.get_close_matches(each.name, names, n=1, cutoff=ALIKE)
+            if near:
+                del self._open[key]
+                _warn(each, logger, f"no node has declared it so far (did you mean '{near[0]}'?)")
+
+    def warn_of_rest(self) -> None:
+        """Warn of all that no node has declared: this is the end. An error that ends the program says enough."""
+        error = sys.exc_info()[1]
+        if isinstance(error, Exception) and not isinstance(error, ExternalShutdownException):
+            return
+        for each, logger in self._open.values():
+            _warn(each, logger, f"no node declared it{nearest(each.name, self._declared)}")
+        self._open.clear()
+
+
+def _warn(override: Override, logger: str, what: str) -> None:
+    get_logger(logger).warning(f"parameter '{override.name}' was given, but {what}")

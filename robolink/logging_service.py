@@ -1,0 +1,51 @@
+"""The two services by which others read and set the levels of a process's loggers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+from robolink import logging
+from robolink.impl.logging_severity import LoggingSeverity
+from robolink.interfaces.rcl_interfaces.msg import LoggerLevel, SetLoggerLevelsResult
+from robolink.qos import qos_profile_services_default
+
+if TYPE_CHECKING:
+    from robolink.interfaces.rcl_interfaces import srv
+    from robolink.node import Node
+
+    Get: TypeAlias = srv.GetLoggerLevels
+    Set: TypeAlias = srv.SetLoggerLevels
+
+NO_LEVEL = "Failed reason: Invalid logger level."
+"""rclpy's own words: its tests compare them."""
+
+
+class LoggingService:
+    """Serves ``~/get_logger_levels`` and ``~/set_logger_levels``, for all loggers of the process.
+
+    A logger that has no level of its own is UNSET, also where there is none of that name.
+    """
+
+    def __init__(self, node: Node) -> None:
+        from robolink.interfaces.rcl_interfaces import srv  # late: few nodes serve this
+
+        for name, srv_type, answer in (
+            ("get_logger_levels", srv.GetLoggerLevels, self._get),
+            ("set_logger_levels", srv.SetLoggerLevels, self._set),
+        ):
+            node.create_service(srv_type, f"~/{name}", answer, qos_profile=qos_profile_services_default)
+
+    def _get(self, request: Get.Request, response: Get.Response) -> Get.Response:
+        response.levels = [LoggerLevel(name=name, level=logging.get_logger_level(name)) for name in request.names]
+        return response
+
+    def _set(self, request: Set.Request, response: Set.Response) -> Set.Response:
+        response.results = [_set_level(each) for each in request.levels]
+        return response
+
+
+def _set_level(wanted: LoggerLevel) -> SetLoggerLevelsResult:
+    if wanted.level not in LoggingSeverity.__members__.values():
+        return SetLoggerLevelsResult(successful=False, reason=NO_LEVEL)
+    logging.set_logger_level(wanted.name, wanted.level, detailed_error=True)
+    return SetLoggerLevelsResult(successful=True)

@@ -1,0 +1,54 @@
+"""The callbacks that watch over a node's parameters: before they are set, on setting them, and afterwards."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
+from robolink.parameter import Parameter
+
+Parameters: TypeAlias = list[Parameter[Any]]
+PreSetCallback: TypeAlias = Callable[[Parameters], Parameters]
+OnSetCallback: TypeAlias = Callable[[Parameters], SetParametersResult]
+PostSetCallback: TypeAlias = Callable[[Parameters], None]
+
+
+class ParameterCallbacks:
+    """The part of a node that keeps these callbacks."""
+
+    def _init_parameter_callbacks(self) -> None:
+        self._pre_set_parameters_callbacks: list[PreSetCallback] = []
+        self._on_set_parameters_callbacks: list[OnSetCallback] = []
+        self._post_set_parameters_callbacks: list[PostSetCallback] = []
+
+    def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
+        """Have `callback` give the list of parameters to set in place of the one asked for, before all checks.
+
+        The latest added is called first; their lists are joined. Declaring does not call it.
+        """
+        self._pre_set_parameters_callbacks.insert(0, callback)
+
+    def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
+        """Have `callback` say whether parameters may be set or declared; the latest added is called first.
+
+        Its result refuses them by ``successful=False``, with the reason. Names that it does not know it should let
+        pass: other parts of the node may know them.
+        """
+        self._on_set_parameters_callbacks.insert(0, callback)
+
+    def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
+        """Have `callback` called with parameters that have been set or declared; the latest added is called first."""
+        self._post_set_parameters_callbacks.insert(0, callback)
+
+    def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
+        """Call it no longer. Raises ValueError when it was not added."""
+        self._pre_set_parameters_callbacks.remove(callback)
+
+    def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
+        """Call it no longer. Raises ValueError when it was not added."""
+        self._on_set_parameters_callbacks.remove(callback)
+
+    def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
+        """Call it no longer. Raises ValueError when it was not added."""
+        self._post_set_parameters_callbacks.remove(callback)

@@ -1,0 +1,173 @@
+"""Callbacks for the changes of parameters, of any node: one parameter's, or all events."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterable
+from itertools import chain
+from typing import TYPE_CHECKING, Any
+
+from robolink.interfaces.rcl_interfaces.msg import Parameter, ParameterEvent
+from robolink.names import absolute_namespace, join
+from robolink.qos import QoSProfile, qos_profile_parameter_events
+
+if TYPE_CHECKING:
+    from robolink.callback_groups import CallbackGroup
+    from robolink.event_handler import SubscriptionEventCallbacks
+    from robolink.node import Node
+    from robolink.qos_overriding_options import QoSOverridingOptions
+
+
+class ParameterCallbackHandle:
+    """A callback for one parameter: what takes it away again."""
+
+    def __init__(self, parameter_name: str, node_name: str, callback: Callable[[Parameter], None]) -> None:
+        self.parameter_name = parameter_name
+        self.node_name = node_name
+        self.callback = callback
+
+
+class ParameterEventCallbackHandle:
+    """A callback for all events: what takes it away again."""
+
+    def __init__(self, callback: Callable[[ParameterEvent], None]) -> None:
+        self.callback = callback
+
+
+class ParameterEventHandler:
+    """Calls back when parameters of any node change; `node` subscribes to /parameter_events for it.
+
+        handler = ParameterEventHandler(node)
+        handler.add_parameter_callback("speed", "driver", on_speed)
+
+    The latest added is called first. A callback may add and remove callbacks, itself too; that counts from the next
+    event on.
+    """
+
+    class Callbacks:
+        """The callbacks that were added."""
+
+        def __init__(self) -> None:
+            self.parameter_callbacks: dict[tuple[str, str], list[ParameterCallbackHandle]] = {}
+            """By the names of the parameter and of its node."""
+            self.event_callbacks: list[ParameterEventCallbackHandle] = []
+            self._lock = threading.Lock()
+
+        def event_callback(self, event: ParameterEvent) -> None:
+            """Call those whose parameter is in the event, as new or changed, then those for all events."""
+            with self._lock:
+                wanted = [(key, list(handles)) for key, handles in self.parameter_callbacks.items()]
+                for_all = list(self.event_callbacks)
+            for (parameter_name, node_name), handles in wanted:
+                parameter = ParameterEventHandler.get_parameter_from_event(event, parameter_name, node_name)
+                if parameter is not None:
+                    for handle in handles:
+                        handle.callback(parameter)
+            for each in for_all:
+                each.callback(event)
+
+        def add_parameter_callback(
+            self, parameter_name: str, node_name: str, callback: Callable[[Parameter], None]
+        ) -> ParameterCallbackHandle:
+            """Call `callback(parameter)` when this parameter of the node of this full name changes."""
+            handle = ParameterCallbackHandle(parameter_name, node_name, callback)
+            with self._lock:
+                self.parameter_callbacks.setdefault((parameter_name, node_name), []).insert(0, handle)
+            return handle
+
+        def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
+            """Call it no longer. Raises RuntimeError when it is not there."""
+            key = (handle.parameter_name, handle.node_name)
+            with self._lock:
+                handles = self.parameter_callbacks.get(key, [])
+                _remove(handle, handles)
+                if not handles:
+                    del self.parameter_callbacks[key]
+
+        def add_parameter_event_callback(
+            self, callback: Callable[[ParameterEvent], None]
+        ) -> ParameterEventCallbackHandle:
+            """Call `callback(event)` for each event."""
+            handle = ParameterEventCallbackHandle(callback)
+            with self._lock:
+                self.event_callbacks.insert(0, handle)
+            return handle
+
+        def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
+            """Call it no longer. Raises RuntimeError when it is not there."""
+            with self._lock:
+                _remove(handle, self.event_callbacks)
+
+    def __init__(
+        self,
+        node: Node,
+        qos_profile: QoSProfile = qos_profile_parameter_events,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: bool = False,
+    ) -> None:
+        self.node = node
+        self.qos_profile = qos_profile
+        self._callbacks = ParameterEventHandler.Callbacks()
+        self.parameter_event_subscription = node.create_subscription(
+            ParameterEvent,
+            "/parameter_events",
+            self._callbacks.event_callback,
+            qos_profile,
+            callback_group=callback_group,
+            event_callbacks=event_callbacks,
+            qos_overriding_options=qos_overriding_options,
+            raw=raw,
+        )
+
+    def destroy(self) -> None:
+        """End the subscription: nothing is called any more."""
+        self.node.destroy_subscription(self.parameter_event_subscription)
+
+    @staticmethod
+    def get_parameter_from_event(event: ParameterEvent, parameter_name: str, node_name: str) -> Parameter | None:
+        """Give a parameter that an event says is new or changed; None when it says nothing of that node's parameter."""
+        if event.node != node_name:
+            return None
+        found = ParameterEventHandler.get_parameters_from_event(event)
+        return next((each for each in found if each.name == parameter_name), None)
+
+    @staticmethod
+    def get_parameters_from_event(event: ParameterEvent) -> Iterable[Parameter]:
+        """Give all parameters that an event says are new or changed."""
+        yield from chain(event.new_parameters, event.changed_parameters)
+
+    def add_parameter_callback(
+        self, parameter_name: str, node_name: str, callback: Callable[[Parameter], None]
+    ) -> ParameterCallbackHandle:
+        """Call `callback(parameter)`, with the message, when a parameter is new or has changed.
+
+        A `node_name` without a leading slash is within the namespace of this handler's node; '' is that node.
+        """
+        return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)
+
+    def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
+        """Call it no longer. Raises RuntimeError when it is not there."""
+        self._callbacks.remove_parameter_callback(handle)
+
+    def add_parameter_event_callback(self, callback: Callable[[ParameterEvent], None]) -> ParameterEventCallbackHandle:
+        """Call `callback(event)` for each event of any node."""
+        return self._callbacks.add_parameter_event_callback(callback)
+
+    def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
+        """Call it no longer. Raises RuntimeError when it is not there."""
+        self._callbacks.remove_parameter_event_callback(handle)
+
+    def _resolve_path(self, node_path: str | None = None) -> str:
+        if not node_path:
+            return self.node.get_fully_qualified_name()
+        if node_path.startswith("/"):
+            return node_path
+        return join(absolute_namespace(self.node.get_namespace()), node_path)
+
+
+def _remove(handle: Any, handles: list[Any]) -> None:
+    if handle not in handles:
+        raise RuntimeError("this callback is not there: it was removed before, or never added")
+    handles.remove(handle)

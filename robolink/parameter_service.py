@@ -1,0 +1,152 @@
+"""The six services by which others read, set and describe a node's parameters."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from robolink.exceptions import ExternalShutdownException, ParameterUninitializedException, nearest, shown
+from robolink.interfaces.rcl_interfaces.msg import ListParametersResult, SetParametersResult
+from robolink.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
+from robolink.parameter import Parameter
+from robolink.qos import qos_profile_parameters
+
+if TYPE_CHECKING:
+    from robolink.interfaces.rcl_interfaces import srv
+    from robolink.node import Node
+
+    Get: TypeAlias = srv.GetParameters
+    GetTypes: TypeAlias = srv.GetParameterTypes
+    List: TypeAlias = srv.ListParameters
+    Set: TypeAlias = srv.SetParameters
+    SetAtomically: TypeAlias = srv.SetParametersAtomically
+    Describe: TypeAlias = srv.DescribeParameters
+
+MOST = 10_000
+"""Parameters that one request may set: each may be a new one, which costs as much as all those before it."""
+
+MOST_HINTS = 10
+"""Unknown names of one request for which the nearest known one is looked up, and how long a name may be for it."""
+LONGEST_HINTED = 100
+
+
+class ParameterService:
+    """Answers for a node's parameters at ``~/get_parameters``, ``~/set_parameters`` and four more.
+
+    One name that is not declared, or has no value yet, empties the whole answer of those that ask by name, as in rclpy.
+    What cannot be set is answered with the reason. So is an exception in a callback of the node's, which is logged
+    too: a request never ends the node.
+    """
+
+    def __init__(self, node: Node) -> None:
+        from robolink.interfaces.rcl_interfaces import srv  # late: it takes a millisecond
+
+        self._node = weakref.ref(node)  # the transport holds the services: they must not keep the node alive
+        for name, srv_type, answer in (
+            ("describe_parameters", srv.DescribeParameters, self._describe),
+            ("get_parameters", srv.GetParameters, self._get),
+            ("get_parameter_types", srv.GetParameterTypes, self._get_types),
+            ("list_parameters", srv.ListParameters, self._list),
+            ("set_parameters", srv.SetParameters, self._set_each),
+            ("set_parameters_atomically", srv.SetParametersAtomically, self._set_all),
+        ):
+            node.create_service(srv_type, f"~/{name}", answer, qos_profile=qos_profile_parameters)
+
+    def _alive(self) -> Node:
+        node = self._node()
+        if node is None:
+            raise ReferenceError("the node of these parameters is gone")
+        return node
+
+    def _has_all(self, names: Sequence[str]) -> bool:
+        """Say whether all may be asked for. Asking would raise, but with the nearest name, which takes its time."""
+        node = self._alive()
+        return node._allow_undeclared_parameters or all(node.has_parameter(each) for each in names)
+
+    def _describe(self, request: Describe.Request, response: Describe.Response) -> Describe.Response:
+        if self._has_all(request.names):
+            response.descriptors = self._alive().describe_parameters(list(request.names))
+        return response
+
+    def _get(self, request: Get.Request, response: Get.Response) -> Get.Response:
+        try:
+            if self._has_all(request.names):
+                found = self._alive().get_parameters(list(request.names))
+                response.values = [each.get_parameter_value() for each in found]
+        except ParameterUninitializedException:
+            pass
+        return response
+
+    def _get_types(self, request: GetTypes.Request, response: GetTypes.Response) -> GetTypes.Response:
+        if self._has_all(request.names):
+            response.types = [each.value for each in self._alive().get_parameter_types(list(request.names))]
+        return response
+
+    def _list(self, request: List.Request, response: List.Response) -> List.Response:
+        try:
+            response.result = self._alive().list_parameters(list(request.prefixes), request.depth)
+        except (TypeError, ValueError):
+            response.result = ListParametersResult()
+        return response
+
+    def _set_each(self, request: Set.Request, response: Set.Response) -> Set.Response:
+        given, unknown = request.parameters, 0
+        for each in given:
+            unknown += not self._alive().has_parameter(each.name)
+            response.results.append(self._set([each], len(given), hint=unknown <= MOST_HINTS))
+        return response
+
+    def _set_all(self, request: SetAtomically.Request, response: SetAtomically.Response) -> SetAtomically.Response:
+        response.result = self._set(request.parameters, len(request.parameters), hint=True)
+        return response
+
+    def _set(self, messages: Sequence[ParameterMsg], asked: int, *, hint: bool) -> SetParametersResult:
+        if asked > MOST:
+            return _refused(f"one request may set {MOST} parameters, got {asked}")
+        node = self._alive()
+        try:
+            parameters: list[Parameter[Any]] = [Parameter.from_parameter_msg(each) for each in messages]
+        except ValueError as error:
+            return _refused(shown(str(error), 200))
+        problem = self._problem([each.name for each in messages], hint)
+        if problem:
+            return _refused(problem)
+        try:
+            result = node.set_parameters_atomically(parameters)
+            return SetParametersResult(successful=bool(result.successful), reason=str(result.reason))
+        except ExternalShutdownException:
+            raise
+        except Exception as error:  # noqa: BLE001 - a callback of the user's that this value is too much for
+            return _failed(node, parameters, error)
+
+    def _problem(self, names: Sequence[str], hint: bool) -> str:
+        """Say which of these cannot be set, by its name alone; nothing if all can be."""
+        node = self._alive()
+        if node._pre_set_parameters_callbacks:  # they may put others in their place
+            return ""
+        if "" in names:
+            return "a parameter's name must not be empty"
+        if node._allow_undeclared_parameters:
+            return ""
+        missing = next((each for each in names if not node.has_parameter(each)), None)
+        if missing is None:
+            return ""
+        near = nearest(missing, node.get_parameters_by_prefix("")) if hint and len(missing) <= LONGEST_HINTED else ""
+        return f"Parameter not declared: {shown(missing)}{near}"
+
+
+def _refused(reason: str) -> SetParametersResult:
+    return SetParametersResult(successful=False, reason=reason)
+
+
+def _failed(node: Node, parameters: Sequence[Parameter[Any]], error: Exception) -> SetParametersResult:
+    """Answer for an exception while parameters were set; where it came after that, they stay set."""
+    import traceback
+
+    text = shown(f"{type(error).__name__}: {error}", 200)
+    trace = "".join(traceback.format_exception(type(error), error, error.__traceback__)).rstrip()
+    node.get_logger().error(f"a request to set parameters failed:\n{trace}")
+    is_set = all(node.get_parameter_or(each.name) is each for each in parameters)
+    where = "it was set, and then a callback of the node's failed" if is_set else "a callback of the node's failed"
+    return SetParametersResult(successful=is_set, reason=f"{where}: {text}")
