@@ -72,6 +72,8 @@ ROWS = (
     robolink("interface list", "sensor_msgs/msg/LaserScan", limit=0.7),
     robolink("topic echo --once /bench/topic_0", "linear:", limit=1.0),
     robolink("service call /bench/switch_7 std_srvs/srv/SetBool", "success=True", limit=1.0),
+    robolink("param list", "/bench/node_29:", NODES, 1.0),
+    robolink("param get /bench/node_7 use_sim_time", "Boolean value is: False", limit=1.0),
     robolink("doctor", "", limit=2.0),
 )
 

@@ -8,6 +8,7 @@ Everything is imported when it is first used, so that ``import robolink`` costs 
 from __future__ import annotations
 
 import importlib
+import sys
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -19,7 +20,9 @@ if TYPE_CHECKING:
     from robolink.node import Node
     from robolink.parameter import Parameter
     from robolink.qos import QoSProfile
+    from robolink.signals import SignalHandlerOptions, install_signal_handlers, uninstall_signal_handlers
     from robolink.spinning import (
+        InitContextManager,
         create_node,
         get_global_executor,
         init,
@@ -32,7 +35,7 @@ if TYPE_CHECKING:
     from robolink.task import Future
     from robolink.time import Time
     from robolink.timebase import VirtualTime
-    from robolink.utilities import get_default_context, ok
+    from robolink.utilities import get_default_context, get_rmw_implementation_identifier, ok
 
 _HOMES = {
     "Clock": "clock",
@@ -40,28 +43,34 @@ _HOMES = {
     "Duration": "duration",
     "ExternalShutdownException": "exceptions",
     "Future": "task",
+    "InitContextManager": "spinning",
     "Message": "message",
     "Node": "node",
     "Parameter": "parameter",
     "QoSProfile": "qos",
     "RobolinkError": "exceptions",
+    "SignalHandlerOptions": "signals",
     "Time": "time",
     "VirtualTime": "timebase",
     "create_node": "spinning",
     "get_default_context": "utilities",
     "get_global_executor": "spinning",
+    "get_rmw_implementation_identifier": "utilities",
     "init": "spinning",
+    "install_signal_handlers": "signals",
     "ok": "utilities",
     "shutdown": "spinning",
     "spin": "spinning",
     "spin_once": "spinning",
     "spin_until_future_complete": "spinning",
     "try_shutdown": "spinning",
+    "uninstall_signal_handlers": "signals",
 }
 """Each public name and the module that it lives in."""
 
 _ROOMS = frozenset(
     [
+        "action",
         "callback_groups",
         "client",
         "clock",
@@ -73,25 +82,39 @@ _ROOMS = frozenset(
         "executors",
         "expand_topic_name",
         "guard_condition",
+        "impl",
+        "lifecycle",
         "logging",
+        "logging_service",
         "node",
         "parameter",
+        "parameter_client",
+        "parameter_event_handler",
+        "parameter_service",
         "publisher",
         "qos",
+        "qos_overriding_options",
+        "serialization",
         "service",
+        "service_introspection",
         "signals",
         "subscription",
         "task",
+        "tf2",
         "time",
         "time_source",
         "timer",
         "topic_or_service_is_hidden",
+        "transformations",
+        "type_support",
         "utilities",
         "validate_full_topic_name",
         "validate_namespace",
         "validate_node_name",
         "validate_parameter_name",
         "validate_topic_name",
+        "wait_for_message",
+        "waitable",
     ]
 )
 """Modules that a bare ``import robolink as rclpy`` gives as attributes: programs rely on ``rclpy.qos`` and the like."""
@@ -102,23 +125,28 @@ __all__ = [
     "Duration",
     "ExternalShutdownException",
     "Future",
+    "InitContextManager",
     "Message",
     "Node",
     "Parameter",
     "QoSProfile",
     "RobolinkError",
+    "SignalHandlerOptions",
     "Time",
     "VirtualTime",
     "create_node",
     "get_default_context",
     "get_global_executor",
+    "get_rmw_implementation_identifier",
     "init",
+    "install_signal_handlers",
     "ok",
     "shutdown",
     "spin",
     "spin_once",
     "spin_until_future_complete",
     "try_shutdown",
+    "uninstall_signal_handlers",
 ]
 
 
@@ -132,7 +160,10 @@ def __getattr__(name: str) -> Any:
 
         value = version("robolink")
     else:
-        raise AttributeError(f"module 'robolink' has no attribute '{name}'")
+        from robolink.lacking import lacking
+
+        imported_as = "rclpy" if sys.modules.get("rclpy") is sys.modules["robolink"] else "robolink"
+        raise lacking(imported_as, name, lambda: [*__all__, *_ROOMS], sys._getframe(1))
     globals()[name] = value
     return value
 

@@ -166,7 +166,8 @@ class _Parser:
         if parts is None:
             raise ValueError("expected name:=value or node:name:=value")
         pattern = f"/{parts['node'] or '**'}"
-        self.overrides.append(Override(pattern, parts["name"], parse_parameter_value(parts["value"], "value")))
+        typed = parse_parameter_value(parts["value"], "value")
+        self.overrides.append(Override(pattern, parts["name"], typed, is_typed=True))
 
     def parameter_file(self, value: str) -> None:
         from robolink.parameter_file import read_parameter_file

@@ -8,8 +8,9 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup
+from robolink.clock import Clock
 from robolink.endpoint import Endpoint, Owner
-from robolink.entity import Receiver
+from robolink.entity import NOTHING, Entity, Receiver
 from robolink.exceptions import (
     DecodeError,
     ExternalShutdownException,
@@ -19,9 +20,12 @@ from robolink.exceptions import (
     WireError,
 )
 from robolink.inbox import Inbox
+from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, encoder, service_type
 from robolink.qos import QoSProfile
+from robolink.service_introspection import Introspection, introspect
+from robolink.service_introspection import ServiceIntrospectionState as ServiceIntrospectionState
 from robolink.task import Future
 from robolink.transport.base import Handle
 from robolink.wire import NO_HASH, EndpointKind, unpack_attachment
@@ -39,8 +43,8 @@ class _Call:
 
     straight = False
 
-    def __init__(self, client: Client, inbox: Inbox, future: Future[Any]) -> None:
-        self.client, self.future = client, future
+    def __init__(self, client: Client, inbox: Inbox, future: Future[Any], fails: bool) -> None:
+        self.client, self.future, self.fails = client, future, fails
         self.sequence_number = 0
         self.sink: functools.partial[Any] = inbox.sink(self)
         self.handle: Handle | None = None
@@ -55,7 +59,8 @@ class _Call:
 class Client(Receiver):
     """Asks one service; made by `Node.create_client`."""
 
-    serves = True
+    serves = quick = True
+    gives_way = True  # as in rclpy: whoever spins until the answer is there has also seen what had arrived by then
 
     def __init__(
         self,
@@ -81,6 +86,9 @@ class Client(Receiver):
         self._destroyed = False
         self.malformed = 0
         """How many answers could not be read."""
+        self._silent = False
+        self.introspection: Introspection | None = None
+        """Tells of requests and responses, once `configure_introspection` has been asked for it."""
         self._endpoint.announce()
         self._context.on_shutdown(self._release)
 
@@ -93,44 +101,76 @@ class Client(Receiver):
     def call(self, request: Message, timeout_sec: float | None = None) -> Any:
         """Ask and wait for the answer; in a callback as well: what serves goes on meanwhile.
 
-        Raises TypeError for a request of another type, TimeoutError when no answer comes in `timeout_sec` seconds,
-        ServiceError (a RuntimeError) when nobody serves, or only what this very call keeps from serving.
+        Raises TypeError for a request of another type, TimeoutError when no answer comes in `timeout_sec` seconds, and
+        ServiceError (a RuntimeError) at once when only what this very call keeps from serving could answer, or, without
+        a timeout, when nobody serves or the server goes away.
         """
+        return self._call(request, timeout_sec, patient=timeout_sec is not None)
+
+    def try_call(self, request: Message, timeout_sec: float | None = None) -> Any:
+        """As `call`, but raise a ServiceError as soon as it is known that no answer will come, timeout or not."""
+        return self._call(request, timeout_sec, patient=False)
+
+    def _call(self, request: Message, timeout_sec: float | None, *, patient: bool) -> Any:
         executor = self.executor
         if executor is None or not executor.spins_here:
-            return self._call_from_outside(request, timeout_sec)
-        self._refuse_deadlock(executor)
-        deadline = None if timeout_sec is None else self._context.time.steady() + int(timeout_sec * 1e9)
-        future = self.call_async(request)
-        executor.serve_until(future.done, deadline)
-        if not future.done():
-            self.remove_pending_request(future)
-            raise self._timeout(timeout_sec)
-        return future.result()
+            return self._call_from_outside(request, timeout_sec, patient)
+        with executor.waiting_for(self._only_servers(executor)) as would_wait_for_itself:
+            if would_wait_for_itself:
+                raise ServiceError(
+                    f"service {self.srv_name} is served only by the callback group that this call keeps busy;"
+                    " give the service or the caller a callback group of its own, or use call_async"
+                )
+            return self._call_in_callback(executor, request, timeout_sec, patient)
 
-    def _call_from_outside(self, request: Message, timeout_sec: float | None) -> Any:
+    def _only_servers(self, executor: Executor) -> list[Entity]:
+        """The servers that are this executor's, if nobody else serves and they may be the caller's own victims."""
+        served = (each for node in executor.get_nodes() for each in node.all_services())
+        local: list[Entity] = [each for each in served if each.srv_name == self.srv_name]
+        is_free = any(each.callback_group.can_execute(each) for each in local)
+        if not local or (is_free and not executor.parallel):
+            return []
+        everywhere = self._context.graph.endpoints(EndpointKind.SERVICE, name=self.srv_name)
+        return local if len(everywhere) <= len(local) else []
+
+    def _call_in_callback(self, executor: Executor, request: Message, timeout_sec: float | None, patient: bool) -> Any:
+        deadline = None if timeout_sec is None else self._context.time.steady() + int(timeout_sec * 1e9)
+        future = self.try_call_async(request)
+        executor.serve_until(future, deadline)
+        if future.done() and (future.exception() is None or not patient):
+            return future.result()
+        executor.serve_until(Future(), deadline)
+        self.remove_pending_request(future)
+        raise self._timeout(timeout_sec, future.exception())
+
+    def _call_from_outside(self, request: Message, timeout_sec: float | None, patient: bool) -> Any:
         packed = self._packed(request)
         answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._outside.add(answers)
         handle = self._transport.call(self._key(), *packed, answers.put)
         try:
-            return self._first_readable(answers, timeout_sec)
-        except queue.Empty:
-            raise self._timeout(timeout_sec) from None
+            return self._first_readable(answers, timeout_sec, patient)
         finally:
             self._outside.discard(answers)
             handle.close()
 
-    def _first_readable(self, answers: queue.SimpleQueue[Any], timeout_sec: float | None) -> Any:
+    def _first_readable(self, answers: queue.SimpleQueue[Any], timeout_sec: float | None, patient: bool) -> Any:
         """Wait for an answer; one that cannot be read is passed over, since another server may do better."""
         deadline = None if timeout_sec is None else time.monotonic() + timeout_sec
         bad: Exception | None = None
+        reason: ServiceError | None = None
         while True:
-            answer = answers.get(timeout=None if deadline is None else max(0.0, deadline - time.monotonic()))
+            try:
+                answer = answers.get(timeout=None if deadline is None else max(0.0, deadline - time.monotonic()))
+            except queue.Empty:
+                raise self._timeout(timeout_sec, reason) from None
             if answer is _RELEASED:
                 raise ExternalShutdownException(f"service {self.srv_name}: the context ended before the answer came")
             if answer is None:
-                raise self._no_answer(bad)
+                reason = self._no_answer(bad)
+                if not patient:
+                    raise reason
+                continue
             try:
                 return self._read(answer)
             except _UNREADABLE as error:
@@ -147,31 +187,27 @@ class Client(Receiver):
         for answers in list(self._outside):
             answers.put(_RELEASED)
 
-    def _timeout(self, timeout_sec: float | None) -> TimeoutError:
-        return TimeoutError(f"service {self.srv_name}: no answer within {timeout_sec} s")
-
-    def _refuse_deadlock(self, executor: Executor) -> None:
-        """Say at once when the only server waits for this callback to end."""
-        local = [each for node in executor.get_nodes() for each in node.services if each.srv_name == self.srv_name]
-        if not local or any(each.callback_group.can_execute(each) for each in local):
-            return
-        # Unless others serve it too: other processes, other executors.
-        if len(self._context.graph.endpoints(EndpointKind.SERVICE, name=self.srv_name)) <= len(local):
-            raise ServiceError(
-                f"service {self.srv_name} is served only by the callback group that this call keeps busy;"
-                " give the service or the caller a callback group of its own, or use call_async"
-            )
+    def _timeout(self, timeout_sec: float | None, reason: BaseException | None) -> TimeoutError:
+        text = f"service {self.srv_name}: no answer within {timeout_sec} s"
+        return TimeoutError(text if reason is None else f"{text}: {str(reason).partition(': ')[2]}")
 
     def call_async(self, request: Message) -> Future[Any]:
         """Ask; the answer comes through the future, once something spins.
 
-        The future gets a ServiceError when nobody serves or the server goes away before it has answered.
+        The future is never done when nobody serves or the server goes away, as in rclpy; a warning says so.
         """
+        return self._ask(request, fails=False)
+
+    def try_call_async(self, request: Message) -> Future[Any]:
+        """As `call_async`, but the future gets a ServiceError as soon as it is known that no answer will come."""
+        return self._ask(request, fails=True)
+
+    def _ask(self, request: Message, *, fails: bool) -> Future[Any]:
         packed = self._packed(request)
         executor = self.executor
         future: Future[Any] = Future(executor=executor)
         inbox = self._parking if executor is None else executor.inbox
-        call = _Call(self, inbox, future)
+        call = _Call(self, inbox, future, fails)
         self._calls.add(call)
         call.sequence_number = unpack_attachment(packed[1]).sequence
         call.handle = self._transport.call(self._key(), *packed, call.sink)
@@ -182,7 +218,16 @@ class Client(Receiver):
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
         if self._destroyed:
             raise InvalidHandle(f"the client of {self.srv_name} has been destroyed")
-        return self._encode(request), self._endpoint.attachment()
+        packed = self._encode(request), self._endpoint.attachment()
+        if self.introspection is not None:
+            asked = unpack_attachment(packed[1])
+            self.introspection.tell(ServiceEventInfo.REQUEST_SENT, request, asked.sequence, asked.gid)
+        return packed
+
+    def take(self) -> Any:
+        """Give the oldest answer."""
+        taken = super().take()
+        return taken if taken is NOTHING or taken[0] in self._calls else NOTHING  # after its answer, no turn
 
     def execute(self, taken: tuple[_Call, Any]) -> None:
         """Complete the future of a call."""
@@ -194,18 +239,34 @@ class Client(Receiver):
         except _UNREADABLE as error:
             call.bad = self._refuse(error)  # another server may do better; the end of all answers comes in any case
             return
-        self._calls.discard(call)
         if call.handle is not None:
             call.handle.close()
+        if answer is None and not call.fails:
+            self._warn_of_silence(call)
+            return  # and the call stays among those under way, where whoever waits for it is kept
+        self._calls.discard(call)
+        call.future._set_executor(self.executor)
         if answer is None:
             call.future.set_exception(self._no_answer(call.bad))
         else:
+            self._silent = False
             call.future.set_result(answer)
+
+    def _warn_of_silence(self, call: _Call) -> None:
+        if not self._silent:
+            self._silent = True
+            get_logger(self.logger_name).warning(
+                f"{self._no_answer(call.bad)}; the future of this call will never be done"
+                " (until there is an answer, other such calls are not told)"
+            )
 
     def _read(self, arrived: Any) -> Any:
         payload, attachment = self._transport.read(arrived)
-        unpack_attachment(attachment)
-        return self._decode(payload)
+        asked = unpack_attachment(attachment)
+        response = self._decode(payload)
+        if self.introspection is not None:
+            self.introspection.tell(ServiceEventInfo.RESPONSE_RECEIVED, response, asked.sequence, asked.gid)
+        return response
 
     def _no_answer(self, bad: Exception | None) -> ServiceError:
         if bad is None:
@@ -223,14 +284,14 @@ class Client(Receiver):
 
     def remove_pending_request(self, future: Future[Any]) -> None:
         """Give up a call: its future will not be completed."""
-        for call in [each for each in self._calls if each.future is future]:
+        for call in [each for each in list(self._calls) if each.future is future]:
             self._calls.discard(call)
             if call.handle is not None:
                 call.handle.close()
 
     def get_pending_request(self, sequence_number: int) -> Future[Any]:
         """Give the future of a call under way. Raises KeyError when there is none of that number."""
-        for call in self._calls:
+        for call in list(self._calls):
             if call.sequence_number == sequence_number:
                 return call.future
         raise KeyError(sequence_number)
@@ -249,6 +310,17 @@ class Client(Receiver):
             graph.wait_for(lambda: self.service_is_ready() or not self._context.ok(), timeout_sec)
         return self.service_is_ready()
 
+    def configure_introspection(
+        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Publish on SERVICE/_service_event, from now on, what is asked and what is answered; nothing for OFF.
+
+        `clock` gives the stamps. Raises TypeError for what is no state.
+        """
+        self.introspection = introspect(
+            self.introspection, self._endpoint, self.srv_type, clock, service_event_qos_profile, introspection_state
+        )
+
     @property
     def service_name(self) -> str:
         """The service's fully qualified name."""
@@ -266,6 +338,8 @@ class Client(Receiver):
         self._destroyed = True
         for call in list(self._calls):
             self.remove_pending_request(call.future)
+        if self.introspection is not None:
+            self.introspection.close()
         self._endpoint.close()
         self.detach()
 

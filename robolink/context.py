@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 from robolink import humble, signals
 from robolink.arguments import Arguments, parse_arguments
 from robolink.exceptions import NotInitializedException, RobolinkError
+from robolink.given_parameters import GivenParameters
 from robolink.inbox import Inbox, Sweeper
 from robolink.timebase import SystemTime, TimeBase
 
@@ -46,6 +47,7 @@ class Context:
     def __init__(self, *, transport: str | Transport | None = None, time: TimeBase | None = None) -> None:
         self.time: TimeBase = time or SystemTime()
         self.arguments = Arguments()
+        self.given_parameters = GivenParameters()
         self.interrupted = False
         """Whether a signal ended this context."""
         self.speaks_humble = False
@@ -206,6 +208,7 @@ class Context:
         try:
             for node in list(self._nodes):
                 node.destroy_node()
+            self.given_parameters.warn_of_rest()
         finally:  # a node's own destroy_node is anybody's code
             with self._lock:
                 transport, self._transport = self._transport, None
@@ -218,9 +221,15 @@ class Context:
                 transport.close()
 
     def on_shutdown(self, callback: Callable[[], Any]) -> None:
-        """Call `callback()` when the context ends; a bound method is held weakly."""
+        """Call `callback()` when the context ends, at once if it has ended; a bound method is held weakly.
+
+        Raises TypeError for what cannot be called.
+        """
         if not callable(callback):
-            raise TypeError("callback should be a callable")
+            raise TypeError(f"callback should be a callable, got {type(callback)}")
+        if self._initialized and not self._ok:
+            callback()
+            return
         with self._lock:
             held = weakref.WeakMethod(callback) if isinstance(callback, MethodType) else callback
             self._callbacks = [*filter(_lives, self._callbacks), held]

@@ -43,7 +43,7 @@ class Endpoint:
     """
 
     def __init__(self, owner: Owner, kind: EndpointKind, name: str, ros_type: type[Any], qos: QoSProfile) -> None:
-        self.context, self.name, self.qos = owner.context, name, qos
+        self.owner, self.context, self.name, self.qos = owner, owner.context, name, qos
         self.domain_id = owner.context.get_domain_id()
         self.type_name = type_name(ros_type)
         self.type_hash = NO_HASH if owner.context.speaks_humble else type_hash(ros_type)
@@ -63,7 +63,8 @@ class Endpoint:
             self.type_hash,
             qos,
         )
-        self.gid = gid_of(format_token(self.token))
+        self._text = format_token(self.token)
+        self.gid = gid_of(self._text)
         self.attachment = attachments(self.gid, owner.context.time.now)
         """Make the attachment of the next thing that is sent from here."""
         self.others: dict[bytes, EndpointToken] = {}
@@ -86,7 +87,7 @@ class Endpoint:
         """Get to know the other ends, and show this one to everybody."""
         graph = self.context.graph
         self._following = graph.follow(self.name, OTHER_END[self.token.kind], self._on_other_end)
-        self._announced = graph.announce(self.token)
+        self._announced = graph.announce(self.token, self._text)
 
     def count_others(self) -> int:
         """How many ends there are that this one meets; Humble peers count once their key is in use."""

@@ -6,6 +6,7 @@ import functools
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup, ReentrantCallbackGroup
+from robolink.destroyable import Destroyable
 from robolink.inbox import Inbox, Mailbox
 
 if TYPE_CHECKING:
@@ -17,17 +18,25 @@ NOTHING: Any = object()
 ANY_TIME = ReentrantCallbackGroup()
 
 
-class Entity:
+class Entity(Destroyable):
     """Something that becomes ready, is taken, and then executed. At most one executor has it at a time."""
 
     serves = False
     """Whether it goes on while a callback waits for an answer: services and clients do."""
+
+    quick = False
+    """Whether no user's code is in it, so that an executor need not give it a thread."""
 
     def __init__(self, callback_group: CallbackGroup | None = None) -> None:
         self.callback_group: CallbackGroup = callback_group or ANY_TIME
         self.executor: Executor | None = None
         if callback_group is not None:
             callback_group.add_entity(self)
+
+    @property
+    def origin(self) -> Entity:
+        """The entity whose callback is executed: another one for the parts of a callback that is a coroutine."""
+        return self
 
     def attach(self, executor: Executor, queued: int = 0) -> None:
         """Belong to this executor from now on; it is `queued` times among what is ready there already."""
@@ -46,16 +55,44 @@ class Entity:
         raise NotImplementedError
 
 
+class Asked(Entity):
+    """An entity that does not tell when it becomes ready: its executor asks it whenever it looks around."""
+
+    waits = False
+    """Whether it was found ready and waits its turn."""
+
+    def is_ready(self) -> bool:
+        """Whether there is something to execute; called by whoever spins."""
+        raise NotImplementedError
+
+    def attach(self, executor: Executor, queued: int = 0) -> None:
+        """Be asked by this executor."""
+        super().attach(executor, queued)
+        self.waits = queued > 0
+        executor.asked = [*executor.asked, self]
+
+    def detach(self) -> None:
+        """Be asked by none."""
+        executor = self.executor
+        if executor is not None:
+            executor.asked = [each for each in executor.asked if each is not self]
+        super().detach()
+
+
 class Receiver(Entity):
     """An entity that a transport delivers to: it has a mailbox, and a sink that leads to whoever spins it."""
 
     straight = False
+
+    gives_way = False
+    """Whether what arrives waits until all else that is ready has had its turn."""
 
     def __init__(self, parking: Inbox, depth: int, callback_group: CallbackGroup | None = None) -> None:
         super().__init__(callback_group)
         self._parking = parking
         self.mailbox = Mailbox(depth)
         self.sink: functools.partial[Any] = parking.sink(self)
+        self._gave_way = 0
 
     def attach(self, executor: Executor, queued: int = 0) -> None:
         """Belong to this executor, which holds its lock: what arrives goes to its inbox, what waited is ready."""
@@ -75,7 +112,7 @@ class Receiver(Entity):
         # Both locks, so that nothing is delivered or taken meanwhile; the executor's always first.
         with self._parking.lock:
             self.redirect(after)
-            before.sweep()  # nothing of ours stays behind
+            before.clear()  # nothing of ours stays behind
 
     def redirect(self, inbox: Inbox) -> None:
         """Have what comes from now on arrive in this inbox."""
@@ -88,4 +125,10 @@ class Receiver(Entity):
 
     def take(self) -> Any:
         """Give the oldest of what waits."""
+        executor = self.executor
+        if self.gives_way and executor is not None and executor.ready and self._gave_way < len(self.mailbox):
+            self._gave_way += 1
+            executor.ready.append(self)
+            return NOTHING
+        self._gave_way = max(0, self._gave_way - 1)
         return self.mailbox.take() if self.mailbox.waiting else NOTHING

@@ -146,10 +146,24 @@ class EventHandler(Entity):
             )
         super().__init__(callback_group)
         self.event_type = event_type
-        self.callback = callback
+        self._callback = callback
+        self.attach_late: Callable[[], Callable[[Entity], object] | None] = lambda: None
+        """Gives the node's function that has an executor run this, when a default callback is replaced."""
         self._lock = threading.Lock()
         self._status = MatchedInfo()
-        self._happened = self._destroyed = False
+        self._happened = False
+
+    @property
+    def callback(self) -> Callback:
+        """What is called; another one may take its place at any time."""
+        return self._callback
+
+    @callback.setter
+    def callback(self, callback: Callback) -> None:
+        before, self._callback = self._callback, callback
+        attach = self.attach_late()
+        if before is _no_more_to_do and attach is not None:
+            attach(self)
 
     def happen(self, total: int, current: int = 0) -> None:
         """Note that it has happened `total` times more, and that there are `current` more now; on any thread."""
@@ -184,12 +198,18 @@ class EventHandler(Entity):
 
     def execute(self, taken: Any) -> Any:
         """Call the callback."""
-        return self.callback(taken)
+        return self._callback(taken)
 
     def destroy(self) -> None:
         """Call no more."""
         self._destroyed, self._happened = True, False
         self.detach()
+
+    def __enter__(self) -> EventHandler:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()
 
 
 _OLDER_NAME = "QoSEventHandler is the older name of EventHandler: use that"

@@ -87,8 +87,8 @@ def shown(text: str, longest: int = 100) -> str:
 class NotInitializedException(RobolinkError, RuntimeError):
     """robolink was used before `init()` or after `shutdown()`."""
 
-    def __init__(self, *args: object) -> None:
-        super().__init__("robolink.init() has not been called", *args)
+    def __init__(self, message: str | None = None) -> None:
+        super().__init__("robolink.init() has not been called" + (f": {message}" if message else ""))
 
 
 class NoTypeSupportImportedException(RobolinkError, TypeError):
@@ -114,7 +114,8 @@ class NameValidationException(RobolinkError, ValueError):
             invalid_index,
         )
         shown = name if len(name) <= 200 else name[:200] + "…"
-        super().__init__(f"Invalid {name_type}: {error_msg}:\n  '{shown}'\n   {' ' * min(invalid_index, 200)}^")
+        caret = " " * min(invalid_index, 200) + "^"
+        super().__init__(f"Invalid {name_type}: {error_msg}:\n  '{shown}'\n   {caret} is invalid")
 
 
 class InvalidNamespaceException(NameValidationException):
@@ -173,8 +174,8 @@ class ParameterAlreadyDeclaredException(ParameterException):
 class InvalidParameterException(ParameterException, ValueError):
     """A parameter's name breaks ROS 2's rules."""
 
-    def __init__(self, parameter: str, *args: object) -> None:
-        super().__init__("Invalid parameter name", parameter, *args)
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__("Invalid parameter name", parameter_name)
 
 
 class InvalidParameterTypeException(ParameterException, TypeError):
@@ -203,15 +204,15 @@ class InvalidParameterValueException(ParameterException, ValueError):
 class ParameterImmutableException(ParameterException):
     """A read-only parameter was set."""
 
-    def __init__(self, parameter: str, *args: object) -> None:
-        super().__init__("Attempted to modify read-only parameter", parameter, *args)
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__("Attempted to modify read-only parameter", parameter_name)
 
 
 class ParameterUninitializedException(ParameterException, ValueError):
     """A statically typed parameter was read before it had a value."""
 
-    def __init__(self, parameter: str, *args: object) -> None:
-        super().__init__("The parameter is not initialized", parameter, *args)
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__("The parameter is not initialized", parameter_name)
 
 
 class ExternalShutdownException(RobolinkError):

@@ -2,63 +2,51 @@
 
 from __future__ import annotations
 
-import heapq
-import inspect
-import itertools
 import threading
-import traceback
-from collections import deque
-from collections.abc import Callable
-from types import TracebackType
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robolink.entity import NOTHING, Entity
-from robolink.exceptions import ExternalShutdownException, InterruptedByUser, RobolinkError
-from robolink.inbox import Inbox
-from robolink.logging import get_logger
+from robolink.entity import Entity
+from robolink.exceptions import ExternalShutdownException as ExternalShutdownException
+from robolink.exceptions import InterruptedByUser
+from robolink.executor_queue import Taken, earlier
+from robolink.executor_running import ConditionReachedException as ConditionReachedException
+from robolink.executor_running import ExecutorRunning
+from robolink.executor_running import ShutdownException as ShutdownException
+from robolink.executor_running import TimeoutException as TimeoutException
+from robolink.executor_running import TimeoutObject as TimeoutObject
+from robolink.executor_running import await_or_execute as await_or_execute
+from robolink.inbox import A_WHILE
 from robolink.task import Future, Task
-from robolink.task_runner import TaskRunner
 from robolink.utilities import get_default_context
 
 if TYPE_CHECKING:
-    from robolink.clock import ROSClock
     from robolink.context import Context
     from robolink.node import Node
-    from robolink.timer import Timer
 
 ExecutorT = TypeVar("ExecutorT", bound="Executor")
 
 POLL_NS = 1_000_000
 """How often a coroutine is asked that awaits something of nobody's: neither our futures nor a plain function."""
 
-
-class TimeoutException(RobolinkError):  # noqa: N818 - rclpy's name
-    """Nothing became ready in time."""
-
-
-class ShutdownException(RobolinkError):  # noqa: N818 - rclpy's name
-    """The executor was shut down."""
+CUSTOM_SLICE = 0.1
+"""Seconds after which an executor of the user's own that waits for a future is asked whether it has come."""
 
 
-class ConditionReachedException(RobolinkError):  # noqa: N818 - rclpy's name
-    """What was waited for has come."""
+class Executor(ExecutorRunning):
+    """The base of executors; an own one overrides `spin_once` and gets its work from `wait_for_ready_callbacks`."""
 
-
-class Executor:
-    """The base of executors: what is ready, when timers are due, and waiting for both."""
+    parallel = False
+    """Whether other callbacks go on while one of them waits."""
 
     def __init__(self, *, context: Context | None = None) -> None:
-        self._context = context if context is not None else get_default_context()
-        self.inbox = Inbox()
-        self.ready: deque[Entity] = deque()
-        self._blocked: deque[Entity] = deque()
-        self._polled: list[Entity] = []
-        self._timers: list[tuple[int, int, int, Timer]] = []
-        self._serial = itertools.count()
-        self._nodes: list[Node] = []
-        self._lock = self.inbox.lock
+        super().__init__(context if context is not None else get_default_context())
         self._is_shutdown = False
         self._spinners: list[int] = []
+        self._left = threading.Condition(self._lock)
+        self._pause = self._context.time.wait
         self._context.on_shutdown(self.wake)
 
     @property
@@ -76,252 +64,122 @@ class Executor:
         """Whether the calling thread is the one, or one of those, that spin: it is inside a callback then."""
         return threading.get_ident() in self._spinners
 
-    # What the executor has
-
-    def add_node(self, node: Node) -> bool:
-        """Run this node's callbacks, and take it from another executor; False when it is here already."""
-        before = node.executor
-        if before is not None and before is not self:
-            before.remove_node(node)
-        with self._lock:
-            if node in self._nodes:
-                return False
-            self._nodes.append(node)
-            node.belong_to(self)
-            self._context.look_after(self.inbox)
-            queued, node.queued = node.queued, []
-            self.ready.extend(queued)
-            for entity in node.entities():
-                entity.attach(self, queued.count(entity))
-        self.wake()
-        return True
-
-    def remove_node(self, node: Node) -> None:
-        """Run its callbacks no more. What is ready keeps its turn until the node is added again."""
-        with self._lock:
-            if node not in self._nodes:
-                return
-            self._nodes.remove(node)
-            entities = node.entities()
-            for entity in entities:
-                entity.detach()
-            node.queued = self._withdraw(set(entities))
-            node.belong_to(None)
-        self.wake()
-
-    def _withdraw(self, entities: set[Entity]) -> list[Entity]:
-        self._unblock()
-        withdrawn: list[Entity] = []
-        for _ in range(len(self.ready)):  # in place, since other threads may append
-            entity = self.ready.popleft()
-            (withdrawn if entity in entities else self.ready).append(entity)
-        return withdrawn
-
-    def get_nodes(self) -> list[Node]:
-        """All nodes that were added."""
-        return list(self._nodes)
-
-    def attach(self, entity: Entity) -> None:
-        """Run this entity's callback from now on."""
-        with self._lock:
-            entity.attach(self)
-        self.wake()
-
-    def wake(self) -> None:
-        """Let whoever waits look around."""
-        self.inbox.wake()
-
-    def post(self, entity: Entity) -> None:
-        """Make an entity ready, from any thread."""
-        self.ready.append(entity)
-        self.wake()
-
-    def poll(self, entity: Entity) -> None:
-        """Make an entity ready again in a moment."""
-        self._polled.append(entity)
-
-    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
-        """Run a function or coroutine in this executor; its result comes through the task."""
-        task: Task[Any] = Task(callback, args, kwargs, executor=self)
-        runner = TaskRunner(task)
-        runner.executor = self
-        self.post(runner)
-        return task
-
-    def create_future(self) -> Future[Any]:
-        """Make a future whose done callbacks run in this executor."""
-        return Future(executor=self)
+    def can_execute(self, entity: Entity) -> bool:
+        """Whether its callback group would let an entity run now."""
+        return entity.callback_group.can_execute(entity)
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Stop spinning and let go of all nodes; whether no callback runs any more."""
-        if not self._is_shutdown:
-            self._is_shutdown = True
+        """Begin no more callbacks, let go of all nodes, and wait for the callbacks that other threads run.
+
+        False when some still run after `timeout_sec` seconds; None or less waits for ever, 0 does not wait.
+        """
+        with self._lock:
+            first, self._is_shutdown = not self._is_shutdown, True
+        if first:
             for node in self.get_nodes():
                 self.remove_node(node)
-            self.wake()
             self._context.let_go(self.inbox)
-        return True
-
-    # Timers
-
-    def schedule(self, timer: Timer) -> None:
-        """Have a timer made ready when it is due; one that follows /clock when /clock says so."""
-        if timer.executor is not self or timer.is_canceled():
-            return
-        left = timer.clock.wait_ns(timer.next_call_ns)
-        if left is not None:
-            due = self._context.time.steady() + left
-            with self._lock:
-                heapq.heappush(self._timers, (due, next(self._serial), timer.version, timer))
-
-    def on_clock(self, clock: ROSClock) -> None:
-        """Look at the timers again that follow this clock, since it moved."""
-        for node in self.get_nodes():
-            for timer in node.timers:
-                if timer.clock is clock:
-                    timer.reschedule()
         self.wake()
+        return self._wait_for(self._left, lambda: {*self._spinners} <= {threading.get_ident()}, timeout_sec)
 
-    def _collect_due(self) -> int | None:
-        """Make timers ready that are due; give when the next one is."""
-        timers = self._timers
-        with self._lock:
-            while timers:
-                due, _, version, timer = timers[0]
-                if timer.version != version or timer.executor is not self:
-                    heapq.heappop(timers)
-                elif due <= self._context.time.steady():
-                    heapq.heappop(timers)
-                    self.ready.append(timer)
-                else:
-                    return due
-        return None
+    @staticmethod
+    def _wait_for(changed: threading.Condition, ended: Callable[[], bool], seconds: float | None) -> bool:
+        left = float("inf") if seconds is None or seconds < 0 else seconds
+        with changed:
+            while not changed.wait_for(ended, min(left, A_WHILE)) and left > 0:
+                left -= A_WHILE
+            return ended()
 
-    # Waiting, taking, running
+    # Waiting
 
-    def _wait(self, deadline: int | None, stop: Callable[[], bool] | None = None) -> tuple[Entity, Any]:
+    def _wait(
+        self,
+        deadline: int | None,
+        stop: Callable[[], bool] | None = None,
+        wanted: Callable[[Entity], bool] | None = None,
+    ) -> Taken:
         """Wait until something is ready and take it.
 
         Raises TimeoutException, ShutdownException, ExternalShutdownException or ConditionReachedException.
         """
-        time = self._context.time
+        inbox = self.inbox
         while True:
-            if not self.inbox.empty():
-                self.inbox.sweep()
+            if not inbox.empty():
+                inbox.sweep()
+            if self.asked:
+                self._ask_waitables()
             next_timer = self._collect_due() if self._timers else None
-            taken = self._take()
-            if taken is not None:
-                return taken
-            self._check(stop)
-            if deadline is not None and time.steady() >= deadline:
-                if not self._polled:
-                    raise TimeoutException
-                self._ask_again()  # also whoever spins without waiting gets them done
-                continue
-            wake_at = _earlier(deadline, next_timer)
-            if self._polled:
-                wake_at = _earlier(wake_at, time.steady() + POLL_NS)
-            arrival = time.wait(self.inbox, wake_at)
-            if arrival is not None:
-                taken = self._take_at_once(arrival)
+            if self.ready or self._blocked:
+                taken = self._take(wanted)
                 if taken is not None:
                     return taken
-            self._ask_again()
+            arrival = self._wait_for_arrival(deadline, next_timer, stop)
+            if arrival is not None:
+                taken = self._take_at_once(arrival, wanted)
+                if taken is not None:
+                    return taken
+            if self._polled:
+                self._ask_again()
 
-    def _ask_again(self) -> None:
-        self.ready.extend(self._polled)
-        self._polled.clear()
-
-    def _take_at_once(self, arrival: Any) -> tuple[Entity, Any] | None:
-        """Take what arrived for an entity for which nothing waits; else deliver it, and it waits its turn."""
-        target = arrival.target
-        if target.straight:
-            with self.inbox.lock:
-                group = target.callback_group
-                is_next = target.executor is self and not (self.ready or len(target.mailbox))
-                if is_next and group.can_execute(target) and group.beginning_execution(target):
-                    return target, arrival.content
-        self.inbox.deliver(arrival)
-        return None
-
-    def _check(self, stop: Callable[[], bool] | None) -> None:
+    def _wait_for_arrival(self, deadline: int | None, next_timer: int | None, stop: Callable[[], bool] | None) -> Any:
+        """Wait, unless there is a reason not to, until something arrives, a timer is due or there is news."""
         if stop is not None and stop():
             raise ConditionReachedException
-        self._check_interrupt()
+        self.check_end()
+        steady, polled = self._context.time.steady, self._polled
+        if deadline is not None and steady() >= deadline:
+            if not polled:
+                raise TimeoutException
+            return None  # also whoever spins without waiting gets them done
+        wake_at = earlier(deadline, next_timer)
+        return self._pause(self.inbox, earlier(wake_at, steady() + POLL_NS) if polled else wake_at)
+
+    def check_end(self) -> None:
+        """Raise ExternalShutdownException after the context's end, ShutdownException after `shutdown`."""
+        if not self._context.ok():
+            self._check_interrupt()
+            if not self._is_shutdown:
+                raise ExternalShutdownException
         if self._is_shutdown:
             raise ShutdownException
-        if not self._context.ok():
-            raise ExternalShutdownException
 
     def _check_interrupt(self) -> None:
         if self._context.interrupted:
             raise InterruptedByUser
 
-    def _take(self, wanted: Callable[[Entity], bool] | None = None) -> tuple[Entity, Any] | None:
-        if not self.ready and not self._blocked:
-            return None
-        with self.inbox.lock:
-            if self._blocked:
-                self._unblock()
-            while self.ready:
-                entity = self.ready.popleft()
-                group = entity.callback_group
-                if (wanted is not None and not wanted(entity)) or not (
-                    group.can_execute(entity) and group.beginning_execution(entity)
-                ):
-                    self._blocked.append(entity)
-                    continue
-                taken = entity.take()
-                if taken is not NOTHING:
-                    return entity, taken
-                group.ending_execution(entity)
-        return None
+    def wait_for_ready_callbacks(
+        self,
+        timeout_sec: float | TimeoutObject | None = None,
+        nodes: Iterable[Node] | None = None,
+        condition: Callable[[], bool] = lambda: False,
+    ) -> tuple[Task[Any], Entity, Node | None]:
+        """Wait for something to do; give what does it when called, in whatever thread, its entity and its node.
 
-    def _unblock(self) -> None:
-        self.ready.extendleft(reversed(self._blocked))
-        self._blocked.clear()
+        `nodes` are all by default. Calling the task keeps what the callback raises as the task's exception. Raises
+        TimeoutException, ShutdownException, ExternalShutdownException, or ConditionReachedException once `condition()`.
+        """
+        chosen = None if nodes is None else list(nodes)
+        wanted = None if chosen is None else lambda entity: self._node_of(entity) in (None, *chosen)
+        entity, taken = self._wait(self._deadline(timeout_sec), condition, wanted)
+        return Task(self._run_and_look, (entity, taken)), entity, self._node_of(entity)
 
-    def _run(self, entity: Entity, taken: Any) -> None:
-        """Run what was taken. Raises what the user's callback raises."""
-        coroutine = None
-        try:
-            outcome = entity.execute(taken)
-            if outcome is not None and inspect.iscoroutine(outcome):
-                coroutine = outcome
-        except ExternalShutdownException:  # Ctrl-C in a callback is no fault of it
-            raise
-        except Exception as error:
-            self._log(entity, error)
-            raise
-        finally:
-            if coroutine is None:
-                entity.callback_group.ending_execution(entity)
-        if coroutine is not None:
-            self._run_on(entity, coroutine)
-
-    def _log(self, entity: Entity, error: Exception) -> None:
-        """Log a callback's exception, with its traceback, in the name of its node; once, however often it passes."""
-        if getattr(error, "__robolink_logged__", False):
-            return
-        error.__robolink_logged__ = True  # type: ignore[attr-defined]
-        owner = next((node for node in self.get_nodes() if entity in node.entities()), None)
-        name = "robolink" if owner is None else owner.get_logger().name
-        text = "".join(traceback.format_exception(type(error), error, _of_the_user(error.__traceback__)))
-        get_logger(name).error(f"an exception in a callback ends the spinning:\n{text.rstrip()}")
-
-    def _run_on(self, entity: Entity, coroutine: Any) -> None:
-        """Run a callback that is a coroutine; its group is busy until it ends."""
-        runner = TaskRunner(
-            Task(coroutine, executor=self), on_end=lambda: entity.callback_group.ending_execution(entity)
-        )
-        runner.executor, runner.serves = self, entity.serves
-        runner.execute(runner.task)
+    def _wait_for_ready_callbacks(self, *args: Any, **kwargs: Any) -> Iterable[tuple[Task[Any], Entity, Node | None]]:
+        """Yield what `wait_for_ready_callbacks` gives, for ever."""
+        while True:
+            yield self.wait_for_ready_callbacks(*args, **kwargs)
 
     # Spinning
 
+    _dispatch = ExecutorRunning.run
+    """See to it that what was taken is run: here and now, unless there are threads for it."""
+
     def spin(self) -> None:
         """Run callbacks until the context is shut down, or this executor. Raises InterruptedByUser after a signal."""
-        if self._context.ok() and not self._is_shutdown:
+        self._context.given_parameters.warn_of_typos(self.get_nodes())
+        if self._is_users_own():
+            while self._context.ok() and not self._is_shutdown:
+                self.spin_once()
+        elif self._context.ok() and not self._is_shutdown:
             self._spin()
         self._check_interrupt()
 
@@ -333,28 +191,46 @@ class Executor:
         """Run callbacks until the future is done, or `timeout_sec` seconds have passed."""
         future.when_done(self.wake)
         if not future.over() and self._context.ok() and not self._is_shutdown:
-            self._spin(self._deadline(timeout_sec), future.over)
+            spin = self._spin_by_slices if self._is_users_own() else self._spin
+            spin(self._deadline(timeout_sec), future.over)
         if not future.over():
             self._check_interrupt()
 
-    def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+    def spin_once_until_future_complete(
+        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
+    ) -> None:
         """Run one callback, or none when the future is done first."""
         future.when_done(self.wake)
         self._spin(self._deadline(timeout_sec), future.over, once=True)
 
-    def _deadline(self, timeout_sec: float | None) -> int | None:
-        if timeout_sec is None or timeout_sec < 0:
+    def _is_users_own(self) -> bool:
+        return type(self).spin_once is not Executor.spin_once
+
+    def _spin_by_slices(self, deadline: int | None, stop: Callable[[], bool]) -> None:
+        steady, slice_ns = self._context.time.steady, int(CUSTOM_SLICE * 1e9)
+        while not stop() and self._context.ok() and not self._is_shutdown:
+            left = slice_ns if deadline is None else min(slice_ns, deadline - steady())
+            if left < 0:
+                return
+            try:
+                self.spin_once(timeout_sec=left / 1e9)
+            except TimeoutException:
+                continue
+
+    def _deadline(self, timeout_sec: float | TimeoutObject | None) -> int | None:
+        seconds = timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
+        if seconds is None or seconds < 0:
             return None
-        return self._context.time.steady() + int(timeout_sec * 1e9)
+        return self._context.time.steady() + int(seconds * 1e9)
 
     def _spin(self, deadline: int | None = None, stop: Callable[[], bool] | None = None, *, once: bool = False) -> None:
         """Run callbacks until `stop()`, the deadline, or the end of the context or of this executor."""
-        time, thread = self._context.time, threading.get_ident()
+        time, thread, ok = self._context.time, threading.get_ident(), self._context.ok
         self._spinners.append(thread)
         try:
             while True:
-                self._run(*self._wait(deadline, stop))
-                if once or self._is_shutdown or not self._context.ok() or (stop is not None and stop()):
+                self._dispatch(*self._wait(deadline, stop))
+                if once or self._is_shutdown or not ok() or (stop is not None and stop()):
                     return
                 if deadline is not None and time.steady() >= deadline:
                     return
@@ -362,26 +238,34 @@ class Executor:
             pass
         finally:
             self._spinners.remove(thread)
+            if self._is_shutdown:
+                with self._left:
+                    self._left.notify_all()
 
-    def serve_until(self, done: Callable[[], bool], deadline: int | None) -> None:
-        """Inside a callback that waits for an answer: run only what serves, so that the answer can come.
+    # Waiting within a callback
+
+    def serve_until(self, future: Future[Any], deadline: int | None, *, serving: bool = True) -> None:
+        """In a callback that waits for an answer: run only what serves, so that the answer can come.
 
         Services whose callback group is busy (the waiting callback's own, say) are left alone.
         """
-        while not done():
+        while not future.over():
             self.inbox.sweep()
-            taken = self._take(lambda entity: entity.serves)
+            taken = self._take(_serves)
             if taken is not None:
-                self._run(*taken)
+                self.run(*taken)
             elif deadline is not None and self._context.time.steady() >= deadline:
                 return
-            elif not self._context.ok():
-                self._check_interrupt()
-                raise ExternalShutdownException
-            elif not done():
-                arrival = self._context.time.wait(self.inbox, deadline)
+            else:
+                self.check_end()
+                arrival = None if future.over() else self._context.time.wait(self.inbox, deadline)
                 if arrival is not None:
                     self.inbox.deliver(arrival)
+
+    @contextmanager
+    def waiting_for(self, services: Sequence[Entity]) -> Iterator[bool]:
+        """In a callback that is about to wait for one of these: whether none can answer, since it keeps them busy."""
+        yield bool(services) and not any(map(self.can_execute, services))
 
     def __enter__(self: ExecutorT) -> ExecutorT:
         return self
@@ -394,16 +278,109 @@ class SingleThreadedExecutor(Executor):
     """Runs callbacks in the thread that spins."""
 
 
-def _of_the_user(trace: TracebackType | None) -> TracebackType | None:
-    """Leave out robolink's own frames at the top of a traceback."""
-    first = trace
-    while first is not None and first.tb_frame.f_globals.get("__name__", "").startswith("robolink."):
-        first = first.tb_next
-    return first or trace
+class MultiThreadedExecutor(Executor):
+    """Runs callbacks in a pool of threads, as many at once as callback groups allow; the thread that spins hands out.
+
+    `num_threads` is the number of this process's cores by default. What a callback raises is raised by the next spin.
+    """
+
+    parallel = True
+
+    def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
+        from robolink.callback_threads import CallbackThreads, count_cores  # late: it takes some milliseconds
+
+        super().__init__(context=context)
+        count = count_cores() if num_threads is None else num_threads
+        if count == 1:
+            warnings.warn(
+                "a MultiThreadedExecutor with one thread is slower than a SingleThreadedExecutor: use that",
+                stacklevel=2,
+            )
+        self._threads = CallbackThreads(count, self)
+        self._executor = self._threads.pool
+        self._pause = self._threads.pause
+
+    @property
+    def spins_here(self) -> bool:
+        """Whether the calling thread spins or runs a callback."""
+        return self._threads.runs_here() or super().spins_here
+
+    def poll(self, entity: Entity) -> None:
+        """Make an entity ready again in a moment."""
+        super().poll(entity)
+        self.wake()
+
+    def _take(self, wanted: Callable[[Entity], bool] | None = None) -> Taken | None:
+        threads = self._threads
+        if threads.failures:
+            raise threads.failures.popleft()  # before more is begun
+        if threads.free > 0:
+            return super()._take(wanted)
+        may = _serves_or_is_quick if threads.can_serve() else _is_quick
+        return super()._take(lambda entity: may(entity) and (wanted is None or wanted(entity)))
+
+    def _take_at_once(self, arrival: Any, wanted: Callable[[Entity], bool] | None = None) -> Taken | None:
+        if self._threads.free > 0:
+            return super()._take_at_once(arrival, wanted)
+        self.inbox.deliver(arrival)
+        return None
+
+    def _spin(self, deadline: int | None = None, stop: Callable[[], bool] | None = None, *, once: bool = False) -> None:
+        try:
+            super()._spin(deadline, stop, once=once)
+        except InterruptedByUser:
+            raise
+        except ExternalShutdownException:  # as in rclpy, only the single-threaded one raises it
+            pass
+
+    def check_end(self) -> None:
+        """Raise what a callback raised, or what says that the context or this executor has ended."""
+        if self._threads.failures:
+            raise self._threads.failures.popleft()
+        super().check_end()
+
+    def _dispatch(self, entity: Entity, taken: Any) -> None:
+        if entity.quick:
+            self.run(entity, taken)
+            return
+        try:
+            self._threads.submit(entity, taken)
+        except RuntimeError:  # shut down meanwhile
+            entity.callback_group.ending_execution(entity)
+            raise ShutdownException from None
+
+    def serve_until(self, future: Future[Any], deadline: int | None, *, serving: bool = True) -> None:
+        """In a callback that waits: go on with others; if `serving`, in this thread too when no other is free."""
+        self._threads.wait(future, deadline, serving)
+
+    @contextmanager
+    def waiting_for(self, services: Sequence[Entity]) -> Iterator[bool]:
+        """In a callback that is about to wait for one of these: whether none can answer, since it keeps them busy.
+
+        Or since other callbacks do that wait for this one.
+        """
+        with self._threads.waiting_for(each.callback_group for each in services) as hopeless:
+            yield hopeless and not any(map(self.can_execute, services))
+
+    def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
+        """Begin no more callbacks, let go of all nodes, and wait for the callbacks under way, and for the threads.
+
+        False when some still run after `timeout_sec` seconds; None or less waits for ever, 0 does not wait.
+        """
+        super().shutdown(0)
+        self._threads.close(wait=False)
+        ended = self._wait_for(self._threads.ended, self._threads.have_ended, timeout_sec)
+        self._threads.close(wait=wait_for_threads and ended)
+        return ended
 
 
-def _earlier(one: int | None, other: int | None) -> int | None:
-    """The earlier of two moments; None is never."""
-    if one is None or other is None:
-        return other if one is None else one
-    return min(one, other)
+def _serves(entity: Entity) -> bool:
+    return entity.serves
+
+
+def _is_quick(entity: Entity) -> bool:
+    return entity.quick
+
+
+def _serves_or_is_quick(entity: Entity) -> bool:
+    return entity.serves or entity.quick

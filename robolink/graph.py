@@ -12,7 +12,16 @@ from typing import TYPE_CHECKING, TypeVar
 
 from robolink.exceptions import WireError
 from robolink.logging import get_logger
-from robolink.wire import EndpointKind, EndpointToken, NodeToken, format_token, gid_of, graph_pattern, parse_token
+from robolink.wire import (
+    EndpointKind,
+    EndpointToken,
+    NodeToken,
+    format_token,
+    gid_of,
+    graph_pattern,
+    own_tokens,
+    parse_token,
+)
 
 if TYPE_CHECKING:
     from robolink.transport.base import Handle, Transport
@@ -42,6 +51,7 @@ class Graph:
         self.malformed = 0
         """How many announcements could not be read."""
         self._transport, self._domain_id = transport, domain_id
+        self._own = own_tokens(domain_id, transport.session_id)
         self._index = _Index()
         self._changed = threading.Condition()
         self._followers: dict[Place, tuple[_Following, ...]] = {}
@@ -54,9 +64,12 @@ class Graph:
 
     # What comes in
 
-    def announce(self, token: Token) -> Handle:
-        """Show something of this session's own to everybody, until the handle is closed."""
-        text = format_token(token)
+    def announce(self, token: Token, text: str = "") -> Handle:
+        """Show something of this session's own to everybody, until the handle is closed.
+
+        `text` is the token as it is on the wire, for whoever has it already.
+        """
+        text = text or format_token(token)
         handle = self._transport.announce(text)
         gid = gid_of(text)
         self._change(gid, token, True)
@@ -64,6 +77,8 @@ class Graph:
 
     def _on_news(self, text: str, alive: bool) -> bool:
         """Hear of a token from the transport, on its thread; False for one that is not worth remembering."""
+        if text.startswith(self._own):  # noted in its turn
+            return True
         try:
             token = parse_token(text)
         except WireError as error:
@@ -74,8 +89,7 @@ class Graph:
                     " (the next ones are only counted)"
                 )
             return False
-        if token.session != self._transport.session_id:  # what is our own was noted in its turn
-            self._change(gid_of(text), token, alive)
+        self._change(gid_of(text), token, alive)
         return True
 
     def _change(self, gid: bytes, token: Token, alive: bool) -> None:
@@ -244,8 +258,13 @@ class _Following:
 
     def _tell(self, gid: bytes, token: EndpointToken, alive: bool) -> None:
         follower = self._follower
-        if follower is not None:
+        if follower is None:
+            return
+        try:
             follower(gid, token, alive)
+        except Exception as error:  # noqa: BLE001 - it may be anybody's, and the others want to hear of it too
+            what = f"{token.full_node_name}, which has {token.name} and {'came' if alive else 'went'}"
+            get_logger("robolink.graph").error(f"whoever was told of {what}, failed: {type(error).__name__}: {error}")
 
     def close(self) -> None:
         """Be told no more; another thread may be in the midst of telling. Safe to call twice."""

@@ -25,15 +25,16 @@ class GuardCondition(Entity):
     ) -> None:
         super().__init__(callback_group)
         self.callback = callback
-        self._triggered = self._destroyed = False
+        self._triggered = False
 
     def trigger(self) -> None:
         """Have the callback called. From any thread."""
         if self._destroyed:
             raise InvalidHandle("the guard condition has been destroyed")
         self._triggered = True
-        if self.executor is not None:
-            self.executor.post(self)
+        executor = self.executor  # another thread may take it away meanwhile
+        if executor is not None:
+            executor.post(self)
 
     def attach(self, executor: Executor, queued: int = 0) -> None:
         """Belong to this executor; an earlier trigger counts."""

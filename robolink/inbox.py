@@ -16,6 +16,7 @@ import sys
 import threading
 import weakref
 from collections import deque
+from collections.abc import Callable
 from typing import Any, Protocol
 
 import msgspec
@@ -69,6 +70,8 @@ class Inbox:
         self._arrival = _arrival_type(self._queue)
         self.lock = threading.RLock()
         """Guards the mailboxes of this inbox's targets."""
+        self.empty: Callable[[], bool] = self._queue.empty
+        """Whether nothing waits here."""
 
     def sink(self, target: Target) -> functools.partial[Any]:
         """Make what a transport is given: it queues whatever it is called with, for `target`, without Python code."""
@@ -83,10 +86,16 @@ class Inbox:
         self._queue.put(None)
 
     def sweep(self) -> None:
-        """Deliver all that is here."""
+        """Deliver all that is here; for whoever waits here."""
         with self.lock:
             for _ in range(self._queue.qsize()):
                 self._deliver()
+
+    def clear(self) -> None:
+        """Deliver all that is here; for others than whoever waits here, whom this may keep from noticing it."""
+        if not self._queue.empty():
+            self.sweep()
+            self.wake()
 
     def wait(self, timeout: float | None) -> Any:
         """Wait for something to arrive and give it, undelivered; None after `timeout` seconds, or a while, or a wake.
@@ -105,10 +114,6 @@ class Inbox:
                 arrival.target.deliver(arrival.content)
                 return
         arrival.target.sink(arrival.content)  # it moved to another inbox, whose lock guards it now
-
-    def empty(self) -> bool:
-        """Whether nothing waits here."""
-        return self._queue.empty()
 
     def _deliver(self) -> None:
         try:
@@ -161,4 +166,4 @@ class Sweeper:
         with self._lock:
             inboxes = list(self._inboxes)
         for inbox in inboxes:
-            inbox.sweep()
+            inbox.clear()

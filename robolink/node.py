@@ -12,10 +12,11 @@ from robolink.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGro
 from robolink.client import Client
 from robolink.clock import Clock, ROSClock
 from robolink.context import Context
+from robolink.destroyable import Destroyable
 from robolink.disagreement import Disagreements
 from robolink.endpoint import Owner
 from robolink.entity import Entity
-from robolink.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks, with_callbacks
+from robolink.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from robolink.exceptions import NodeNameNonExistentError as NodeNameNonExistentError
 from robolink.exceptions import NotInitializedException
 from robolink.expand_topic_name import expand_topic_name
@@ -28,6 +29,7 @@ from robolink.node_entities import NodeEntities
 from robolink.node_graph import NodeGraph
 from robolink.node_parameters import NodeParameters
 from robolink.parameter import Parameter
+from robolink.parameter_service import ParameterService
 from robolink.publisher import Publisher
 from robolink.qos import (
     QoSProfile,
@@ -39,7 +41,7 @@ from robolink.remapping import RemapKind, resolve_name
 from robolink.service import Service
 from robolink.subscription import Subscription
 from robolink.time_source import TimeSource
-from robolink.timer import Rate, Timer
+from robolink.timer import Rate, Timer, period_ns
 from robolink.type_description_service import TypeDescriptionService
 from robolink.utilities import get_default_context
 from robolink.validate_namespace import validate_namespace
@@ -48,12 +50,14 @@ from robolink.wire import NodeToken
 
 if TYPE_CHECKING:
     from robolink.executors import Executor
+    from robolink.qos_overriding_options import QoSOverridingOptions
 
 MsgT = TypeVar("MsgT", bound=Message)
 EntityT = TypeVar("EntityT", bound=Entity)
+HIDDEN_NODE_PREFIX = "_"
 
 
-class Node(NodeParameters, NodeGraph, NodeEntities):
+class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
     """A participant of the system: subclass it, or take it as it is."""
 
     def __init__(
@@ -76,6 +80,27 @@ class Node(NodeParameters, NodeGraph, NodeEntities):
             raise NotInitializedException("cannot create node")
         self._arguments = self._read_arguments(cli_args, use_global_arguments)
         self._name, self._namespace = self._resolve_own_name(node_name, namespace)
+        self._init_own()
+        self._init_parameters(self._overrides(parameter_overrides), allow_undeclared_parameters)
+        self._announce()
+        self._context.track_node(self)
+        try:
+            if enable_rosout and self._arguments.rosout_logs is not False:
+                self._publish_logs()
+            self._context.given_parameters.expect(self, self._arguments.parameter_overrides)
+            self._parameter_events = self.create_publisher(
+                ParameterEvent, "/parameter_events", qos_profile_parameter_events
+            )
+            if automatically_declare_parameters_from_overrides:
+                self._declare_from_overrides()
+            self._time_source = TimeSource(node=self)
+            self._time_source.attach_clock(self._clock)
+            self._serve(start_parameter_services, enable_logger_service)
+        except BaseException:
+            self.destroy_node()
+            raise
+
+    def _init_own(self) -> None:
         self._executor: weakref.ReferenceType[Executor] | None = None
         self.queued: list[Entity] = []
         """What was ready when the last executor let go of this node, in order."""
@@ -85,24 +110,19 @@ class Node(NodeParameters, NodeGraph, NodeEntities):
         self._rate_group = ReentrantCallbackGroup()
         self._logger = get_logger(self.get_fully_qualified_name().strip("/").replace("/", "."))
         self._clock = ROSClock(time_base=self._context.time)
-        self._announce()
-        self._context.track_node(self)
-        try:
-            if enable_rosout and self._arguments.rosout_logs is not False:
-                self._rosout = Publisher(self._owner, Log, "/rosout", qos_profile_rosout_default)
-                rosout.publish_logs_of(self._logger.name, self._rosout)
-            self._parameter_events = self.create_publisher(
-                ParameterEvent, "/parameter_events", qos_profile_parameter_events
-            )
-            self._init_parameters(self._overrides(parameter_overrides), allow_undeclared_parameters)
-            if automatically_declare_parameters_from_overrides:
-                self._declare_from_overrides()
-            self._time_source = TimeSource(node=self)
-            self._time_source.attach_clock(self._clock)
-            self._type_description_service = TypeDescriptionService(self)
-        except BaseException:
-            self.destroy_node()
-            raise
+
+    def _publish_logs(self) -> None:
+        self._rosout = Publisher(self._owner, Log, "/rosout", qos_profile_rosout_default)
+        rosout.publish_logs_of(self._logger.name, self._rosout)
+
+    def _serve(self, parameters: bool, logger_levels: bool) -> None:
+        if parameters:
+            self._parameter_service = ParameterService(self)
+        if logger_levels:
+            from robolink.logging_service import LoggingService
+
+            self._logger_service = LoggingService(self)
+        self._type_description_service = TypeDescriptionService(self)
 
     # Names
 
@@ -209,24 +229,26 @@ class Node(NodeParameters, NodeGraph, NodeEntities):
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: PublisherEventCallbacks | None = None,
-        qos_overriding_options: Any = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
         publisher_class: type[Publisher[MsgT]] = Publisher,
     ) -> Publisher[MsgT]:
         """Make a publisher. A number as QoS is the depth of a reliable, volatile KEEP_LAST profile.
 
-        The callback group is that of the event callbacks. Raises UnsupportedEventTypeError (a RuntimeError) for an
-        event that this network does not have.
+        The callback group is that of the event callbacks. `qos_overriding_options` say which policies parameters may
+        change. Raises UnsupportedEventTypeError (a RuntimeError) for an event that this network does not have, and
+        InvalidQosOverridesError (a RuntimeError) for a parameter that gives no profile.
         """
+        name = self.resolve_topic_name(topic)
         publisher = publisher_class(
             self._owner,
             msg_type,
-            self.resolve_topic_name(topic),
-            _qos(qos_profile),
+            name,
+            self._overridden(Publisher, name, _qos(qos_profile), qos_overriding_options),
             event_callbacks=event_callbacks,
             callback_group=callback_group or self._default_callback_group,
         )
         self._publishers.append(publisher)
-        self._attach(*with_callbacks(publisher.event_handlers))
+        self._attach_handlers(publisher.event_handlers)
         return publisher
 
     def create_subscription(
@@ -238,19 +260,32 @@ class Node(NodeParameters, NodeGraph, NodeEntities):
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: SubscriptionEventCallbacks | None = None,
-        qos_overriding_options: Any = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
     ) -> Subscription[MsgT]:
         """Make a subscription. `callback` takes the message, or the message and its MessageInfo; bytes if `raw`.
 
-        Raises UnsupportedEventTypeError (a RuntimeError) for an event that this network does not have.
+        `qos_overriding_options` say which policies parameters may change. Raises UnsupportedEventTypeError (a
+        RuntimeError) for an event that this network does not have, and InvalidQosOverridesError (a RuntimeError) for a
+        parameter that gives no profile.
         """
         group = callback_group or self._default_callback_group
-        name, qos = self.resolve_topic_name(topic), _qos(qos_profile)
+        name = self.resolve_topic_name(topic)
+        qos = self._overridden(Subscription, name, _qos(qos_profile), qos_overriding_options)
         made = Subscription(self._owner, msg_type, name, callback, group, qos, raw, event_callbacks)
         self._add(made, self._subscriptions)
-        self._attach(*with_callbacks(made.event_handlers))
+        self._attach_handlers(made.event_handlers)
         return made
+
+    def _overridden(
+        self, kind: type[Any], topic: str, qos: QoSProfile, options: QoSOverridingOptions | None
+    ) -> QoSProfile:
+        """Give the profile with what parameters say of it, where options ask for such parameters."""
+        if options is None:
+            return qos
+        from robolink.qos_overriding_options import overridden  # late: few nodes ask
+
+        return overridden(kind, self, topic, qos, options)
 
     def create_service(
         self,
@@ -289,7 +324,7 @@ class Node(NodeParameters, NodeGraph, NodeEntities):
     ) -> Timer:
         """Make a timer that calls `callback` every `timer_period_sec` seconds of the node's clock."""
         group = callback_group or self._default_callback_group
-        period = int(float(timer_period_sec) * 1e9)
+        period = period_ns(timer_period_sec)
         timer = Timer(callback, group, period, clock or self._clock, context=self._context, autostart=autostart)
         return self._add(timer, self._timers)
 
@@ -309,9 +344,11 @@ class Node(NodeParameters, NodeGraph, NodeEntities):
 
     def destroy_node(self) -> None:
         """Undeclare all that it has, and itself. Safe to call twice."""
+        self._destroyed = True
         executor = self.executor
         if executor is not None:
             executor.remove_node(self)
+        self._context.given_parameters.look(self)
         rosout.keep_to_itself(self._logger.name)
         if self._rosout is not None:
             self._rosout.destroy()

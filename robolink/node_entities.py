@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from robolink.client import Client
 from robolink.entity import Entity
-from robolink.event_handler import with_callbacks
+from robolink.event_handler import EventHandler, with_callbacks
 from robolink.guard_condition import GuardCondition
 from robolink.publisher import Publisher
 from robolink.service import Service
 from robolink.subscription import Subscription
 from robolink.timer import Rate, Timer
+from robolink.waitable import Waitable
 
 if TYPE_CHECKING:
     from robolink.executors import Executor
@@ -30,6 +32,7 @@ class NodeEntities:
         self._services: list[Service] = []
         self._timers: list[Timer] = []
         self._guards: list[GuardCondition] = []
+        self._waitables: list[Waitable] = []
 
     @property
     def executor(self) -> Executor | None:
@@ -66,6 +69,11 @@ class NodeEntities:
         """Its guard conditions."""
         yield from self._guards
 
+    @property
+    def waitables(self) -> Iterator[Waitable]:
+        """What it has that consists of several entities: its actions."""
+        yield from self._waitables
+
     def entities(self) -> list[Entity]:
         """All that an executor runs."""
         own: list[Entity] = [*self._subscriptions, *self._services, *self._clients, *self._timers, *self._guards]
@@ -73,7 +81,29 @@ class NodeEntities:
             own += with_callbacks(publisher.event_handlers)
         for subscription in self._subscriptions:
             own += with_callbacks(subscription.event_handlers)
+        for waitable in self._waitables:
+            own += waitable.entities()
         return own
+
+    def all_services(self) -> list[Service]:
+        """Its services, those of its actions too."""
+        return [each for each in self.entities() if isinstance(each, Service)]
+
+    def all_timers(self) -> list[Timer]:
+        """Its timers, those of its actions too."""
+        return [each for each in self.entities() if isinstance(each, Timer)]
+
+    def add_waitable(self, waitable: Waitable) -> None:
+        """Have the entities of a waitable run by the node's executor, and the waitable destroyed with the node."""
+        self._waitables.append(waitable)
+        self._attach(*waitable.entities())
+
+    def remove_waitable(self, waitable: Waitable) -> None:
+        """Let go of a waitable, which is none of the node's any more."""
+        if waitable in self._waitables:
+            self._waitables.remove(waitable)
+            for entity in waitable.entities():
+                entity.detach()
 
     def _add(self, entity: EntityT, group: list[EntityT]) -> EntityT:
         group.append(entity)
@@ -85,6 +115,11 @@ class NodeEntities:
         if executor is not None:
             for entity in entities:
                 executor.attach(entity)
+
+    def _attach_handlers(self, handlers: list[EventHandler]) -> None:
+        for handler in handlers:
+            handler.attach_late = weakref.WeakMethod(self._attach)
+        self._attach(*with_callbacks(handlers))
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
         """Undeclare a publisher; False when it is none of this node's."""
@@ -120,6 +155,8 @@ class NodeEntities:
         for owned in (self._publishers, self._subscriptions, self._clients, self._services, self._timers, self._guards):
             for entity in list(owned):
                 _destroy(entity, owned)
+        for waitable in list(self._waitables):
+            _destroy(waitable, self._waitables)
 
 
 def _destroy(entity: Any, owned: list[Any]) -> bool:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
 from robolink.callback_groups import CallbackGroup
+from robolink.destroyable import Destroyable
 from robolink.duration import Duration
 from robolink.endpoint import Endpoint, Owner
 from robolink.event_handler import PublisherEventCallbacks, QoSPublisherEventType, tell_handlers, warns_of_types
@@ -17,9 +18,10 @@ from robolink.qos import DurabilityPolicy, QoSProfile, resolved
 from robolink.wire import NO_HASH, EndpointKind
 
 MsgT = TypeVar("MsgT", bound=Message)
+_FOR_EVER = Duration(seconds=-1)
 
 
-class Publisher(Generic[MsgT]):
+class Publisher(Destroyable, Generic[MsgT]):
     """Publishes messages of one type on one topic; made by `Node.create_publisher`."""
 
     def __init__(
@@ -36,7 +38,6 @@ class Publisher(Generic[MsgT]):
         self.qos_profile = qos_profile
         self._encode = encoder(message_type(msg_type))
         self._endpoint = Endpoint(owner, EndpointKind.PUBLISHER, topic, msg_type, qos_profile)
-        self._destroyed = False
         callbacks = event_callbacks or PublisherEventCallbacks()
         self.event_handlers = callbacks.create_event_handlers(callback_group, self, topic)
         self._outlets = _Outlets(self._endpoint, qos_profile)
@@ -88,7 +89,7 @@ class Publisher(Generic[MsgT]):
         """The name of the logger that belongs to the node."""
         return self._endpoint.logger_name
 
-    def wait_for_all_acked(self, timeout: Duration | None = None) -> bool:
+    def wait_for_all_acked(self, timeout: Duration = _FOR_EVER) -> bool:
         """Say that everything has been sent: there are no acknowledgements on this wire, as in rmw_zenoh."""
         return True
 

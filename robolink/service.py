@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import functools
 import inspect
 from collections.abc import Callable, Coroutine
 from typing import Any, NamedTuple
 
 from robolink.callback_groups import CallbackGroup
+from robolink.clock import Clock
 from robolink.endpoint import Endpoint, Owner
 from robolink.entity import Receiver
 from robolink.exceptions import DecodeError, WireError
+from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, encoder, service_type
 from robolink.qos import QoSProfile
+from robolink.service_introspection import Introspection, introspect
+from robolink.service_introspection import ServiceIntrospectionState as ServiceIntrospectionState
 from robolink.transport.base import Query
 from robolink.wire import EndpointKind, pack_attachment, unpack_attachment
 
@@ -49,14 +54,23 @@ class Service(Receiver):
         self.qos_profile = qos_profile
         self.malformed = 0
         """How many requests could not be decoded."""
-        self._decode = decoder(srv_type.Request)
-        self._encode = encoder(srv_type.Response)
+        self.introspection: Introspection | None = None
+        """Tells of requests and responses, once `configure_introspection` has been asked for it."""
         self._endpoint = Endpoint(owner, EndpointKind.SERVICE, srv_name, srv_type, qos_profile)
         self._transport = self._endpoint.transport
-        self._destroyed = False
         self._handles = [self._transport.serve(self._endpoint.key, self.sink)]
         self._endpoint.speak_humble = self._speak_humble
         self._endpoint.announce()
+
+    # Made when first asked: most services of a node, those for its parameters, never are.
+
+    @functools.cached_property
+    def _decode(self) -> Callable[[bytes], Any]:
+        return decoder(self.srv_type.Request)
+
+    @functools.cached_property
+    def _encode(self) -> Callable[[Any], bytes]:
+        return encoder(self.srv_type.Response)
 
     def _speak_humble(self, key: str) -> None:
         """Serve Humble's key too from now on; a client calls one of them."""
@@ -85,14 +99,20 @@ class Service(Receiver):
             query.close()
             return None
         header = RequestHeader(query, asker.sequence, asker.gid)
+        if self.introspection is not None:
+            self.introspection.tell(ServiceEventInfo.REQUEST_RECEIVED, request, asker.sequence, asker.gid)
         try:
-            response = self.callback(request, self.srv_type.Response())
-            if inspect.iscoroutine(response):
-                return self._answer_later(response, header)
-            self.send_response(response, header)
+            return self.respond(request, header)
         except BaseException:
             query.close()
             raise
+
+    def respond(self, request: Message, header: RequestHeader) -> Any:
+        """Have the callback answer; a coroutine that does so later, if that is what the callback is."""
+        response = self.callback(request, self.srv_type.Response())
+        if inspect.iscoroutine(response):
+            return self._answer_later(response, header)
+        self.send_response(response, header)
         return None
 
     async def _answer_later(self, response: Coroutine[Any, Any, Any], header: RequestHeader) -> None:
@@ -111,6 +131,9 @@ class Service(Receiver):
         now = self._endpoint.context.time.now()
         header.query.reply(self._encode(response), pack_attachment(header.sequence_number, now, header.client_gid))
         header.query.close()
+        if self.introspection is not None:
+            asked = header.sequence_number, header.client_gid
+            self.introspection.tell(ServiceEventInfo.RESPONSE_SENT, response, *asked)
 
     def _refuse(self, error: Exception) -> None:
         self.malformed += 1
@@ -119,6 +142,17 @@ class Service(Receiver):
                 f"{self.srv_name}: refused a request that is no {self._endpoint.type_name}: {error}"
                 " (the next ones are only counted)"
             )
+
+    def configure_introspection(
+        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Publish on SERVICE/_service_event, from now on, what is asked and what is answered; nothing for OFF.
+
+        `clock` gives the stamps. Raises TypeError for what is no state.
+        """
+        self.introspection = introspect(
+            self.introspection, self._endpoint, self.srv_type, clock, service_event_qos_profile, introspection_state
+        )
 
     @property
     def service_name(self) -> str:
@@ -135,6 +169,8 @@ class Service(Receiver):
         if self._destroyed:
             return
         self._destroyed = True
+        if self.introspection is not None:
+            self.introspection.close()
         self._close()
         self.detach()
         self._parking.sweep()

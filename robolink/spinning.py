@@ -19,16 +19,29 @@ _executor: Executor | None = None
 
 
 class InitContextManager:
-    """What `init` returns: ``with rclpy.init():`` shuts down at its end."""
+    """What `init` returns: ``with rclpy.init():`` shuts down at its end, and gives back the signals that it took."""
 
-    def __init__(self, context: Context) -> None:
-        self.context = context
+    def __init__(
+        self,
+        args: list[str] | None,
+        context: Context | None,
+        domain_id: int | None,
+        signal_handler_options: SignalHandlerOptions | None,
+    ) -> None:
+        self.context = get_default_context() if context is None else context
+        if signal_handler_options is None:
+            is_default = self.context is get_default_context()
+            signal_handler_options = SignalHandlerOptions.ALL if is_default else SignalHandlerOptions.NO
+        self.installed_signal_handlers = bool(signal_handler_options)
+        self.context.init(args, domain_id=domain_id)
+        install_signal_handlers(signal_handler_options)
 
     def __enter__(self) -> InitContextManager:
         return self
 
     def __exit__(self, *_: object) -> None:
-        try_shutdown(context=None if self.context is get_default_context() else self.context)
+        context = None if self.context is get_default_context() else self.context
+        try_shutdown(context=context, uninstall_handlers=self.installed_signal_handlers)
 
 
 def init(
@@ -42,12 +55,7 @@ def init(
 
     Raises RuntimeError the second time, ValueError for arguments that cannot be read.
     """
-    if signal_handler_options is None:
-        signal_handler_options = SignalHandlerOptions.ALL if context is None else SignalHandlerOptions.NO
-    initialized = get_default_context() if context is None else context
-    initialized.init(args, domain_id=domain_id)
-    install_signal_handlers(signal_handler_options)
-    return InitContextManager(initialized)
+    return InitContextManager(args, context, domain_id, signal_handler_options)
 
 
 def get_global_executor() -> Executor:
@@ -62,32 +70,35 @@ def get_global_executor() -> Executor:
 def _forget_executor() -> None:
     global _executor
     if _executor is not None:
-        _executor.shutdown()
+        _executor.shutdown(timeout_sec=0)  # a callback may be in the midst of something: rclpy does not wait either
         _executor = None
 
 
 def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
-    """End a context, by default the default one. Raises RuntimeError when there is none to end."""
-    _forget_if_default(context)
+    """End a context, by default the default one. Raises RuntimeError when there is none to end.
+
+    The signals are given back if `uninstall_handlers`, by default if the context is the default one.
+    """
+    is_default = _forget_if_default(context)
     shut_context_down(context=context)
-    _uninstall(context, uninstall_handlers)
+    if is_default if uninstall_handlers is None else uninstall_handlers:
+        uninstall_signal_handlers()
 
 
 def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
-    """End a context, by default the default one, unless it has ended."""
-    _forget_if_default(context)
+    """End a context as `shutdown` does, unless it has ended."""
+    is_default = _forget_if_default(context)
     try_to_shut_context_down(context=context)
-    _uninstall(context, uninstall_handlers)
-
-
-def _forget_if_default(context: Context | None) -> None:
-    if context is None:
-        _forget_executor()
-
-
-def _uninstall(context: Context | None, wanted: bool | None) -> None:
-    if wanted or (wanted is None and context is None):
+    if is_default if uninstall_handlers is None else uninstall_handlers:
         uninstall_signal_handlers()
+
+
+def _forget_if_default(context: Context | None) -> bool:
+    """Let go of the shared executor when the default context is to end; whether it is."""
+    is_default = context is None or context is get_default_context()
+    if is_default:
+        _forget_executor()
+    return is_default
 
 
 def create_node(

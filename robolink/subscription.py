@@ -91,7 +91,6 @@ class Subscription(Receiver, Generic[MsgT]):
         self._humble_door: _HumbleDoor | None = None
         self._inbox = owner.context.inbox
         self._handles: list[Handle] = []
-        self._destroyed = False
         self._listen_for_events(event_callbacks or SubscriptionEventCallbacks())
         self._endpoint.speak_humble = self._speak_humble
         self._handles.append(self._endpoint.transport.subscribe(self._endpoint.key, qos_profile, self.sink))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import inspect
+import sys
 import threading
 import warnings
 import weakref
@@ -10,11 +12,14 @@ from collections.abc import Callable, Generator
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 if TYPE_CHECKING:
+    import asyncio
+
     from robolink.executors import Executor
 
 T = TypeVar("T")
 
 _running = threading.local()
+"""The task that runs in a thread, and the event loop of asyncio within which it was called, if any."""
 
 
 class Future(Generic[T]):
@@ -38,10 +43,13 @@ class Future(Generic[T]):
                 f"The following exception was never retrieved: {self._exception}", ResourceWarning, stacklevel=1
             )
 
-    def __await__(self) -> Generator[None, None, T | None]:
-        """Yield until done; a bare yield, so that asyncio can drive it as well."""
-        while not (self._done or self._cancelled):
-            task = getattr(_running, "task", None)
+    def __await__(self) -> Generator[Any, None, T | None]:
+        """Yield until done: to a task of an executor, to asyncio's event loop, or to whoever else drives it."""
+        while not self.over():
+            task, loop = getattr(_running, "task", None), _asyncio_loop()
+            if loop is not None and loop is not getattr(_running, "loop", None):
+                yield from _in_asyncio(self, loop)
+                continue
             if task is not None:
                 task.awaits = self
             yield
@@ -121,6 +129,11 @@ class Future(Generic[T]):
                 return
         waker()
 
+    def forget(self, waker: Callable[[], None]) -> None:
+        """Do not call this waker after all."""
+        with self._lock:
+            self._wakers = [each for each in self._wakers if each is not waker]
+
     def _schedule_or_invoke_done_callbacks(self) -> None:
         with self._lock:
             callbacks, self._callbacks = self._callbacks, []
@@ -139,6 +152,32 @@ class Future(Generic[T]):
 
     def _set_executor(self, executor: Executor | None) -> None:
         self._executor = (lambda: None) if executor is None else weakref.ref(executor)
+
+
+def _asyncio_loop() -> asyncio.AbstractEventLoop | None:
+    """Give the event loop that runs in this thread, if there is one."""
+    running = getattr(sys.modules.get("asyncio"), "_get_running_loop", None)  # where it was not imported, no loop runs
+    return None if running is None else running()
+
+
+def _in_asyncio(future: Future[Any], loop: asyncio.AbstractEventLoop) -> Generator[Any, None, None]:
+    """Let asyncio sleep until the future is over, in whatever thread that happens."""
+    woken = loop.create_future()
+
+    def wake() -> None:
+        with contextlib.suppress(RuntimeError):  # the loop is closed: nobody waits there any more
+            loop.call_soon_threadsafe(_complete, woken)
+
+    future.when_done(wake)
+    try:
+        yield from woken
+    finally:
+        future.forget(wake)
+
+
+def _complete(woken: asyncio.Future[None]) -> None:
+    if not woken.done():  # cancelled
+        woken.set_result(None)
 
 
 class Task(Future[T]):
@@ -166,12 +205,14 @@ class Task(Future[T]):
         """Run it, or run it on until its next await. Nothing happens when it is done or under way already."""
         if self._done or self._cancelled or self._executing or not self._task_lock.acquire(blocking=False):
             return
-        before = getattr(_running, "task", None)
+        before = getattr(_running, "task", None), getattr(_running, "loop", None)
         try:
-            self._executing, self.awaits, _running.task = True, None, self
+            self._executing, self.awaits = True, None
+            _running.task, _running.loop = self, _asyncio_loop()
             self._step()
         finally:
-            self._executing, _running.task = False, before
+            self._executing = False
+            _running.task, _running.loop = before
             self._task_lock.release()
 
     def _step(self) -> None:

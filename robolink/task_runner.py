@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from robolink.entity import NOTHING, Entity
 from robolink.task import Task
 
+if TYPE_CHECKING:
+    from robolink.executors import Executor
+
 
 class TaskRunner(Entity):
-    """Runs one task, again and again until it is done."""
+    """Runs one task in an executor, again and again until it is done.
 
-    def __init__(self, task: Task[Any], on_end: Callable[[], None] | None = None) -> None:
+    When the task is what `origin`'s callback has returned, that one's group is busy until then.
+    """
+
+    def __init__(self, task: Task[Any], executor: Executor, origin: Entity | None = None) -> None:
         super().__init__()
-        self.task = task
-        self.on_end = on_end
+        self.task, self.executor, self._origin = task, executor, origin
+        self.serves = origin is not None and origin.serves
+
+    @property
+    def origin(self) -> Entity:
+        """The entity whose callback is executed."""
+        return self._origin or self
 
     def take(self) -> Any:
         """Give the task."""
@@ -27,16 +37,17 @@ class TaskRunner(Entity):
         if not (taken.done() or taken.cancelled()):
             self._sleep(taken)
             return
-        if self.on_end is not None:
-            self.on_end()
-        if taken.exception() is not None:
-            raise taken.exception() or RuntimeError
+        if self._origin is not None:
+            self._origin.callback_group.ending_execution(self._origin)
+        error = taken.exception()
+        if error is not None:
+            raise error
 
     def _sleep(self, task: Task[Any]) -> None:
-        executor = self.executor
+        executor, awaited = self.executor, task.awaits
         if executor is None:
             return
-        if task.awaits is None:
+        if awaited is None:
             executor.poll(self)
         else:
-            task.awaits.when_done(lambda: executor.post(self))
+            awaited.when_done(lambda: executor.post(self))

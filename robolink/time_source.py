@@ -50,7 +50,12 @@ class TimeSource:
             self._unsubscribe()
 
     def attach_node(self, node: Node) -> None:
-        """Follow this node's use_sim_time, which is declared if it is not yet. Raises TypeError for no bool."""
+        """Follow this node's use_sim_time, which is declared if it is not yet.
+
+        Raises TypeError for what is no node, or when the parameter is no bool.
+        """
+        if not hasattr(node, "declare_parameter"):
+            raise TypeError(f"node: expected a Node, got {type(node)}")
         if self._node is not None:
             self.detach_node()
         self._node = node
@@ -68,6 +73,9 @@ class TimeSource:
         if self._node is not None:
             self._node.remove_on_set_parameters_callback(self._on_parameters)
         self._node = None
+
+    def _get_node(self) -> Node | None:
+        return self._node
 
     def attach_clock(self, clock: ROSClock) -> None:
         """Set this clock from now on. Raises ValueError for what is no ROSClock."""
@@ -96,7 +104,7 @@ class TimeSource:
     def _unsubscribe(self) -> None:
         if self._clock_sub is not None and self._node is not None:
             self._node.destroy_subscription(self._clock_sub)
-            self._clock_sub = None
+        self._clock_sub = None
 
     def _on_parameters(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
         for parameter in parameters:

@@ -10,7 +10,9 @@ from robolink.callback_groups import CallbackGroup
 from robolink.clock import Clock, ROSClock
 from robolink.clock_type import ClockType
 from robolink.entity import NOTHING, Entity
-from robolink.exceptions import InvalidHandle, ROSInterruptException
+from robolink.exceptions import ExternalShutdownException, InvalidHandle, ROSInterruptException
+from robolink.inbox import A_WHILE
+from robolink.task import Future
 from robolink.time import Time
 
 if TYPE_CHECKING:
@@ -28,6 +30,10 @@ class TimerInfo:
         actual_call_time: int = 0,
         clock_type: ClockType = ClockType.SYSTEM_TIME,
     ) -> None:
+        if not isinstance(clock_type, ClockType):
+            raise TypeError("Clock type must be a ClockType enum")
+        if expected_call_time < 0 or actual_call_time < 0:
+            raise ValueError("call time values must not be negative")
         self.expected_call_time = Time(nanoseconds=expected_call_time, clock_type=clock_type)
         self.actual_call_time = Time(nanoseconds=actual_call_time, clock_type=clock_type)
 
@@ -54,8 +60,16 @@ class Timer(Entity):
         self._last = clock.now_ns()
         self.next_call_ns = self._last + self._period
         self._canceled = not autostart
-        self._destroyed = False
-        self._with_info = callback is not None and _wants_info(callback)
+
+    @property
+    def callback(self) -> Callable[..., Any] | None:
+        """What is called; with a TimerInfo if it has a parameter that is annotated so."""
+        return self._callback
+
+    @callback.setter
+    def callback(self, callback: Callable[..., Any] | None) -> None:
+        self._callback = callback
+        self._info_name = None if callback is None else _info_parameter(callback)
 
     def attach(self, executor: Executor, queued: int = 0) -> None:
         """Be called by this executor when due."""
@@ -79,10 +93,10 @@ class Timer(Entity):
         now = self.clock.now_ns()
         if now < self._last:  # the clock was set back, or follows another source: as in rcl, a period starts now
             self._last, self.next_call_ns = now, now + self._period
-        if self.clock.wait_ns(self.next_call_ns) is None:
-            return  # /clock will say when
-        executor.schedule(self)
-        executor.wake()
+        left = self.clock.wait_ns(self.next_call_ns)
+        if left is not None:  # else /clock will say when
+            executor.schedule(self, left)
+            executor.wake()
 
     def take(self) -> Any:
         """Be called now: the next deadline is a whole number of periods after the last one."""
@@ -94,9 +108,12 @@ class Timer(Entity):
             return NOTHING
         expected = self.next_call_ns
         self._advance(now)
-        if self.executor is not None:
+        executor = self.executor
+        if executor is not None:
             self.version += 1
-            self.executor.schedule(self)
+            left = self.clock.wait_ns(self.next_call_ns)
+            if left is not None:
+                executor.schedule(self, left)
         return expected, now
 
     def _advance(self, now: int) -> None:
@@ -108,13 +125,13 @@ class Timer(Entity):
 
     def execute(self, taken: Any) -> Any:
         """Call the callback."""
-        if self.callback is None:
+        if self._callback is None:
             return None
-        if not self._with_info:
-            return self.callback()
+        if self._info_name is None:
+            return self._callback()
         expected, actual = taken
         info = TimerInfo(expected_call_time=expected, actual_call_time=actual, clock_type=self.clock.clock_type)
-        return self.callback(info)
+        return self._callback(**{self._info_name: info})
 
     @property
     def timer_period_ns(self) -> int:
@@ -176,22 +193,32 @@ class Timer(Entity):
         self.destroy()
 
 
+def period_ns(seconds: float) -> int:
+    """A timer's period in nanoseconds. Raises ValueError for a number that is none, or is below 0 or infinite."""
+    if float(seconds) < 0:
+        raise ValueError(f"a timer's period cannot be negative, got {seconds} s")
+    if not float(seconds) < float("inf"):
+        raise ValueError(f"a timer's period must be a number of seconds, got {seconds}")
+    return int(float(seconds) * 1e9)
+
+
 def _checked_period(period: int) -> int:
     if period < 0:
         raise ValueError(f"a timer's period cannot be negative, got {period} ns")
     return int(period)
 
 
-def _wants_info(callback: Callable[..., Any]) -> bool:
-    """Whether a callback has a parameter that is annotated as TimerInfo."""
+def _info_parameter(callback: Callable[..., Any]) -> str | None:
+    """The name of a callback's parameter that is annotated as TimerInfo."""
     import inspect
 
     try:
         parameters = inspect.signature(callback).parameters.values()
     except (TypeError, ValueError):  # a built-in function that does not tell
-        return False
-    kinds = [each.annotation for each in parameters]
-    return any(each is TimerInfo or str(each).rpartition(".")[2] == "TimerInfo" for each in kinds)
+        return None
+    kinds = {each.name: each.annotation for each in parameters}
+    found = (name for name, kind in kinds.items() if kind is TimerInfo or str(kind).rpartition(".")[2] == "TimerInfo")
+    return next(found, None)
 
 
 class Rate:
@@ -199,50 +226,72 @@ class Rate:
 
     def __init__(self, timer: Timer, *, context: Context) -> None:
         self._timer, self._context = timer, context
-        self._condition, self._woken = threading.Condition(), threading.Event()
-        self._ticks = 0
-        self._ended = False
-        timer.callback = self._tick
-        context.on_shutdown(self._end)
+        self._sleepers: list[Future[None]] = []
+        self._woken = threading.Event()
+        self._lock = threading.Lock()
+        self._is_shutdown = self._is_destroyed = False
+        timer.callback = self._wake
+        timer.quick = True
+        context.on_shutdown(self._shut_down)
 
-    def _tick(self) -> None:
-        with self._condition:
-            self._ticks += 1
-            self._condition.notify_all()
+    def _wake(self) -> None:
+        with self._lock:
+            sleepers, self._sleepers = self._sleepers, []
+        for each in sleepers:
+            each.set_result(None)
 
-    def _end(self) -> None:
-        with self._condition:
-            self._ended = True
-            self._condition.notify_all()
-        self._woken.set()
+    def _shut_down(self) -> None:
+        self._is_shutdown = True
+        self.destroy()
 
     def destroy(self) -> None:
         """Wake whoever sleeps, for good. Safe to call twice."""
-        self._end()
+        self._is_destroyed = True
+        self._woken.set()
+        self._wake()
         self._timer.destroy()
 
     def sleep(self) -> None:
-        """Sleep until the next tick. Raises ROSInterruptException when the context ends or the rate is destroyed.
+        """Sleep until the next tick, or until the rate is destroyed.
 
-        In the thread that spins, or where nobody does, it sleeps by the clock instead of waiting for a callback.
+        In the thread that spins, or where nobody does, it sleeps by the clock instead of waiting for a callback. Raises
+        ROSInterruptException when the context ends, RuntimeError when the rate or its timer was destroyed before.
         """
-        if not self._context.ok() or self._ended:
+        if self._is_shutdown or not self._context.ok():
             raise ROSInterruptException()
-        if self._sleeps_alone():
-            self._sleep_by_clock()
-        else:
-            with self._condition:
-                before = self._ticks
-                self._condition.wait_for(lambda: self._ticks != before or self._ended)
-        if self._ended or not self._context.ok():
+        if self._is_destroyed:
+            raise RuntimeError("Rate cannot sleep because it has been destroyed")
+        try:
+            with self._timer.handle:
+                self._sleep()
+        except (ExternalShutdownException, InvalidHandle):
+            if self._context.ok():
+                raise
+        if self._is_shutdown or not self._context.ok():
             raise ROSInterruptException()
 
-    def _sleeps_alone(self) -> bool:
+    def _sleep(self) -> None:
         executor = self._timer.executor
-        return executor is None or not executor.spinning or executor.spins_here
+        if executor is None or not executor.spinning or (executor.spins_here and not executor.parallel):
+            self._sleep_by_clock()
+        elif executor.spins_here:
+            executor.serve_until(self._next_tick(), None, serving=False)
+        else:
+            woken = threading.Event()
+            self._next_tick().when_done(woken.set)
+            while not woken.wait(A_WHILE):
+                continue  # a signal that comes just before the wait begins is noticed at its end
+
+    def _next_tick(self) -> Future[None]:
+        tick: Future[None] = Future()
+        with self._lock:
+            self._sleepers.append(tick)
+        if self._is_destroyed:
+            self._wake()
+        return tick
 
     def _sleep_by_clock(self) -> None:
         timer = self._timer
-        timer.clock.sleep_until_ns(timer.next_call_ns, self._woken, lambda: self._ended)
-        if timer.take() is NOTHING and not self._ended:
+        timer.clock.sleep_until_ns(timer.next_call_ns, self._woken, lambda: self._is_destroyed)
+        if timer.take() is NOTHING and not self._is_destroyed:
             timer.reset()

@@ -18,6 +18,7 @@ from robolink.wire import NO_HASH
 if TYPE_CHECKING:
     from robolink.interfaces.type_description_interfaces.srv import GetTypeDescription
     from robolink.node import Node
+    from robolink.service import Service as Server
 
 START_TYPE_DESCRIPTION_SERVICE_PARAM = "start_type_description_service"
 SERVICE_NAME = "get_type_description"
@@ -27,8 +28,8 @@ HASH = re.compile(r"RIHS01_[0-9a-f]{64}", re.ASCII)
 class TypeDescriptionService:
     """Declares the parameter `start_type_description_service`, and serves unless that is false.
 
-    It answers for the types of the node's publishers, subscriptions, services and clients, for the messages that a
-    service is made of, and for an action whose services they are. A request states the type's hash, which alone
+    It answers for the types of the node's publishers, subscriptions, services, clients and actions, for the messages
+    that a service is made of, and for an action whose services they are. A request states the type's hash, which alone
     counts then, or only its name. A group of its own makes the answer come while other callbacks run, where the
     executor has several threads.
     """
@@ -36,11 +37,19 @@ class TypeDescriptionService:
     def __init__(self, node: Node) -> None:
         self._node = weakref.ref(node)  # the transport holds the service: it must not keep the node alive
         self.enabled = _enabled(node) and not node.context.speaks_humble
+        self._service: Server | None = None
         if self.enabled:
             from robolink.interfaces.type_description_interfaces.srv import GetTypeDescription
 
             group = MutuallyExclusiveCallbackGroup()
-            node.create_service(GetTypeDescription, f"~/{SERVICE_NAME}", self._answer, callback_group=group)
+            name = f"~/{SERVICE_NAME}"
+            self._service = node.create_service(GetTypeDescription, name, self._answer, callback_group=group)
+
+    def destroy(self) -> None:
+        """Serve no more. Safe to call twice."""
+        node, service, self._service = self._node(), self._service, None
+        if node is not None and service is not None:
+            node.destroy_service(service)
 
     def _answer(
         self, request: GetTypeDescription.Request, response: GetTypeDescription.Response
@@ -59,8 +68,10 @@ class TypeDescriptionService:
             return
         yield from (each.msg_type for each in node.publishers)
         yield from (each.msg_type for each in node.subscriptions)
+        of_actions = [each for waitable in node.waitables for each in waitable.interfaces()]
+        yield from of_actions
         services = [each.srv_type for each in node.services] + [each.srv_type for each in node.clients]
-        for service in services:
+        for service in services + [each for each in of_actions if issubclass(each, Service)]:
             yield service
             yield from (service.Request, service.Response, service.Event)
             action = getattr(service, "__ros_action__", None)

@@ -84,7 +84,7 @@ def _ask(context: Context, node_name: str, endpoint: EndpointToken) -> type[Any]
     request = GetTypeDescription.Request(type_name=endpoint.type_name, type_hash=stated, include_type_sources=False)
     with _asking_node(context) as node:
         client = node.create_client(GetTypeDescription, f"{node_name}/{SERVICE}")
-        answer = client.call(request, timeout_sec=ANSWER_WITHIN)
+        answer = client.try_call(request, timeout_sec=ANSWER_WITHIN)
     if not answer.successful:
         raise TypeLookupError(f"refused: {answer.failure_reason or 'no reason given'}")
     description = from_message(answer.type_description)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 from collections.abc import Sequence
@@ -69,8 +70,15 @@ def get_rmw_implementation_identifier() -> str:
 
 
 def get_available_rmw_implementations() -> set[str]:
-    """Name all the middlewares there are."""
-    return {"rmw_zenoh_cpp"}
+    """Name all the middlewares there are, or those of them that RMW_IMPLEMENTATIONS lists (parted as PATH is).
+
+    Raises RuntimeError when it lists one that is not there.
+    """
+    there = {get_rmw_implementation_identifier()}
+    wanted = {each for each in os.environ.get("RMW_IMPLEMENTATIONS", "").split(os.pathsep) if each}
+    if wanted - there:
+        raise RuntimeError(f"RMW_IMPLEMENTATIONS: there is no {', '.join(sorted(wanted - there))}, only {min(there)}")
+    return wanted or there
 
 
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:

@@ -7,6 +7,8 @@ from typing import Literal
 from robolink.exceptions import InvalidServiceNameException, InvalidTopicNameException
 from robolink.names import TOPIC_NAME_RULES, find_problem
 
+TOPIC_SEPARATOR_STRING = "/"
+
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
     """Give True for a name that can be expanded.

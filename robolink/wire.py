@@ -8,7 +8,7 @@ import re
 import struct
 from collections.abc import Callable
 from enum import Enum, IntEnum
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import xxhash
 
@@ -33,6 +33,9 @@ LONGEST = 4096
 
 NO_HASH = "TypeHashNotSupported"
 """What Humble says in place of a type hash."""
+
+_remembered = functools.lru_cache(maxsize=1024)
+"""For parts of tokens: each endpoint of a node repeats the node's name, and each node the same types."""
 
 _ATTACHMENT = struct.Struct("<qqB16s")
 ATTACHMENT_BYTES = _ATTACHMENT.size
@@ -161,6 +164,7 @@ def gid_of(token: str) -> bytes:
     return xxhash.xxh3_128_intdigest(raw).to_bytes(GID_BYTES, "little")
 
 
+@_remembered
 def mangle_type(type_name: str) -> str:
     """Spell a ROS type as DDS does; raises WireError for what is no type name.
 
@@ -171,6 +175,7 @@ def mangle_type(type_name: str) -> str:
     return f"{'::'.join(packages)}::dds_::{name}_"
 
 
+@_remembered
 def demangle_type(dds_name: str) -> str:
     """Undo `mangle_type`; raises WireError for what it cannot have made."""
     match = _DDS_TYPE.fullmatch(dds_name) if len(dds_name) <= LONGEST else None
@@ -203,6 +208,11 @@ def parse_key(text: str) -> DataKey:
 def graph_pattern(domain: int | None = None) -> str:
     """Give the key expression that all tokens of a domain match; without one, those of all domains."""
     return f"{_GRAPH}/**" if domain is None else f"{_GRAPH}/{_number(domain)}/**"
+
+
+def own_tokens(domain: int, session: str) -> str:
+    """Give how all tokens of a session on a domain begin."""
+    return f"{_GRAPH}/{_number(domain)}/{session}/"
 
 
 def format_token(token: NodeToken | EndpointToken) -> str:
@@ -260,6 +270,16 @@ def format_qos(qos: QoSProfile) -> str:
     >>> format_qos(QoSProfile(depth=10))
     '::,10:,:,:,,'
     """
+    values = tuple(getattr(qos, name) for name in QoSProfile.__slots__)
+    text = _QOS_TEXTS.get(values)
+    if text is None:
+        text = _formatted_qos(qos)
+        if len(_QOS_TEXTS) < MOST_PROFILES:
+            _QOS_TEXTS[values] = text
+    return text
+
+
+def _formatted_qos(qos: QoSProfile) -> str:
     full, usual = resolved(qos), _DEFAULTS
     depth = "" if full.depth == usual.depth else str(full.depth)
     return (
@@ -291,7 +311,10 @@ def parse_qos(text: str) -> QoSProfile:
 _DEFAULTS = resolved(qos_profile_system_default)
 
 # A system has thousands of tokens and a handful of profiles, and reading those takes two thirds of the time.
-_shared_qos = functools.lru_cache(maxsize=256)(parse_qos)
+MOST_PROFILES = 256
+_shared_qos = functools.lru_cache(maxsize=MOST_PROFILES)(parse_qos)
+_QOS_TEXTS: dict[tuple[Any, ...], str] = {}
+"""Profiles, by their values, as tokens carry them: formatting one takes longer than all else of a token."""
 
 
 def _unless(value: int, usual: int) -> str:
@@ -336,10 +359,12 @@ def _parsed_number(text: str) -> int:
     return int(_matched(_NUMBER, text, "a number"))
 
 
+@_remembered
 def _mangled(name: str) -> str:
     return _checked_name(name).replace("/", "%")
 
 
+@_remembered
 def _demangled(field: str) -> str:
     return _checked_name(field.replace("%", "/"))
 
@@ -352,6 +377,7 @@ def _checked_topic(name: str) -> str:
     return _matched(_TOPIC, name, "a full topic or service name")
 
 
+@_remembered
 def _checked_hash(text: str) -> str:
     return _matched(_HASH, text, "a type hash")
 

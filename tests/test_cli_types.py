@@ -20,7 +20,7 @@ from robolink.message import Message, Service, string, type_hash, type_name
 from robolink.type_lookup import TypeLookupError, type_of
 from robolink.wire import NO_HASH
 from tests.carts import Cart, Haul, Load, Wheel, announced, seen, spinning
-from tests.commands import Command
+from tests.commands import BUSY_ROBOLINK, Command
 from tests.seen_by_commands import LATCHED, a_node_that_commands_see, made
 
 Answer = Callable[[Any, Any], Any]
@@ -31,7 +31,7 @@ QUIET = [Parameter("start_type_description_service", value=False)]
 def robot(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
     """The node /lab/robot, which nobody spins yet."""
     monkeypatch.setattr(interfaces, "_sources", ())
-    monkeypatch.setattr(type_lookup, "ANSWER_WITHIN", 2.0)
+    monkeypatch.setattr(type_lookup, "ANSWER_WITHIN", 20.0)
     with a_node_that_commands_see(monkeypatch) as node:
         yield node
 
@@ -249,10 +249,10 @@ def test_echo_shows_it_from_another_process_and_folder(
     with Command(domain, "run", str(file)) as carter:
         carter.wait_for("ready")
         monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
-        with Command(domain, "topic", "echo", "--once", "/cart") as echo:
+        with Command(domain, "topic", "echo", "--once", "/cart", program=BUSY_ROBOLINK) as echo:
             assert echo.end() == 0
             assert [each.text for each in echo.lines] == ["wheels:", "- radius: 0.5", "label: hay", "---"]
-        with Command(domain, "topic", "echo", "--once", "--json", "/cart", "Cart") as echo:
+        with Command(domain, "topic", "echo", "--once", "--json", "/cart", "Cart", program=BUSY_ROBOLINK) as echo:
             assert echo.end() == 0
             assert msgspec.json.decode(echo.lines[0].text) == {"wheels": [{"radius": 0.5}], "label": "hay"}
 
@@ -268,7 +268,7 @@ def test_a_publisher_that_waits_says_what_its_type_is(
     with Command(domain, "topic", "pub", "--once", "/cart", "carts_of_mine/Cart", "{label: hay}") as pub:
         pub.wait_for("Waiting for at least 1")
         monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
-        with Command(domain, "topic", "echo", "--once", "/cart") as echo:
+        with Command(domain, "topic", "echo", "--once", "/cart", program=BUSY_ROBOLINK) as echo:
             assert echo.end() == 0
             assert [each.text for each in echo.lines] == ["label: hay", "---"]
         assert pub.end() == 0

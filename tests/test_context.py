@@ -17,7 +17,7 @@ from robolink.interfaces.std_msgs.msg import Int32
 from robolink.logging import LoggingSeverity
 from robolink.transport.memory import Bus, MemoryTransport
 
-PATIENCE = 5.0
+PATIENCE = 30.0
 
 
 def made() -> Context:

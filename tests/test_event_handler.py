@@ -215,6 +215,24 @@ def test_a_publisher_class_of_the_users_own(node: Node, executor: SingleThreaded
     assert (publisher.sent, len(got)) == (1, 1)
 
 
+def test_a_callback_may_take_a_default_ones_place(node: Node, executor: SingleThreadedExecutor) -> None:
+    """What happened before counts, as for any callback."""
+    got: list[Any] = []
+    subscription = node.create_subscription(Int32, "topic", nothing, 10)
+    publisher = node.create_publisher(String, "topic", 10)
+    for ends in (subscription.event_handlers, publisher.event_handlers):
+        (handler,) = (each for each in ends if each.event_type.name.endswith("INCOMPATIBLE_TYPE"))
+        handler.callback = got.append
+        assert handler.callback == got.append
+    spin_for(executor, 0.1)
+    assert got == [IncompatibleTypeInfo(1, 1)] * 2
+    other = SingleThreadedExecutor(context=node.context)
+    other.add_node(node)
+    node.create_publisher(String, "topic", 10)
+    spin_for(other, 0.1)
+    assert got[2:] == [IncompatibleTypeInfo(2, 1)]
+
+
 def test_older_names(node: Node) -> None:
     publisher = node.create_publisher(Int32, "topic", 10)
     with pytest.deprecated_call():

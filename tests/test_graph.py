@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 import threading
-import timeit
+from collections.abc import Callable
 from pathlib import Path
+from types import FrameType
+from typing import Any
 
 import pytest
 
@@ -30,7 +33,7 @@ from robolink.wire import EndpointKind, EndpointToken, NodeToken, format_token
 from tests.programs import Program
 from tests.transports import Network
 
-PATIENCE = 5.0
+PATIENCE = 30.0
 HIDDEN = ("/rosout", "/parameter_events")
 
 
@@ -228,6 +231,23 @@ def test_a_follower_may_change_the_graph(context: Context, talker: Node) -> None
     assert told == ["MP", "MP"]
 
 
+def test_a_follower_that_fails_is_logged_and_the_others_are_told(
+    context: Context, talker: Node, log_lines: list[Record]
+) -> None:
+    told: list[bool] = []
+
+    def fail(gid: bytes, token: EndpointToken, alive: bool) -> None:
+        raise KeyError("broken follower")
+
+    context.graph.follow("/name", EndpointKind.PUBLISHER, fail)
+    context.graph.follow("/name", EndpointKind.PUBLISHER, lambda gid, token, alive: told.append(alive))
+    talker.destroy_node()
+    assert told == [True, False]
+    came, went = (each.message for each in log_lines)
+    assert came == "whoever was told of /left/talker, which has /name and came, failed: KeyError: 'broken follower'"
+    assert "and went, failed" in went
+
+
 def test_what_is_closed_leaves_nothing_behind(bus: Bus, context: Context) -> None:
     graph = context.graph
     for number in range(20):
@@ -243,6 +263,24 @@ def test_what_is_closed_leaves_nothing_behind(bus: Bus, context: Context) -> Non
     assert not bus.tokens
 
 
+def steps(ask: Callable[[], object]) -> int:
+    """How many lines of Python this runs."""
+    count = 0
+
+    def trace(frame: FrameType, event: str, argument: object) -> Any:
+        nonlocal count
+        count += 1
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        ask()
+    finally:
+        sys.settrace(before)
+    return count
+
+
 def test_questions_are_cheap_in_a_big_system(bus: Bus, context: Context) -> None:
     """30 nodes, 200 topics, 2000 endpoints: a question about one topic does not look at the others."""
     crowd, node = MemoryTransport(bus=bus), Node("node", context=context)
@@ -252,10 +290,8 @@ def test_questions_are_cheap_in_a_big_system(bus: Bus, context: Context) -> None
         name, topic = f"node{number % 30}", f"/topic{number % 200}"
         crowd.announce(format_token(token._replace(endpoint_id=number, node_name=name, name=topic)))
     assert publisher.get_subscription_count() == 10
-    seconds = min(
-        timeit.repeat(lambda: context.graph.count(EndpointKind.SUBSCRIPTION, "/topic7"), number=100, repeat=5)
-    )
-    assert seconds / 100 < 100e-6  # 5 us; 2000 tokens one by one take 200
+    assert steps(lambda: context.graph.count(EndpointKind.SUBSCRIPTION, "/topic7")) < 100
+    assert steps(lambda: context.graph.nodes()) > 30, "the measure sees no loop"
 
 
 def test_a_token_that_is_none_is_counted_and_told_once(bus: Bus, context: Context, log_lines: list[Record]) -> None:

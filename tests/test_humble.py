@@ -32,7 +32,7 @@ from robolink.wire import (
     unpack_attachment,
 )
 from tests.spins import done, spin_for, spin_until
-from tests.transports import Network
+from tests.transports import PATIENCE, Network
 
 DATA = Path(__file__).parent / "data" / "wire"
 PLAIN = QoSProfile(depth=10)
@@ -83,7 +83,7 @@ class Peer:
 
     def received(self, count: int) -> list[int]:
         """The next numbers, each from a sender that the attachment names."""
-        samples = [self.session.read(self.arrived.get(timeout=5.0)) for _ in range(count)]
+        samples = [self.session.read(self.arrived.get(timeout=PATIENCE)) for _ in range(count)]
         assert len({unpack_attachment(each.attachment).gid for each in samples}) == 1
         return [decode(Int32, each.payload).data for each in samples]
 
@@ -199,7 +199,7 @@ def test_a_service_answers_it(peer: Peer, make_context: Callable[..., Context]) 
         key = peer.key(EndpointKind.CLIENT)
         peer.session.call(key, encode(SetBool.Request(data=True)), asked, answers.put)
         executor.spin_once(timeout_sec=0.05)
-        arrived = answers.get(timeout=5.0)
+        arrived = answers.get(timeout=PATIENCE)
         first.extend([arrived] if arrived is not None else [])
         return bool(first)
 
@@ -216,9 +216,9 @@ def test_its_service_is_called(peer: Peer, make_context: Callable[..., Context])
     asked: queue.SimpleQueue[Any] = queue.SimpleQueue()
     peer.session.serve(peer.key(EndpointKind.SERVICE), asked.put)
     peer.announce(EndpointKind.SERVICE)
-    assert client.wait_for_service(5.0)
+    assert client.wait_for_service(PATIENCE)
     future = client.call_async(SetBool.Request(data=True))
-    query = peer.session.accept(asked.get(timeout=5.0))
+    query = peer.session.accept(asked.get(timeout=PATIENCE))
     assert decode(SetBool.Request, query.payload).data
     sender = unpack_attachment(query.attachment)
     query.reply(encode(SetBool.Response(message="from humble")), pack_attachment(sender.sequence, 9, sender.gid))
@@ -341,12 +341,12 @@ def test_one_that_speaks_humble_and_one_that_does_not_understand_each_other(
     new[0].create_publisher(Int32, "topic", LATCHED).publish(Int32(data=1))
     spin_until(old[1], lambda: got == [1])
     client = new[0].create_client(SetBool, "switch")
-    assert client.wait_for_service(5.0)
+    assert client.wait_for_service(PATIENCE)
     future = client.call_async(SetBool.Request())
-    thread = threading.Thread(target=new[1].spin_until_future_complete, args=(future, 5.0))
+    thread = threading.Thread(target=new[1].spin_until_future_complete, args=(future, PATIENCE))
     thread.start()
     spin_until(old[1], future.done)
-    thread.join(5.0)
+    thread.join(PATIENCE)
     assert future.result().message == "old"  # type: ignore[union-attr]
     assert log_lines == []
 

@@ -15,7 +15,7 @@ from robolink.executors import Executor, SingleThreadedExecutor
 from robolink.interfaces.std_msgs.msg import Int32
 from tests.spins import numbers, spin_for
 
-PATIENCE = 5.0
+PATIENCE = 30.0
 
 
 @pytest.fixture

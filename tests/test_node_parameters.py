@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 import warnings
 from collections.abc import Iterator
 from typing import Any
@@ -29,6 +28,7 @@ from robolink.interfaces.rcl_interfaces.msg import (
 )
 from robolink.parameter import Parameter
 from tests.parameter_nodes import Make, made, makes
+from tests.spins import spin_until
 
 Type = Parameter.Type
 
@@ -294,9 +294,7 @@ def test_changes_are_published_on_parameter_events(context: Context) -> None:
     executor.add_node(listener)
     node.declare_parameter("speed", 0.5)
     node.set_parameters([made("speed", 0.7)])
-    deadline = time.monotonic() + 5
-    while len(heard) < 2 and time.monotonic() < deadline:
-        executor.spin_once(timeout_sec=0.1)
+    spin_until(executor, lambda: len(heard) == 2)
     assert [each.node for each in heard] == ["/driver", "/driver"]
     assert heard[0].new_parameters[0].name == "speed"
     assert heard[1].changed_parameters[0].value.double_value == 0.7

@@ -23,7 +23,7 @@ from robolink.qos import QoSProfile
 from robolink.transport.base import Query
 from robolink.wire import DataKey, EndpointKind, EndpointToken, format_key, format_token, pack_attachment
 from robolink.workspace import VARIABLE
-from tests.commands import Command
+from tests.commands import BUSY_ROBOLINK, Command
 from tests.programs import Program
 from tests.seen_by_commands import a_node_that_commands_see, made
 
@@ -32,7 +32,7 @@ Hook = Callable[[str], object]
 
 ASKED = "requester: making request: std_srvs.srv.SetBool_Request(data={})\n\n"
 ANSWERED = "response:\nstd_srvs.srv.SetBool_Response(success=True, message='{}')\n\n"
-GIVEN_UP = "robolink: no answer within 0.1 s from /lab/arm of /lab/robot\n"
+GIVEN_UP = "robolink: no answer within 0.6 s from /lab/arm of /lab/robot\n"
 WAITING = "waiting for service to become available...\n"
 
 
@@ -213,7 +213,7 @@ def test_an_unknown_service_is_one_line(verb: str, name: str, said: str, capsys:
     [
         ["/lab/arm", "std_srvs/srv/SetBool", "{data: true}"],
         ["lab/arm", "SetBool", "data: true"],
-        ["/lab/arm", "std_srvs/SetBool", "{data: true}", "--timeout", "3"],
+        ["/lab/arm", "std_srvs/SetBool", "{data: true}", "--timeout", "30"],
         ["/lab/arm", "{data: true}"],
         ["/lab/arm", "data: true", "-n", "asker"],
     ],
@@ -344,8 +344,8 @@ def test_reasons_are_given_after_a_second_and_the_end_comes_after_five() -> None
 )
 @pytest.mark.usefixtures("served", "impatient")
 def test_who_waits_for_a_service_is_told_why_and_gives_up(words: list[str], reason: str, capsys: Captured) -> None:
-    assert main(["service", "call", *words, "--timeout", "0.2"]) == 1
-    assert capsys.readouterr() == (WAITING, f"waiting: {reason}\nrobolink: gave up after 0.2 s: {reason}\n")
+    assert main(["service", "call", *words, "--timeout", "0.6"]) == 1
+    assert capsys.readouterr() == (WAITING, f"waiting: {reason}\nrobolink: gave up after 0.6 s: {reason}\n")
 
 
 @pytest.mark.usefixtures("impatient")
@@ -354,9 +354,9 @@ def test_a_service_of_another_domain_is_told(node: Node, capsys: Captured) -> No
     other.init([], domain_id=5)
     with other:
         made(other, "far").create_service(Trigger, "/reset", echo)
-        assert main(["service", "call", "/reset", "--timeout", "0.1", "--json"]) == 1
+        assert main(["service", "call", "/reset", "--timeout", "0.6", "--json"]) == 1
     reason = "nobody serves /reset on domain 7; it is on domain 5: set ROS_DOMAIN_ID=5"
-    assert capsys.readouterr() == ("", f"waiting: {reason}\nrobolink: gave up after 0.1 s: {reason}\n")
+    assert capsys.readouterr() == ("", f"waiting: {reason}\nrobolink: gave up after 0.6 s: {reason}\n")
 
 
 @pytest.mark.usefixtures("impatient")
@@ -371,7 +371,7 @@ def test_a_service_that_comes_late_is_called(
 @pytest.mark.usefixtures("impatient")
 def test_a_server_that_never_answers(node: Node, capsys: Captured) -> None:
     node.create_service(SetBool, "arm", echo)  # and nobody spins
-    assert main(["service", "call", "/lab/arm", "--timeout", "0.1"]) == 1
+    assert main(["service", "call", "/lab/arm", "--timeout", "0.6"]) == 1
     assert capsys.readouterr() == (
         ASKED.format("False"),
         "waiting: /lab/arm of /lab/robot has not answered yet\n" + GIVEN_UP,
@@ -483,7 +483,7 @@ def server(tmp_path: Path, domain: int) -> Iterator[Program]:
 @pytest.mark.processes
 @pytest.mark.usefixtures("server")
 def test_a_type_that_only_the_server_knows_is_called(domain: int) -> None:
-    with Command(domain, "service", "call", "/add", "{a: 2, b: 40}") as caller:
+    with Command(domain, "service", "call", "/add", "{a: 2, b: 40}", program=BUSY_ROBOLINK) as caller:
         assert caller.end() == 0
     said = [each.text for each in caller.lines]
     assert said[0].endswith(".srv.Add_Request(a=2, b=40)")

@@ -20,8 +20,9 @@ from robolink.service import MOST_WAITING
 from robolink.transport.memory import Bus, MemoryTransport
 from tests.programs import Program
 from tests.spins import done, spin_for, spin_until
+from tests.transports import until
 
-PATIENCE = 5.0
+PATIENCE = 30.0
 ON = SetBool.Request(data=True)
 
 
@@ -195,8 +196,43 @@ def test_calling_nobody_is_an_error_at_once(node: Node, executor: SingleThreaded
     client = node.create_client(SetBool, "nobody")
     with pytest.raises(ServiceError, match="/nobody: nobody serves it"):
         client.call(ON)
+    with pytest.raises(ServiceError, match="/nobody: nobody serves it"):
+        client.try_call(ON, timeout_sec=3600.0)
     with pytest.raises(ServiceError, match="nobody serves it"):
-        done(executor, client.call_async(ON))
+        done(executor, client.try_call_async(ON))
+
+
+def test_a_timeout_passes_before_calling_nobody_fails(node: Node, executor: SingleThreadedExecutor) -> None:
+    """Programs for rclpy count on their timeout to wait for a server: they try again a few times."""
+    client = node.create_client(SetBool, "nobody")
+    with pytest.raises(TimeoutError, match=r"/nobody: no answer within 0\.01 s: nobody serves it"):
+        client.call(ON, timeout_sec=0.01)
+    node.create_timer(1.0, lambda: client.call(ON, timeout_sec=2.0))
+    with pytest.raises(TimeoutError, match=r"/nobody: no answer within 2\.0 s: nobody serves it"):
+        executor.spin()
+    assert executor.context.time.now() == 3 * 10**9
+
+
+def test_the_future_of_a_call_to_nobody_is_never_done(
+    node: Node, server: Node, executor: SingleThreadedExecutor, log_lines: list[Record]
+) -> None:
+    """As in rclpy, where programs ask before the server is there, and again when the future is not done in time."""
+    client, awaited = node.create_client(SetBool, "late"), list[Any]()
+
+    async def ask() -> None:
+        awaited.append(await client.call_async(ON))
+
+    futures = [client.call_async(ON), client.call_async(ON)]
+    executor.create_task(ask)
+    spin_for(executor, 3600.0)
+    assert [each.done() for each in futures] == [False, False]
+    (line,) = log_lines
+    assert line.message.startswith("service /late: nobody serves it")
+    server.create_service(SetBool, "late", switch)
+    assert done(executor, client.call_async(ON)).success
+    assert client.get_pending_request(1) is futures[0]
+    assert awaited == []
+    client.remove_pending_request(futures[0])
 
 
 def test_a_call_times_out(node: Node, server: Node, executor: SingleThreadedExecutor) -> None:
@@ -221,7 +257,7 @@ def test_an_exception_in_a_service_ends_the_spin_and_the_call(
     node: Node, server: Node, executor: SingleThreadedExecutor
 ) -> None:
     server.create_service(Trigger, "broken", lambda request, response: 1 // 0)
-    future = node.create_client(Trigger, "broken").call_async(Trigger.Request())
+    future = node.create_client(Trigger, "broken").try_call_async(Trigger.Request())
     with pytest.raises(ZeroDivisionError):
         executor.spin()
     with pytest.raises(ServiceError):
@@ -230,7 +266,7 @@ def test_an_exception_in_a_service_ends_the_spin_and_the_call(
 
 def test_a_service_must_return_its_response(node: Node, server: Node, executor: SingleThreadedExecutor) -> None:
     server.create_service(Trigger, "forgetful", lambda request, response: None)
-    future = node.create_client(Trigger, "forgetful").call_async(Trigger.Request())
+    future = node.create_client(Trigger, "forgetful").try_call_async(Trigger.Request())
     with pytest.raises(TypeError, match=r"/forgetful must return a Trigger\.Response, got None"):
         executor.spin()
     with pytest.raises(ServiceError):
@@ -247,7 +283,7 @@ def test_a_service_destroyed_in_its_own_callback_still_answers(
 
     service = server.create_service(Trigger, "last", last)
     client = node.create_client(Trigger, "last")
-    first, second = client.call_async(Trigger.Request()), client.call_async(Trigger.Request())
+    first, second = client.try_call_async(Trigger.Request()), client.try_call_async(Trigger.Request())
     assert done(executor, first).message == "the last"
     with pytest.raises(ServiceError, match="went away"):
         done(executor, second)
@@ -258,7 +294,7 @@ def test_whoever_waits_is_told_when_a_service_goes_that_nobody_spins(
 ) -> None:
     idle = Node("idle", context=context)
     service = idle.create_service(Trigger, "never", lambda _, response: response)
-    future = node.create_client(Trigger, "never").call_async(Trigger.Request())
+    future = node.create_client(Trigger, "never").try_call_async(Trigger.Request())
     idle.destroy_service(service)
     with pytest.raises(ServiceError, match="went away"):
         done(executor, future)
@@ -266,7 +302,7 @@ def test_whoever_waits_is_told_when_a_service_goes_that_nobody_spins(
 
 def test_a_flood_of_requests_is_bounded(node: Node, server: Node, executor: SingleThreadedExecutor) -> None:
     client = node.create_client(SetBool, "switch")
-    futures = [client.call_async(ON) for _ in range(MOST_WAITING + 2)]
+    futures = [client.try_call_async(ON) for _ in range(MOST_WAITING + 2)]
     spin_for(executor, 1.0)
     refused = [index for index, each in enumerate(futures) if each.exception() is not None]
     assert refused == [0, 1]
@@ -328,10 +364,16 @@ def test_answers_follow_a_client_that_moves(node: Node, server: Node, executor: 
 
 def test_the_end_of_the_context_ends_a_call(context: Context) -> None:
     server, node = Node("server", context=context), Node("node", context=context)
-    server.create_service(SetBool, "never_spun", switch)
-    threading.Timer(0.02, context.shutdown).start()
+    service = server.create_service(SetBool, "never_spun", switch)
+    client = node.create_client(SetBool, "never_spun")
+
+    def end() -> None:
+        until(lambda: len(service.mailbox) == 1)  # it calls
+        context.shutdown()
+
+    threading.Thread(target=end).start()
     with pytest.raises((ExternalShutdownException, ServiceError)):
-        node.create_client(SetBool, "never_spun").call(ON)
+        client.call(ON)
 
 
 def test_waiting_for_a_service(context: Context, node: Node) -> None:
@@ -390,7 +432,7 @@ def test_another_process_serves_and_is_killed_while_it_does(tmp_path: Path, doma
         assert client.wait_for_service(timeout_sec=PATIENCE)
         assert client.call(ON, timeout_sec=PATIENCE).message == "from afar"
         assert done(executor, client.call_async(ON)).success
-        hanging = client.call_async(SetBool.Request(data=False))
+        hanging = client.try_call_async(SetBool.Request(data=False))
         assert program.line() == "asked"
         program.kill()
         with pytest.raises(ServiceError, match="the server went away"):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import threading
+from collections.abc import Generator
 from typing import Any
 
 import pytest
@@ -161,3 +163,104 @@ def test_a_task_that_runs_says_so() -> None:
     task()
     assert seen == [True]
     assert not task.executing()
+
+
+# Inside asyncio
+
+
+class Counted:
+    """Awaits a future, and counts how often it gives control away."""
+
+    def __init__(self, future: Future[int]) -> None:
+        self.future, self.rounds = future, 0
+
+    def __await__(self) -> Generator[Any, None, int | None]:
+        steps = self.future.__await__()
+        while True:
+            try:
+                step = next(steps)
+            except StopIteration as end:
+                return end.value  # type: ignore[no-any-return]
+            self.rounds += 1
+            yield step
+
+
+def test_asyncio_sleeps_until_another_thread_sets_the_result() -> None:
+    """rclpy's bare yield makes the event loop go round and round."""
+
+    async def main() -> tuple[int | None, int]:
+        future: Future[int] = Future()
+        counted = Counted(future)
+        threading.Timer(0.05, future.set_result, (7,)).start()
+        return await counted, counted.rounds
+
+    assert asyncio.run(main()) == (7, 1)
+
+
+def test_asyncio_may_give_up_waiting() -> None:
+    future: Future[int] = Future()
+
+    async def main() -> None:
+        with pytest.raises(asyncio.TimeoutError):
+            await asyncio.wait_for(_result_of(future), 0.01)
+
+    asyncio.run(main())
+    assert future._wakers == []
+    future.set_result(1)
+
+
+def test_a_result_that_comes_after_the_event_loops_end_hurts_nobody() -> None:
+    future: Future[int] = Future()
+    loop = asyncio.new_event_loop()
+    task = loop.create_task(_result_of(future))
+    loop.run_until_complete(asyncio.sleep(0))
+    wakers = list(future._wakers)
+    task.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        loop.run_until_complete(task)
+    loop.close()
+    assert len(wakers) == 1
+    wakers[0]()
+    future.set_result(1)
+
+
+async def _result_of(future: Future[int]) -> int | None:
+    return await future
+
+
+def test_an_executor_may_spin_inside_asyncio(executor: SingleThreadedExecutor) -> None:
+    future: Future[int] = Future()
+
+    async def main() -> object:
+        task = executor.create_task(_result_of, future)
+        executor.create_task(future.set_result, 5)
+        executor.spin_until_future_complete(task, timeout_sec=1.0)
+        return task.result()
+
+    assert asyncio.run(main()) == 5
+
+
+def test_asyncio_may_run_inside_a_task(executor: SingleThreadedExecutor) -> None:
+    async def main() -> int | None:
+        future: Future[int] = Future()
+        threading.Timer(0.01, future.set_result, (9,)).start()
+        return await future
+
+    task = executor.create_task(lambda: asyncio.run(main()))
+    executor.spin_once()
+    assert task.result() == 9
+
+
+def test_asyncio_sleep_needs_an_event_loop(executor: SingleThreadedExecutor) -> None:
+    """As in rclpy: an executor is none. A sleep of 0 only gives way to others."""
+
+    async def callback(seconds: float) -> str:
+        await asyncio.sleep(seconds)
+        return "slept"
+
+    task = executor.create_task(callback, 0)
+    executor.spin_until_future_complete(task, timeout_sec=1.0)
+    assert task.result() == "slept"
+    executor.create_task(callback, 0.01)
+    with pytest.raises(RuntimeError, match="no running event loop"):
+        executor.spin_once()

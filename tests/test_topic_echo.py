@@ -101,7 +101,7 @@ def test_lost_messages_are_told_unless_not_wanted(node: Node, capsys: Captured) 
             publisher._attachment()  # numbered, and lost on its way
         publisher.publish(Int32(data=number))
     for options, told in (([], True), (["--no-lost-messages"], False)):
-        assert main(["topic", "echo", "/count", "--csv", "--timeout", "0.1", *options]) == 0
+        assert main(["topic", "echo", "/count", "--csv", "--timeout", "1", *options]) == 0
         out, err = capsys.readouterr()
         assert out.split() == ["0", "1", "2", "3", "4"]
         assert ("A message was lost!!!" in err) is told
@@ -116,7 +116,7 @@ def test_a_timeout_ends_it(node: Node, capsys: Captured) -> None:
     err = capsys.readouterr().err
     assert err == "robolink: nobody publishes /nobody: its type is not known, and 0.02 s have passed\n"
     latch(node, "/count", Int32(data=1))
-    assert main(["topic", "echo", "/count", "--timeout", "0.02"]) == 0
+    assert main(["topic", "echo", "/count", "--timeout", "0.5"]) == 0
     assert capsys.readouterr() == ("data: 1\n---\n", "")
 
 
@@ -141,7 +141,7 @@ def asked(node: Node, monkeypatch: pytest.MonkeyPatch, *options: str) -> QoSProf
 
     with monkeypatch.context() as patch:
         when_said(patch, echo, "say", look)
-        assert main(["topic", "echo", "/x", "--once", "--timeout", "5", *options]) == 0
+        assert main(["topic", "echo", "/x", "--once", "--timeout", "30", *options]) == 0
     return found[0]
 
 

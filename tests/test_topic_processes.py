@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.commands import PATIENT
 from tests.programs import PATIENCE, Program
 from tests.transports import until
 
@@ -22,7 +23,7 @@ COMMAND = "import sys; from robolink.cli import main; sys.exit(main())"
 @pytest.fixture
 def start(tmp_path: Path, domain: int) -> Callable[..., Program]:
     """Run a command as a process on the domain of this test."""
-    return lambda *args: Program(tmp_path, COMMAND, domain, *args)
+    return lambda *args: Program(tmp_path, PATIENT, domain, *args)
 
 
 def test_commands_see_what_other_processes_publish(start: Callable[..., Program]) -> None:
@@ -47,8 +48,8 @@ def test_pub_once_waits_for_an_echo_that_starts_later(start: Callable[..., Progr
         assert talker.end() == 0
 
 
-def test_an_echo_that_waits_says_why_and_ends_quietly(start: Callable[..., Program], domain: int) -> None:
-    with start("topic", "echo", "/nothing") as listener:
+def test_an_echo_that_waits_says_why_and_ends_quietly(tmp_path: Path, domain: int) -> None:
+    with Program(tmp_path, COMMAND, domain, "topic", "echo", "/nothing") as listener:
         until(lambda: listener.errors != [])
         listener.interrupt()
         assert listener.end() == 130

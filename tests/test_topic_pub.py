@@ -118,7 +118,7 @@ def test_several_messages_are_published_in_turn(node: Node, monkeypatch: pytest.
 
 def test_what_echo_shows_can_be_published_again(node: Node, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
     latch(node, "/a", String(data="one"), String(data="two"))
-    assert main(["topic", "echo", "/a", "--timeout", "0.05"]) == 0
+    assert main(["topic", "echo", "/a", "--timeout", "0.5"]) == 0
     typed(monkeypatch, capsys.readouterr().out.encode())
     got = received(node, String, "/b")
     assert main(["pub", "/b", "--stdin", "-t", "2", "-r", "500"]) == 0

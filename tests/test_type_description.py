@@ -73,7 +73,7 @@ def test_a_node_that_is_told_so_does_not(virtual: Context) -> None:
         {"parameter_overrides": [Parameter(NAME, value=False)]},
         {"cli_args": ["--ros-args", "-p", f"{NAME}:=false"]},
     ):
-        with Node("quiet", context=virtual, **told) as node:
+        with Node("quiet", context=virtual, start_parameter_services=False, **told) as node:
             assert node.get_service_names_and_types_by_node("quiet", "/") == []
             assert node.get_parameter(NAME).value is False
 
@@ -83,11 +83,11 @@ def test_another_type_of_parameter_is_refused(virtual: Context, log_lines: list[
         Node("wrong", context=virtual, parameter_overrides=[Parameter(NAME, value="yes")])
 
     class Declares(Node):
-        def _init_parameters(self, *args: Any) -> None:
-            super()._init_parameters(*args)
+        def _serve(self, *args: Any) -> None:
             self.declare_parameter(NAME, "yes", ParameterDescriptor())
+            super()._serve(*args)
 
-    with Declares("wrong", context=virtual) as node:
+    with Declares("wrong", context=virtual, start_parameter_services=False) as node:
         assert node.get_service_names_and_types_by_node("wrong", "/") == []
     assert [each.message for each in log_lines] == [
         f"parameter {NAME}: expected a bool, got 'yes'; there is no ~/get_type_description"
@@ -179,7 +179,7 @@ def test_a_busy_callback_does_not_keep_it_from_answering(node: Node, ask: Asker)
     def busy() -> None:
         timer.cancel()
         request = GetTypeDescription.Request(type_name=type_name(Cart))
-        answers.append(ask.client.call(request, timeout_sec=1.0))
+        answers.append(ask.client.call(request, timeout_sec=30.0))
 
     node.create_publisher(Cart, "cart", 10)
     timer = node.create_timer(0.01, busy)

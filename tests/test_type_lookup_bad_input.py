@@ -152,7 +152,7 @@ def test_any_description_makes_a_type_or_an_error_of_one_line(
         description.referenced_type_descriptions[0].fields = nested
 
     answer = with_description(change)(None, GetTypeDescription.Response())
-    monkeypatch.setattr("robolink.client.Client.call", lambda *_, **__: answer)
+    monkeypatch.setattr("robolink.client.Client.try_call", lambda *_, **__: answer)
     robot.create_publisher(Cart, "/cart", 10)
     token = seen(looker, "/cart")
     assert said(looker, token).isprintable()

@@ -71,6 +71,11 @@ def service_types(incomplete: str) -> list[str]:
     return _type_names(incomplete, "srv")
 
 
+def action_types(incomplete: str) -> list[str]:
+    """Give the types of actions."""
+    return _type_names(incomplete, "action")
+
+
 def interface_types(incomplete: str) -> list[str]:
     """Give the types of messages, services and actions."""
     return _type_names(incomplete, "msg", "srv", "action")
@@ -78,15 +83,29 @@ def interface_types(incomplete: str) -> list[str]:
 
 def interface_packages(incomplete: str) -> list[str]:
     """Give the packages that have types."""
-    return _offered({each.partition("/")[0] for each in _type_names("", "msg", "srv", "action")}, incomplete)
+    return offered({each.partition("/")[0] for each in _type_names("", "msg", "srv", "action")}, incomplete)
 
 
 def runnable_nodes(ctx: Context, incomplete: str) -> list[str]:
-    """Give the nodes that `robolink run` knows by name."""
+    """Give the nodes that `robolink run` knows by name, and the packages that have some."""
     with contextlib.suppress(Exception):
-        from robolink.workspace import list_nodes
+        from robolink.workspace import list_executables, list_nodes
 
-        return _offered((each.name for each in list_nodes(workspace=ctx.params.get("workspace") or None)), incomplete)
+        workspace = ctx.params.get("workspace") or None
+        nodes = [each.name for each in list_nodes(workspace=workspace)]
+        return offered([*nodes, *list_executables(workspace=workspace)], incomplete)
+    return []
+
+
+def package_executables(ctx: Context, incomplete: str) -> list[str]:
+    """Give what can be run in the package that stands before it; nothing after a node's name."""
+    with contextlib.suppress(Exception):
+        from robolink.workspace import find_package, named_executables
+
+        package, workspace = str(ctx.params.get("node") or ""), ctx.params.get("workspace") or None
+        folder = None if ctx.params.get("args") else find_package(package, workspace=workspace)
+        if folder is not None:
+            return offered((each.name for each in named_executables(folder)), incomplete)
     return []
 
 
@@ -95,9 +114,7 @@ def launch_files(ctx: Context, incomplete: str) -> list[str]:
     with contextlib.suppress(Exception):
         from robolink.workspace import list_launches
 
-        return _offered(
-            (each.stem for each in list_launches(workspace=ctx.params.get("workspace") or None)), incomplete
-        )
+        return offered((each.stem for each in list_launches(workspace=ctx.params.get("workspace") or None)), incomplete)
     return []
 
 
@@ -111,7 +128,7 @@ def _names(incomplete: str, name_of: Callable[[Any], str | None]) -> list[str]:
     if incomplete and not incomplete.startswith("/"):
         names = {each.removeprefix("/") for each in names}
     hidden = any(part.startswith("_") for part in incomplete.split("/"))
-    return _offered((each for each in names if hidden or not re.search(r"(?:^|/)_", each)), incomplete)
+    return offered((each for each in names if hidden or not re.search(r"(?:^|/)_", each)), incomplete)
 
 
 def _types_of(name: Any, incomplete: str, *kinds: Any) -> list[str]:
@@ -123,7 +140,7 @@ def _types_of(name: Any, incomplete: str, *kinds: Any) -> list[str]:
         for each in announced()
         if isinstance(each, EndpointToken) and each.kind in kinds and each.name == wanted
     ]
-    return _offered(types, incomplete)
+    return offered(types, incomplete)
 
 
 def _type_names(incomplete: str, *kinds: str) -> list[str]:
@@ -132,11 +149,12 @@ def _type_names(incomplete: str, *kinds: str) -> list[str]:
 
         full = [name for kind in kinds for name in names(kind)]
         short = "/" not in incomplete and incomplete[:1].isupper()  # Twist stands for geometry_msgs/msg/Twist
-        return _offered((each.rpartition("/")[2] for each in full) if short else full, incomplete)
+        return offered((each.rpartition("/")[2] for each in full) if short else full, incomplete)
     return []
 
 
-def _offered(names: Iterable[str], incomplete: str) -> list[str]:
+def offered(names: Iterable[str], incomplete: str) -> list[str]:
+    """Give those names that begin so and that every shell takes as they are, sorted."""
     return sorted({each for each in names if each.startswith(incomplete) and _SAFE.fullmatch(each)})
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -12,15 +12,9 @@ from robolink.cli import complete
 
 if TYPE_CHECKING:
     from robolink.graph import NamesAndTypes, Token
-    from robolink.wire import EndpointKind, EndpointToken
+    from robolink.wire import EndpointToken
 
 app = typer.Typer(no_args_is_help=True, help="See which nodes there are, and what each of them does.")
-
-ACTION = "/_action/"
-"""What stands between the name of an action and that of each of its five parts."""
-SERVICES = {"send_goal", "get_result", "cancel_goal"}
-FEEDBACK, STATUS = "feedback", "status"
-FEEDBACK_TYPE = "_FeedbackMessage"
 
 
 @app.callback()
@@ -89,49 +83,26 @@ def of_node(tokens: list[Token], name: str, domain: int) -> tuple[int, list[Endp
     return names.count(name), own
 
 
-def sections_of(endpoints: Iterable[EndpointToken], hidden: bool) -> list[tuple[str, NamesAndTypes]]:
+def sections_of(endpoints: Sequence[EndpointToken], hidden: bool) -> list[tuple[str, NamesAndTypes]]:
     """Give what `ros2 node info` lists of a node: six titles, each with names and types."""
+    from robolink.action.graph import actions
     from robolink.cli.session import is_hidden
     from robolink.graph import names_and_types
     from robolink.wire import EndpointKind
 
-    of_kind = {kind: [each for each in endpoints if each.kind is kind] for kind in EndpointKind}
+    of = {kind: names_and_types(each for each in endpoints if each.kind is kind) for kind in EndpointKind}
     titles = {
         "Subscribers": EndpointKind.SUBSCRIPTION,
         "Publishers": EndpointKind.PUBLISHER,
         "Service Servers": EndpointKind.SERVICE,
         "Service Clients": EndpointKind.CLIENT,
     }
-    sections = [(title, names_and_types(of_kind[kind])) for title, kind in titles.items()]
+    sections = [(title, of[kind]) for title, kind in titles.items()]
     sections += [
-        ("Action Servers", actions(of_kind, EndpointKind.SERVICE, EndpointKind.PUBLISHER)),
-        ("Action Clients", actions(of_kind, EndpointKind.CLIENT, EndpointKind.SUBSCRIPTION)),
+        ("Action Servers", actions(of[EndpointKind.SERVICE], of[EndpointKind.PUBLISHER])),
+        ("Action Clients", actions(of[EndpointKind.CLIENT], of[EndpointKind.SUBSCRIPTION])),
     ]
     return [(title, [each for each in listed if hidden or not is_hidden(each[0])]) for title, listed in sections]
-
-
-def actions(
-    of_kind: dict[EndpointKind, list[EndpointToken]], services: EndpointKind, topics: EndpointKind
-) -> NamesAndTypes:
-    """Give the actions of which one node has all five parts: that is all that the wire knows of an action."""
-    asked = _parts(of_kind[services])
-    told = _parts(of_kind[topics])
-    found = []
-    for name in sorted(asked.keys() & told.keys()):
-        if asked[name].keys() >= SERVICES and told[name].keys() >= {FEEDBACK, STATUS}:
-            types = {type_ for type_ in told[name][FEEDBACK] if type_.endswith(FEEDBACK_TYPE)}
-            found.append((name, sorted(each.removesuffix(FEEDBACK_TYPE) for each in types)))
-    return found
-
-
-def _parts(endpoints: Iterable[EndpointToken]) -> dict[str, dict[str, set[str]]]:
-    """Sort endpoints by the action, then by which part of it each is; give the types of each part."""
-    found: dict[str, dict[str, set[str]]] = {}
-    for each in endpoints:
-        action, mark, part = each.name.rpartition(ACTION)
-        if mark:
-            found.setdefault(action, {}).setdefault(part, set()).add(each.type_name)
-    return found
 
 
 def _warn_of_twins(names: list[str]) -> None:

@@ -21,6 +21,7 @@ __all__ = ["Source", "add_source", "find", "find_announced", "is_named", "names"
 
 KINDS = {"msg": "message", "srv": "service", "action": "action"}
 """What a type name's middle part stands for."""
+_KIND_TYPES = {"msg": "a message type", "srv": "a service type", "action": "an action type"}
 FIRST = (("std_msgs", "std_srvs"), ("geometry_msgs", "sensor_msgs", "nav_msgs"))
 """The packages whose types a bare name stands for, when others have it too; those named first go first."""
 ACTION_PARTS = {
@@ -120,7 +121,7 @@ def _split(name: str, kind: str) -> tuple[str, str]:
         shown = name if len(name) <= 80 else name[:77] + "..."
         raise MessageError(f"'{shown}' is no type name; it should look like {_EXAMPLES[kind]}")
     if said != kind:
-        raise MessageError(f"'{name}' is the name of a {KINDS[said]} type; a {KINDS[kind]} type is asked for")
+        raise MessageError(f"'{name}' is the name of {_KIND_TYPES[said]}; {_KIND_TYPES[kind]} is asked for")
     return ("" if len(parts) == 1 else parts[0]), parts[-1]
 
 

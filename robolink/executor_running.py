@@ -1,0 +1,112 @@
+"""How an executor runs what was taken: callbacks, the rest of those that are coroutines, and tasks."""
+
+from __future__ import annotations
+
+import inspect
+import traceback
+from collections.abc import Callable
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, cast
+
+from robolink.entity import Entity
+from robolink.exceptions import ExternalShutdownException, RobolinkError
+from robolink.executor_queue import ExecutorQueue
+from robolink.logging import get_logger
+from robolink.task import Future, Task
+from robolink.task_runner import TaskRunner
+
+if TYPE_CHECKING:
+    from robolink.executors import Executor
+
+
+class TimeoutException(RobolinkError):  # noqa: N818 - rclpy's name
+    """Nothing became ready in time."""
+
+
+class ShutdownException(RobolinkError):  # noqa: N818 - rclpy's name
+    """The executor was shut down."""
+
+
+class ConditionReachedException(RobolinkError):  # noqa: N818 - rclpy's name
+    """What was waited for has come."""
+
+
+class TimeoutObject:
+    """A number of seconds that may change while somebody waits."""
+
+    def __init__(self, timeout: float) -> None:
+        self.timeout = timeout
+
+
+async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
+    """Call a function, or call and await a coroutine function."""
+    return await callback(*args) if inspect.iscoroutinefunction(callback) else callback(*args)
+
+
+class ExecutorRunning(ExecutorQueue):
+    """The part of an executor that runs what was taken."""
+
+    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
+        """Run a function or coroutine in this executor; its result comes through the task."""
+        executor = cast("Executor", self)
+        task: Task[Any] = Task(callback, args, kwargs, executor=executor)
+        self.post(TaskRunner(task, executor))
+        return task
+
+    def create_future(self) -> Future[Any]:
+        """Make a future whose done callbacks run in this executor."""
+        return Future(executor=cast("Executor", self))
+
+    def _run_and_look(self, entity: Entity, taken: Any) -> None:
+        """Run it in any thread; whoever spins looks whether something waited for its group."""
+        try:
+            self.run(entity, taken)
+        finally:
+            if self.has_blocked():
+                self.wake()
+
+    def has_blocked(self) -> bool:
+        """Whether something ready waits for its callback group."""
+        with self._lock:
+            return bool(self._blocked)
+
+    def run(self, entity: Entity, taken: Any) -> None:
+        """Run what was taken. Raises what the user's callback raises."""
+        coroutine = None
+        try:
+            outcome = entity.execute(taken)
+            if outcome is not None and inspect.iscoroutine(outcome):
+                coroutine = outcome
+                self._run_on(entity, coroutine)
+        except (ExternalShutdownException, ShutdownException):  # Ctrl-C in a callback is no fault of it
+            raise
+        except Exception as error:
+            self._log(entity, error)
+            raise
+        finally:
+            if coroutine is None:
+                entity.callback_group.ending_execution(entity)
+
+    def _log(self, entity: Entity, error: Exception) -> None:
+        """Log a callback's exception, with its traceback, in the name of its node; once, however often it passes."""
+        if getattr(error, "__robolink_logged__", False):
+            return
+        error.__robolink_logged__ = True  # type: ignore[attr-defined]
+        owner = self._node_of(entity.origin)
+        name = "robolink" if owner is None else owner.get_logger().name
+        text = "".join(traceback.format_exception(type(error), error, _of_the_user(error.__traceback__)))
+        get_logger(name).error(f"an exception in a callback ends the spinning:\n{text.rstrip()}")
+
+    def _run_on(self, entity: Entity, coroutine: Any) -> None:
+        """Run a callback that is a coroutine; its group is busy until it ends."""
+        executor = cast("Executor", self)
+        task: Task[Any] = Task(coroutine, executor=executor)
+        TaskRunner(task, executor, entity).execute(task)
+
+
+def _of_the_user(trace: TracebackType | None) -> TracebackType | None:
+    """Leave out robolink's own frames at the top of a traceback."""
+    first = trace
+    while first is not None and first.tb_frame.f_globals.get("__name__", "").startswith("robolink."):
+        first = first.tb_next
+    return first or trace

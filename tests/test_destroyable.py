@@ -1,0 +1,57 @@
+"""Handles as rclpy's entities have them: they say whether their owner is still in use."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from robolink import Context, Node
+from robolink.exceptions import InvalidHandle
+from robolink.interfaces.std_msgs.msg import Int32
+from robolink.interfaces.std_srvs.srv import Trigger
+
+
+def nothing(*_: object) -> None:
+    pass
+
+
+MAKERS: list[Callable[[Node], Any]] = [
+    lambda node: node.create_publisher(Int32, "topic", 10),
+    lambda node: node.create_subscription(Int32, "topic", nothing, 10),
+    lambda node: node.create_service(Trigger, "service", nothing),
+    lambda node: node.create_client(Trigger, "service"),
+    lambda node: node.create_timer(1.0, nothing),
+    lambda node: node.create_guard_condition(nothing),
+]
+
+
+@pytest.mark.parametrize("make", MAKERS)
+def test_a_handle_is_of_use_until_its_owner_is_destroyed(context: Context, make: Callable[[Node], Any]) -> None:
+    made = make(Node("node", context=context))
+    assert made.handle
+    with made.handle as handle:
+        assert handle is made.handle
+        assert handle.pointer == id(made)
+    made.destroy()
+    with pytest.raises(InvalidHandle, match=f"handle of a {type(made).__name__} that has been destroyed"), made.handle:
+        pass
+
+
+def test_a_nodes_handle(context: Context) -> None:
+    node = Node("node", context=context)
+    with node.handle:
+        pass
+    node.destroy_node()
+    with pytest.raises(InvalidHandle, match="handle of a Node that"), node.handle:
+        pass
+
+
+def test_a_handle_keeps_nobody_alive(context: Context) -> None:
+    guard = Node("node", context=context).create_guard_condition(nothing)
+    owner = type(guard)(None, None)
+    handle = owner.handle
+    del owner
+    with pytest.raises(InvalidHandle), handle:
+        pass
