@@ -3,14 +3,18 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
+PARALLEL ?= -n 2 --dist loadfile --no-loadscope-reorder
+
+# Compiled modules are kept, whatever the environment says: tests start robolink a few hundred times.
+export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: demo test lint types floors check format bench clean
 
 demo: $(READY)  ## A robot wanders in a simulated room, until Ctrl-C
 	$(BIN)/robolink launch wander
 
-test: $(READY)  ## Every test; ARGS go to pytest
-	$(BIN)/python -m pytest $(ARGS)
+test: $(READY)  ## Every test, on two cores; ARGS go to pytest
+	$(BIN)/python -m pytest $(PARALLEL) $(ARGS)
 
 check: lint types floors test  ## What must be green before a commit
 
@@ -31,6 +35,7 @@ format: $(READY)
 bench: $(READY)  ## Speed beside peers, in one run each
 	$(BIN)/python benchmarks/messaging.py
 	$(BIN)/python benchmarks/commands.py
+	$(BIN)/python benchmarks/executors.py
 	$(BIN)/python benchmarks/simulation.py
 	$(BIN)/python benchmarks/tf2.py
 

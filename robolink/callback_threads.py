@@ -56,9 +56,8 @@ class CallbackThreads:
         self.ended = threading.Condition(self._lock)
         """Notified whenever a callback has ended."""
         self._running: dict[int, list[Entity]] = {}
-        self._needs: dict[
-            int, list[list[CallbackGroup]]
-        ] = {}  # what each thread's calls, one within the other, wait for
+        self._needs: dict[int, list[list[CallbackGroup]]] = {}
+        """What each thread's calls, one within the other, wait for."""
         self._desks: list[Desk] = []
         self._working = 0  # callbacks that run and do not wait at a desk
         self._stuck = 0  # those among them that seem to wait for something else
@@ -150,12 +149,15 @@ class CallbackThreads:
         except queue.Empty:
             job = None
         if job is not None:
-            self._run(*job)
-            with self._lock:
-                desk.idle = not desk.future.over()
-                self._working += not desk.idle  # the callback goes on now
-            self._end(0)
+            self._work_at(desk, job)
         self._executor.check_end()
+
+    def _work_at(self, desk: Desk, job: tuple[Entity, Any]) -> None:
+        self._run(*job)
+        with self._lock:
+            desk.idle = desk in self._desks and not desk.future.over()
+            self._working += not desk.idle  # the callback goes on now
+        self._end(0)
 
     def _leave(self, desk: Desk) -> None:
         with self._lock:
@@ -165,7 +167,7 @@ class CallbackThreads:
         while not desk.jobs.empty():
             job = desk.jobs.get()
             if job is not None:  # brought just when the wait was over
-                self._run(*job)
+                self._work_at(desk, job)
 
     @contextmanager
     def waiting_for(self, groups: Iterable[CallbackGroup]) -> Iterator[bool]:
@@ -188,7 +190,7 @@ class CallbackThreads:
 
     def _holding(self, group: CallbackGroup) -> list[int]:
         def holds(entities: list[Entity]) -> bool:
-            return any(each.origin.callback_group is group for each in list(entities))
+            return any(each.origin.gate is group for each in list(entities))
 
         return [thread for thread, entities in list(self._running.items()) if holds(entities)]
 

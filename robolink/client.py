@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from robolink.callback_groups import CallbackGroup
 from robolink.clock import Clock
 from robolink.endpoint import Endpoint, Owner
-from robolink.entity import NOTHING, Entity, Receiver
+from robolink.entity import ANY_TIME, NOTHING, Entity, Receiver
 from robolink.exceptions import (
     DecodeError,
     ExternalShutdownException,
@@ -70,9 +70,7 @@ class Client(Receiver):
         qos_profile: QoSProfile,
         callback_group: CallbackGroup,
     ) -> None:
-        super().__init__(owner.context.inbox, 0)  # an answer only completes a future: that may be done at any time
-        self.group = callback_group
-        callback_group.add_entity(self)
+        super().__init__(owner.context.inbox, 0, callback_group)
         self.srv_type = service_type(srv_type)
         self.srv_name = srv_name
         self.qos_profile = qos_profile
@@ -91,6 +89,11 @@ class Client(Receiver):
         """Tells of requests and responses, once `configure_introspection` has been asked for it."""
         self._endpoint.announce()
         self._context.on_shutdown(self._release)
+
+    @property
+    def gate(self) -> CallbackGroup:
+        """Any time: an answer only completes a future, and the callback that waits for it may keep the group busy."""
+        return ANY_TIME
 
     def redirect(self, inbox: Inbox) -> None:
         """Have the answers that are still to come arrive in this inbox."""
@@ -124,8 +127,8 @@ class Client(Receiver):
             return self._call_in_callback(executor, request, timeout_sec, patient)
 
     def _only_servers(self, executor: Executor) -> list[Entity]:
-        """The servers that are this executor's, if nobody else serves and they may be the caller's own victims."""
-        served = (each for node in executor.get_nodes() for each in node.all_services())
+        """Give the executor's own servers of this service when nobody else serves it and none of them may be free."""
+        served = (each for node in executor.get_nodes() for each in node._all_services_())
         local: list[Entity] = [each for each in served if each.srv_name == self.srv_name]
         is_free = any(each.callback_group.can_execute(each) for each in local)
         if not local or (is_free and not executor.parallel):
@@ -245,7 +248,7 @@ class Client(Receiver):
             self._warn_of_silence(call)
             return  # and the call stays among those under way, where whoever waits for it is kept
         self._calls.discard(call)
-        call.future._set_executor(self.executor)
+        call.future.set_executor(self.executor)
         if answer is None:
             call.future.set_exception(self._no_answer(call.bad))
         else:
@@ -302,13 +305,7 @@ class Client(Receiver):
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait until somebody serves; whether so within `timeout_sec` seconds. The end of the context ends it."""
-        graph, clock = self._context.graph, self._context.time
-        if clock.virtual and timeout_sec is not None:
-            if not self.service_is_ready():
-                clock.sleep(int(timeout_sec * 1e9))
-        else:
-            graph.wait_for(lambda: self.service_is_ready() or not self._context.ok(), timeout_sec)
-        return self.service_is_ready()
+        return self._context.wait_until(self.service_is_ready, timeout_sec)
 
     def configure_introspection(
         self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState

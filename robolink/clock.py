@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import threading
-import weakref
 from collections.abc import Callable
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Protocol
 
 from robolink.clock_type import ClockType
 from robolink.duration import Duration
@@ -118,7 +117,6 @@ class Clock:
         self._clock_type = clock_type
         self._base: TimeBase = time_base or SystemTime()
         self._jumps: list[JumpHandle] = []
-        self._watchers: weakref.WeakSet[Any] = weakref.WeakSet()
 
     @property
     def clock_type(self) -> ClockType:
@@ -205,6 +203,14 @@ class Clock:
         return context
 
 
+class ClockWatcher(Protocol):
+    """What wants to know that a clock moved: a timer."""
+
+    def reschedule(self) -> None:
+        """Look again when to be called."""
+        ...
+
+
 class ROSClock(Clock):
     """The time that /clock gives while it is active, else the system's."""
 
@@ -216,6 +222,7 @@ class ROSClock(Clock):
         super().__init__(clock_type=ClockType.ROS_TIME, time_base=time_base)
         self._active = False
         self._override = 0
+        self._watchers: dict[ClockWatcher, None] = {}  # a set that keeps its order, so that runs repeat
 
     @property
     def ros_time_is_active(self) -> bool:
@@ -231,9 +238,13 @@ class ROSClock(Clock):
         left = until - self.now_ns()
         return None if self._active and left > 0 else left
 
-    def watch(self, watcher: Any) -> None:
-        """Call ``watcher.on_clock(self)`` whenever /clock moved this clock; held weakly."""
-        self._watchers.add(watcher)
+    def watch(self, watcher: ClockWatcher) -> None:
+        """Call ``watcher.reschedule()`` whenever /clock moved this clock, until `unwatch`."""
+        self._watchers[watcher] = None
+
+    def unwatch(self, watcher: ClockWatcher) -> None:
+        """Call it no more, if it was called."""
+        self._watchers.pop(watcher, None)
 
     def _set_ros_time_is_active(self, enabled: bool) -> None:
         if enabled == self._active:
@@ -269,4 +280,4 @@ class ROSClock(Clock):
             if handle.post_callback is not None:
                 handle.post_callback(jump)
         for watcher in list(self._watchers):
-            watcher.on_clock(self)
+            watcher.reschedule()

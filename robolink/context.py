@@ -122,6 +122,18 @@ class Context:
                 self.on_shutdown(self._graph.wake)
             return self._graph
 
+    def wait_until(self, is_there: Callable[[], bool], timeout_sec: float | None) -> bool:
+        """Wait until `is_there()` is true of the graph, or the context ends; whether it is true then.
+
+        In virtual time nobody comes while this thread waits: the seconds are over at once.
+        """
+        if self.time.virtual and timeout_sec is not None:
+            if not is_there():
+                self.time.sleep(int(timeout_sec * 1e9))
+        else:
+            self.graph.wait_for(lambda: is_there() or not self.ok(), timeout_sec)
+        return is_there()
+
     def next_id(self) -> int:
         """Give a number for a node or endpoint; they share one counter on the wire."""
         return next(self._ids)

@@ -39,11 +39,11 @@ class Destroyable:
 
     _destroyed = False
 
-    _handle: Handle | None = None
+    __handle: Handle | None = None
 
     @property
     def handle(self) -> Handle:
         """What stands for rclpy's handle: use it as a context manager to be sure that this has not been destroyed."""
-        if self._handle is None:
-            self._handle = Handle(self)
-        return self._handle
+        if self.__handle is None:
+            self.__handle = Handle(self)
+        return self.__handle

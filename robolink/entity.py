@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import weakref
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup, ReentrantCallbackGroup
@@ -11,6 +12,7 @@ from robolink.inbox import Inbox, Mailbox
 
 if TYPE_CHECKING:
     from robolink.executors import Executor
+    from robolink.node import Node
 
 NOTHING: Any = object()
 """What `take` gives when there is nothing to do after all."""
@@ -30,13 +32,28 @@ class Entity(Destroyable):
     def __init__(self, callback_group: CallbackGroup | None = None) -> None:
         self.callback_group: CallbackGroup = callback_group or ANY_TIME
         self.executor: Executor | None = None
+        self._node: weakref.ReferenceType[Node] | None = None
         if callback_group is not None:
             callback_group.add_entity(self)
+
+    @property
+    def gate(self) -> CallbackGroup:
+        """The group that says when it may run: its callback group, unless that need not be waited for."""
+        return self.callback_group
 
     @property
     def origin(self) -> Entity:
         """The entity whose callback is executed: another one for the parts of a callback that is a coroutine."""
         return self
+
+    @property
+    def node(self) -> Node | None:
+        """The node that has it, if one has."""
+        return None if self._node is None else self._node()
+
+    @node.setter
+    def node(self, node: Node) -> None:
+        self._node = weakref.ref(node)
 
     def attach(self, executor: Executor, queued: int = 0) -> None:
         """Belong to this executor from now on; it is `queued` times among what is ready there already."""

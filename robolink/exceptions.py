@@ -220,7 +220,13 @@ class ExternalShutdownException(RobolinkError):
 
 
 class InterruptedByUser(KeyboardInterrupt, ExternalShutdownException):
-    """Ctrl-C or SIGTERM. Programs written for Humble catch the first parent, programs for Jazzy the second."""
+    """`spin` was ended by Ctrl-C or SIGTERM: programs for Humble catch the first parent, programs for Jazzy the second.
+
+    Anywhere else Ctrl-C is a KeyboardInterrupt alone, which `except Exception` lets pass.
+    """
+
+    def __init__(self, text: str = "interrupted") -> None:
+        super().__init__(text)
 
 
 class ROSInterruptException(RobolinkError):

@@ -12,7 +12,6 @@ from robolink.entity import NOTHING, Asked, Entity
 from robolink.inbox import Inbox
 
 if TYPE_CHECKING:
-    from robolink.clock import ROSClock
     from robolink.context import Context
     from robolink.executors import Executor
     from robolink.node import Node
@@ -50,11 +49,11 @@ class ExecutorQueue:
             if node in self._nodes:
                 return False
             self._nodes.append(node)
-            node.belong_to(executor)
+            node._belong_to_(executor)
             self._context.look_after(self.inbox)
-            queued, node.queued = node.queued, []
+            queued, node._queued_ = node._queued_, []
             self.ready.extend(queued)
-            for entity in node.entities():
+            for entity in node._entities_():
                 entity.attach(executor, queued.count(entity))
         self.wake()
         return True
@@ -65,11 +64,11 @@ class ExecutorQueue:
             if node not in self._nodes:
                 return
             self._nodes.remove(node)
-            entities = node.entities()
+            entities = node._entities_()
             for entity in entities:
                 entity.detach()
-            node.queued = self._withdraw(set(entities))
-            node.belong_to(None)
+            node._queued_ = self._withdraw(set(entities))
+            node._belong_to_(None)
         self.wake()
 
     def _withdraw(self, entities: set[Entity]) -> list[Entity]:
@@ -83,9 +82,6 @@ class ExecutorQueue:
     def get_nodes(self) -> list[Node]:
         """All nodes that were added."""
         return list(self._nodes)
-
-    def _node_of(self, entity: Entity) -> Node | None:
-        return next((node for node in self.get_nodes() if entity in node.entities()), None)
 
     def attach(self, entity: Entity) -> None:
         """Run this entity's callback from now on."""
@@ -114,7 +110,7 @@ class ExecutorQueue:
 
     def _ask_waitables(self) -> None:
         for each in self.asked:
-            if not each.waits and each.callback_group.can_execute(each) and each.is_ready():
+            if not each.waits and each.gate.can_execute(each) and each.is_ready():
                 each.waits = True
                 self.ready.append(each)
 
@@ -125,14 +121,6 @@ class ExecutorQueue:
         due = self._context.time.steady() + left
         with self._lock:
             heapq.heappush(self._timers, (due, next(self._serial), timer.version, timer))
-
-    def on_clock(self, clock: ROSClock) -> None:
-        """Look at the timers again that follow this clock, since it moved."""
-        for node in self.get_nodes():
-            for timer in node.all_timers():
-                if timer.clock is clock:
-                    timer.reschedule()
-        self.wake()
 
     def _collect_due(self) -> int | None:
         """Make timers ready that are due; give when the next one is."""
@@ -158,7 +146,7 @@ class ExecutorQueue:
                 self._unblock()
             while self.ready:
                 entity = self.ready.popleft()
-                group = entity.callback_group
+                group = entity.gate
                 if (wanted is not None and not wanted(entity)) or not (
                     group.can_execute(entity) and group.beginning_execution(entity)
                 ):
@@ -175,7 +163,7 @@ class ExecutorQueue:
         target = arrival.target
         if target.straight and wanted is None:
             with self._lock:
-                group = target.callback_group
+                group = target.gate
                 is_next = target.executor is self and not (self.ready or len(target.mailbox))
                 if is_next and group.can_execute(target) and group.beginning_execution(target):
                     return target, arrival.content

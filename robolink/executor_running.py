@@ -24,7 +24,7 @@ class TimeoutException(RobolinkError):  # noqa: N818 - rclpy's name
 
 
 class ShutdownException(RobolinkError):  # noqa: N818 - rclpy's name
-    """The executor was shut down."""
+    """Nothing more will become ready here: the executor has ended."""
 
 
 class ConditionReachedException(RobolinkError):  # noqa: N818 - rclpy's name
@@ -85,14 +85,14 @@ class ExecutorRunning(ExecutorQueue):
             raise
         finally:
             if coroutine is None:
-                entity.callback_group.ending_execution(entity)
+                entity.gate.ending_execution(entity)
 
     def _log(self, entity: Entity, error: Exception) -> None:
         """Log a callback's exception, with its traceback, in the name of its node; once, however often it passes."""
         if getattr(error, "__robolink_logged__", False):
             return
         error.__robolink_logged__ = True  # type: ignore[attr-defined]
-        owner = self._node_of(entity.origin)
+        owner = entity.origin.node
         name = "robolink" if owner is None else owner.get_logger().name
         text = "".join(traceback.format_exception(type(error), error, _of_the_user(error.__traceback__)))
         get_logger(name).error(f"an exception in a callback ends the spinning:\n{text.rstrip()}")

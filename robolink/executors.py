@@ -66,7 +66,7 @@ class Executor(ExecutorRunning):
 
     def can_execute(self, entity: Entity) -> bool:
         """Whether its callback group would let an entity run now."""
-        return entity.callback_group.can_execute(entity)
+        return entity.gate.can_execute(entity)
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
         """Begin no more callbacks, let go of all nodes, and wait for the callbacks that other threads run.
@@ -144,8 +144,9 @@ class Executor(ExecutorRunning):
             raise ShutdownException
 
     def _check_interrupt(self) -> None:
+        """Raise after a signal; KeyboardInterrupt is for the main thread alone, as in every Python program."""
         if self._context.interrupted:
-            raise InterruptedByUser
+            raise InterruptedByUser if _is_main_thread() else ExternalShutdownException
 
     def wait_for_ready_callbacks(
         self,
@@ -159,9 +160,9 @@ class Executor(ExecutorRunning):
         TimeoutException, ShutdownException, ExternalShutdownException, or ConditionReachedException once `condition()`.
         """
         chosen = None if nodes is None else list(nodes)
-        wanted = None if chosen is None else lambda entity: self._node_of(entity) in (None, *chosen)
+        wanted = None if chosen is None else lambda entity: entity.node in (None, *chosen)
         entity, taken = self._wait(self._deadline(timeout_sec), condition, wanted)
-        return Task(self._run_and_look, (entity, taken)), entity, self._node_of(entity)
+        return Task(self._run_and_look, (entity, taken)), entity, entity.node
 
     def _wait_for_ready_callbacks(self, *args: Any, **kwargs: Any) -> Iterable[tuple[Task[Any], Entity, Node | None]]:
         """Yield what `wait_for_ready_callbacks` gives, for ever."""
@@ -174,13 +175,20 @@ class Executor(ExecutorRunning):
     """See to it that what was taken is run: here and now, unless there are threads for it."""
 
     def spin(self) -> None:
-        """Run callbacks until the context is shut down, or this executor. Raises InterruptedByUser after a signal."""
+        """Run callbacks until the context is shut down, or this executor.
+
+        After a signal, raises InterruptedByUser in the main thread, ExternalShutdownException in another.
+        """
         self._context.given_parameters.warn_of_typos(self.get_nodes())
-        if self._is_users_own():
+        try:
             while self._context.ok() and not self._is_shutdown:
-                self.spin_once()
-        elif self._context.ok() and not self._is_shutdown:
-            self._spin()
+                if self._is_users_own():
+                    self.spin_once()
+                else:
+                    self._spin()
+        except KeyboardInterrupt:
+            self._check_interrupt()
+            raise
         self._check_interrupt()
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
@@ -275,11 +283,11 @@ class Executor(ExecutorRunning):
 
 
 class SingleThreadedExecutor(Executor):
-    """Runs callbacks in the thread that spins."""
+    """Runs one callback after the other, where `spin` was called, in the order in which they became ready."""
 
 
 class MultiThreadedExecutor(Executor):
-    """Runs callbacks in a pool of threads, as many at once as callback groups allow; the thread that spins hands out.
+    """Has callbacks run side by side in threads of its own, as far as their groups allow; whoever spins hands them out.
 
     `num_threads` is the number of this process's cores by default. What a callback raises is raised by the next spin.
     """
@@ -346,7 +354,7 @@ class MultiThreadedExecutor(Executor):
         try:
             self._threads.submit(entity, taken)
         except RuntimeError:  # shut down meanwhile
-            entity.callback_group.ending_execution(entity)
+            entity.gate.ending_execution(entity)
             raise ShutdownException from None
 
     def serve_until(self, future: Future[Any], deadline: int | None, *, serving: bool = True) -> None:
@@ -372,6 +380,10 @@ class MultiThreadedExecutor(Executor):
         ended = self._wait_for(self._threads.ended, self._threads.have_ended, timeout_sec)
         self._threads.close(wait=wait_for_threads and ended)
         return ended
+
+
+def _is_main_thread() -> bool:
+    return threading.current_thread() is threading.main_thread()
 
 
 def _serves(entity: Entity) -> bool:

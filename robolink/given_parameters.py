@@ -45,7 +45,7 @@ class GivenParameters:
         """Note what a node has declared by now; at its end, at the latest."""
         if not self._open:
             return
-        full_name, declared = node.get_fully_qualified_name(), node.declared_so_far
+        full_name, declared = node.get_fully_qualified_name(), node._declared_so_far_
         self._declared |= declared
         for key, (each, _) in list(self._open.items()):
             if each.name in declared and each.is_for(full_name):

@@ -1,9 +1,12 @@
-"""Errors for names that a module has not: they say which robolink lacks it and what is near."""
+"""Names that a module has not, or not yet: errors that say what is near, and packages that import what is used."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import importlib
+import sys
+from collections.abc import Callable, Collection, Iterable, Mapping
 from types import FrameType, ModuleType
+from typing import Any
 
 from robolink.exceptions import RobolinkError, nearest
 
@@ -59,6 +62,26 @@ def _imports_a_name(frame: FrameType) -> bool:
     from opcode import opmap
 
     return frame.f_lasti >= 0 and frame.f_code.co_code[frame.f_lasti] == opmap["IMPORT_FROM"]
+
+
+def lazily(
+    package: str, homes: Mapping[str, str], rooms: Collection[str]
+) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """Give the `__getattr__` and `__dir__` of a package whose names are imported when they are first used.
+
+    `homes` says in which of its modules each name is; `rooms` are its modules that are there as attributes, too.
+    """
+
+    def get(name: str) -> Any:
+        if name in rooms:
+            return importlib.import_module(f"{package}.{name}")
+        if name not in homes:
+            raise lacking(package, name, lambda: [*homes, *rooms], sys._getframe(1))
+        value = getattr(importlib.import_module(f"{package}.{homes[name]}"), name)
+        setattr(sys.modules[package], name, value)
+        return value
+
+    return get, lambda: sorted({*vars(sys.modules[package]), *homes, *rooms})
 
 
 def names_in(module: ModuleType) -> list[str]:

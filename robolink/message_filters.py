@@ -160,7 +160,7 @@ class TimeSynchronizer(SimpleFilter):
 
     def add(self, msg: Any, my_queue: Queue, my_queue_index: int | None = None) -> None:
         """Take a message of one filter; put out the set that it completes."""
-        stamp = _time(msg.header.stamp).nanoseconds
+        stamp = _nanoseconds(msg.header.stamp)
         with self.lock:
             self._keep(my_queue, stamp, msg)
             complete = all(stamp in queue for queue in self.queues)
@@ -267,20 +267,32 @@ class _Stamps:
         stamp = getattr(getattr(msg, "header", None), "stamp", None)
         if self.arrival or (stamp is None and self.allow_headerless):
             return self.clock.now()
-        if stamp is not None:
-            return _time(stamp)
-        if not self.told:
-            self.told = True
-            kind = type(msg).__name__
-            get_logger(self.logger).warning(
+        kind = type(msg).__name__
+        if stamp is None:
+            self._tell(
                 f"{kind} has no header with a stamp: messages of it are left out; with allow_headerless=True the time"
                 " at which one comes stands for its stamp"
             )
-        return None
+            return None
+        try:
+            return _time(stamp)
+        except ValueError as error:  # anybody may have sent it
+            self._tell(f"a message ({kind}) is left out for its stamp: {error}")
+            return None
+
+    def _tell(self, problem: str) -> None:
+        if not self.told:
+            self.told = True
+            get_logger(self.logger).warning(problem)
 
 
 def _time(stamp: Any) -> Time:
     return stamp if hasattr(stamp, "nanoseconds") else Time.from_msg(stamp)
+
+
+def _nanoseconds(stamp: Any) -> int:
+    """Give any stamp as a number: one before 0 is no Time, but may be somebody's, and two may be the same."""
+    return int(stamp.nanoseconds if hasattr(stamp, "nanoseconds") else stamp.sec * 10**9 + stamp.nanosec)
 
 
 def _time_of(kept: tuple[Time, Any]) -> int:

@@ -58,7 +58,10 @@ HIDDEN_NODE_PREFIX = "_"
 
 
 class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
-    """A participant of the system: subclass it, or take it as it is."""
+    """A participant of the system: subclass it, or take it as it is.
+
+    What it has beyond rclpy's names is spelled `_so_`, as `enum` does it: a subclass is free to use any other name.
+    """
 
     def __init__(
         self,
@@ -78,44 +81,44 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
         self._context = get_default_context() if context is None else context
         if not self._context.ok():
             raise NotInitializedException("cannot create node")
-        self._arguments = self._read_arguments(cli_args, use_global_arguments)
-        self._name, self._namespace = self._resolve_own_name(node_name, namespace)
-        self._init_own()
-        self._init_parameters(self._overrides(parameter_overrides), allow_undeclared_parameters)
-        self._announce()
+        self._arguments_ = self._read_arguments_(cli_args, use_global_arguments)
+        self._name_, self._namespace_ = self._resolve_own_name_(node_name, namespace)
+        self._init_own_()
+        self._init_parameters_(self._overrides_(parameter_overrides), allow_undeclared_parameters)
+        self._announce_()
         self._context.track_node(self)
         try:
-            if enable_rosout and self._arguments.rosout_logs is not False:
-                self._publish_logs()
-            self._context.given_parameters.expect(self, self._arguments.parameter_overrides)
-            self._parameter_events = self.create_publisher(
+            if enable_rosout and self._arguments_.rosout_logs is not False:
+                self._publish_logs_()
+            self._context.given_parameters.expect(self, self._arguments_.parameter_overrides)
+            self._parameter_events_ = self.create_publisher(
                 ParameterEvent, "/parameter_events", qos_profile_parameter_events
             )
             if automatically_declare_parameters_from_overrides:
-                self._declare_from_overrides()
+                self._declare_from_overrides_()
             self._time_source = TimeSource(node=self)
             self._time_source.attach_clock(self._clock)
-            self._serve(start_parameter_services, enable_logger_service)
+            self._serve_(start_parameter_services, enable_logger_service)
         except BaseException:
             self.destroy_node()
             raise
 
-    def _init_own(self) -> None:
-        self._executor: weakref.ReferenceType[Executor] | None = None
-        self.queued: list[Entity] = []
+    def _init_own_(self) -> None:
+        self._executor_: weakref.ReferenceType[Executor] | None = None
+        self._queued_: list[Entity] = []
         """What was ready when the last executor let go of this node, in order."""
-        self._rosout: Publisher[Log] | None = None  # none of the user's: `publishers` does not list it
-        self._init_entities()
+        self._rosout_: Publisher[Log] | None = None  # none of the user's: `publishers` does not list it
+        self._init_entities_()
         self._default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
         self._logger = get_logger(self.get_fully_qualified_name().strip("/").replace("/", "."))
         self._clock = ROSClock(time_base=self._context.time)
 
-    def _publish_logs(self) -> None:
-        self._rosout = Publisher(self._owner, Log, "/rosout", qos_profile_rosout_default)
-        rosout.publish_logs_of(self._logger.name, self._rosout)
+    def _publish_logs_(self) -> None:
+        self._rosout_ = Publisher(self._owner_, Log, "/rosout", qos_profile_rosout_default)
+        rosout.publish_logs_of(self._logger.name, self._rosout_)
 
-    def _serve(self, parameters: bool, logger_levels: bool) -> None:
+    def _serve_(self, parameters: bool, logger_levels: bool) -> None:
         if parameters:
             self._parameter_service = ParameterService(self)
         if logger_levels:
@@ -126,57 +129,57 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
 
     # Names
 
-    def _read_arguments(self, cli_args: list[str] | None, use_global_arguments: bool) -> Arguments:
+    def _read_arguments_(self, cli_args: list[str] | None, use_global_arguments: bool) -> Arguments:
         base = self._context.arguments if use_global_arguments else Arguments()
         return base if cli_args is None else parse_arguments(cli_args).over(base)
 
-    def _resolve_own_name(self, name: str, namespace: str | None) -> tuple[str, str]:
+    def _resolve_own_name_(self, name: str, namespace: str | None) -> tuple[str, str]:
         absolute = "/" + (namespace or "").lstrip("/")
         validate_node_name(name)
         validate_namespace(absolute)
-        new_name = self._arguments.node_name(name)
-        new_namespace = self._arguments.namespace(absolute, new_name)
+        new_name = self._arguments_.node_name(name)
+        new_namespace = self._arguments_.namespace(absolute, new_name)
         validate_node_name(new_name)
         validate_namespace(new_namespace)
         return new_name, new_namespace
 
-    def _announce(self) -> None:
+    def _announce_(self) -> None:
         context = self._context
-        enclave = self._arguments.enclave or "/"
-        identity = (context.next_id(), enclave, self._namespace, self._name)
-        self._owner = Owner(context, *identity, Disagreements(self._logger.name))
+        enclave = self._arguments_.enclave or "/"
+        identity = (context.next_id(), enclave, self._namespace_, self._name_)
+        self._owner_ = Owner(context, *identity, Disagreements(self._logger.name))
         token = NodeToken(context.get_domain_id(), context.transport.session_id, *identity)
-        self._announced = context.graph.announce(token)
+        self._announced_ = context.graph.announce(token)
 
-    def _overrides(self, given: list[Parameter[Any]] | None) -> dict[str, Parameter[Any]]:
-        values = self._arguments.overrides_for(self.get_fully_qualified_name())
+    def _overrides_(self, given: list[Parameter[Any]] | None) -> dict[str, Parameter[Any]]:
+        values = self._arguments_.overrides_for(self.get_fully_qualified_name())
         overrides: dict[str, Parameter[Any]] = {name: Parameter(name, value=value) for name, value in values.items()}
         overrides.update({each.name: each for each in given or ()})
         return overrides
 
     def get_name(self) -> str:
         """The node's name, remapped."""
-        return self._name
+        return self._name_
 
     def get_namespace(self) -> str:
         """The node's namespace, remapped, with its leading slash."""
-        return self._namespace
+        return self._namespace_
 
     def get_fully_qualified_name(self) -> str:
         """Namespace and name."""
-        return f"{self._namespace.rstrip('/')}/{self._name}"
+        return f"{self._namespace_.rstrip('/')}/{self._name_}"
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
         """Give the full name of a topic, remapped. Raises InvalidTopicNameException."""
         if only_expand:
-            return expand_topic_name(topic, self._name, self._namespace)
-        return resolve_name(self._arguments.remap_rules, RemapKind.TOPIC, topic, self._name, self._namespace)
+            return expand_topic_name(topic, self._name_, self._namespace_)
+        return resolve_name(self._arguments_.remap_rules, RemapKind.TOPIC, topic, self._name_, self._namespace_)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
         """Give the full name of a service, remapped. Raises InvalidServiceNameException."""
         if only_expand:
-            return expand_topic_name(service, self._name, self._namespace)
-        return resolve_name(self._arguments.remap_rules, RemapKind.SERVICE, service, self._name, self._namespace)
+            return expand_topic_name(service, self._name_, self._namespace_)
+        return resolve_name(self._arguments_.remap_rules, RemapKind.SERVICE, service, self._name_, self._namespace_)
 
     # What it has
 
@@ -193,7 +196,7 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
     @property
     def executor(self) -> Executor | None:
         """The executor that it was added to."""
-        return None if self._executor is None else self._executor()
+        return None if self._executor_ is None else self._executor_()
 
     @executor.setter
     def executor(self, executor: Executor | None) -> None:
@@ -202,11 +205,11 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
             return
         if current is not None:
             current.remove_node(self)
-        self.belong_to(executor if executor is not None and executor.add_node(self) else None)
+        self._belong_to_(executor if executor is not None and executor.add_node(self) else None)
 
-    def belong_to(self, executor: Executor | None) -> None:
+    def _belong_to_(self, executor: Executor | None) -> None:
         """Be told by an executor that it has this node from now on, or no longer."""
-        self._executor = None if executor is None else weakref.ref(executor)
+        self._executor_ = None if executor is None else weakref.ref(executor)
 
     def get_clock(self) -> Clock:
         """The clock of this node: it follows /clock under use_sim_time."""
@@ -216,8 +219,8 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
         """The logger that carries the node's name."""
         return self._logger
 
-    def _on_parameter_event(self, event: ParameterEvent) -> None:
-        self._parameter_events.publish(event)
+    def _on_parameter_event_(self, event: ParameterEvent) -> None:
+        self._parameter_events_.publish(event)
 
     # Making
 
@@ -240,15 +243,15 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
         """
         name = self.resolve_topic_name(topic)
         publisher = publisher_class(
-            self._owner,
+            self._owner_,
             msg_type,
             name,
-            self._overridden(Publisher, name, _qos(qos_profile), qos_overriding_options),
+            self._overridden_(Publisher, name, _qos(qos_profile), qos_overriding_options),
             event_callbacks=event_callbacks,
             callback_group=callback_group or self._default_callback_group,
         )
-        self._publishers.append(publisher)
-        self._attach_handlers(publisher.event_handlers)
+        self._keep_(publisher, self._publishers)
+        self._attach_handlers_(publisher.event_handlers)
         return publisher
 
     def create_subscription(
@@ -271,13 +274,12 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
         """
         group = callback_group or self._default_callback_group
         name = self.resolve_topic_name(topic)
-        qos = self._overridden(Subscription, name, _qos(qos_profile), qos_overriding_options)
-        made = Subscription(self._owner, msg_type, name, callback, group, qos, raw, event_callbacks)
-        self._add(made, self._subscriptions)
-        self._attach_handlers(made.event_handlers)
+        qos = self._overridden_(Subscription, name, _qos(qos_profile), qos_overriding_options)
+        made = Subscription(self._owner_, msg_type, name, callback, group, qos, raw, event_callbacks)
+        self._add_subscription_(made)
         return made
 
-    def _overridden(
+    def _overridden_(
         self, kind: type[Any], topic: str, qos: QoSProfile, options: QoSOverridingOptions | None
     ) -> QoSProfile:
         """Give the profile with what parameters say of it, where options ask for such parameters."""
@@ -299,7 +301,7 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
         """Make a service. ``callback(request, response)`` returns the response."""
         group = callback_group or self._default_callback_group
         name = self.resolve_service_name(srv_name)
-        return self._add(Service(self._owner, srv_type, name, callback, group, qos_profile), self._services)
+        return self._add_(Service(self._owner_, srv_type, name, callback, group, qos_profile), self._services)
 
     def create_client(
         self,
@@ -312,7 +314,7 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
         """Make a client."""
         group = callback_group or self._default_callback_group
         name = self.resolve_service_name(srv_name)
-        return self._add(Client(self._owner, srv_type, name, qos_profile, group), self._clients)
+        return self._add_(Client(self._owner_, srv_type, name, qos_profile, group), self._clients)
 
     def create_timer(
         self,
@@ -326,14 +328,14 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
         group = callback_group or self._default_callback_group
         period = period_ns(timer_period_sec)
         timer = Timer(callback, group, period, clock or self._clock, context=self._context, autostart=autostart)
-        return self._add(timer, self._timers)
+        return self._add_(timer, self._timers)
 
     def create_guard_condition(
         self, callback: Callable[[], Any], callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
         """Make a guard condition: whoever triggers it has `callback` run by the executor."""
         group = callback_group or self._default_callback_group
-        return self._add(GuardCondition(callback, group, context=self._context), self._guards)
+        return self._add_(GuardCondition(callback, group, context=self._context), self._guards)
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
         """Make a rate, `frequency` in Hz. Raises ValueError unless it is above 0."""
@@ -350,10 +352,10 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
             executor.remove_node(self)
         self._context.given_parameters.look(self)
         rosout.keep_to_itself(self._logger.name)
-        if self._rosout is not None:
-            self._rosout.destroy()
-        self._destroy_entities()
-        self._announced.close()
+        if self._rosout_ is not None:
+            self._rosout_.destroy()
+        self._destroy_entities_()
+        self._announced_.close()
         self._context.untrack_node(self)
 
     def __enter__(self) -> Node:

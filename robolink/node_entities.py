@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from robolink.client import Client
 from robolink.entity import Entity
 from robolink.event_handler import EventHandler, with_callbacks
+from robolink.exceptions import InvalidHandle
 from robolink.guard_condition import GuardCondition
 from robolink.publisher import Publisher
 from robolink.service import Service
@@ -18,6 +19,7 @@ from robolink.waitable import Waitable
 
 if TYPE_CHECKING:
     from robolink.executors import Executor
+    from robolink.node import Node
 
 EntityT = TypeVar("EntityT", bound=Entity)
 
@@ -25,14 +27,16 @@ EntityT = TypeVar("EntityT", bound=Entity)
 class NodeEntities:
     """The part of a node that keeps what it has made, and unmakes it."""
 
-    def _init_entities(self) -> None:
+    _destroyed = False
+
+    def _init_entities_(self) -> None:
         self._publishers: list[Publisher[Any]] = []
         self._subscriptions: list[Subscription[Any]] = []
         self._clients: list[Client] = []
         self._services: list[Service] = []
         self._timers: list[Timer] = []
         self._guards: list[GuardCondition] = []
-        self._waitables: list[Waitable] = []
+        self._waitables_: list[Waitable] = []
 
     @property
     def executor(self) -> Executor | None:
@@ -72,54 +76,64 @@ class NodeEntities:
     @property
     def waitables(self) -> Iterator[Waitable]:
         """What it has that consists of several entities: its actions."""
-        yield from self._waitables
+        yield from self._waitables_
 
-    def entities(self) -> list[Entity]:
+    def _entities_(self) -> list[Entity]:
         """All that an executor runs."""
         own: list[Entity] = [*self._subscriptions, *self._services, *self._clients, *self._timers, *self._guards]
         for publisher in self._publishers:
             own += with_callbacks(publisher.event_handlers)
         for subscription in self._subscriptions:
             own += with_callbacks(subscription.event_handlers)
-        for waitable in self._waitables:
+        for waitable in self._waitables_:
             own += waitable.entities()
         return own
 
-    def all_services(self) -> list[Service]:
+    def _all_services_(self) -> list[Service]:
         """Its services, those of its actions too."""
-        return [each for each in self.entities() if isinstance(each, Service)]
-
-    def all_timers(self) -> list[Timer]:
-        """Its timers, those of its actions too."""
-        return [each for each in self.entities() if isinstance(each, Timer)]
+        parts = (each for waitable in self._waitables_ for each in waitable.entities())
+        return [*self._services, *(each for each in parts if isinstance(each, Service))]
 
     def add_waitable(self, waitable: Waitable) -> None:
         """Have the entities of a waitable run by the node's executor, and the waitable destroyed with the node."""
-        self._waitables.append(waitable)
-        self._attach(*waitable.entities())
+        self._keep_(waitable, self._waitables_)
+        self._attach_(*waitable.entities())
 
     def remove_waitable(self, waitable: Waitable) -> None:
         """Let go of a waitable, which is none of the node's any more."""
-        if waitable in self._waitables:
-            self._waitables.remove(waitable)
+        if waitable in self._waitables_:
+            self._waitables_.remove(waitable)
             for entity in waitable.entities():
                 entity.detach()
 
-    def _add(self, entity: EntityT, group: list[EntityT]) -> EntityT:
-        group.append(entity)
-        self._attach(entity)
+    def _keep_(self, made: Any, group: list[Any]) -> None:
+        """Own what was made. Raises InvalidHandle once the node has been destroyed: nobody would unmake it."""
+        group.append(made)  # first, so that another thread that destroys the node just now finds it
+        if self._destroyed:
+            _destroy(made, group)
+            raise InvalidHandle("a node that has been destroyed makes nothing more")
+
+    def _add_(self, entity: EntityT, group: list[EntityT]) -> EntityT:
+        self._keep_(entity, group)
+        self._attach_(entity)
         return entity
 
-    def _attach(self, *entities: Entity) -> None:
+    def _add_subscription_(self, made: Subscription[Any]) -> None:
+        """Own a subscription, and have its callbacks run."""
+        self._add_(made, self._subscriptions)
+        self._attach_handlers_(made.event_handlers)
+
+    def _attach_(self, *entities: Entity) -> None:
         executor = self.executor
-        if executor is not None:
-            for entity in entities:
+        for entity in entities:
+            entity.node = cast("Node", self)
+            if executor is not None:
                 executor.attach(entity)
 
-    def _attach_handlers(self, handlers: list[EventHandler]) -> None:
+    def _attach_handlers_(self, handlers: list[EventHandler]) -> None:
         for handler in handlers:
-            handler.attach_late = weakref.WeakMethod(self._attach)
-        self._attach(*with_callbacks(handlers))
+            handler.attach_late = weakref.WeakMethod(self._attach_)
+        self._attach_(*with_callbacks(handlers))
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
         """Undeclare a publisher; False when it is none of this node's."""
@@ -151,12 +165,12 @@ class NodeEntities:
         rate.destroy()
         return found
 
-    def _destroy_entities(self) -> None:
+    def _destroy_entities_(self) -> None:
         for owned in (self._publishers, self._subscriptions, self._clients, self._services, self._timers, self._guards):
             for entity in list(owned):
                 _destroy(entity, owned)
-        for waitable in list(self._waitables):
-            _destroy(waitable, self._waitables)
+        for waitable in list(self._waitables_):
+            _destroy(waitable, self._waitables_)
 
 
 def _destroy(entity: Any, owned: list[Any]) -> bool:

@@ -53,23 +53,23 @@ class NodeGraph:
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
         """What a node publishes. Raises NodeNameNonExistentError (a RuntimeError) when there is no such node."""
-        return self._by_node(node_name, node_namespace, EndpointKind.PUBLISHER)
+        return self._by_node_(node_name, node_namespace, EndpointKind.PUBLISHER)
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
         """What a node subscribes to. Raises NodeNameNonExistentError (a RuntimeError) when there is no such node."""
-        return self._by_node(node_name, node_namespace, EndpointKind.SUBSCRIPTION)
+        return self._by_node_(node_name, node_namespace, EndpointKind.SUBSCRIPTION)
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """What a node serves. Raises NodeNameNonExistentError (a RuntimeError) when there is no such node."""
-        return self._by_node(node_name, node_namespace, EndpointKind.SERVICE)
+        return self._by_node_(node_name, node_namespace, EndpointKind.SERVICE)
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """Which services a node calls. Raises NodeNameNonExistentError (a RuntimeError) when there is no such node."""
-        return self._by_node(node_name, node_namespace, EndpointKind.CLIENT)
+        return self._by_node_(node_name, node_namespace, EndpointKind.CLIENT)
 
-    def _by_node(self, node_name: str, namespace: str, kind: EndpointKind) -> NamesAndTypes:
+    def _by_node_(self, node_name: str, namespace: str, kind: EndpointKind) -> NamesAndTypes:
         graph = self._context.graph
         if not graph.has_node(node_name, namespace):
             full = join(namespace, node_name)
@@ -83,16 +83,16 @@ class NodeGraph:
 
         Raises InvalidTopicNameException (a ValueError), unless `no_mangle` asks for the name as it stands.
         """
-        return self._info(topic_name, no_mangle, EndpointKind.PUBLISHER, TopicEndpointTypeEnum.PUBLISHER)
+        return self._info_(topic_name, no_mangle, EndpointKind.PUBLISHER, TopicEndpointTypeEnum.PUBLISHER)
 
     def get_subscriptions_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
         """All subscriptions of a topic, each with its node, type, hash, gid and profile.
 
         Raises InvalidTopicNameException (a ValueError), unless `no_mangle` asks for the name as it stands.
         """
-        return self._info(topic_name, no_mangle, EndpointKind.SUBSCRIPTION, TopicEndpointTypeEnum.SUBSCRIPTION)
+        return self._info_(topic_name, no_mangle, EndpointKind.SUBSCRIPTION, TopicEndpointTypeEnum.SUBSCRIPTION)
 
-    def _info(
+    def _info_(
         self, topic_name: str, no_mangle: bool, kind: EndpointKind, end: TopicEndpointTypeEnum
     ) -> list[TopicEndpointInfo]:
         name = topic_name if no_mangle else self.resolve_topic_name(topic_name)
@@ -128,10 +128,6 @@ class NodeGraph:
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Wait until a node is there; whether so within `timeout` seconds, or before the context ends if negative."""
         namespace, _, name = ("/" + fully_qualified_node_name.lstrip("/")).rpartition("/")
-        graph, context = self._context.graph, self._context
-
-        def is_there() -> bool:
-            return graph.has_node(name, namespace or "/")
-
-        graph.wait_for(lambda: is_there() or not context.ok(), None if timeout < 0 else timeout)
-        return is_there()
+        graph = self._context.graph
+        limit = None if timeout < 0 else timeout
+        return self._context.wait_until(lambda: graph.has_node(name, namespace or "/"), limit)

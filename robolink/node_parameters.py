@@ -30,7 +30,7 @@ from robolink.parameter import (
     AllowableParameterValueT,
     Parameter,
 )
-from robolink.parameter_callbacks import ParameterCallbacks, Parameters
+from robolink.parameter_callbacks import ParameterCallbacks, Parameters, listed
 from robolink.parameter_rules import (
     EMPTY_LIST,
     check_names,
@@ -66,22 +66,22 @@ class NodeParameters(ParameterCallbacks):
         def get_fully_qualified_name(self) -> str:
             """Give the name that events carry."""
 
-        def _on_parameter_event(self, event: ParameterEvent) -> None: ...
+        def _on_parameter_event_(self, event: ParameterEvent) -> None: ...
 
-    def _init_parameters(self, overrides: Mapping[str, Parameter[Any]], allow_undeclared: bool) -> None:
+    def _init_parameters_(self, overrides: Mapping[str, Parameter[Any]], allow_undeclared: bool) -> None:
         """Begin without parameters. `overrides` go before the default values of what will be declared."""
         self._parameters: dict[str, Parameter[Any]] = {}
         self._descriptors: dict[str, ParameterDescriptor] = {}
-        self.declared_so_far: set[str] = set()
+        self._declared_so_far_: set[str] = set()
         """The names of all that was ever declared, also of what was refused or is no longer there."""
         self._parameter_overrides = dict(overrides)
         self._allow_undeclared_parameters = allow_undeclared
-        self._init_parameter_callbacks()
-        self._parameters_lock = threading.Lock()
+        self._init_parameter_callbacks_()
+        self._parameters_lock_ = threading.Lock()
 
     # Declaring
 
-    def _declare_from_overrides(self) -> None:
+    def _declare_from_overrides_(self) -> None:
         """Declare all that the overrides name, each with the type that it has there."""
         self.declare_parameters("", [(name, each.type_) for name, each in self._parameter_overrides.items()])
 
@@ -120,9 +120,9 @@ class NodeParameters(ParameterCallbacks):
         an on-set callback refused the value), ValueError (no value and no type), TypeError (no parameter's value).
         """
         if value is None and descriptor is None:
-            return self._declare([(name,)], "", ignore_override)[0]
+            return self._declare_([(name,)], "", ignore_override)[0]
         described = ParameterDescriptor() if descriptor is None else descriptor
-        return self._declare([(name, value, described)], "", ignore_override)[0]
+        return self._declare_([(name, value, described)], "", ignore_override)[0]
 
     def declare_parameters(
         self,
@@ -135,9 +135,9 @@ class NodeParameters(ParameterCallbacks):
         All tuples are read before the first is declared. When a callback or a range then refuses one, those
         before it stay declared. Raises what `declare_parameter` raises.
         """
-        return self._declare(parameters, namespace, ignore_override)
+        return self._declare_(parameters, namespace, ignore_override)
 
-    def _declare(self, entries: Iterable[Sequence[Any]], namespace: str, ignore_override: bool) -> Parameters:
+    def _declare_(self, entries: Iterable[Sequence[Any]], namespace: str, ignore_override: bool) -> Parameters:
         overrides = {} if ignore_override else self._parameter_overrides
         declarations = []
         for index, entry in enumerate(entries):
@@ -148,16 +148,16 @@ class NodeParameters(ParameterCallbacks):
                     "a Parameter.Type or a ParameterDescriptor(dynamic_typing=True)",
                     stacklevel=3,
                 )
-        self.declared_so_far.update(parameter.name for parameter, _ in declarations)
+        self._declared_so_far_.update(parameter.name for parameter, _ in declarations)
         taken = [parameter.name for parameter, _ in declarations if parameter.name in self._parameters]
         if taken:
             raise ParameterAlreadyDeclaredException(taken)
         for parameter, descriptor in declarations:
-            self._declare_one(parameter, descriptor)
+            self._declare_one_(parameter, descriptor)
         return [self._parameters.get(parameter.name, parameter) for parameter, _ in declarations]
 
-    def _declare_one(self, parameter: Parameter[Any], descriptor: ParameterDescriptor) -> None:
-        result = self._apply([parameter], descriptor)
+    def _declare_one_(self, parameter: Parameter[Any], descriptor: ParameterDescriptor) -> None:
+        result = self._apply_([parameter], descriptor)
         if result.successful:
             return
         if has_wrong_type(parameter, descriptor):
@@ -169,15 +169,15 @@ class NodeParameters(ParameterCallbacks):
 
         Raises ParameterNotDeclaredException, and ParameterImmutableException for a read-only parameter.
         """
-        with self._parameters_lock:
+        with self._parameters_lock_:
             if name not in self._parameters:
-                raise self._not_declared(name)
+                raise self._not_declared_(name)
             if self._descriptors[name].read_only:
                 raise ParameterImmutableException(name)
             self._parameters = {key: each for key, each in self._parameters.items() if key != name}
             self._descriptors = {key: each for key, each in self._descriptors.items() if key != name}
 
-    def _not_declared(self, names: str | list[str]) -> ParameterNotDeclaredException:
+    def _not_declared_(self, names: str | list[str]) -> ParameterNotDeclaredException:
         return ParameterNotDeclaredException(names, known=self._parameters)
 
     # Reading
@@ -192,20 +192,20 @@ class NodeParameters(ParameterCallbacks):
         Raises ParameterNotDeclaredException, and ParameterUninitializedException for a parameter of static type
         that has had no value yet.
         """
-        return self._read(name, self._parameters)
+        return self._read_(name, self._parameters)
 
     def get_parameters(self, names: list[str]) -> Parameters:
         """Give several parameters as they are at one moment. Raises what `get_parameter` does; TypeError for names."""
         check_names(names)
         parameters = self._parameters
-        return [self._read(name, parameters) for name in names]
+        return [self._read_(name, parameters) for name in names]
 
-    def _read(self, name: str, parameters: Mapping[str, Parameter[Any]]) -> Parameter[Any]:
+    def _read_(self, name: str, parameters: Mapping[str, Parameter[Any]]) -> Parameter[Any]:
         parameter = parameters.get(name)
         if parameter is None:
             if self._allow_undeclared_parameters:
                 return Parameter(name)
-            raise self._not_declared(name)
+            raise self._not_declared_(name)
         descriptor = self._descriptors.get(name)
         if parameter.type_ is Parameter.Type.NOT_SET and descriptor is not None and not descriptor.dynamic_typing:
             raise ParameterUninitializedException(name)
@@ -233,7 +233,7 @@ class NodeParameters(ParameterCallbacks):
             return parameter.type_
         if self._allow_undeclared_parameters:
             return Parameter.Type.NOT_SET
-        raise self._not_declared(name)
+        raise self._not_declared_(name)
 
     def get_parameter_types(self, names: list[str]) -> list[Parameter.Type]:
         """Give the types of several parameters; raises as `get_parameter_type` does, and TypeError for names."""
@@ -265,7 +265,7 @@ class NodeParameters(ParameterCallbacks):
         A value of NOT_SET undeclares a parameter whose type is dynamic. Raises ParameterNotDeclaredException at
         the first that is undeclared where that is not allowed: those before it are set then, the rest are not.
         """
-        return [self._set_atomically([parameter]) for parameter in parameter_list]
+        return [self._set_atomically_([parameter]) for parameter in parameter_list]
 
     def set_parameters_atomically(self, parameter_list: Parameters) -> SetParametersResult:
         """Set all these parameters, or none, in one step with one event and one call of each callback.
@@ -273,12 +273,12 @@ class NodeParameters(ParameterCallbacks):
         Raises ParameterNotDeclaredException where one is undeclared and that is not allowed, and
         InvalidParameterException where it is allowed, but the name is empty.
         """
-        return self._set_atomically(parameter_list)
+        return self._set_atomically_(parameter_list)
 
-    def _set_atomically(self, parameters: Parameters) -> SetParametersResult:
+    def _set_atomically_(self, parameters: Parameters) -> SetParametersResult:
         callbacks = tuple(self._pre_set_parameters_callbacks)
         if callbacks:
-            parameters = [each for callback in callbacks for each in callback(parameters)]
+            parameters = [each for callback in callbacks for each in listed(callback, callback(parameters))]
             if not parameters:
                 return SetParametersResult(successful=False, reason=EMPTY_LIST)
         for each in parameters:
@@ -286,37 +286,37 @@ class NodeParameters(ParameterCallbacks):
                 raise TypeError(f"expected a robolink.parameter.Parameter, got {each!r}")
         undeclared = [each.name for each in parameters if each.name not in self._parameters]
         if undeclared and not self._allow_undeclared_parameters:
-            raise self._not_declared(undeclared)
+            raise self._not_declared_(undeclared)
         for name in undeclared:
             validate_parameter_name(name)
-        return self._apply(parameters)
+        return self._apply_(parameters)
 
-    def _apply(self, parameters: Parameters, declaring: ParameterDescriptor | None = None) -> SetParametersResult:
+    def _apply_(self, parameters: Parameters, declaring: ParameterDescriptor | None = None) -> SetParametersResult:
         """Check parameters, ask the callbacks, store, tell. `declaring` is the descriptor of a single new one."""
         for parameter in parameters:
-            reason = self._refusal(parameter, declaring)
+            reason = self._refusal_(parameter, declaring)
             if reason:
                 return SetParametersResult(successful=False, reason=reason)
         for callback in tuple(self._on_set_parameters_callbacks):
             result = callback(parameters)
-            if result is None:
-                raise TypeError(f"on-set callback {callback!r} must return a SetParametersResult, got None")
+            if not hasattr(result, "successful"):
+                raise TypeError(f"on-set callback {callback!r} must return a SetParametersResult, got {result!r:.80}")
             if not result.successful:
                 return result
-        self._on_parameter_event(self._store(parameters, declaring))
+        self._on_parameter_event_(self._store_(parameters, declaring))
         for heard in tuple(self._post_set_parameters_callbacks):
             heard(parameters)
         return SetParametersResult(successful=True)
 
-    def _refusal(self, parameter: Parameter[Any], declaring: ParameterDescriptor | None) -> str:
+    def _refusal_(self, parameter: Parameter[Any], declaring: ParameterDescriptor | None) -> str:
         name = parameter.name
         descriptor = declaring or self._descriptors.get(name) or ParameterDescriptor(dynamic_typing=True)
         if descriptor.read_only and declaring is None:
             return f"Trying to set a read-only parameter: {name}."
         return refusal(parameter, descriptor, is_declared=name in self._parameters, rel_tol=self.PARAM_REL_TOL)
 
-    def _store(self, parameters: Parameters, declaring: ParameterDescriptor | None) -> ParameterEvent:
-        with self._parameters_lock:
+    def _store_(self, parameters: Parameters, declaring: ParameterDescriptor | None) -> ParameterEvent:
+        with self._parameters_lock_:
             values, descriptors = dict(self._parameters), dict(self._descriptors)
             event = record(parameters, values, descriptors, declaring)
             # In this order, so that whoever finds a parameter finds its descriptor.
@@ -337,7 +337,7 @@ class NodeParameters(ParameterCallbacks):
             return descriptor
         if self._allow_undeclared_parameters:
             return ParameterDescriptor()
-        raise self._not_declared(name)
+        raise self._not_declared_(name)
 
     def describe_parameters(self, names: list[str]) -> list[ParameterDescriptor]:
         """Give the descriptors of several parameters. Raises ParameterNotDeclaredException."""
@@ -360,7 +360,7 @@ class NodeParameters(ParameterCallbacks):
         if alternative_value is not None:
             candidates.append(Parameter.from_parameter_msg(ParameterMsg(name=name, value=alternative_value)))
         parameter = first_fitting(candidates, descriptor, self.PARAM_REL_TOL)
-        with self._parameters_lock:
+        with self._parameters_lock_:
             if parameter is not current:
                 self._parameters = {**self._parameters, name: parameter}
             self._descriptors = {**self._descriptors, name: describing(parameter, copy.copy(descriptor))}

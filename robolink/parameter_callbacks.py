@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, TypeAlias
 
 from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
@@ -17,7 +17,7 @@ PostSetCallback: TypeAlias = Callable[[Parameters], None]
 class ParameterCallbacks:
     """The part of a node that keeps these callbacks."""
 
-    def _init_parameter_callbacks(self) -> None:
+    def _init_parameter_callbacks_(self) -> None:
         self._pre_set_parameters_callbacks: list[PreSetCallback] = []
         self._on_set_parameters_callbacks: list[OnSetCallback] = []
         self._post_set_parameters_callbacks: list[PostSetCallback] = []
@@ -52,3 +52,10 @@ class ParameterCallbacks:
     def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
         """Call it no longer. Raises ValueError when it was not added."""
         self._post_set_parameters_callbacks.remove(callback)
+
+
+def listed(callback: PreSetCallback, given: Any) -> Parameters:
+    """Give what a pre-set callback gave back. Raises TypeError, naming the callback, for what is no list."""
+    if isinstance(given, Iterable):
+        return list(given)
+    raise TypeError(f"pre-set callback {callback!r} must return a list of parameters, got {given!r:.80}")

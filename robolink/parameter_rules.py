@@ -7,7 +7,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from robolink.exceptions import InvalidParameterValueException
+from robolink.exceptions import EncodeError, InvalidParameterValueException, shown
 from robolink.interfaces.rcl_interfaces.msg import (
     FloatingPointRange,
     IntegerRange,
@@ -15,6 +15,7 @@ from robolink.interfaces.rcl_interfaces.msg import (
     ParameterEvent,
     ParameterValue,
 )
+from robolink.message import encode
 from robolink.parameter import PARAMETER_SEPARATOR_STRING, Parameter
 from robolink.validate_parameter_name import validate_parameter_name
 
@@ -122,11 +123,12 @@ def refusal(parameter: Parameter[Any], descriptor: ParameterDescriptor, *, is_de
         return f"Wrong parameter type for '{parameter.name}': expected {expected}, got {parameter.type_.name}"
     if parameter.type_ is Type.NOT_SET and is_declared and not descriptor.dynamic_typing:
         return "Static parameter cannot be undeclared"
+    reason = ""
     if parameter.type_ is Type.INTEGER:
-        return _integer_refusal(parameter, descriptor.integer_range)
-    if parameter.type_ is Type.DOUBLE and descriptor.floating_point_range:
-        return _float_refusal(parameter, descriptor.floating_point_range[0], rel_tol)
-    return ""
+        reason = _integer_refusal(parameter, descriptor.integer_range)
+    elif parameter.type_ is Type.DOUBLE and descriptor.floating_point_range:
+        reason = _float_refusal(parameter, descriptor.floating_point_range[0], rel_tol)
+    return reason or _unsendable(parameter)
 
 
 def first_fitting(
@@ -139,6 +141,15 @@ def first_fitting(
         if not reason:
             return candidate
     raise InvalidParameterValueException(candidates[-1].name, candidates[-1].value, reason)
+
+
+def _unsendable(parameter: Parameter[Any]) -> str:
+    """Give the reason why nobody can be told of a parameter, or '': a number too great, or text that is no Unicode."""
+    try:
+        encode(parameter.to_parameter_msg())
+    except EncodeError as error:
+        return f"parameter '{shown(parameter.name)}': {error}"
+    return ""
 
 
 def _integer_refusal(parameter: Parameter[int], ranges: Sequence[IntegerRange]) -> str:

@@ -163,21 +163,30 @@ def _check_is_cloud(cloud: Any) -> None:
 def _all_points(cloud: PointCloud2) -> np.ndarray[Any, Any]:
     """Give all points in a row, in this machine's order of bytes."""
     dtype = _dtype(cloud.fields, cloud.point_step, ">" if cloud.is_bigendian else "<")
-    row = cloud.width * cloud.point_step
-    row_step = cloud.row_step if cloud.height > 1 else row
-    needed = row_step * (cloud.height - 1) + row if cloud.height else 0
-    data: Any = cloud.data
-    if row_step < row or needed > len(data):
-        raise PointCloudError(
-            f"{cloud.width} x {cloud.height} points of {cloud.point_step} bytes in rows of {cloud.row_step} need"
-            f" {needed} bytes; there are {len(data)}"
-        )
-    shape = (cloud.height, cloud.width)
-    if not needed or not cloud.width:
+    strides = (row_step_of(cloud), cloud.point_step)
+    if not cloud.height * cloud.width * cloud.point_step:
         return np.zeros(0, dtype.newbyteorder("="))
-    grid: np.ndarray[Any, Any] = np.ndarray(shape, dtype, buffer=memoryview(data), strides=(row_step, cloud.point_step))
+    data: Any = cloud.data
+    shape = (cloud.height, cloud.width)
+    grid: np.ndarray[Any, Any] = np.ndarray(shape, dtype, buffer=memoryview(data), strides=strides)
     points = grid.reshape(-1)
     return points if bool(cloud.is_bigendian) == _IS_BIG else points.astype(dtype.newbyteorder("="))
+
+
+def row_step_of(cloud: PointCloud2) -> int:
+    """Give the bytes from one row to the next; a single row, or 0, has no padding.
+
+    Raises PointCloudError where rows would overlap or the data is too short.
+    """
+    row = cloud.width * cloud.point_step
+    row_step = cloud.row_step if cloud.row_step and cloud.height > 1 else row
+    needed = row_step * (cloud.height - 1) + row if cloud.height else 0
+    if row_step < row or needed > len(cloud.data):
+        raise PointCloudError(
+            f"{cloud.width} x {cloud.height} points of {cloud.point_step} bytes in rows of {row_step} need"
+            f" {needed} bytes; there are {len(cloud.data)}"
+        )
+    return row_step
 
 
 def _dtype(fields: Iterable[PointField], point_step: int | None, order: str) -> np.dtype[Any]:

@@ -54,7 +54,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         Raises EncodeError (a TypeError and ValueError) that names the field which does not fit, TypeError for a
         message of another type, InvalidHandle after `destroy`.
         """
-        if type(msg) is self.msg_type:
+        if isinstance(msg, self.msg_type):
             payload = self._encode(msg)
         elif isinstance(msg, (bytes, bytearray)):
             payload = bytes(msg)

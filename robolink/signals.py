@@ -34,8 +34,8 @@ _NUMBERS = {SignalHandlerOptions.SIGINT: [signal.SIGINT], SignalHandlerOptions.S
 if sys.platform == "win32":
     _NUMBERS[SignalHandlerOptions.SIGINT].append(signal.SIGBREAK)  # what a launcher can send to a process of its own
 
-_ENDS = (ExternalShutdownException, ROSInterruptException)
-"""What a program meets when it is told to end; InterruptedByUser is one of the first kind."""
+_ENDS = (KeyboardInterrupt, ExternalShutdownException, ROSInterruptException)
+"""What a program meets when it is told to end; InterruptedByUser is one of the first two."""
 
 
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
@@ -78,11 +78,13 @@ def _on_signal(number: int, frame: FrameType | None) -> None:
     """End the contexts, and break into what the main thread does, as Ctrl-C does in any Python program."""
     global _received
     _received = number
-    for context in list(_contexts):
+    running = [context for context in list(_contexts) if context.ok()]
+    for context in running:
         context.interrupt()
     before = _before.get(number)
     if before in (signal.default_int_handler, signal.SIG_DFL):
-        raise InterruptedByUser
+        # Ctrl-C is no Exception, as everywhere in Python: event loops (tornado's) log every Exception and go on.
+        raise InterruptedByUser if running and number == signal.SIGTERM else KeyboardInterrupt
     if callable(before):
         before(number, frame)
 

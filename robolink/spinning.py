@@ -149,6 +149,7 @@ def spin_until_future_complete(
 
 
 def _with_node(node: Node, executor: Executor | None, act: Callable[[Executor], None]) -> None:
+    _check_node(node)
     if executor is None and node.context is not get_default_context():
         with SingleThreadedExecutor(context=node.context) as own:
             _with_node(node, own, act)
@@ -161,6 +162,12 @@ def _with_node(node: Node, executor: Executor | None, act: Callable[[Executor], 
     finally:
         if added:
             _give_back(node, chosen, before)
+
+
+def _check_node(given: object) -> None:
+    if not isinstance(given, Node):
+        hint = f": call it, {given.__name__}()" if isinstance(given, type) else ""
+        raise TypeError(f"expected a Node to spin, got {given!r:.80}{hint}")
 
 
 def _give_back(node: Node, executor: Executor, before: Executor | None) -> None:

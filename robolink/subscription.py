@@ -17,7 +17,7 @@ from robolink.event_handler import (
     tell_handlers,
     warns_of_types,
 )
-from robolink.exceptions import DecodeError, TransportError, WireError
+from robolink.exceptions import DecodeError, TransportError, WireError, shown
 from robolink.humble import Copies, CopyError, FromHumbleKey
 from robolink.inbox import Inbox
 from robolink.logging import get_logger
@@ -107,8 +107,8 @@ class Subscription(Receiver, Generic[MsgT]):
         if not takes_arguments(callback, 1):
             if not takes_arguments(callback, 2):
                 raise RuntimeError(
-                    "Subscription.__init__(): callback should be either be callable with one argument"
-                    " (to get only the message) or two (to get message and message info)"
+                    f"{self.topic}: a callback takes the message, or the message and its MessageInfo;"
+                    f" {shown(str(callback))} takes neither one argument nor two"
                 )
             self._callback_type = self.CallbackType.WithMessageInfo
         self._callback = callback

@@ -35,7 +35,7 @@ class Future(Generic[T]):
         self._wakers: list[Callable[[], None]] = []
         self._lock = threading.Lock()
         self._executor: Callable[[], Executor | None] = lambda: None
-        self._set_executor(executor)
+        self.set_executor(executor)
 
     def __del__(self) -> None:
         if self._exception is not None and not self._exception_fetched:
@@ -150,7 +150,8 @@ class Future(Generic[T]):
             except Exception as error:  # noqa: BLE001 - somebody else's callback must not break whoever set the result
                 warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
 
-    def _set_executor(self, executor: Executor | None) -> None:
+    def set_executor(self, executor: Executor | None) -> None:
+        """Have the done callbacks run in this executor; with None, at once where it becomes done."""
         self._executor = (lambda: None) if executor is None else weakref.ref(executor)
 
 

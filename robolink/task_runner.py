@@ -38,7 +38,7 @@ class TaskRunner(Entity):
             self._sleep(taken)
             return
         if self._origin is not None:
-            self._origin.callback_group.ending_execution(self._origin)
+            self._origin.gate.ending_execution(self._origin)
         error = taken.exception()
         if error is not None:
             raise error

@@ -10,7 +10,7 @@ from robolink.callback_groups import CallbackGroup
 from robolink.clock import Clock, ROSClock
 from robolink.clock_type import ClockType
 from robolink.entity import NOTHING, Entity
-from robolink.exceptions import ExternalShutdownException, InvalidHandle, ROSInterruptException
+from robolink.exceptions import ExternalShutdownException, InterruptedByUser, InvalidHandle, ROSInterruptException
 from robolink.inbox import A_WHILE
 from robolink.task import Future
 from robolink.time import Time
@@ -75,7 +75,7 @@ class Timer(Entity):
         """Be called by this executor when due."""
         super().attach(executor, queued)
         if isinstance(self.clock, ROSClock):
-            self.clock.watch(executor)
+            self.clock.watch(self)
         if not queued:
             self.reschedule()
 
@@ -83,6 +83,8 @@ class Timer(Entity):
         """Be called by none."""
         super().detach()
         self.version += 1
+        if isinstance(self.clock, ROSClock):
+            self.clock.unwatch(self)
 
     def reschedule(self) -> None:
         """Have the executor forget the deadline it knows and take the one that holds now."""
@@ -255,7 +257,8 @@ class Rate:
         """Sleep until the next tick, or until the rate is destroyed.
 
         In the thread that spins, or where nobody does, it sleeps by the clock instead of waiting for a callback. Raises
-        ROSInterruptException when the context ends, RuntimeError when the rate or its timer was destroyed before.
+        ROSInterruptException when the context ends, InterruptedByUser (a KeyboardInterrupt) in the main thread when
+        that is by a signal, RuntimeError when the rate or its timer was destroyed before.
         """
         if self._is_shutdown or not self._context.ok():
             raise ROSInterruptException()
@@ -264,8 +267,8 @@ class Rate:
         try:
             with self._timer.handle:
                 self._sleep()
-        except (ExternalShutdownException, InvalidHandle):
-            if self._context.ok():
+        except (ExternalShutdownException, InvalidHandle) as error:
+            if isinstance(error, InterruptedByUser) or self._context.ok():
                 raise
         if self._is_shutdown or not self._context.ok():
             raise ROSInterruptException()

@@ -44,7 +44,7 @@ def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
 
 
 def ok(*, context: Context | None = None) -> bool:
-    """Whether the context is initialized and not shut down."""
+    """Whether the context is in use: begun, and not yet ended."""
     return (get_default_context() if context is None else context).ok()
 
 

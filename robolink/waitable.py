@@ -160,7 +160,7 @@ class _Asking(Asked):
     def execute(self, taken: Any) -> Any:
         """Take and execute."""
         for future in self._waitable._futures:
-            future._set_executor(self.executor)
+            future.set_executor(self.executor)
         data = self._waitable.take_data()
         self.waits = False
         return self._waitable.execute(data)

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 Step: TypeAlias = "str | int"
 
+LONGEST = 64 * 2**20
+"""Bytes that a file may have."""
+
 _ANY_ITEM = "[...]"
 _STEP = r"\.([^.\[\]]+)|\[(\d+)\]|\[\"((?:[^\"\\]|\\.)*)\"\]|(\[\.\.\.\])"
 _PLACED = r"(?P<text>.*?)(?: - at (?P<key>`key` in )?`\$(?P<path>.*)`)?"
@@ -140,12 +143,15 @@ def read_text(path: str | os.PathLike[str]) -> str:
     """Read a text file: UTF-8, or UTF-16 with its mark, as PowerShell writes it; the errors are those of `read`."""
     file = Path(path)
     try:
-        raw = file.read_bytes()
+        with file.open("rb") as stream:
+            raw = stream.read(LONGEST + 1)
     except FileNotFoundError:
         raise DocumentNotFoundError(f"no file '{file}'{nearest(file.name, _siblings(file))}") from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise DocumentError(f"{file}: cannot be read: {reason}") from None
+    if len(raw) > LONGEST:  # a device, say, which never ends
+        raise DocumentError(f"{file}: longer than {LONGEST // 2**20} MiB")
     encoding = "utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
     try:
         return raw.decode(encoding)

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Annotated
 
-from robolink import Context, Node
-from robolink.executors import SingleThreadedExecutor
+from robolink import Context
 from robolink.message import Action, AtMost, Message, Sequence, Service, boolean, float64, string
 from robolink.qos import QoSProfile
 from robolink.wire import EndpointKind, EndpointToken, format_token
@@ -58,21 +54,6 @@ class Haul(Action):
         """How far."""
 
         metres: float64
-
-
-@contextmanager
-def spinning(*nodes: Node) -> Iterator[None]:
-    """Spin nodes in another thread, as in another process."""
-    with SingleThreadedExecutor(context=nodes[0].context) as executor:
-        for node in nodes:
-            executor.add_node(node)
-        thread = threading.Thread(target=executor.spin)
-        thread.start()
-        try:
-            yield
-        finally:
-            executor.shutdown()
-            thread.join()
 
 
 def seen(context: Context, name: str) -> EndpointToken:

@@ -1,18 +1,21 @@
 """Networks, contexts and executors for tests: in memory, and over Zenoh on a domain that nobody else uses.
 
-What a `long_run` names is started as soon as it is known that its test will run, and that test comes last.
+What a `long_run` names is started as soon as it is known that its test will run, and that test comes last of all, or
+of its file.
 """
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from robolink import Context, VirtualTime, logging, try_shutdown
-from robolink.executors import SingleThreadedExecutor
+from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.impl.log_output import Record, output
 from robolink.transport import zenoh
 from robolink.transport.memory import Bus, MemoryTransport
@@ -22,22 +25,49 @@ from tests.long_runs import LongRun
 from tests.transports import Network
 
 # However slow a machine is, that is no fault of what is tested.
-settings.register_profile("patient", settings(), deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile(
+    "patient", settings(), deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("patient")
 
 LONG_RUNS = pytest.StashKey[dict[tuple[Any, ...], LongRun]]()
+THEIR_FILES = pytest.StashKey[set[Path]]()
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the long runs last."""
-    items.sort(key=lambda item: item.get_closest_marker("long_run") is not None)
+def runs_long(item: pytest.Item) -> bool:
+    return item.get_closest_marker("long_run") is not None
+
+
+def is_one_of_several(config: pytest.Config) -> bool:
+    """Whether other processes run other files of tests meanwhile, as `make test` has it."""
+    return hasattr(config, "workerinput")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Put the long runs last; but of several processes one begins with their file, and waits while the others work."""
+    items.sort(key=runs_long)
+    files = config.stash[THEIR_FILES] = {item.path for item in items if runs_long(item)}
+    if is_one_of_several(config):
+        items.sort(key=lambda item: item.path not in files)
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
-    """Start the long runs."""
-    if not session.config.option.collectonly:
-        marks = [item.get_closest_marker("long_run") for item in session.items]
-        session.config.stash[LONG_RUNS] = {mark.args: LongRun(*mark.args) for mark in marks if mark}
+    """Start the long runs; and have the garbage collector pass over all that has been collected, from now on."""
+    gc.collect()
+    gc.freeze()
+    if not session.config.option.collectonly and not is_one_of_several(session.config):
+        start_long_runs(session)
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Start the long runs with the first test of their file, where others begin with other files."""
+    if item.path in item.config.stash[THEIR_FILES] and LONG_RUNS not in item.config.stash:
+        start_long_runs(item.session)
+
+
+def start_long_runs(session: pytest.Session) -> None:
+    marks = [item.get_closest_marker("long_run") for item in session.items]
+    session.config.stash[LONG_RUNS] = {mark.args: LongRun(*mark.args) for mark in marks if mark}
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
@@ -123,6 +153,13 @@ def virtual(bus: Bus) -> Iterator[Context]:
 def executor(virtual: Context) -> Iterator[SingleThreadedExecutor]:
     """An executor in virtual time."""
     with SingleThreadedExecutor(context=virtual) as made:
+        yield made
+
+
+@pytest.fixture
+def two(context: Context) -> Iterator[MultiThreadedExecutor]:
+    """An executor with two threads, in real time."""
+    with MultiThreadedExecutor(num_threads=2, context=context) as made:
         yield made
 
 

@@ -23,9 +23,9 @@ class Alone(NodeParameters):
 
     def __init__(self, overrides: dict[str, Any], allow_undeclared: bool, declare_all: bool) -> None:
         self.events: list[ParameterEvent] = []
-        self._init_parameters({name: made(name, each) for name, each in overrides.items()}, allow_undeclared)
+        self._init_parameters_({name: made(name, each) for name, each in overrides.items()}, allow_undeclared)
         if declare_all:
-            self._declare_from_overrides()
+            self._declare_from_overrides_()
 
     def get_clock(self) -> Clock:
         return Clock()
@@ -33,7 +33,7 @@ class Alone(NodeParameters):
     def get_fully_qualified_name(self) -> str:
         return "/arm/driver"
 
-    def _on_parameter_event(self, event: ParameterEvent) -> None:
+    def _on_parameter_event_(self, event: ParameterEvent) -> None:
         self.events.append(event)
 
 
@@ -51,9 +51,9 @@ class RealNode(Node):
             automatically_declare_parameters_from_overrides=declare_all,
         )
 
-    def _on_parameter_event(self, event: ParameterEvent) -> None:
+    def _on_parameter_event_(self, event: ParameterEvent) -> None:
         self.events.append(event)
-        super()._on_parameter_event(event)
+        super()._on_parameter_event_(event)
 
 
 Make: TypeAlias = Callable[..., "Alone | RealNode"]

@@ -1,8 +1,9 @@
-"""A node in memory that the commands of the same process see, for tests of commands."""
+"""Nodes in memory that the commands of the same process see, spun as if in another, for tests of commands."""
 
 from __future__ import annotations
 
 import itertools
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 import pytest
 
 from robolink import Context, Node
+from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.qos import DurabilityPolicy, QoSProfile
 
 LATCHED = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -31,6 +33,24 @@ def a_node_that_commands_see(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
 def made(context: Context, name: str, namespace: str = "") -> Node:
     """A node with nothing of its own but /parameter_events and ~/get_type_description."""
     return Node(name, context=context, namespace=namespace, enable_rosout=False, start_parameter_services=False)
+
+
+@contextmanager
+def spinning(*nodes: Node, threads: int = 1) -> Iterator[None]:
+    """Spin nodes beside the test, as in another process."""
+    context = nodes[0].context
+    with (
+        MultiThreadedExecutor(threads, context=context) if threads > 1 else SingleThreadedExecutor(context=context)
+    ) as executor:
+        for node in nodes:
+            executor.add_node(node)
+        thread = threading.Thread(target=executor.spin)
+        thread.start()
+        try:
+            yield
+        finally:
+            executor.shutdown()
+            thread.join()
 
 
 def when_said(monkeypatch: pytest.MonkeyPatch, module: Any, function: str, action: Callable[[str], object]) -> None:

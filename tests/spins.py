@@ -1,8 +1,11 @@
-"""How tests spin: for so many seconds, or until something has come true."""
+"""How tests spin: for so many seconds, or until something has come true; and how much is called meanwhile."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import gc
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from robolink import Future, Node
@@ -40,3 +43,22 @@ def numbers(node: Node, topic: str, depth: int = 10) -> list[int]:
     got: list[int] = []
     node.create_subscription(Int32, topic, lambda message: got.append(message.data), depth)
     return got
+
+
+@contextmanager
+def counted_calls() -> Iterator[list[str]]:
+    """Yield what gets an element for each function, Python's and C's, that runs inside the block."""
+    calls: list[str] = []
+
+    def count(_: object, event: str, __: object) -> None:
+        if event in ("call", "c_call"):
+            calls.append(event)
+
+    gc.collect()  # what other tests left is not to be counted
+    gc.disable()
+    sys.setprofile(count)
+    try:
+        yield calls
+    finally:
+        sys.setprofile(None)
+        gc.enable()

@@ -8,7 +8,6 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -20,12 +19,11 @@ from robolink.action import ActionClient, ActionServer, CancelResponse, GoalResp
 from robolink.action.server import ServerGoalHandle
 from robolink.cli import complete, main
 from robolink.cli.action import goal, names
-from robolink.executors import MultiThreadedExecutor
 from robolink.interfaces.example_interfaces.action import Fibonacci
 from robolink.message import Action, Message, float64, type_name
 from tests.commands import Command
 from tests.programs import Program
-from tests.seen_by_commands import a_node_that_commands_see, made, press_ctrl_c, when_said
+from tests.seen_by_commands import a_node_that_commands_see, made, press_ctrl_c, spinning, when_said
 
 Captured = pytest.CaptureFixture[str]
 
@@ -58,19 +56,6 @@ POLISH = type_name(Polish)
 def node(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
     with a_node_that_commands_see(monkeypatch) as robot:
         yield robot
-
-
-@contextmanager
-def spinning(node: Node) -> Iterator[None]:
-    executor = MultiThreadedExecutor(4, context=node.context)
-    executor.add_node(node)
-    thread = threading.Thread(target=executor.spin)
-    thread.start()
-    try:
-        yield
-    finally:
-        executor.shutdown()
-        thread.join(PATIENCE)
 
 
 class Sums:
@@ -111,7 +96,7 @@ def served(node: Node, sums: Sums, monkeypatch: pytest.MonkeyPatch) -> Iterator[
     """The node /lab/robot serves /lab/sums; goals have the id 0707..."""
     monkeypatch.setattr("uuid.uuid4", lambda: SimpleNamespace(bytes=b"\7" * 16))
     ActionServer(node, Fibonacci, "sums", sums, goal_callback=sums.accept, cancel_callback=sums.cancel)
-    with spinning(node):
+    with spinning(node, threads=4):
         yield node
         sums.canceled.set()
 
@@ -286,7 +271,7 @@ def test_a_type_that_is_not_installed_is_asked_of_the_server(node: Node, capsys:
         return Polish.Result(shine=2 * handle.request.pressure)
 
     ActionServer(node, Polish, "/polish", polish)
-    with spinning(node):
+    with spinning(node, threads=4):
         assert main(["action", "send_goal", "/polish", "{pressure: 1.5}"]) == 0
         assert "Result:\n    shine: 3.0\n" in capsys.readouterr().out
         assert main(["action", "send_goal", "/polish", POLISH, "{force: 1}"]) == 1
@@ -299,7 +284,7 @@ def test_what_only_looks_like_an_action_is_told(node: Node, capsys: Captured) ->
     node.create_service(Fibonacci.Impl.GetResultService, "/odd/_action/get_result", print)
     node.create_publisher(Fibonacci.Impl.FeedbackMessage, "/odd/_action/feedback", 10)
     node.create_publisher(Fibonacci.Impl.GoalStatusMessage, "/odd/_action/status", 10)
-    with spinning(node):
+    with spinning(node, threads=4):
         assert main(["action", "send_goal", "/odd", "{}"]) == 1
     assert (
         "action Polish: Result must be a class inside it, got example_interfaces/action/Fib" in capsys.readouterr().err

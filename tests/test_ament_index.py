@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -23,21 +22,18 @@ from robolink.ament_index import (
     has_resource,
 )
 from robolink.workspace import VARIABLE, built_in_workspace
-from robolink.workspace.packages import forget_packages
 from tests.ros_tree import write_package
 
 
 @pytest.fixture
-def top(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def top(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.delenv(VARIABLE, raising=False)
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     folder = write_package(tmp_path / "ros2_ws/src", "meu_robo_py", {})
     (folder / "config").mkdir()
     (folder / "config/robot.yaml").touch()
     monkeypatch.chdir(tmp_path / "ros2_ws")
-    forget_packages()
-    yield (tmp_path / "ros2_ws").resolve()
-    forget_packages()
+    return (tmp_path / "ros2_ws").resolve()
 
 
 @pytest.fixture

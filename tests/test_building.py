@@ -19,7 +19,6 @@ from robolink.interfaces.std_srvs.srv import SetBool
 from robolink.message import (
     Action,
     AtMost,
-    FieldType,
     Message,
     Sequence,
     Service,
@@ -45,6 +44,7 @@ from robolink.message.description import (
     to_message,
 )
 from robolink.message.making import weight
+from tests.filled import filled
 
 
 def find_full(name: str) -> Any:
@@ -62,25 +62,6 @@ def messages_of(cls: Any) -> list[Any]:
     if hasattr(cls, "__ros_fields__"):
         return [cls]
     return [getattr(cls, part) for part in ("Request", "Response", "Goal", "Result", "Feedback") if hasattr(cls, part)]
-
-
-def filled(cls: Any, dice: random.Random) -> Any:
-    """A message with something in every field."""
-    return cls(**{name: something(kind, dice) for name, kind in cls.__ros_fields__.items()})
-
-
-def something(kind: FieldType, dice: random.Random) -> Any:
-    if kind.shape != "one":
-        count = kind.size if kind.shape == "array" else min(3, kind.size or 3)
-        return [something(msgspec.structs.replace(kind, shape="one", size=0), dice) for _ in range(count)]
-    if kind.message is not None:
-        return filled(kind.message, dice)
-    if kind.base in ("string", "wstring"):
-        return "words"[: min(dice.randrange(6), kind.string_bound or 5)]
-    if kind.base == "bool":
-        return dice.random() < 0.5
-    number = dice.randrange(128)
-    return bytes((number,)) if kind.base == "byte" else float(number) if kind.code in ("f", "d") else number
 
 
 # Of texts.
@@ -488,7 +469,7 @@ def descriptions(depth: int = 1) -> st.SearchStrategy[TypeDescription]:
     return st.builds(TypeDescription, TYPE_NAMES, fields, referenced)
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=100)
 @given(descriptions())
 def test_any_description_makes_a_class_or_is_refused(description: TypeDescription) -> None:
     makes_its_class_or_is_refused(description)
@@ -523,7 +504,6 @@ def falsified(draw: st.DrawFn) -> TypeDescription:
     return msgspec.structs.replace(types[-1], referenced=tuple(types[:-1]))
 
 
-@settings(deadline=None)
 @given(falsified())
 def test_what_is_nearly_right_makes_its_own_class_or_is_refused(description: TypeDescription) -> None:
     makes_its_class_or_is_refused(description)

@@ -303,11 +303,36 @@ def test_an_error_in_the_users_code_is_shown_from_there_on(write: Write) -> None
     assert err.count("Traceback") == 1
 
 
+def test_what_the_users_code_asked_for_in_vain_is_told_with_its_line(write: Write) -> None:
+    path = write("nodes/talker.py", TALKER + "        self.resolve_topic_name('a b')\n")
+    line = path.read_text().count("\n")
+    code, _, err = outcome("run", "talker")
+    assert (code, err.count("\n")) == (1, 1)
+    assert err.startswith("robolink: invalid topic name 'a b': must not contain")
+    assert err.endswith(f"(at {path.resolve()}:{line})\n")
+
+
+def test_what_a_callback_asked_for_in_vain_is_told_once(write: Write) -> None:
+    tick = "    def tick(self):\n        self.resolve_topic_name('a b')\n"
+    write("nodes/talker.py", TALKER + "        self.create_timer(0.01, self.tick)\n" + tick)
+    code, _, err = outcome("run", "talker")
+    assert code == 1
+    assert "[talker]: an exception in a callback ends the spinning:" in err.splitlines()[0]
+    assert "robolink: invalid" not in err
+
+
 def test_a_node_that_forgets_its_base_class_is_told_so(write: Write) -> None:
     path = write("nodes/bare.py", "from robolink import Node\nclass Bare(Node):\n    def __init__(self): pass\n")
     code, out, err = outcome("run", str(path))
     assert (code, out) == (1, "")
     assert err == "robolink: Bare.__init__ must call super().__init__('bare') before all else\n"
+
+
+def test_a_main_that_wants_arguments_is_told_so(write: Write) -> None:
+    path = write("nodes/bare.py", "def main(args): pass\n")
+    code, out, err = outcome("run", str(path))
+    assert (code, out) == (1, "")
+    assert err == "robolink: main() needs 'args': give a default value, as in main(args=None)\n"
 
 
 @posix_only

@@ -19,9 +19,9 @@ from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.message import Message, Service, string, type_hash, type_name
 from robolink.type_lookup import TypeLookupError, type_of
 from robolink.wire import NO_HASH
-from tests.carts import Cart, Haul, Load, Wheel, announced, seen, spinning
+from tests.carts import Cart, Haul, Load, Wheel, announced, seen
 from tests.commands import BUSY_ROBOLINK, Command
-from tests.seen_by_commands import LATCHED, a_node_that_commands_see, made
+from tests.seen_by_commands import LATCHED, a_node_that_commands_see, made, spinning
 
 Answer = Callable[[Any, Any], Any]
 QUIET = [Parameter("start_type_description_service", value=False)]

@@ -8,7 +8,9 @@ from typing import Any
 import pytest
 
 from robolink import Context, Node
+from robolink.action import ActionClient, ActionServer
 from robolink.exceptions import InvalidHandle
+from robolink.interfaces.example_interfaces.action import Fibonacci
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.interfaces.std_srvs.srv import Trigger
 
@@ -55,3 +57,23 @@ def test_a_handle_keeps_nobody_alive(context: Context) -> None:
     del owner
     with pytest.raises(InvalidHandle), handle:
         pass
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        *MAKERS,
+        lambda node: node.create_rate(1.0),
+        lambda node: ActionServer(node, Fibonacci, "action", nothing),
+        lambda node: ActionClient(node, Fibonacci, "action"),
+    ],
+)
+def test_a_node_that_has_been_destroyed_makes_nothing(context: Context, make: Callable[[Node], Any]) -> None:
+    watcher = Node("watcher", context=context)
+    before = watcher.get_topic_names_and_types(), watcher.get_service_names_and_types()
+    node = Node("node", context=context)
+    node.destroy_node()
+    with pytest.raises(InvalidHandle, match="destroyed"):
+        make(node)
+    assert (watcher.get_topic_names_and_types(), watcher.get_service_names_and_types()) == before
+    assert node._entities_() == []

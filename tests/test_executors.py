@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import functools
-import gc
-import sys
 import threading
 import time
 from collections.abc import Generator
@@ -21,7 +19,7 @@ from robolink.interfaces.std_msgs.msg import Int32
 from robolink.publisher import Publisher
 from robolink.qos import HistoryPolicy, QoSProfile
 from robolink.transport.memory import Bus, MemoryTransport
-from tests.spins import done, numbers, spin_for, spin_until
+from tests.spins import counted_calls, done, numbers, spin_for, spin_until
 
 PATIENCE = 5.0
 
@@ -307,32 +305,43 @@ def test_what_comes_in_waits_while_its_group_is_busy(context: Context) -> None:
 
 
 def calls_of_a_hundred_ticks(bus: Bus, subscriptions: int) -> int:
-    """How many functions, Python's and C's, run for a hundred calls of one timer, beside so many idle subscriptions."""
+    """How many functions run for a hundred calls of one timer, beside so many idle subscriptions."""
     context = Context(transport=MemoryTransport(bus=bus), time=VirtualTime())
     context.init([])
     with context, SingleThreadedExecutor(context=context) as executor:
-        node, ticks, calls = Node("node", context=context), list[None](), 0
+        node, ticks = Node("node", context=context), list[None]()
         executor.add_node(node)
         for index in range(subscriptions):
             numbers(node, f"topic_{index}")
         node.create_timer(0.01, lambda: ticks.append(None))
         spin_for(executor, 0.1)
         ticks.clear()
-
-        def count(_: object, event: str, __: object) -> None:
-            nonlocal calls
-            calls += event in ("call", "c_call")
-
-        gc.collect()  # what other tests left is not to be counted
-        gc.disable()
-        sys.setprofile(count)
-        try:
+        with counted_calls() as calls:
             spin_for(executor, 1.0)
-        finally:
-            sys.setprofile(None)
-            gc.enable()
     assert len(ticks) == 100
-    return calls
+    return len(calls)
+
+
+def calls_of_taking_a_message(bus: Bus, subscriptions: int) -> int:
+    """How many functions run when an executor of a program's own takes a message, beside so many idle subscriptions."""
+    context = Context(transport=MemoryTransport(bus=bus), time=VirtualTime())
+    context.init([])
+    with context, SingleThreadedExecutor(context=context) as executor:
+        node = Node("node", context=context)
+        for index in range(subscriptions):
+            numbers(node, f"topic_{index}")
+        numbers(node, "topic")
+        executor.add_node(node)
+        node.create_publisher(Int32, "topic", 10).publish(Int32())
+        with counted_calls() as calls:
+            _, _, owner = executor.wait_for_ready_callbacks(timeout_sec=0, nodes=[node])
+        assert owner is node
+    return len(calls)
+
+
+def test_whose_callback_it_is_takes_no_search(bus: Bus) -> None:
+    alone = calls_of_taking_a_message(bus, 0)
+    assert 0 < alone == calls_of_taking_a_message(bus, 100)
 
 
 def test_a_hundred_idle_subscriptions_cost_nothing(bus: Bus) -> None:

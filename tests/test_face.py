@@ -70,6 +70,18 @@ def test_attributes_that_programs_use_without_importing_them() -> None:
     assert run(code)[0].isdigit()
 
 
+@pytest.mark.parametrize(("package", "name"), [("action", "ActionClient"), ("tf2", "TransformListener")])
+def test_a_package_gives_its_names_and_says_what_is_near_one_that_it_has_not(package: str, name: str) -> None:
+    module = importlib.import_module(f"robolink.{package}")
+    assert {name, *module.__all__} <= set(dir(module))
+    assert all(hasattr(module, each) for each in module.__all__)
+    wrong = name.replace("i", "y")
+    with pytest.raises(AttributeError, match=rf"has no robolink\.{package}\.{wrong} \(did you mean '{name}'\?\)"):
+        getattr(module, wrong)
+    with pytest.raises(ImportError, match=rf"did you mean '{name}'"):
+        exec(f"from robolink.{package} import {wrong}")
+
+
 def test_a_name_that_is_not_there() -> None:
     with pytest.raises(AttributeError, match=r"robolink [0-9.]+ has no robolink\.spinn \(did you mean 'spin'\?\)"):
         _ = robolink.spinn

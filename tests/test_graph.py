@@ -64,6 +64,14 @@ def test_nodes_are_listed(talker: Node, listener: Node) -> None:
     assert not listener.wait_for_node("/talker", timeout=0)
 
 
+def test_in_virtual_time_waiting_for_a_node_is_over_at_once(virtual: Context) -> None:
+    node = Node("node", context=virtual)
+    assert node.wait_for_node("/node", timeout=3600.0)
+    assert virtual.time.now() == 0
+    assert not node.wait_for_node("/other", timeout=3600.0)
+    assert virtual.time.now() == 3600 * 10**9
+
+
 def test_topics_and_services_are_listed_with_their_types(talker: Node, listener: Node) -> None:
     topics = [each for each in listener.get_topic_names_and_types() if each[0] not in HIDDEN]
     assert topics == [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import io
 import json
 import sys
@@ -21,7 +22,7 @@ from robolink.cli.interface import _escaped
 from robolink.cli.interface.show import _without_comment, as_data, lines, prototype
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces import KINDS, find, names
-from robolink.message import from_builtins, type_hash
+from robolink.message import from_builtins, text, type_hash
 from robolink.message.building import build
 from robolink.message.definition import parse
 from robolink.workspace import VARIABLE
@@ -263,6 +264,15 @@ def test_show_as_json_has_the_hashes_of_all_parts(workspace: Workspace, capsys: 
     assert action["services"]["send_goal"]["hash"] == type_hash(do.Impl.SendGoalService)
 
 
+@pytest.fixture(scope="module")
+def _sources_read_once() -> Iterator[None]:
+    """The comments of a type that many have as a part are read once."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(text, "_comments", functools.cache(text._comments))
+        yield
+
+
+@pytest.mark.usefixtures("_sources_read_once")
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_standard_type_can_be_shown(kind: str) -> None:
     for name in names(kind):
@@ -272,6 +282,7 @@ def test_every_standard_type_can_be_shown(kind: str) -> None:
         assert prototype(cls)
 
 
+@pytest.mark.usefixtures("_sources_read_once")
 def test_shown_without_comments_a_type_still_means_the_same() -> None:
     for name in names("msg"):
         cls = find(name)

@@ -212,7 +212,7 @@ def test_a_transition_that_is_not_there_is_an_error_and_a_line(node: LifecycleNo
 def test_a_callback_cannot_make_another_transition(virtual: Context, log_lines: list[Record]) -> None:
     class Hasty(LifecycleNode):
         def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-            assert self._change_state(Transition.TRANSITION_ON_CONFIGURE_ERROR) is ERROR
+            assert self._change_state_(Transition.TRANSITION_ON_CONFIGURE_ERROR) is ERROR
             assert self.trigger_activate() is ERROR
             return super().on_configure(state)
 

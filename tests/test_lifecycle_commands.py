@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -13,11 +11,11 @@ import pytest
 from robolink import Context, Node
 from robolink.cli import main
 from robolink.cli.lifecycle import ask
-from robolink.executors import SingleThreadedExecutor
+from robolink.interfaces.lifecycle_msgs.srv import GetState
 from robolink.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from tests.commands import Command
 from tests.programs import Program
-from tests.seen_by_commands import a_node_that_commands_see
+from tests.seen_by_commands import a_node_that_commands_see, spinning
 
 CONFIGURE = "- configure [1]\n\tStart: unconfigured\n\tGoal: configuring\n"
 SHUTDOWN = "- shutdown [5]\n\tStart: unconfigured\n\tGoal: shuttingdown\n"
@@ -30,20 +28,6 @@ class Camera(LifecycleNode):
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         return TransitionCallbackReturn.FAILURE
-
-
-@contextmanager
-def spinning(*nodes: Node) -> Iterator[None]:
-    executor = SingleThreadedExecutor(context=nodes[0].context)
-    for node in nodes:
-        executor.add_node(node)
-    thread = threading.Thread(target=executor.spin)
-    thread.start()
-    try:
-        yield
-    finally:
-        executor.shutdown()
-        thread.join()
 
 
 @pytest.fixture
@@ -165,6 +149,15 @@ def test_a_node_that_does_not_spin(robot: Node, monkeypatch: pytest.MonkeyPatch,
         assert main(["lifecycle", "get", "/stuck"]) == 1
         assert capsys.readouterr() == ("", told.format(0.1))
     stuck.destroy_node()
+
+
+def test_a_server_that_has_gone_is_told_at_once(robot: Node, capsys: Captured) -> None:
+    robot.create_service(GetState, "robot/get_state", lambda request, response: response)  # and nothing else of a node
+    assert main(["lifecycle", "set", "/lab/robot", "configure"]) == 1
+    assert capsys.readouterr() == (
+        "",
+        "robolink: service /lab/robot/get_available_transitions: nobody serves it, or the server went away\n",
+    )
 
 
 def test_a_node_of_another_domain_is_told(robot: Node, capsys: Captured) -> None:

@@ -6,15 +6,17 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
+from typing import NamedTuple
 
 import pytest
 
 from robolink.transport import zenoh
 from robolink.transport.zenoh import ZenohTransport
+from tests.domains import free_domain
 
 pytestmark = pytest.mark.processes
 
-PROCESSES, SESSIONS, NODES, TOPICS, LOOKS = 5, 6, 30, 200, 4
+PROCESSES, SESSIONS, NODES, TOPICS, LOOKS = 5, 4, 30, 200, 4
 
 PROGRAM = """
 import sys, time
@@ -41,12 +43,18 @@ def all_tokens(domain: int) -> list[str]:
     ]
 
 
-@pytest.fixture
-def system(domain: int, patient_looks: None, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
-    """Thirty sessions in several processes, each linked to all, that announce a part of the tokens each; gives all."""
-    monkeypatch.setattr(zenoh, "QUIET", 1.0)  # a busy machine takes its time for thirty links
-    tokens = all_tokens(domain)
-    with ExitStack() as stack:
+class System(NamedTuple):
+    """A domain, and what is announced on it."""
+
+    domain: int
+    tokens: list[str]
+
+
+@pytest.fixture(scope="module")
+def system() -> Iterator[System]:
+    """Twenty sessions in several processes, each linked to all, that announce a part of the tokens each."""
+    with free_domain() as domain, ExitStack() as stack:
+        tokens = all_tokens(domain)
         started = []
         for number in range(PROCESSES):
             counts = str(SESSIONS), str(SESSIONS * PROCESSES)
@@ -58,29 +66,34 @@ def system(domain: int, patient_looks: None, monkeypatch: pytest.MonkeyPatch) ->
         for process in started:
             assert process.stdout
             assert process.stdout.readline() == "ready\n"
-        yield sorted(tokens)
+        yield System(domain, sorted(tokens))
 
 
-def test_each_look_lists_all(system: list[str], domain: int) -> None:
+@pytest.fixture(autouse=True)
+def _quiet(patient_looks: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(zenoh, "QUIET", 1.0)  # a busy machine takes its time for twenty links
+
+
+def test_each_look_lists_all(system: System) -> None:
     looks = []
     for _ in range(LOOKS):
-        session = ZenohTransport(domain, environ={})
-        looks.append(session.tokens(f"@ros2_lv/{domain}/**"))
+        session = ZenohTransport(system.domain, environ={})
+        looks.append(session.tokens(f"@ros2_lv/{system.domain}/**"))
         session.close()
     # On a machine that does ten times too much, one may know nobody but the port's holder for more than a second.
-    assert sum(look == system for look in looks) >= LOOKS - 1, [len(look) for look in looks]
+    assert sum(look == system.tokens for look in looks) >= LOOKS - 1, [len(look) for look in looks]
 
 
-def test_a_look_right_after_others_have_come(system: list[str], domain: int) -> None:
-    sessions = [ZenohTransport(domain, environ={}) for _ in range(5)]
-    own = [f"@ros2_lv/{domain}/b/{number}/{number}/NN/%/%/late_{number}" for number in range(5)]
+def test_a_look_right_after_others_have_come(system: System) -> None:
+    sessions = [ZenohTransport(system.domain, environ={}) for _ in range(5)]
+    own = [f"@ros2_lv/{system.domain}/b/{number}/{number}/NN/%/%/late_{number}" for number in range(5)]
     for session, token in zip(sessions, own, strict=True):
         session.announce(token)
-    looking = [ZenohTransport(domain, environ={}) for _ in range(2)]
+    looking = [ZenohTransport(system.domain, environ={}) for _ in range(2)]
     sessions += looking
     try:
-        looks = [each.tokens(f"@ros2_lv/{domain}/**") for each in looking]
-        assert sorted([*system, *own]) in looks, [len(look) for look in looks]
+        looks = [each.tokens(f"@ros2_lv/{system.domain}/**") for each in looking]
+        assert sorted([*system.tokens, *own]) in looks, [len(look) for look in looks]
     finally:
         for session in sessions:
             session.close()

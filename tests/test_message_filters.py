@@ -137,6 +137,19 @@ def test_messages_without_a_stamp(virtual: Context, log_lines: list[Record]) -> 
     assert by_arrival.getLastestTime() == node.get_clock().now()  # virtual time stands still here
 
 
+def test_a_stamp_before_0_ends_no_node(log_lines: list[Record]) -> None:
+    inputs = [SimpleFilter(), SimpleFilter()]
+    cache, nearly, exactly = Cache(inputs[0], 5), ApproximateTimeSynchronizer(inputs, 5, 0.1), list[Any]()
+    TimeSynchronizer(inputs, 5).registerCallback(lambda *them: exactly.append(them))
+    nearly.registerCallback(lambda *_: pytest.fail("these have no time"))
+    for each in inputs:
+        each.signalMessage(stamped(-1))
+        each.signalMessage(stamped(-2 * 10**9))
+    assert [len(them) for them in exactly] == [2, 2]
+    assert cache.getLast() is None
+    assert ["is left out for its stamp" in each.message for each in log_lines] == [True, True]
+
+
 # --- the very same stamp ------------------------------------------------------------------------------------------
 
 

@@ -124,13 +124,13 @@ def test_it_knows_what_it_has(node: Node) -> None:
     assert service in node.services
     assert [*node.subscriptions, *node.clients] == [subscription, client]
     assert ([*node.timers], [*node.guards]) == ([timer], [guard])
-    assert set(node.entities()) == {*node.services, subscription, client, service, timer, guard}
+    assert set(node._entities_()) == {*node.services, subscription, client, service, timer, guard}
     assert node.default_callback_group.has_entity(timer)
     assert node.destroy_client(client)
     assert node.destroy_service(service)
     assert node.destroy_guard_condition(guard)
     assert node.destroy_timer(timer)
-    assert node.entities() == [subscription, *node.services]
+    assert node._entities_() == [subscription, *node.services]
 
 
 def test_nothing_is_left_in_a_node_of_what_it_has_destroyed(node: Node) -> None:

@@ -252,6 +252,37 @@ def test_a_callback_that_forgets_to_return_is_named(make: Make) -> None:
     assert node.get_parameter("a").value == 1
 
 
+def test_a_callback_that_returns_something_else_is_named(make: Make) -> None:
+    node = make()
+    node.declare_parameter("a", 1)
+
+    def agrees(them: list[Parameter[Any]]) -> Any:
+        return True
+
+    def prints(them: list[Parameter[Any]]) -> Any: ...
+
+    node.add_on_set_parameters_callback(agrees)
+    with pytest.raises(TypeError, match=r"agrees.* must return a SetParametersResult, got True"):
+        node.set_parameters([made("a", 2)])
+    node.add_pre_set_parameters_callback(prints)
+    with pytest.raises(TypeError, match=r"prints.* must return a list of parameters, got None"):
+        node.set_parameters([made("a", 2)])
+    assert node.get_parameter("a").value == 1
+
+
+@pytest.mark.parametrize("value", ["\udc80", ["a", "\udc80"], [2**63]])
+def test_what_nobody_can_be_told_is_refused_before_it_is_kept(make: Make, value: Any) -> None:
+    node = make()
+    with pytest.raises(InvalidParameterValueException, match="parameter 'a'"):
+        node.declare_parameter("a", value)
+    assert not node.has_parameter("a")
+    node.declare_parameter("a", "x", ParameterDescriptor(dynamic_typing=True))
+    assert "parameter 'a'" in node.set_parameters([made("a", value)])[0].reason
+    assert node.get_parameter("a").value == "x"
+    with pytest.raises(InvalidParameterValueException, match="not valid Unicode"):
+        node.declare_parameter("\udc80", 1)
+
+
 def test_callbacks_run_outside_any_lock_and_may_set_and_remove(make: Make) -> None:
     node = make()
     node.declare_parameters("", [("a", 1), ("b", 1), ("c", 1)])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib
+import itertools
+import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -33,7 +35,7 @@ from robolink.workspace import (
 )
 from robolink.workspace.interfaces import WORKSPACE_TYPES
 from robolink.workspace.modules import FINDER
-from robolink.workspace.packages import forget_packages, import_roots, source_packages
+from robolink.workspace.packages import import_roots, source_packages
 from robolink.workspace.setup_files import _pyproject, _setup_cfg, _setup_py, console_scripts, installed_scripts
 from tests.ros_tree import write_package
 
@@ -65,12 +67,10 @@ def top(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     monkeypatch.setattr(FINDER, "makers", list(FINDER.makers))
     monkeypatch.setattr(interfaces, "_sources", ())
     monkeypatch.setattr(WORKSPACE_TYPES, "_added", [])
-    forget_packages()
     importlib.invalidate_caches()
     yield src.parent.resolve()
     for name in [each for each in sys.modules if each.startswith("pkg_")]:
         del sys.modules[name]
-    forget_packages()
 
 
 def ran(*words: str, before: int | None = None) -> Any:
@@ -138,6 +138,20 @@ def test_a_script_in_a_package_runs_as_python_m_does(top: Path, capsys: pytest.C
     assert capsys.readouterr().out == "a True\n"
 
 
+def test_executables_of_ros_2s_own_packages_that_robolink_has(top: Path) -> None:
+    def asked(*words: str) -> tuple[NodeSource, list[str]]:
+        return found(Asked(words[0], list(words[1:]), len(words) - 1), None)
+
+    source, args = asked("tf2_ros", "static_transform_publisher", "--x", "1")
+    assert source.path == built_in_workspace() / "nodes/static_transform_publisher.py"
+    assert args == ["--x", "1"]
+    assert asked("teleop_twist_keyboard", "teleop_twist_keyboard")[0].name == "teleop"
+    with pytest.raises(NotFoundError, match="no node named 'tf2_ros'"):
+        asked("tf2_ros", "tf2_echo")
+    own = write_package(top / "src", "tf2_ros", {"static_transform_publisher.py": ""})
+    assert asked("tf2_ros", "static_transform_publisher")[0].path == own / "tf2_ros/static_transform_publisher.py"
+
+
 # --- which of the two is meant ----------------------------------------------------------------------------------
 
 
@@ -185,7 +199,6 @@ def test_what_is_not_there_is_one_line(
 
 def test_a_console_script_without_its_file_is_told_so(top: Path) -> None:
     write_package(top / "src", "pkg_bad", {"firts.py": ""}, "first = pkg_bad.first:main", "odd = pkg_bad.firts:mian")
-    forget_packages()
     missing = top / "src/pkg_bad/pkg_bad/first.py"
     with pytest.raises(NodeLoadError) as caught:
         ran("pkg_bad", "first")
@@ -204,6 +217,33 @@ def test_a_lone_package_is_a_workspace_of_its_own(tmp_path: Path, monkeypatch: p
     source = executable(folder, "node")
     assert source is not None
     assert (source.module, source.attribute, source.root) == ("alone.node", "main", folder)
+
+
+def test_packages_may_lie_as_deep_as_ros_2s_own(tmp_path: Path) -> None:
+    folder = write_package(tmp_path / "src/ros2/examples/rclpy/topics", "minimal_publisher", {})
+    assert source_packages(tmp_path) == {"minimal_publisher": folder}
+
+
+def test_a_package_that_is_added_or_renamed_later_is_seen(tmp_path: Path) -> None:
+    seconds = itertools.count(2 * 10**9)
+
+    def later(changed: Path) -> None:  # since a file system's clock ticks slowly
+        os.utime(changed, (0, next(seconds)))
+
+    first = write_package(tmp_path / "src/group", "first", {})
+    assert source_packages(tmp_path) == {"first": first}
+    second = write_package(tmp_path / "src/group", "second", {})
+    later(tmp_path / "src/group")
+    assert source_packages(tmp_path) == {"first": first, "second": second}
+    (second / "package.xml").write_text("<package><name>third</name></package>")
+    later(second / "package.xml")
+    assert source_packages(tmp_path) == {"first": first, "third": second}
+    (first / "COLCON_IGNORE").touch()
+    later(first)
+    assert source_packages(tmp_path) == {"third": second}
+    (first / "COLCON_IGNORE").unlink()
+    later(first)
+    assert source_packages(tmp_path) == {"first": first, "third": second}
 
 
 def test_any_python_project_is_no_workspace(tmp_path: Path) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -18,18 +17,18 @@ from robolink.cli import complete, main
 from robolink.cli.param import ask, each_with_its_flag
 from robolink.cli.param.names import of_node
 from robolink.cli.param.values import as_file, fitting, nested, read
-from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.rcl_interfaces.msg import (
     FloatingPointRange,
     IntegerRange,
     ParameterDescriptor,
     SetParametersResult,
 )
+from robolink.interfaces.rcl_interfaces.srv import SetParameters
 from robolink.parameter import parameter_value_to_python
 from robolink.parameter_file import parse_parameter_file
 from tests.commands import Command
 from tests.programs import Program
-from tests.seen_by_commands import a_node_that_commands_see
+from tests.seen_by_commands import a_node_that_commands_see, spinning
 
 Captured = pytest.CaptureFixture[str]
 Type = Parameter.Type
@@ -77,19 +76,6 @@ def driver(robot: Node) -> Iterator[Node]:
     node.declare_parameter("unset", Type.STRING)
     with spinning(node):
         yield node
-
-
-@contextmanager
-def spinning(node: Node) -> Iterator[None]:
-    executor = SingleThreadedExecutor(context=node.context)
-    executor.add_node(node)
-    thread = threading.Thread(target=executor.spin)
-    thread.start()
-    try:
-        yield
-    finally:
-        executor.shutdown()
-        thread.join()
 
 
 NAMES = [
@@ -331,6 +317,15 @@ def test_what_is_not_there_is_one_line(words: list[str], told: str, capsys: Capt
     assert main(["param", *words]) == 1
     said, line = capsys.readouterr()
     assert (said, line.startswith(f"robolink: {told}"), line.count("\n")) == ("", True, 1), line
+
+
+def test_a_server_that_has_gone_is_told_at_once(robot: Node, capsys: Captured) -> None:
+    robot.create_service(SetParameters, "robot/set_parameters", lambda request, response: response)  # and no other
+    assert main(["param", "get", "/lab/robot", "a"]) == 1
+    assert capsys.readouterr() == (
+        "",
+        "robolink: service /lab/robot/get_parameters: nobody serves it, or the server went away\n",
+    )
 
 
 @pytest.mark.parametrize(

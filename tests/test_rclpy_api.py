@@ -17,6 +17,9 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from robolink import Context, Node
+from robolink.lifecycle import LifecycleNode
+
 TABLE = json.loads((Path(__file__).parent / "data" / "rclpy_api.json").read_text())
 MODULES: dict[str, dict[str, Any]] = TABLE["modules"]
 
@@ -223,6 +226,24 @@ USED = [
 @pytest.mark.parametrize(("module", "name"), USED)
 def test_names_that_programs_take_from_elsewhere(module: str, name: str) -> None:
     assert getattr(home(module), name)
+
+
+PRIVATE = """
+_allow_undeclared_parameters _clients _clock _context _default_callback_group _descriptors _destroyed _guards
+_logger _logger_service _managed_entities _on_set_parameters_callbacks _parameter_overrides _parameter_service
+_parameters _post_set_parameters_callbacks _pre_set_parameters_callbacks _publishers _rate_group _services
+_state_machine _subscriptions _time_source _timers _type_description_service handle
+"""
+"""What a node of rclpy's has as well, so that no program uses it for something else; `_destroyed` harms nobody."""
+
+
+@pytest.mark.parametrize("kind", [Node, LifecycleNode])
+def test_a_subclass_of_node_may_use_every_name_that_rclpy_leaves_free(kind: type[Node], context: Context) -> None:
+    node = kind("robot", context=context)
+    reserved = {each for each in {*dir(kind), *vars(node)} if each[0] == "_" and (each[-1] == "_" or "__" in each)}
+    classes = [each for room in ("node", "lifecycle.node") for each in MODULES[room]["classes"].values()]
+    theirs = {name for each in classes for part in ("attributes", "calls", "properties") for name in each.get(part, ())}
+    assert {*dir(kind), *vars(node)} - reserved - theirs - {*PRIVATE.split()} == set()
 
 
 def test_each_exception_to_the_rule_is_one() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import array
 import asyncio
+import copy
 import os
 import subprocess
 import sys
@@ -24,6 +25,7 @@ from robolink.impl.log_output import Record
 from robolink.impl.logging_severity import LoggingSeverity
 from robolink.interfaces.action_msgs.msg import GoalStatus
 from robolink.interfaces.builtin_interfaces.msg import Time as TimeMsg
+from robolink.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from robolink.interfaces.geometry_msgs.msg import PoseWithCovariance, TransformStamped, Twist, Vector3
 from robolink.interfaces.lifecycle_msgs.msg import Transition
 from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
@@ -298,3 +300,33 @@ def test_a_string_may_hold_any_letter(executor: SingleThreadedExecutor, node: No
     node.create_publisher(String, "words", 10).publish(String(data="olá ✓"))
     spin_for(executor, 0.1)
     assert got == ["olá ✓"]
+
+
+class Status(DiagnosticStatus):
+    """What diagnostic_updater has: a message with methods and attributes of its own."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        DiagnosticStatus.__init__(self, *args, **kwargs)
+        self.calls = 0
+
+    def add(self, key: str, value: str) -> None:
+        self.calls += 1
+        self.values.append(KeyValue(key=key, value=value))
+
+
+def test_a_message_may_be_given_methods(executor: SingleThreadedExecutor, node: Node) -> None:
+    got: list[Any] = []
+    node.create_subscription(DiagnosticStatus, "one", got.append, 10)
+    node.create_subscription(DiagnosticArray, "all", got.append, 10)
+    status = Status(name="wheel", level=DiagnosticStatus.WARN)
+    status.add("speed", "0")
+    status = copy.deepcopy(status)
+    assert (status.calls, status.message, isinstance(status, DiagnosticStatus)) == (1, "", True)
+    node.create_publisher(DiagnosticStatus, "one", 10).publish(status)
+    node.create_publisher(Status, "one", 10).publish(status)
+    node.create_publisher(DiagnosticArray, "all", 10).publish(DiagnosticArray(status=[status]))
+    spin_for(executor, 0.1)
+    plain = DiagnosticStatus(name="wheel", level=b"\x01", values=[KeyValue(key="speed", value="0")])
+    assert got == [plain, plain, DiagnosticArray(status=[plain])]
+    with pytest.raises(TypeError, match="no field 'colour'"):
+        Status(colour="red")

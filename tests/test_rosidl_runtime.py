@@ -21,6 +21,7 @@ from robolink.interfaces.std_msgs.msg import Byte, Float64, Header, Int32, Strin
 from robolink.interfaces.std_srvs.srv import SetBool
 from robolink.message import encode
 from robolink.message.definition import parse
+from robolink.message.slot_types import NamespacedType
 from robolink.rosidl_runtime import (
     get_action_interfaces,
     get_interface_packages,
@@ -35,7 +36,6 @@ from robolink.rosidl_runtime import (
     message_to_yaml,
     set_message_fields,
 )
-from robolink.rosidl_runtime.import_message import NamespacedType
 from robolink.rosidl_runtime.utilities import (
     get_action,
     get_interface,
@@ -190,7 +190,7 @@ def test_classes_by_name() -> None:
     assert (
         get_action("example_interfaces/Fibonacci") is get_interface("example_interfaces/action/Fibonacci") is Fibonacci
     )
-    feedback = NamespacedType(["example_interfaces", "action"], "Fibonacci_FeedbackMessage")
+    feedback = NamespacedType(("example_interfaces", "action"), "Fibonacci_FeedbackMessage")
     assert import_message_from_namespaced_type(feedback) is Fibonacci.Impl.FeedbackMessage
     kinds = [(is_message(each), is_service(each), is_action(each)) for each in (String, SetBool, Fibonacci)]
     assert kinds == [(True, False, False), (False, True, False), (False, False, True)]

@@ -65,6 +65,19 @@ def test_a_call_is_answered(node: Node, server: Node, executor: SingleThreadedEx
     assert (answer.success, answer.message) == (True, "switched")
 
 
+def test_an_answer_comes_while_the_clients_own_group_is_busy(node: Node, server: Node) -> None:
+    group, answers = MutuallyExclusiveCallbackGroup(), list[str]()
+    client = node.create_client(SetBool, "switch", callback_group=group)
+    assert client.callback_group is group
+    assert group.has_entity(client)
+    timer = node.create_timer(0.1, lambda: answers.append(client.call(ON).message), group)
+    executor = node.executor
+    assert executor is not None
+    spin_until(executor, lambda: bool(answers))
+    assert answers == ["switched"]
+    timer.cancel()
+
+
 def test_several_calls_at_once_each_get_their_own_answer(
     node: Node, server: Node, executor: SingleThreadedExecutor
 ) -> None:

@@ -50,7 +50,12 @@ def test_only_the_main_thread_can() -> None:
 def test_a_signal_ends_the_spin(context: Context, number: int) -> None:
     signals.install_signal_handlers()
     node = Node("node", context=context)
-    node.create_timer(0.005, lambda: signal.raise_signal(number))
+
+    def interrupt() -> None:
+        timer.cancel()  # a second signal is another matter
+        signal.raise_signal(number)
+
+    timer = node.create_timer(0.005, interrupt)
     with SingleThreadedExecutor(context=context) as executor:
         executor.add_node(node)
         with pytest.raises(InterruptedByUser):
@@ -60,6 +65,25 @@ def test_a_signal_ends_the_spin(context: Context, number: int) -> None:
             executor.spin()
         with pytest.raises(ExternalShutdownException):
             executor.spin_once()
+
+
+def test_only_the_main_thread_meets_a_keyboard_interrupt(context: Context) -> None:
+    met: list[BaseException] = []
+
+    def spin() -> None:
+        try:
+            executor.spin()
+        except BaseException as error:
+            met.append(error)
+
+    node = Node("node", context=context)
+    node.create_timer(0.005, context.interrupt)
+    with SingleThreadedExecutor(context=context) as executor:
+        executor.add_node(node)
+        thread = threading.Thread(target=spin)
+        thread.start()
+        thread.join(PATIENCE)
+    assert [type(each) for each in met] == [ExternalShutdownException]
 
 
 def test_a_programs_own_handler_is_called_too(context: Context) -> None:
@@ -155,6 +179,17 @@ DEAF = """
         time.sleep(0.02)  # not for long: Python may notice a signal late that comes just before a sleep begins
 """
 
+LONELY = """
+    rclpy.init()
+    rate = Talker().create_rate(1.0)
+    print("spinning")
+    try:
+        while rclpy.ok():
+            rate.sleep()
+    except KeyboardInterrupt:
+        sys.exit(3)
+"""
+
 BROKEN = """
     rclpy.init()
     node = Talker()
@@ -175,6 +210,8 @@ BROKEN = """
         (THREAD, Program.interrupt, 130),
         (THREAD, Program.terminate, 143),
         (DEAF, Program.terminate, 143),
+        (LONELY, Program.interrupt, 3),
+        (LONELY, Program.terminate, 3),
     ],
     ids=[
         "tutorial-int",
@@ -185,6 +222,8 @@ BROKEN = """
         "thread-int",
         "thread-term",
         "deaf",
+        "lonely-int",
+        "lonely-term",
     ],
 )
 def test_a_program_ends_quietly(
@@ -194,6 +233,25 @@ def test_a_program_ends_quietly(
         assert program.line() == "spinning"
         end(program)
         assert (program.end(), program.errors) == (code, [])
+
+
+STUBBORN = """
+    rclpy.init()
+    node = Talker()
+    while True:
+        try:
+            rclpy.spin_once(node, timeout_sec=0.02)
+        except Exception as error:
+            print(error)
+"""
+
+
+@pytest.mark.processes
+def test_ctrl_c_passes_what_catches_every_exception(tmp_path: Path, domain: int) -> None:
+    with Program(tmp_path, HEAD + STUBBORN, domain) as program:
+        assert program.line() == "spinning"
+        program.interrupt()
+        assert (program.end(), program.errors) == (130, [])
 
 
 @pytest.mark.processes

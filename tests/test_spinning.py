@@ -81,6 +81,15 @@ def test_spin_runs_until_shutdown(default: Context) -> None:
     node.destroy_node()
 
 
+@pytest.mark.usefixtures("default")
+def test_only_nodes_spin() -> None:
+    for spin in (rclpy.spin, rclpy.spin_once):
+        with pytest.raises(TypeError, match=r"expected a Node to spin, got <class .*Node'>: call it, Node\(\)"):
+            spin(Node)  # type: ignore[arg-type]
+        with pytest.raises(TypeError, match=r"expected a Node to spin, got None$"):
+            spin(None)  # type: ignore[arg-type]
+
+
 def test_spin_once_with_the_executor_of_all(default: Context) -> None:
     node = rclpy.create_node("node")
     got, publisher = numbers(node, "topic"), node.create_publisher(Int32, "topic", 10)

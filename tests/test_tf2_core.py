@@ -440,6 +440,16 @@ def test_names_of_any_letters_come_through_the_yaml(parent: str, child: str) -> 
     assert yaml.safe_load(buffer.all_frames_as_yaml())[names[1]]["parent"] == names[0]
 
 
+def test_a_frame_exists_from_when_it_is_first_heard_of() -> None:
+    """By the name that tf2_py has for it, which programs use for want of another."""
+    buffer = BufferCore()
+    assert not buffer._frameExists("map")
+    buffer.set_transform(transform("map", "base"), "test")
+    assert [buffer._frameExists(each) for each in ("map", "base", "cup")] == [True, True, False]
+    buffer.clear()
+    assert buffer._frameExists("base")
+
+
 def test_the_graph_for_dot() -> None:
     text = filled(transform('o"m', "base", 1))._allFramesAsDot(at(3))
     assert '"o\\"m" -> "base"[label="Broadcaster: test' in text

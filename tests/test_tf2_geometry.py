@@ -32,6 +32,7 @@ from robolink.interfaces.geometry_msgs.msg import (
 from robolink.interfaces.sensor_msgs.msg import PointCloud2, PointField
 from robolink.interfaces.std_msgs.msg import Header
 from robolink.message import decode, encode
+from robolink.point_cloud2 import PointCloudError
 from robolink.tf2 import (
     Buffer,
     BufferInterface,
@@ -43,7 +44,7 @@ from robolink.tf2 import (
     convert,
 )
 from robolink.tf2 import geometry as geo
-from robolink.tf2.point_cloud import PointCloudError, do_transform_cloud, transform_points
+from robolink.tf2.point_cloud import do_transform_cloud, transform_points
 from robolink.time import Time
 from tests.test_tf2_core import PLACE, TURN
 from tests.transforms import matrix, rotation, transform
@@ -230,10 +231,10 @@ def test_an_empty_cloud_stays_empty() -> None:
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
-        ({"fields": []}, "needs the fields x, y, and z for the transformation; it has none"),
-        ({"data": b"short"}, r"a cloud of 1 x 2 points of 24 bytes, a row every 48, has 5 bytes"),
-        ({"row_step": 10}, "a row every 10, has 48 bytes"),
-        ({"width": 2**31, "row_step": 0}, "has 48 bytes"),
+        ({"fields": []}, "without x, y and z cannot be moved to another frame: its fields are none"),
+        ({"data": b"short"}, "2 x 1 points of 24 bytes in rows of 48 need 48 bytes; there are 5"),
+        ({"height": 2, "width": 1, "row_step": 10}, "in rows of 10 need 34 bytes; there are 48"),
+        ({"width": 2**31, "row_step": 0}, "need 51539607552 bytes; there are 48"),
         ({"point_step": 8, "row_step": 48}, "the field y reaches beyond the 8 bytes of a point"),
     ],
 )

@@ -6,13 +6,14 @@ from collections.abc import Callable
 
 import pytest
 
-from robolink import Context, Node, Parameter
+from robolink import Context, Node, Parameter, VirtualTime
 from robolink.clock import Clock, ROSClock
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.builtin_interfaces.msg import Time as TimeMsg
 from robolink.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
 from robolink.time_source import TimeSource
-from tests.spins import spin_for
+from robolink.transport.memory import Bus, MemoryTransport
+from tests.spins import counted_calls, spin_for
 
 SECOND = 1_000_000_000
 
@@ -140,3 +141,29 @@ def test_a_time_source_sets_the_clocks_attached_to_it(virtual: Context) -> None:
     source.attach_node(Node("node", context=virtual))
     assert not late.ros_time_is_active
     source.detach_node()
+
+
+def calls_of_a_clock_message(nodes: int) -> int:
+    """How many functions run when /clock tells so many nodes, with a timer each, what time it is."""
+    context = Context(transport=MemoryTransport(bus=Bus()), time=VirtualTime())
+    context.init([])
+    with context, SingleThreadedExecutor(context=context) as executor:
+        called: list[None] = []
+        for index in range(nodes):
+            overrides = [Parameter("use_sim_time", value=True)]
+            each = Node(f"node_{index}", context=context, parameter_overrides=overrides)
+            each.create_timer(1.0, lambda: called.append(None))
+            executor.add_node(each)
+        publisher = Node("world", context=context).create_publisher(ClockMsg, "/clock", 10)
+        publisher.publish(ClockMsg(clock=TimeMsg(sec=100)))
+        spin_for(executor, 0.001)
+        publisher.publish(ClockMsg(clock=TimeMsg(sec=101)))
+        with counted_calls() as calls:
+            spin_for(executor, 0.001)
+        assert len(called) == 2 * nodes
+    return len(calls)
+
+
+def test_what_a_clock_message_costs_grows_with_the_nodes_and_no_faster() -> None:
+    few, more, most = (calls_of_a_clock_message(nodes) for nodes in (5, 10, 20))
+    assert most - more == 2 * (more - few)

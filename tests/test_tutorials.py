@@ -1,6 +1,6 @@
-"""The ROS 2 tutorials for Python run unchanged under `robolink run`, in processes of their own that talk to each other.
+"""Programs for rclpy on every subject of the ROS 2 tutorials run as they are under `robolink run`, in processes.
 
-Each tutorial has a domain of its own and starts while the test of the one before runs; each test waits for what it is
+Each subject has a domain of its own and starts while the test of the one before runs; each test waits for what it is
 about.
 """
 
@@ -21,25 +21,25 @@ pytestmark = pytest.mark.processes
 WORKSPACE = Path(__file__).parent / "tutorials"
 
 TUTORIALS: Mapping[str, tuple[tuple[str, ...], ...]] = {
-    "topics": (("publisher",), ("subscriber",), ("waiter",)),
-    "services": (("add_server",), ("add_client", "41", "1")),
-    "interfaces": (("custom_client",), ("custom_server",)),
-    "parameters": (("minimal_param", "--ros-args", "-p", "my_parameter:=earth"), ("param_monitor",)),
-    "actions": (("fibonacci_client",), ("fibonacci_server",), ("fibonacci_cancel",)),
+    "topics": (("kettle",), ("cup",), ("glance",)),
+    "services": (("scales",), ("weigh", "41", "1")),
+    "interfaces": (("clerk",), ("warehouse",)),
+    "parameters": (("lamp", "--ros-args", "-p", "colour:=red"), ("caretaker",)),
+    "actions": (("farmer",), ("hutch",), ("miser",)),
     "turtles": (
-        ("turtle",),
-        ("turtle_broadcaster", "--ros-args", "-r", "__node:=broadcaster1", "-p", "turtlename:=turtle1"),
-        ("turtle_broadcaster", "--ros-args", "-r", "__node:=broadcaster2", "-p", "turtlename:=turtle2"),
-        ("fixed_frame_broadcaster",),
-        ("turtle_listener", "--ros-args", "-p", "target_frame:=turtle1"),
+        ("pond",),
+        ("spotter", "--ros-args", "-r", "__node:=first", "-p", "whom:=turtle1"),
+        ("spotter", "--ros-args", "-r", "__node:=second", "-p", "whom:=turtle2"),
+        ("bait",),
+        ("chaser", "--ros-args", "-p", "prey:=bait"),
     ),
-    "static": (("static_listener",), ("static_broadcaster", "mystaticturtle", "0", "0", "1", "0", "0", "1.5707963")),
-    "lifecycle": (("lifecycle_talker",), ("lifecycle_client",)),
-    "composition": (("composed",),),
-    "qos": (("qos_talker",),),
-    "logging": (("logging_demo", "--ros-args", "--log-level", "logger_usage_demo:=debug"),),
+    "static": (("rigger",), ("mast", "mast", "0", "0", "1", "0", "0", "1.5707963")),
+    "lifecycle": (("fountain",), ("gardener",)),
+    "executors": (("house",),),
+    "qos": (("lighthouse",),),
+    "logging": (("diary", "--ros-args", "--log-level", "diary:=debug"),),
 }
-"""By tutorial: its programs and their arguments."""
+"""By subject: its programs and their arguments."""
 
 
 class Tutorial:
@@ -108,121 +108,110 @@ def test_the_programs_know_nothing_of_robolink() -> None:
 
 
 def test_a_publisher_and_a_subscriber(tutorials: Tutorials) -> None:
-    publisher, subscriber, waiter = tutorials["topics"].programs
-    publisher.wait_for('[minimal_publisher]: Publishing: "Hello World: 0"')
+    kettle, cup, glance = tutorials["topics"].programs
+    kettle.wait_for("[kettle]: told: 20 degrees")
     for _ in range(3):
-        subscriber.wait_for('[minimal_subscriber]: I heard: "Hello World: ')
-    waiter.wait_for("[waiter]: True: Hello World")
-    waiter.wait_for("[waiter]: False: None")
-    assert waiter.end() == 0
+        cup.wait_for("[cup]: the kettle says ")
+    glance.wait_for("[guest]: water: True, String")
+    glance.wait_for("[guest]: milk: False, NoneType")
+    assert glance.end() == 0
     tutorials["topics"].end()
 
 
 def test_a_service_and_its_client(tutorials: Tutorials) -> None:
-    server, client = tutorials["services"].programs
-    client.wait_for("[minimal_client_async]: Result of add_two_ints: for 41 + 1 = 42")
-    server.wait_for("Incoming request")
-    server.wait_for("a: 41 b: 1")
-    assert client.end() == 0
+    scales, weigh = tutorials["services"].programs
+    weigh.wait_for("[grocer]: together they weigh 42 g")
+    scales.wait_for("[scales]: weighing 1:")
+    scales.wait_for("left 41, right 1")
+    assert weigh.end() == 0
     tutorials["services"].end()
 
 
 def test_interfaces_of_ones_own(tutorials: Tutorials) -> None:
-    client, _ = tutorials["interfaces"].programs
-    assert client.end() == 0
-    for line in ("Answered: 6", "The sum is 6", "A sphere at x=1.0 of radius 6.0"):
-        assert f"[custom_client]: {line}" in said(client)
+    clerk, _ = tutorials["interfaces"].programs
+    assert clerk.end() == 0
+    for line in ("stacked 6", "6 parcels came", "the shelf at y=2.0 is 3.0 m wide"):
+        assert f"[clerk]: {line}" in said(clerk)
     tutorials["interfaces"].end()
 
 
 def test_parameters(tutorials: Tutorials) -> None:
-    node, monitor = tutorials["parameters"].programs
-    node.wait_for("[minimal_param_node]: Hello earth!")
-    node.wait_for("[minimal_param_node]: Hello world!")
-    monitor.wait_for("Received an update to parameter: my_parameter: world")
-    with Command(
-        tutorials["parameters"].domain, "param", "set", "/node_with_parameters", "an_int_param", "43"
-    ) as setter:
-        assert setter.end() == 0
-    monitor.wait_for("Received an update to parameter: an_int_param: 43")
+    lamp, caretaker = tutorials["parameters"].programs
+    lamp.wait_for("[lamp]: shines red")
+    lamp.wait_for("[lamp]: shines white")
+    while not {"colour is white now", "rounds is 3 now"} <= {line.text.partition("]: ")[2] for line in caretaker.lines}:
+        caretaker.wait_for("is")
     tutorials["parameters"].end()
 
 
 def test_an_action_server_and_its_clients(tutorials: Tutorials) -> None:
-    client, server, cancels = tutorials["actions"].programs
-    client.wait_for("[fibonacci_action_client]: Goal accepted :)")
-    for sequence in ("[0, 1, 1]", "[0, 1, 1, 2]", "[0, 1, 1, 2, 3]", "[0, 1, 1, 2, 3, 5]"):
-        client.wait_for(f"Received feedback: {sequence}")
-    client.wait_for("Result: [0, 1, 1, 2, 3, 5]")
-    cancels.wait_for("Goal successfully canceled")
-    server.wait_for("Goal canceled")
-    assert (client.end(), cancels.end()) == (0, 0)
+    farmer, hutch, miser = tutorials["actions"].programs
+    farmer.wait_for("[farmer]: accepted: False")
+    farmer.wait_for("[farmer]: accepted: True")
+    for pairs in ("[0, 1, 1]", "[0, 1, 1, 2]", "[0, 1, 1, 2, 3]", "[0, 1, 1, 2, 3, 5]"):
+        farmer.wait_for(f"so far {pairs}")
+    farmer.wait_for("in the end [0, 1, 1, 2, 3, 5]")
+    miser.wait_for("[miser]: 1 goal ends")
+    hutch.wait_for("[hutch]: no more rabbits")
+    assert (farmer.end(), miser.end()) == (0, 0)
+    assert "[hutch]: somebody has enough" in said(hutch)
     tutorials["actions"].end()
 
 
 def test_a_turtle_follows_another_by_tf2(tutorials: Tutorials) -> None:
-    turtle, *_, listener = tutorials["turtles"].programs
-    listener.wait_for("[turtle_tf2_frame_listener]: Successfully spawned turtle2")
-    turtle.wait_for("the second turtle has reached the first")
-    with Command(tutorials["turtles"].domain, "topic", "echo", "--once", "/tf", "--filter", CARROT) as echo:
-        assert echo.end() == 0
+    pond, *_, chaser = tutorials["turtles"].programs
+    chaser.wait_for("[chaser]: turtle2 is in the pond")
+    pond.wait_for("[pond]: the turtles meet")
     tutorials["turtles"].end()
 
 
-CARROT = "m.transforms[0].child_frame_id == 'carrot1'"
-
-
 def test_a_static_broadcaster(tutorials: Tutorials) -> None:
-    listener, _ = tutorials["static"].programs
-    listener.wait_for("[static_listener]: At z=1.0")
-    listener.wait_for("[static_listener]: The point is at y=2.0, z=1.0")
-    assert listener.end() == 0
+    rigger, _ = tutorials["static"].programs
+    rigger.wait_for("[rigger]: the boom ends at y=2.0, z=1.0")
+    assert rigger.end() == 0
     tutorials["static"].end()
 
 
 def test_a_lifecycle_node_and_its_client(tutorials: Tutorials) -> None:
-    talker, client = tutorials["lifecycle"].programs
-    for line in ("True: inactive", "True: active", "data_callback: Lifecycle HelloWorld #", "True: inactive"):
-        client.wait_for(f"[lc_client]: {line}")
-    client.wait_for("[lc_client]: True: unconfigured")
-    client.wait_for("[lc_client]: True: finalized")
-    for name in ("on_configure", "on_activate", "on_deactivate", "on_cleanup", "on_shutdown"):
-        talker.wait_for(f"[lc_talker]: {name}() is called.")
-    assert client.end() == 0
+    fountain, gardener = tutorials["lifecycle"].programs
+    for line in (
+        "the fountain is inactive: True",
+        "the fountain is active: True",
+        "heard splash!",
+        "the fountain is inactive: True",
+        "the fountain is unconfigured: True",
+        "the fountain is finalized: True",
+    ):
+        gardener.wait_for(f"[gardener]: {line}")
+    for line in ("filled; it was ", "opened", "shut", "cleaned", "taken down"):
+        fountain.wait_for(f"[fountain]: {line}")
+    assert gardener.end() == 0
     tutorials["lifecycle"].end()
 
 
 def test_nodes_and_executors_in_one_process(tutorials: Tutorials) -> None:
-    (composed,) = tutorials["composition"].programs
-    composed.wait_for("[listener]: I heard: [Hello World: 1]")
-    composed.wait_for("[listener]: I heard: [Hello World: 9]")
-    tutorials["composition"].end()
-    assert "[asks]: Answered: triggered" in said(composed)
+    (house,) = tutorials["executors"].programs
+    house.wait_for("[attic]: stroke 1")
+    house.wait_for("[attic]: stroke 9")
+    tutorials["executors"].end()
+    assert "[butler]: dinner is served" in said(house)
 
 
 def test_quality_of_service(tutorials: Tutorials) -> None:
-    (talker,) = tutorials["qos"].programs
-    talker.wait_for("Published the map")
-    listener = tutorials["qos"].start("qos_listener", "-n", "5")
-    assert listener.end() == 0
-    heard = [line.text.partition("]: ")[2] for line in listener.lines]
-    assert ("I heard: [Map 1]" in heard, "I heard: [Map 2]" in heard, "I heard: [Map 3]" in heard) == (
-        False,
-        True,
-        True,
-    )
-    assert (len([each for each in heard if "Scan" in each]), heard[-1]) == (3, "Enough")
+    (lighthouse,) = tutorials["qos"].programs
+    lighthouse.wait_for("[lighthouse]: the rules are up")
+    ship = tutorials["qos"].start("ship", "-s", "5")
+    assert ship.end() == 0
+    saw = [line.text.partition("]: ")[2] for line in ship.lines]
+    assert sorted(saw) == ["past it", *["saw flash"] * 3, "saw rule 2", "saw rule 3"]
+    assert saw[-1] == "past it"
     tutorials["qos"].end()
 
 
 def test_logging(tutorials: Tutorials) -> None:
-    (demo,) = tutorials["logging"].programs
-    demo.wait_for("That was all")
+    (diary,) = tutorials["logging"].programs
+    diary.wait_for("the end")
     tutorials["logging"].end()
-    levels = [line.text.partition("]")[0].removeprefix("[") for line in demo.lines[:10]]
-    assert levels == ["INFO", "INFO", "DEBUG", "ERROR", "INFO", "DEBUG", "WARN", "INFO", "DEBUG", "WARN"]
-    assert (said(demo).count("only log once"), said(demo).count("Modulo"), said(demo).count("Not to be seen")) == (
-        1,
-        1,
-        0,
-    )
+    levels = [line.text.partition("]")[0].removeprefix("[") for line in diary.lines[:11]]
+    assert levels == ["INFO", "INFO", "DEBUG", "ERROR", "INFO", "DEBUG", "WARN", "INFO", "DEBUG", "WARN", "FATAL"]
+    assert [said(diary).count(each) for each in ("dear diary", "the roof leaks", "a secret")] == [1, 1, 0]

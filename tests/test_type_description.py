@@ -83,9 +83,9 @@ def test_another_type_of_parameter_is_refused(virtual: Context, log_lines: list[
         Node("wrong", context=virtual, parameter_overrides=[Parameter(NAME, value="yes")])
 
     class Declares(Node):
-        def _serve(self, *args: Any) -> None:
+        def _serve_(self, *args: Any) -> None:
             self.declare_parameter(NAME, "yes", ParameterDescriptor())
-            super()._serve(*args)
+            super()._serve_(*args)
 
     with Declares("wrong", context=virtual, start_parameter_services=False) as node:
         assert node.get_service_names_and_types_by_node("wrong", "/") == []

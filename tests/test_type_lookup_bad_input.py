@@ -17,8 +17,8 @@ from robolink.message import type_name
 from robolink.message.description import described, to_message
 from robolink.type_lookup import TypeLookupError, type_of
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken
-from tests.carts import Cart, Wheel, seen, spinning
-from tests.seen_by_commands import a_node_that_commands_see
+from tests.carts import Cart, Wheel, seen
+from tests.seen_by_commands import a_node_that_commands_see, spinning
 
 Answer = Callable[[Any, Any], Any]
 QUIET = [Parameter("start_type_description_service", value=False)]

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from robolink import interfaces
 from robolink.exceptions import DefinitionError, MessageError, NotFoundError
 from robolink.interfaces import find, names
-from robolink.interfaces.geometry_msgs.msg import Point, Pose
+from robolink.interfaces.geometry_msgs.msg import Point, Pose, Vector3
 from robolink.message import Action, Service, decode, encode, type_hash
 from robolink.message.text import text_of
 from robolink.workspace import VARIABLE, InterfaceImportError, load_module, load_node, use_interfaces
@@ -165,7 +165,7 @@ def test_the_workspaces_version_of_a_standard_type_wins_and_a_copy_changes_nothi
     flat: Any = find("Point")
     assert flat.get_fields_and_field_types() == {"x": "double", "y": "double"}
     assert type_hash(flat) != type_hash(Point)
-    assert find("Vector3").__module__ == "robolink.interfaces.geometry_msgs.msg"
+    assert find("Vector3") is Vector3
     assert find("Pose") is Pose
 
 
@@ -402,12 +402,12 @@ def test_run_imports_them_and_a_wrong_file_is_one_line(home: Path, write: Write)
     write("zoo_msgs/msg/Animal.msg", "string name")
     wrong = write("zoo_msgs/msg/Wrong.msg", "string name\nfloat speed")
     write("nodes/right.py", "from zoo_msgs.msg import Animal\nprint(Animal(name='Ada'))\n")
-    write("nodes/left.py", "from zoo_msgs.msg import Wrong\n")
+    left = write("nodes/left.py", "from zoo_msgs.msg import Wrong\n")
     assert robolink("run", "right", cwd=home).stdout == "zoo_msgs.msg.Animal(name='Ada')\n"
     refused = robolink("run", "left", cwd=home)
     assert (refused.returncode, refused.stderr) == (
         1,
-        f"robolink: {wrong}:2:1: 'float' is no type (did you mean 'float32'?)\n",
+        f"robolink: {wrong}:2:1: 'float' is no type (did you mean 'float32'?) (at {left}:1)\n",
     )
 
 

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from robolink import yamlfile
 from robolink.exceptions import DocumentError
 from robolink.yamlfile import DocumentNotFoundError, load, parse, read, spell
 
@@ -163,6 +164,16 @@ def test_a_file_that_cannot_be_read_is_one_line(tmp_path: Path) -> None:
         load(tmp_path, World)
     with pytest.raises(DocumentError, match="cannot be read"):
         load("a\0b", World)
+
+
+def test_a_file_without_end_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "long.yaml").write_bytes(b"#" * 2**20)
+    monkeypatch.setattr(yamlfile, "LONGEST", 2**20)
+    with pytest.raises(DocumentError, match=r"1:1: expected mapping, got nothing"):
+        load(tmp_path / "long.yaml", World)
+    monkeypatch.setattr(yamlfile, "LONGEST", 2**20 - 1)
+    with pytest.raises(DocumentError, match=r"long\.yaml: longer than 0 MiB"):
+        load(tmp_path / "long.yaml", World)
 
 
 def test_a_document_places_errors_that_are_found_later() -> None:

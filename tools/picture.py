@@ -6,9 +6,10 @@ Usage: python tools/picture.py wall_follower corners docs/follow.svg --seconds 9
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 
-from robolink import Context, VirtualTime
+from robolink import Context, Node, VirtualTime
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import LaserScan
@@ -29,9 +30,11 @@ def drive(controller: str, world: str, seconds: float) -> tuple[list[Point], lis
     context = Context(transport="memory://picture", time=VirtualTime())
     context.init(args=[])
     executor = SingleThreadedExecutor(context=context)
+    make_world: Callable[..., Node] = load_node(find_node("world"))
+    make_controller: Callable[..., Node] = load_node(find_node(controller))
     nodes = [
-        load_node(find_node("world"))(context=context, parameter_overrides=[Parameter("world", value=world)]),
-        load_node(find_node(controller))(context=context),
+        make_world(context=context, parameter_overrides=[Parameter("world", value=world)]),
+        make_controller(context=context),
     ]
     path: list[Point] = []
     headings: list[tuple[float, float]] = []
@@ -67,6 +70,8 @@ def hits(scan: LaserScan, at: Point, heading: tuple[float, float]) -> list[Point
 def svg(world: str, path: list[Point], beams: list[Point], at: Point) -> str:
     """Draw all of it, north up."""
     description = load_world(find_world(world))
+    if description.world.size is None:
+        raise SystemExit(f"{world}: only a world with a size can be drawn")
     width, height = description.world.size
     wide, high = width * SCALE + 2 * MARGIN, height * SCALE + 2 * MARGIN
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from robolink.lacking import lazily
 
 if TYPE_CHECKING:
     from robolink.action.client import ActionClient
@@ -35,17 +36,5 @@ _HOMES = {
 }
 _ROOMS = ("client", "graph", "server")
 
-
-def __getattr__(name: str) -> Any:
-    # When first used: commands that only look at the graph need neither servers nor clients.
-    if name in _ROOMS:
-        return importlib.import_module(f"robolink.action.{name}")
-    if name not in _HOMES:
-        raise AttributeError(f"module 'robolink.action' has no attribute '{name}'")
-    value = getattr(importlib.import_module(f"robolink.action.{_HOMES[name]}"), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__, *_ROOMS})
+# When first used: commands that only look at the graph need neither servers nor clients.
+__getattr__, __dir__ = lazily(__name__, _HOMES, _ROOMS)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import uuid
 import weakref
+from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -29,6 +30,9 @@ from robolink.waitable import Waitable
 if TYPE_CHECKING:
     from robolink.message import Action, Message
     from robolink.node import Node
+
+LATELY = 16
+"""Ended goals whose feedback callbacks are still there."""
 
 
 class ActionClient(Waitable):
@@ -57,6 +61,7 @@ class ActionClient(Waitable):
         self._logger = node.get_logger().get_child("action_client")
         self._goal_handles: weakref.WeakValueDictionary[bytes, ClientGoalHandle] = weakref.WeakValueDictionary()
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
+        self._lately_ended: deque[bytes] = deque()
         self._statuses: dict[bytes, int] = {}
         self._parts: list[Client | Subscription[Any]] = []
         try:
@@ -85,14 +90,14 @@ class ActionClient(Waitable):
         self, part: str, msg_type: type[Message], callback: Callable[[Any], Any], qos: QoSProfile
     ) -> Subscription[Any]:
         name = self._node.resolve_topic_name(graph.part_name(self._action_name, part))
-        made = Subscription(self._node._owner, msg_type, name, callback, self.callback_group, qos)
+        made = Subscription(self._node._owner_, msg_type, name, callback, self.callback_group, qos)
         made.serves = True  # feedback goes on while a callback waits for a result
         self._parts.append(made)
         return made
 
     def _client(self, part: str, srv_type: type[Any], qos: QoSProfile) -> Client:
         name = self._node.resolve_service_name(graph.part_name(self._action_name, part))
-        made = Client(self._node._owner, srv_type, name, qos, self.callback_group)
+        made = Client(self._node._owner_, srv_type, name, qos, self.callback_group)
         made.gives_way = False  # a goal is accepted before its feedback comes, and that comes before its result
         self._parts.append(made)
         return made
@@ -125,7 +130,7 @@ class ActionClient(Waitable):
     ) -> Future[ClientGoalHandle]:
         """Send a goal; the future gets its handle when a server has accepted or rejected it.
 
-        ``feedback_callback(message)`` is called with ``message.feedback`` until the result is there. The goal's id is
+        ``feedback_callback(message)`` is called with ``message.feedback`` for all that was sent. The goal's id is
         a random one by default. Raises TypeError for another type of goal or id.
 
         The future gets a ServiceError (a RuntimeError) when the server goes away before it has answered. A goal that
@@ -150,7 +155,10 @@ class ActionClient(Waitable):
         elif not isinstance(goal_uuid, UUID):
             raise TypeError(f"goal_uuid: expected a unique_identifier_msgs.msg.UUID, got {goal_uuid!r:.80}")
         if feedback_callback is not None:
-            self._feedback_callbacks[key_of(goal_uuid)] = feedback_callback
+            key = key_of(goal_uuid)
+            self._feedback_callbacks[key] = feedback_callback
+            if key in self._lately_ended:
+                self._lately_ended.remove(key)
         request: Any = self._action_type.Impl.SendGoalService.Request
         return request(goal_id=goal_uuid, goal=goal)
 
@@ -162,7 +170,7 @@ class ActionClient(Waitable):
             return handle
         handle._status = self._statuses.get(key, handle._status)
         if self._goal_handles.setdefault(key, handle) is not handle:
-            raise RuntimeError(f"{self._action_name}: two goals were accepted with the same id: {handle}")
+            raise RuntimeError(f"{self._action_name}: the server took a goal whose id another one still has: {handle}")
         return handle
 
     def _not_answered(self, error: BaseException) -> ServiceError:
@@ -192,7 +200,7 @@ class ActionClient(Waitable):
 
     def _get_result_async(self, goal_handle: ClientGoalHandle) -> Future[Any]:
         def ended(answer: Any) -> Any:
-            self._feedback_callbacks.pop(key_of(goal_handle.goal_id), None)
+            self._stop_feedback(goal_handle.goal_id)
             return self._ended(goal_handle, answer)
 
         def failed(error: BaseException) -> ServiceError:
@@ -226,7 +234,7 @@ class ActionClient(Waitable):
         def pass_on() -> None:
             if future.cancelled():
                 return
-            future._set_executor(self._node.executor)  # there may not have been one before
+            future.set_executor(self._node.executor)  # there may not have been one before
             error = response.exception()
             if error is None:
                 self._feedback.gives_way = True
@@ -271,13 +279,12 @@ class ActionClient(Waitable):
             executor.post(_Release(self._feedback))
 
     def _stop_feedback(self, goal_id: UUID) -> None:
-        """Forget a feedback callback, once it has been called with what has arrived so far."""
-        key, executor = key_of(goal_id), self._node.executor
-        if executor is None:
-            self._feedback_callbacks.pop(key, None)
-        elif key in self._feedback_callbacks:
-            executor.inbox.sweep()
-            executor.create_task(self._feedback_callbacks.pop, key, None)
+        """Forget a feedback callback, though not at once: what was sent before the result may still wait its turn."""
+        key = key_of(goal_id)
+        if key in self._feedback_callbacks and key not in self._lately_ended:
+            self._lately_ended.append(key)
+            if len(self._lately_ended) > LATELY:
+                self._feedback_callbacks.pop(self._lately_ended.popleft(), None)
 
     # Whether anybody serves
 
@@ -289,13 +296,7 @@ class ActionClient(Waitable):
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Wait until somebody serves; whether so within `timeout_sec` seconds. The end of the context ends it."""
-        context = self._node.context
-        if context.time.virtual and timeout_sec is not None:
-            if not self.server_is_ready():
-                context.time.sleep(int(timeout_sec * 1e9))
-        else:
-            context.graph.wait_for(lambda: self.server_is_ready() or not context.ok(), timeout_sec)
-        return self.server_is_ready()
+        return self._node.context.wait_until(self.server_is_ready, timeout_sec)
 
     # What the node and the executor do with it
 

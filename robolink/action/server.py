@@ -137,13 +137,13 @@ class ActionServer(Waitable):
 
     def _publisher(self, part: str, msg_type: type[Message], qos: QoSProfile) -> Publisher[Any]:
         name = self._node.resolve_topic_name(graph.part_name(self._action_name, part))
-        made = Publisher(self._node._owner, msg_type, name, qos)
+        made = Publisher(self._node._owner_, msg_type, name, qos)
         self._parts.append(made)
         return made
 
     def _service(self, part: str, srv_type: type[Any], callback: Callable[..., Any], qos: QoSProfile) -> LateService:
         name = self._node.resolve_service_name(graph.part_name(self._action_name, part))
-        made = LateService(self._node._owner, srv_type, name, callback, self.callback_group, qos)
+        made = LateService(self._node._owner_, srv_type, name, callback, self.callback_group, qos)
         self._parts.append(made)
         return made
 
@@ -235,7 +235,7 @@ class ActionServer(Waitable):
         """Run a goal's callback to its end, whatever comes; the goal has ended and has a result then."""
         try:
             result = await run_to_its_end(callback, handle)
-        except ExternalShutdownException:  # Ctrl-C is no fault of the callback
+        except (ExternalShutdownException, KeyboardInterrupt):  # Ctrl-C is no fault of the callback
             self._end(handle, self._action_type.Result())
             raise
         except Exception as error:  # noqa: BLE001 - the goal has failed, not the node

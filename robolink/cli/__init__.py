@@ -45,15 +45,16 @@ def main(args: Sequence[str] | None = None) -> int:
             sys.modules["robolink.cli.session"].close_looks()
 
 
-def complain(error: object, code: int = 1) -> int:
-    """Print one line on stderr; give the exit code."""
+def complain(error: object, code: int = 1, place: str = "") -> int:
+    """Print one line on stderr, with the place that is to blame if it is known; give the exit code."""
     if isinstance(error, NameValidationException):  # its text has a line for the caret
         error = f"invalid {error.name_type} '{error.name[:200]}': {error.error_msg} (at index {error.invalid_index})"
     text = " ".join(str(error).split("\n"))
     if len(text) > LONGEST_LINE:
         text = f"{text[: LONGEST_LINE // 2]} ... {text[-LONGEST_LINE // 4 :]}"
     line = "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
-    print(f"robolink: {line}", file=sys.stderr)  # noqa: T201 - this is what the user is told
+    at = f" (at {place})" if place else ""
+    print(f"robolink: {line}{at}", file=sys.stderr)  # noqa: T201 - this is what the user is told
     return code
 
 

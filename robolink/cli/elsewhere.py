@@ -7,7 +7,8 @@ import os
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from robolink.exceptions import RobolinkError
+from robolink.cli.session import is_hidden
+from robolink.exceptions import RobolinkError, nearest, shown
 from robolink.wire import EndpointKind, EndpointToken, graph_pattern, parse_token
 
 if TYPE_CHECKING:
@@ -45,6 +46,14 @@ def hint(domains: list[int]) -> str:
         return ""
     listed = " and ".join(map(str, domains[:MOST]))
     return f"; it is on domain {listed}: set ROS_DOMAIN_ID={domains[0]}"
+
+
+def no_such_node(context: Context, name: str, service: str, known: Iterable[str]) -> str:
+    """Say that there is no node of this full name: on which domains its `service` is, else which known one is near."""
+    near = hint(domains_with(context, service, EndpointKind.SERVICE)) or nearest(
+        name, [each for each in known if not is_hidden(each)]
+    )
+    return f"no node named '{shown(name)}' in domain {context.get_domain_id()}{near}"
 
 
 def _announced(texts: Iterable[str], name: str, kinds: tuple[EndpointKind, ...]) -> Iterator[int]:

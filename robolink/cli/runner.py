@@ -14,7 +14,14 @@ from pathlib import Path
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.exceptions import ExternalShutdownException, InterruptedByUser, NotFoundError, RobolinkError
+from robolink.cli import complain
+from robolink.exceptions import (
+    ExternalShutdownException,
+    InterruptedByUser,
+    NotFoundError,
+    RobolinkError,
+    ROSInterruptException,
+)
 from robolink.lacking import LackingNameError
 from robolink.signals import SignalHandlerOptions, get_current_signal_handlers_options
 from robolink.supervisor import watch_lifeline
@@ -28,6 +35,7 @@ from robolink.workspace import (
     executables,
     find_node,
     find_package,
+    find_ros_node,
     list_executables,
     list_nodes,
     load_node,
@@ -69,13 +77,13 @@ def run(asked: Asked, ros_args: list[str], workspace: str | None) -> int:
     sys.argv = [str(source.path or source.name), *args, *ros_args]
     try:
         return _exit_code(lambda: _start(source))
-    except (KeyboardInterrupt, ExternalShutdownException):
+    except (KeyboardInterrupt, ExternalShutdownException, ROSInterruptException):
         return TERMINATED if terminated else INTERRUPTED
     except LackingNameError as error:
         _show(error)
         return 1
-    except RobolinkError:
-        raise
+    except RobolinkError as error:
+        return 1 if _is_logged(error) else complain(error, place=_place(error))
     except Exception as error:  # noqa: BLE001 - it is the user's, and they want to see where
         _show(error)
         return 1
@@ -84,13 +92,13 @@ def run(asked: Asked, ros_args: list[str], workspace: str | None) -> int:
 def found(asked: Asked, workspace: str | None) -> tuple[NodeSource, list[str]]:
     """Give what is asked for and the program's own arguments.
 
-    Two words that name a package and an executable of it are that; else the first is a node's name or file, and the
-    second is the program's. Raises NotFoundError.
+    Two words that name a package and an executable of it are that, also those of ROS 2's own packages that robolink
+    has; else the first is a node's name or file, and the second is the program's. Raises NotFoundError.
     """
     name, words = asked.node, asked.words
     folder = find_package(name, workspace=workspace) if canonical(name).isidentifier() else None
-    if folder is not None and asked.before > 0:
-        source = executable(folder, words[0])
+    if asked.before > 0:
+        source = find_ros_node(name, words[0]) if folder is None else executable(folder, words[0])
         if source is not None:
             return source, words[1:]
     try:
@@ -122,7 +130,7 @@ def spin(node_class: Callable[[], Node]) -> None:
     _check_needs_nothing(node_class)
     with robolink.init(), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         node = node_class()
-        if not hasattr(node, "_owner"):
+        if not hasattr(node, "_owner_"):
             name = type(node).__name__
             raise NodeLoadError(f"{name}.__init__ must call super().__init__('{name.lower()}') before all else")
         try:
@@ -131,22 +139,23 @@ def spin(node_class: Callable[[], Node]) -> None:
             node.destroy_node()
 
 
-def _check_needs_nothing(node_class: Callable[[], Node]) -> None:
-    """Raise NodeLoadError for a class that cannot be made without arguments: nobody is there to give them."""
+def _check_needs_nothing(found: Callable[[], Any]) -> None:
+    """Raise NodeLoadError for a class or function that needs arguments: nobody is there to give them."""
     try:
         needed = [
             each.name
-            for each in inspect.signature(node_class).parameters.values()
+            for each in inspect.signature(found).parameters.values()
             if each.default is each.empty and each.kind not in (each.VAR_POSITIONAL, each.VAR_KEYWORD)
         ]
     except (TypeError, ValueError):  # a signature that Python cannot tell
         return
     if needed:
-        name = getattr(node_class, "__name__", str(node_class))
-        listed = ", ".join(f"'{each}'" for each in needed)
-        raise NodeLoadError(
-            f"{name}.__init__ needs {listed}: give a default value, or write a main() that makes the node"
-        )
+        name, listed = getattr(found, "__name__", str(found)), ", ".join(f"'{each}'" for each in needed)
+        if isinstance(found, type):
+            name, otherwise = f"{name}.__init__", ", or write a main() that makes the node"
+        else:
+            name, otherwise = f"{name}()", f", as in {name}({needed[0]}=None)"
+        raise NodeLoadError(f"{name} needs {listed}: give a default value{otherwise}")
 
 
 def _take_names() -> None:
@@ -173,7 +182,10 @@ def _note_termination() -> list[int]:
 
 def _start(source: NodeSource) -> Any:
     found = load_node(source)
-    return spin(found) if isinstance(found, type) else found()
+    if isinstance(found, type):
+        return spin(found)
+    _check_needs_nothing(found)
+    return found()
 
 
 def _exit_code(act: Callable[[], Any]) -> int:
@@ -210,12 +222,27 @@ def _purpose(source: NodeSource) -> str:
 
 def _show(error: Exception) -> None:
     """Print a traceback that begins in the user's code, unless the executor has logged it."""
-    if getattr(error, "__robolink_logged__", False):
+    if _is_logged(error):
         return
     trace = error.__traceback__
     while trace is not None and _is_ours(trace):
         trace = trace.tb_next
     traceback.print_exception(type(error), error, trace or error.__traceback__)
+
+
+def _is_logged(error: Exception) -> bool:
+    return getattr(error, "__robolink_logged__", False)
+
+
+def _place(error: Exception) -> str:
+    """Give the line of the user's code that asked for what failed, as ``file:line``; '' if none did."""
+    place, trace = "", error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        file = trace.tb_frame.f_code.co_filename
+        if not file.startswith("<") and not _is_ours(trace) and _is_ours(trace.tb_next):
+            place = f"{file}:{trace.tb_lineno}"
+        trace = trace.tb_next
+    return place
 
 
 def _is_ours(trace: TracebackType) -> bool:

@@ -20,6 +20,7 @@ from robolink.workspace.modules import FINDER, Fill, Filling
 MESSAGES = frozenset(package for kind in KINDS for package in STANDARD[kind])
 TOPS = frozenset({*MESSAGES, *(name for name in ROOMS if "." not in name)})
 """The top-level names that are robolink's."""
+PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
 
 
 def hidden(fullname: str) -> bool:
@@ -101,9 +102,19 @@ def _put(fullname: str, room: str, _new: ModuleType) -> None:
         vars(module).setdefault("__path__", [])  # else Python asks no finder for geometry_msgs.msg._twist
     if holds_types:
         vars(module)["__all__"] = STANDARD[kind][package].split()
+        _say_where(fullname, module)
     own = vars(module).get("__getattr__")
     if module is not sys.modules["robolink"] and not isinstance(own, functools.partial):
         module.__getattr__ = functools.partial(_asked, fullname, module, own)
+
+
+def _say_where(fullname: str, module: Any) -> None:
+    """Let each type say that it is where rosidl defines it: programs take its package from its `__module__`."""
+    for short in module.__all__:
+        cls = getattr(module, short)
+        parts = {f"{short}_{part}": vars(cls)[part] for part in PARTS if part in vars(cls)}
+        for name, each in {short: cls, **parts}.items():
+            each.__module__, each.__name__, each.__qualname__ = f"{fullname}._{snake_case(short)}", name, name
 
 
 def _asked(fullname: str, module: ModuleType, own: Callable[[str], Any] | None, name: str) -> Any:
@@ -145,7 +156,7 @@ def _fill_private(fullname: str, types: Iterable[str], module: ModuleType) -> No
     for short in types:
         cls = getattr(public, short)
         vars(module)[short] = cls
-        for part in ("Request", "Response", "Event", "Goal", "Result", "Feedback"):
+        for part in (*PARTS, "Event"):
             if hasattr(cls, part):
                 vars(module)[f"{short}_{part}"] = getattr(cls, part)
         if hasattr(cls, "Impl"):

@@ -60,32 +60,32 @@ class LifecycleNodeMixin(ManagedEntity):
         self._state_machine = LifecycleStateMachine()
         if enable_communication_interface:
             group = callback_group or self.default_callback_group
-            Communication(self, self._state_machine, self._succeeds, group)
+            Communication(self, self._state_machine, self._succeeds_, group)
 
     # What a program does
 
     def trigger_configure(self) -> TransitionCallbackReturn:
         """Configure it; how `on_configure` ended, ERROR too when the state is another than unconfigured."""
-        return self._change_state(Transition.TRANSITION_CONFIGURE)
+        return self._change_state_(Transition.TRANSITION_CONFIGURE)
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
         """Undo `trigger_configure`; how `on_cleanup` ended, ERROR too when the state is another than inactive."""
-        return self._change_state(Transition.TRANSITION_CLEANUP)
+        return self._change_state_(Transition.TRANSITION_CLEANUP)
 
     def trigger_activate(self) -> TransitionCallbackReturn:
         """Have it work; how `on_activate` ended, ERROR too when the state is another than inactive."""
-        return self._change_state(Transition.TRANSITION_ACTIVATE)
+        return self._change_state_(Transition.TRANSITION_ACTIVATE)
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
         """Have it stop working; how `on_deactivate` ended, ERROR too when the state is another than active."""
-        return self._change_state(Transition.TRANSITION_DEACTIVATE)
+        return self._change_state_(Transition.TRANSITION_DEACTIVATE)
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
         """End it for good; how `on_shutdown` ended. Raises TransitionError (a RuntimeError) when it has ended."""
         state_id, label = self._state_machine.current_state
         if state_id not in SHUTDOWNS:
             raise TransitionError(f"no shutdown from {label}")
-        return self._change_state(SHUTDOWNS[state_id])
+        return self._change_state_(SHUTDOWNS[state_id])
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
         """Tell `entity` of the transitions to come. Raises TypeError for what is no ManagedEntity."""
@@ -109,7 +109,7 @@ class LifecycleNodeMixin(ManagedEntity):
         if publisher_class is not None:
             raise TypeError("create_lifecycle_publisher() takes no publisher_class: it is LifecyclePublisher")
         made = Node.create_publisher(
-            self._node, msg_type, topic, qos_profile, publisher_class=LifecyclePublisher, **kwargs
+            self._node_, msg_type, topic, qos_profile, publisher_class=LifecyclePublisher, **kwargs
         )
         publisher = cast("LifecyclePublisher[MsgT]", made)
         self.add_managed_entity(publisher)
@@ -118,45 +118,45 @@ class LifecycleNodeMixin(ManagedEntity):
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher[Any]) -> bool:
         """Undeclare such a publisher; False when it is none of this node's."""
         self._managed_entities.pop(publisher, None)
-        return self._node.destroy_publisher(publisher)
+        return self._node_.destroy_publisher(publisher)
 
     # What a subclass overrides: each tells the managed entities, in the order in which they were made, until one of
     # them does not succeed, and gives back how that went.
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Get ready to be activated; `state` is the one before."""
-        return self._tell_entities("on_configure", state)
+        return self._tell_entities_("on_configure", state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Undo what `on_configure` did."""
-        return self._tell_entities("on_cleanup", state)
+        return self._tell_entities_("on_cleanup", state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Give up everything: the node will do nothing more."""
-        return self._tell_entities("on_shutdown", state)
+        return self._tell_entities_("on_shutdown", state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Begin to work: from now on its publishers send."""
-        return self._tell_entities("on_activate", state)
+        return self._tell_entities_("on_activate", state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop working, but stay ready: its publishers send no longer."""
-        return self._tell_entities("on_deactivate", state)
+        return self._tell_entities_("on_deactivate", state)
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Tidy up after a callback's error: SUCCESS makes the node unconfigured, anything else ends it."""
-        return self._tell_entities("on_error", state)
+        return self._tell_entities_("on_error", state)
 
     # How a transition goes
 
     @property
-    def _node(self) -> Node:
+    def _node_(self) -> Node:
         return cast(Node, self)
 
-    def _succeeds(self, transition_id: int) -> bool:
-        return self._change_state(transition_id) is TransitionCallbackReturn.SUCCESS
+    def _succeeds_(self, transition_id: int) -> bool:
+        return self._change_state_(transition_id) is TransitionCallbackReturn.SUCCESS
 
-    def _change_state(self, transition_id: int) -> TransitionCallbackReturn:
+    def _change_state_(self, transition_id: int) -> TransitionCallbackReturn:
         """Make a transition that the current state has; ERROR, and a line in the log, when it has it not."""
         machine = self._state_machine
         state_id, label = machine.current_state
@@ -166,15 +166,15 @@ class LifecycleNodeMixin(ManagedEntity):
                 raise TransitionError(f"no transition '{transition_id}' while {CALLBACKS[state_id]} runs")
             machine.trigger_transition_by_id(transition_id)
         except TransitionError as error:
-            self._node.get_logger().error(str(error))
+            self._node_.get_logger().error(str(error))
             return TransitionCallbackReturn.ERROR
-        result = self._run_callback(before)
+        result = self._run_callback_(before)
         machine.trigger_transition_by_label(result.to_label())
         if result is TransitionCallbackReturn.ERROR:
-            machine.trigger_transition_by_label(self._run_callback(before).to_label())
+            machine.trigger_transition_by_label(self._run_callback_(before).to_label())
         return result
 
-    def _run_callback(self, before: LifecycleState) -> TransitionCallbackReturn:
+    def _run_callback_(self, before: LifecycleState) -> TransitionCallbackReturn:
         """Run the callback of the current state; one that raises, or says nothing of how it went, is an ERROR."""
         name = CALLBACKS[self._state_machine.current_state[0]]
         try:
@@ -182,10 +182,10 @@ class LifecycleNodeMixin(ManagedEntity):
         except (ExternalShutdownException, KeyboardInterrupt):
             raise
         except Exception:  # noqa: BLE001 - what a callback raises is what on_error is for
-            self._node.get_logger().error(f"{name} failed:\n{traceback.format_exc().rstrip()}")
+            self._node_.get_logger().error(f"{name} failed:\n{traceback.format_exc().rstrip()}")
             return TransitionCallbackReturn.ERROR
 
-    def _tell_entities(self, name: str, state: LifecycleState) -> TransitionCallbackReturn:
+    def _tell_entities_(self, name: str, state: LifecycleState) -> TransitionCallbackReturn:
         for entity in list(self._managed_entities):
             result = _checked(getattr(entity, name)(state), name, entity)
             if result is not TransitionCallbackReturn.SUCCESS:

@@ -57,7 +57,7 @@ class MessageMeta(msgspec.StructMeta):
         full_name = type_name or _type_name(namespace["__module__"], namespace["__qualname__"])
         for base in bases:
             if getattr(base, "__ros_fields__", None):
-                raise MessageError(f"{full_name}: a message cannot extend another ({base.__name__}): make it a field")
+                return _Extended.__new__(_Extended, name, bases, namespace, full_name)
         annotations = ros.evaluate(_annotations(namespace), namespace["__module__"], sys._getframe(1))
         fields, constants = _read(annotations, namespace, full_name)
         defaults = {field: namespace[field] for field in fields if field in namespace}
@@ -84,6 +84,37 @@ class MessageMeta(msgspec.StructMeta):
         for field, kind in converted.items():
             setattr(cls, field, (_FixedNumbers if kind.shape == "array" else _Numbers)(cls, field, kind))
         return cls
+
+
+class _Extended(MessageMeta):
+    """Makes the class of a message that adds methods and attributes, but no fields, to another message."""
+
+    def __new__(mcls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], type_name: str = "") -> Any:
+        if _annotations(namespace):
+            raise MessageError(
+                f"{type_name or name}: a message cannot extend another ({bases[-1].__name__}): make it a field"
+            )
+        init = namespace.pop("__init__", None)  # msgspec takes none
+        namespace.setdefault("__reduce__", _parts)
+        cls = msgspec.StructMeta.__new__(mcls, name, bases, namespace, eq=False, gc=True, dict=True)
+        if init is not None:
+            type.__setattr__(cls, "__init__", init)
+        return cls
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        made = _bare(self)
+        type(made).__init__(made, *args, **kwargs)
+        return made
+
+
+def _bare(cls: Any) -> Any:
+    """Make such a message without its own constructor."""
+    return msgspec.StructMeta.__call__(cls)
+
+
+def _parts(message: Any) -> Any:
+    """Say of what a copy is made, as `copy` and `pickle` ask it."""
+    return _bare, (type(message),), (vars(message), {name: getattr(message, name) for name in message.__ros_fields__})
 
 
 def _annotations(namespace: dict[str, Any]) -> dict[str, Any]:
@@ -313,6 +344,17 @@ else:
             return f"{package}.{kind}.{name}({', '.join(_shown_fields(self))})"
 
 
+def _set_fields(message: Any, **fields: Any) -> None:
+    for name, value in fields.items():
+        if name not in message.__ros_fields__:
+            raise TypeError(f"{message.__ros_type__} has no field {name!r}, only {', '.join(message.__ros_fields__)}")
+        setattr(message, name, value)
+
+
+if not TYPE_CHECKING:
+    Message.__init__ = _set_fields  # for those that extend a message: see `_Extended`
+
+
 def _same(left: Any, right: Any) -> bool:
     if hasattr(left, "__array_interface__") or hasattr(right, "__array_interface__"):
         import numpy as np
@@ -328,7 +370,7 @@ def _shown_fields(message: Any) -> Iterator[str]:
 
 
 def message_type(cls: Any) -> type[Message]:
-    """Give `cls` back if it is a message class. Raises MessageError otherwise."""
+    """Give `cls` back if it is a message class, or the one that it extends. Raises MessageError otherwise."""
     if isinstance(cls, type) and hasattr(cls, "__ros_fields__"):
-        return cls
+        return next(each for each in cls.__mro__ if "__ros_fields__" in vars(each))
     raise MessageError(f"{cls!r} is no message class")

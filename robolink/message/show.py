@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.message.convert import to_builtins
+from robolink.message.slot_types import IDL_NAMES
 
 if TYPE_CHECKING:
     from robolink.message.annotations import FieldType
@@ -17,9 +18,6 @@ LONGEST = 128
 
 WIDEST = 2**31 - 1
 """Columns of a line of YAML: it is never broken."""
-
-_C_NAMES = {"float32": "float", "float64": "double", "bool": "boolean", "byte": "octet", "char": "uint8"}
-"""What ROS's primitives are called where a sequence is only described."""
 
 
 class Style(NamedTuple):
@@ -117,7 +115,7 @@ def _text(value: str, style: Style) -> str:
 
 
 def _described(value: Any, kind: FieldType) -> str:
-    name = _C_NAMES.get(kind.base, kind.base)
+    name = IDL_NAMES.get(kind.base, kind.base)
     if kind.shape == "array":
         return f"<array type: {name}[{kind.size}]>"
     bound = f"[{kind.size}]" if kind.shape == "bounded" else ""

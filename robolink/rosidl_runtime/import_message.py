@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 from robolink.exceptions import NotFoundError
 from robolink.interfaces import ACTION_PARTS, KINDS, find, find_announced, names
@@ -18,24 +18,13 @@ class PackageOfTypeNotFoundError(NotFoundError, ModuleNotFoundError):  # type: i
 
 
 class Namespaced(Protocol):
-    """What rosidl_parser's NamespacedType is, and the one below."""
+    """What rosidl_parser's NamespacedType is, and that of `message.slot_types`."""
 
     @property
     def namespaces(self) -> Sequence[str]: ...  # noqa: D102 - package and kind
 
     @property
     def name(self) -> str: ...  # noqa: D102
-
-
-class NamespacedType(NamedTuple):
-    """A type's name in parts: ``(["std_msgs", "msg"], "String")``."""
-
-    namespaces: list[str]
-    name: str
-
-    def namespaced_name(self) -> tuple[str, ...]:
-        """Give all parts."""
-        return (*self.namespaces, self.name)
 
 
 def import_message_from_namespaced_type(message_type: Namespaced) -> Any:

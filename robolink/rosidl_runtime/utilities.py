@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from robolink.exceptions import MessageError
-from robolink.rosidl_runtime.import_message import NamespacedType, import_message_from_namespaced_type
+from robolink.message.slot_types import NamespacedType
+from robolink.rosidl_runtime.import_message import import_message_from_namespaced_type
 
 
 def get_interface(identifier: str) -> Any:
@@ -73,7 +74,7 @@ def _parted(identifier: str, kind: str = "") -> NamespacedType:
         namespaces.append(kind)
     if len(namespaces) != 2 or not all((*namespaces, name)):
         raise MessageError(f"Expected the full name of a type, as std_msgs/msg/String, got '{identifier}'")
-    return NamespacedType(namespaces, name)
+    return NamespacedType(tuple(namespaces), name)
 
 
 def _checked(found: NamespacedType, identifier: str, what: str, is_right: Any) -> Any:

@@ -12,8 +12,9 @@ Everything is imported when it is first used: commands that only look at transfo
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from robolink.lacking import lazily
 
 if TYPE_CHECKING:
     from robolink.interfaces.geometry_msgs.msg import TransformStamped
@@ -91,16 +92,4 @@ _HOMES = {
 }
 _ROOMS = frozenset(_HOMES.values()) | {"geometry", "point_cloud"}
 
-
-def __getattr__(name: str) -> Any:
-    if name in _ROOMS:
-        return importlib.import_module(f"robolink.tf2.{name}")
-    if name not in _HOMES:
-        raise AttributeError(f"module 'robolink.tf2' has no attribute '{name}'")
-    value = getattr(importlib.import_module(f"robolink.tf2.{_HOMES[name]}"), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__, *_ROOMS})
+__getattr__, __dir__ = lazily(__name__, _HOMES, _ROOMS)

@@ -220,9 +220,7 @@ class BufferCore:
         ways = ((fixed_frame, source_frame, source_time), (target_frame, fixed_frame, target_time))
         for target, source, time in ways:
             with self._lock:
-                (up, down), _ = self._tree.path(target, source, nanoseconds(time), "chain argument")
-            names += [link.parent for link in up]
-            names += [*(link.parent for link in reversed(down[:-1])), target] if down else []
+                names += self._tree.chain(target, source, nanoseconds(time), "chain argument")[1:]
         return names
 
 

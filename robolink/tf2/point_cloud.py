@@ -8,18 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from robolink.exceptions import RobolinkError
 from robolink.interfaces.geometry_msgs.msg import Transform, TransformStamped
 from robolink.interfaces.sensor_msgs.msg import PointCloud2, PointField
 from robolink.interfaces.std_msgs.msg import Header
+from robolink.point_cloud2 import PointCloudError, row_step_of
 from robolink.tf2.buffer_interface import ConvertRegistration, TransformRegistration
 from robolink.tf2.geometry import from_msg_msg, rotation_of, to_msg_msg
 
 FLOATS = {PointField.FLOAT32: "f4", PointField.FLOAT64: "f8"}
-
-
-class PointCloudError(RobolinkError, ValueError):
-    """A point cloud without coordinates, or with fewer bytes than it states."""
 
 
 def transform_points(point_cloud: NDArray[Any], transform: Transform) -> NDArray[Any]:
@@ -60,14 +56,8 @@ def _coordinates(cloud: PointCloud2, data: bytearray) -> list[NDArray[Any]]:
     fields = {each.name: each for each in cloud.fields}
     if not {"x", "y", "z"} <= fields.keys():
         there = ", ".join(fields) or "none"
-        raise PointCloudError(f"Point cloud needs the fields x, y, and z for the transformation; it has {there}")
-    row_step = cloud.row_step or cloud.width * cloud.point_step
-    needed = (cloud.height - 1) * row_step + cloud.width * cloud.point_step if cloud.height else 0
-    if needed > len(data) or row_step < cloud.width * cloud.point_step:
-        raise PointCloudError(
-            f"a cloud of {cloud.height} x {cloud.width} points of {cloud.point_step} bytes, a row every {row_step},"
-            f" has {len(data)} bytes"
-        )
+        raise PointCloudError(f"a cloud without x, y and z cannot be moved to another frame: its fields are {there}")
+    row_step = row_step_of(cloud)
     return [_column(cloud, fields[name], data, row_step) for name in "xyz"]
 
 

@@ -112,6 +112,12 @@ class Tree:
         common = min(stamps, default=LATEST)
         return path if len(stamps) < 2 else self._path(target, source, common), common
 
+    def chain(self, target: str, source: str, time: int, asker: str) -> list[str]:
+        """Give the frames from source to target, both with them. Raises what `path` raises."""
+        (up, down), _ = self.path(target, source, time, asker)
+        names = [source, *(link.parent for link in up)]
+        return [*names, *(link.parent for link in reversed(down[:-1])), target] if down else names
+
     def _path(self, target: str, source: str, time: int) -> Path:
         """Give the links from both frames up to the first frame that they share, and no further."""
         up: list[Link] = []

@@ -125,9 +125,9 @@ class News:
 
 
 def check(contexts: list[Context]) -> None:
-    """Raise InterruptedByUser or ExternalShutdownException when one of them has ended."""
+    """Raise InterruptedByUser (in the main thread) or ExternalShutdownException when one of them has ended."""
     for context in contexts:
-        if context.interrupted:
+        if context.interrupted and threading.current_thread() is threading.main_thread():
             raise InterruptedByUser
         if not context.ok():
             raise ExternalShutdownException("the context ended before the transform came")

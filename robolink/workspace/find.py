@@ -20,6 +20,11 @@ from robolink.workspace.source import Folder, NodeSource, canonical
 VARIABLE = "ROBOLINK_WORKSPACE"
 ENTRY_POINTS = "robolink.nodes"
 YAML = (".yaml", ".yml")
+ROS_NODES = {
+    ("teleop_twist_keyboard", "teleop_twist_keyboard"): "teleop",
+    ("tf2_ros", "static_transform_publisher"): "static_transform_publisher",
+}
+"""Executables of ROS 2's own packages, and the node of robolink's that does the same."""
 PARTS = ("nodes", "configs", "interfaces")
 
 
@@ -37,6 +42,12 @@ def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
         if canonical(source.name) == asked:
             return NodeSource(source.name, source.path, attribute, source.entry_point)
     raise _no_node(file, workspace)
+
+
+def find_ros_node(package: str, name: str) -> NodeSource | None:
+    """Give the built-in node that stands for an executable of ROS 2's own; None where there is none."""
+    known = ROS_NODES.get((canonical(package), canonical(name)))
+    return None if known is None else NodeSource(known, built_in_workspace() / f"nodes/{known}.py")
 
 
 def find_package(name: str, *, workspace: Folder = None) -> Path | None:

@@ -13,7 +13,6 @@ module folder and of its `nodes/`, by their names without `.py`. `_` and `-` in 
 
 from __future__ import annotations
 
-import functools
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -21,32 +20,39 @@ from pathlib import Path
 from robolink.workspace.source import NodeSource, canonical
 
 BUILT_IN = "robolink"
-DEEPEST = 3
+DEEPEST = 8
 """Folders between `src/` and a package's own, at most."""
 MOST = 2000
 """Folders that are looked into: a `src/` that has more is no workspace's."""
 IGNORE = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 _NO_PACKAGES = ("build", "install", "log", "node_modules", "__pycache__")
 
+_known: dict[Path, tuple[dict[Path, int], dict[str, Path]]] = {}
+"""By workspace: what was looked into, with the time of its last change, and the packages found."""
+
 
 def source_packages(top: Path) -> dict[str, Path]:
     """Give the packages in a workspace's `src/`, else `top` itself where it is one: name to folder.
 
-    The folders are looked through once a process.
+    The folders are looked through again only when one of them, or a package.xml, has changed.
     """
-    return _source_packages(str(top))
-
-
-@functools.lru_cache(maxsize=64)
-def _source_packages(top: str) -> dict[str, Path]:
-    folder = Path(top)
-    found: dict[str, Path] = {}
-    left = [MOST]
-    for each in _packages_below(folder / "src", DEEPEST, left):
-        found.setdefault(_name_of(each), each)
-    if not found and _is_package(folder):
-        found[_name_of(folder)] = folder
+    seen, found = _known.get(top, ({}, {}))
+    if not seen or any(_changed(path) != at for path, at in seen.items()):
+        seen, found = {path: _changed(path) for path in (top, top / "package.xml")}, {}
+        for each in _packages_below(top / "src", seen):
+            found.setdefault(_name_of(each), each)
+        if not found and _is_package(top):
+            found[_name_of(top)] = top
+        _known[top] = seen, found
     return found
+
+
+def _changed(path: Path) -> int:
+    """When a file or folder was last changed; 0 where there is none."""
+    try:
+        return path.stat().st_mtime_ns
+    except OSError:
+        return 0
 
 
 def is_ros_workspace(folder: Path) -> bool:
@@ -54,11 +60,6 @@ def is_ros_workspace(folder: Path) -> bool:
     if not (folder / "src").is_dir():
         return False
     return any((each / "package.xml").is_file() for each in source_packages(folder).values() if each != folder)
-
-
-def forget_packages() -> None:
-    """Look through the folders again when they are next asked for."""
-    _source_packages.cache_clear()
 
 
 def executables(folder: Path) -> dict[str, NodeSource]:
@@ -96,16 +97,26 @@ def import_roots(folder: Path) -> list[Path]:
     return list(dict.fromkeys(each.parent for each in _module_folders(folder)))
 
 
-def _packages_below(folder: Path, depth: int, left: list[int]) -> Iterator[Path]:
-    """Yield the packages in a folder, by name; there are none within a package."""
-    for each in _folders_in(folder):
-        left[0] -= 1
-        if left[0] < 0:
-            return
-        if _is_package(each):
-            yield each
-        elif depth > 1 and not any((each / mark).exists() for mark in IGNORE):
-            yield from _packages_below(each, depth - 1, left)
+def _packages_below(top: Path, seen: dict[Path, int]) -> Iterator[Path]:
+    """Yield the packages in a folder, the nearest first, then by name; there are none within a package.
+
+    `seen` gets what a change of would change the answer, and when it last changed.
+    """
+    level, left = [top], MOST
+    seen[top] = _changed(top)
+    for _ in range(DEEPEST):
+        below = []
+        for each in (inside for folder in level for inside in _folders_in(folder)):
+            left -= 1
+            if left < 0:
+                return
+            seen[each] = _changed(each)
+            if _is_package(each):
+                seen[each / "package.xml"] = _changed(each / "package.xml")
+                yield each
+            elif not any((each / mark).exists() for mark in IGNORE):
+                below.append(each)
+        level = below
 
 
 def _folders_in(folder: Path) -> list[Path]:

@@ -31,23 +31,19 @@ def _noun() -> None:
 @app.command("list")
 def list_actions(show_types: ShowTypes = False, count: Count = False, as_json: AsJson = False) -> None:
     """List the actions that are served or that have a client."""
-    from robolink.cli.session import looking, say, say_json
+    from robolink.cli.names import show_names
+    from robolink.cli.session import looking
 
     with looking() as context:
         actions = _types(context)
-    if as_json:
-        say_json(actions)
-    elif count:
-        say(str(len(actions)))
-    else:
-        for name, types in actions.items():
-            say(f"{name} [{', '.join(types)}]" if show_types else name)
+    show_names(actions, types=show_types, count=count, json=as_json)
 
 
 @app.command("type")
 def show_type(action: Action, as_json: AsJson = False) -> None:
     """Show the type of an action."""
-    from robolink.cli.session import absolute, looking, say, say_json
+    from robolink.cli.names import show_types
+    from robolink.cli.session import absolute, looking
     from robolink.exceptions import NotFoundError, shown
 
     name = absolute(action)
@@ -55,10 +51,7 @@ def show_type(action: Action, as_json: AsJson = False) -> None:
         actions = _types(context)
     if name not in actions:
         raise NotFoundError("action", shown(name), actions, f"domain {context.get_domain_id()}")
-    if as_json:
-        say_json(actions[name])
-    else:
-        say("\n".join(actions[name]))
+    show_types(actions[name], json=as_json)
 
 
 @app.command("find")
@@ -75,19 +68,12 @@ def find(
     as_json: AsJson = False,
 ) -> None:
     """List the actions of a type."""
-    from robolink.cli.session import looking, say, say_json
-    from robolink.interfaces import is_named
+    from robolink.cli.names import show_of_type
+    from robolink.cli.session import looking
 
     with looking() as context:
         actions = _types(context)
-    found = [name for name, types in actions.items() if any(is_named(each, type_) for each in types)]
-    if as_json:
-        say_json(found)
-    elif count:
-        say(str(len(found)))
-    else:
-        for name in found:
-            say(name)
+    show_of_type(actions, type_, count=count, json=as_json)
 
 
 @app.command("info")

@@ -6,9 +6,9 @@ import time
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli.elsewhere import domains_with, hint
+from robolink.cli.elsewhere import no_such_node
 from robolink.cli.session import absolute, is_hidden, node_of
-from robolink.exceptions import RobolinkError, ServiceError, nearest, shown
+from robolink.exceptions import RobolinkError, ServiceError, shown
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.lifecycle_msgs.srv import ChangeState, GetAvailableTransitions, GetState
 from robolink.wire import EndpointKind
@@ -50,9 +50,7 @@ def known(context: Context, node: str) -> str:
         return name
     if name in {each.full_node_name for each in context.graph.nodes()}:
         raise LifecycleCommandError(f"{name} is not managed: it does not serve {name}{STATE}")
-    elsewhere = hint(domains_with(context, name + STATE, EndpointKind.SERVICE))
-    near = elsewhere or nearest(name, [each for each in names if not is_hidden(each)])
-    raise LifecycleCommandError(f"no node named '{shown(name)}' in domain {context.get_domain_id()}{near}")
+    raise LifecycleCommandError(no_such_node(context, name, name + STATE, names))
 
 
 def states(context: Context, names: Iterable[str]) -> tuple[dict[str, State], list[RobolinkError]]:
@@ -112,7 +110,7 @@ def _ask(
     with SingleThreadedExecutor(context=context) as executor:
         asker = node_of(context)
         executor.add_node(asker)
-        futures = {name: asker.create_client(srv_type, name).call_async(each) for name, each in requests.items()}
+        futures = {name: asker.create_client(srv_type, name).try_call_async(each) for name, each in requests.items()}
         for future in futures.values():
             executor.spin_until_future_complete(future, timeout_sec=max(0.0, deadline - time.monotonic()))
             if not context.ok():

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli.elsewhere import domains_with, hint
+from robolink.cli.elsewhere import no_such_node
 from robolink.cli.session import absolute, looking, node_of
-from robolink.exceptions import ExternalShutdownException, NotFoundError, RobolinkError, nearest, shown
+from robolink.exceptions import ExternalShutdownException, NotFoundError, RobolinkError, shown
 from robolink.interfaces.rcl_interfaces import srv
 from robolink.interfaces.rcl_interfaces.msg import (
     Parameter,
@@ -88,7 +88,7 @@ class Asked:
     def _call(self, srv_type: type[Any], name: str, request: Any) -> Any:
         client = self._asker.create_client(srv_type, f"{self.name}/{name}")
         try:
-            return client.call(request, timeout_sec=ANSWER_WITHIN)
+            return client.try_call(request, timeout_sec=ANSWER_WITHIN)
         except TimeoutError:
             raise ParameterCommandError(
                 f"no answer within {ANSWER_WITHIN:g} s from {client.srv_name}: does the node spin?"
@@ -118,19 +118,17 @@ def serves(context: Context, name: str, timeout: float = 0.0) -> bool:
     def is_there() -> bool:
         return context.graph.count(EndpointKind.SERVICE, f"{name}/set_parameters") > 0
 
-    context.graph.wait_for(lambda: is_there() or not context.ok(), timeout)
+    found = context.wait_until(is_there, timeout)
     if not context.ok():
         raise KeyboardInterrupt
-    return is_there()
+    return found
 
 
 def _absent(context: Context, name: str) -> RobolinkError:
     known = [each.full_node_name for each in context.graph.nodes()]
     if name in known:
         return ParameterCommandError(f"{name} has no parameter services: it was made without them")
-    elsewhere = hint(domains_with(context, f"{name}/set_parameters", EndpointKind.SERVICE))
-    near = elsewhere or nearest(name, [each for each in known if "/_" not in each])
-    return ParameterCommandError(f"no node named '{shown(name)}' in domain {context.get_domain_id()}{near}")
+    return ParameterCommandError(no_such_node(context, name, f"{name}/set_parameters", known))
 
 
 def _listed(names: Sequence[str]) -> str:

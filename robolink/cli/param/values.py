@@ -89,7 +89,8 @@ def as_file(node: str, values: dict[str, Any]) -> str:
     import yaml
 
     document = {node: {PARAMETERS_KEY: nested(values)}}
-    return yaml.dump(document, Dumper=_dumper(), default_flow_style=False, allow_unicode=True, width=2**31 - 1).rstrip()
+    text = yaml.dump(document, Dumper=_dumper(), default_flow_style=False, allow_unicode=True, width=2**31 - 1)
+    return str(text).removesuffix("\n")
 
 
 def nested(values: dict[str, Any]) -> dict[str, Any]:

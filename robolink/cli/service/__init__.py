@@ -37,31 +37,24 @@ def list_services(
     as_json: AsJson = False,
 ) -> None:
     """List the services that are served or called."""
-    from robolink.cli.session import is_hidden, looking, say, say_json
+    from robolink.cli.names import show_names
+    from robolink.cli.session import looking
 
     with looking() as context:
-        services = {name: types for name, types in _types(context).items() if hidden or not is_hidden(name)}
-    if as_json:
-        say_json(services)
-    elif count:
-        say(str(len(services)))
-    else:
-        for name, types in services.items():
-            say(f"{name} [{', '.join(types)}]" if show_types else name)
+        services = _types(context, hidden=hidden)
+    show_names(services, types=show_types, count=count, json=as_json)
 
 
 @app.command("type")
 def show_type(service: Service, hidden: Hidden = False, as_json: AsJson = False) -> None:
     """Show the type of a service."""
-    from robolink.cli.session import looking, say, say_json
+    from robolink.cli.names import show_types
+    from robolink.cli.session import looking
 
     with looking() as context:
-        types = _types(context)
-        name = _known(context, service, types)
-    if as_json:
-        say_json(types[name])
-    else:
-        say("\n".join(types[name]))
+        services = _types(context)
+        name = _known(context, service, services)
+    show_types(services[name], json=as_json)
 
 
 @app.command("find")
@@ -75,19 +68,12 @@ def find(
     as_json: AsJson = False,
 ) -> None:
     """List the services of a type."""
-    from robolink.cli.session import is_hidden, looking, say, say_json
-    from robolink.interfaces import is_named
+    from robolink.cli.names import show_of_type
+    from robolink.cli.session import looking
 
     with looking() as context:
-        services = {name: types for name, types in _types(context).items() if hidden or not is_hidden(name)}
-    found = [name for name, types in services.items() if any(is_named(each, type_) for each in types)]
-    if as_json:
-        say_json(found)
-    elif count:
-        say(str(len(found)))
-    else:
-        for name in found:
-            say(name)
+        services = _types(context, hidden=hidden)
+    show_of_type(services, type_, count=count, json=as_json)
 
 
 @app.command("info")
@@ -169,13 +155,14 @@ def echo_events(
     echo.run(service, type_, echo.Format(style, csv, as_json), once=once)
 
 
-def _types(context: Context) -> dict[str, list[str]]:
+def _types(context: Context, *, hidden: bool = True) -> dict[str, list[str]]:
     """Give every service with its types, sorted; also those that are only called, as in ros2."""
-    from robolink.cli.session import endpoints
+    from robolink.cli.session import endpoints, is_hidden
     from robolink.graph import names_and_types
     from robolink.wire import EndpointKind
 
-    return dict(names_and_types(endpoints(context, EndpointKind.SERVICE, EndpointKind.CLIENT)))
+    found = names_and_types(endpoints(context, EndpointKind.SERVICE, EndpointKind.CLIENT))
+    return {name: types for name, types in found if hidden or not is_hidden(name)}
 
 
 def _known(context: Context, service: str, services: dict[str, list[str]]) -> str:

@@ -39,11 +39,9 @@ def run(source: str, target: str, period: float, *, json: bool) -> None:
 def _chain(watch: Watch, source: str, target: str) -> list[str] | None:
     """Give the frames from one to the other; None while nothing connects them."""
     try:
-        (up, down), _ = watch.tree.path(target, source, LATEST, ASKER)
+        return watch.tree.chain(target, source, LATEST, ASKER)
     except TransformException:
         return None
-    names = [source, *(link.parent for link in up)]
-    return [*names, *(link.parent for link in reversed(down[:-1])), target] if down else names
 
 
 def _shown(watch: Watch, chain: list[str] | None) -> list[Seen]:

@@ -73,8 +73,8 @@ class Watch:
         """Called after each message."""
         self._names: dict[bytes, str] = {}
         for topic, static in zip(self.topics, (False, True), strict=True):
-            heard = _Heard(node._owner, TFMessage, topic, self._taker(static), ReentrantCallbackGroup(), QOS[static])
-            node._add(heard, node._subscriptions)
+            heard = _Heard(node._owner_, TFMessage, topic, self._taker(static), ReentrantCallbackGroup(), QOS[static])
+            node._add_subscription_(heard)
         self._executor = SingleThreadedExecutor(context=node.context)
         self._executor.add_node(node)
 

@@ -95,7 +95,7 @@ class Arrivals:
         return [each for each in publishers if (each.name, each.type_name, each.type_hash) not in self._heard]
 
     def _subscribe(self, publisher: EndpointToken, take: Take) -> None:
-        transport, owner = self._context.transport, self._node._owner
+        transport, owner = self._context.transport, self._node._owner_
         key = format_key(DataKey(publisher.domain, publisher.name, publisher.type_name, publisher.type_hash))
         self._declared.append(transport.subscribe(key, QOS, functools.partial(self._arrival, take)))
         own = EndpointToken(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
+from robolink.cli.names import show_names, show_of_type, show_types
 from robolink.cli.session import absolute, announced, endpoints, is_hidden, looking, say, say_json, tell
 from robolink.duration import Infinite
 from robolink.exceptions import MessageError, NotFoundError, nearest, shown
@@ -29,16 +30,13 @@ def list_topics(*, types: bool, count: bool, verbose: bool, hidden: bool, json: 
     with looking() as context:
         found = [each for each in _ends(context) if hidden or not is_hidden(each.name)]
     topics = names_and_types(found)
-    if json:
-        say_json(len(topics) if count else _details(found) if verbose else dict(topics))
-    elif count:
-        say(str(len(topics)))
-    elif verbose and topics:
+    if count or not (verbose and topics):
+        show_names(dict(topics), types=types, count=count, json=json)
+    elif json:
+        say_json(_details(found))
+    else:
         say(_section("Published", "publisher", found, EndpointKind.PUBLISHER))
         say(_section("Subscribed", "subscriber", found, EndpointKind.SUBSCRIPTION))
-    else:
-        for name, known in topics:
-            say(f"{name} [{', '.join(known)}]" if types else name)
 
 
 def show_info(topic: str, *, verbose: bool, json: bool) -> None:
@@ -64,8 +62,7 @@ def show_type(topic: str, *, json: bool) -> None:
     """Say of which type a topic is: a line for each, where there are several."""
     with looking() as context:
         _, found = _of_topic(context, topic)
-    types = sorted({each.type_name for _, each in found})
-    say_json(types) if json else say("\n".join(types))
+    show_types(sorted({each.type_name for _, each in found}), json=json)
 
 
 def find_topics(type_: str, *, count: bool, hidden: bool, json: bool) -> None:
@@ -77,14 +74,8 @@ def find_topics(type_: str, *, count: bool, hidden: bool, json: bool) -> None:
         )
     with looking() as context:
         ends = [each for each in _ends(context) if hidden or not is_hidden(each.name)]
-    names = sorted({each.name for each in ends if is_named(each.type_name, type_)})
-    if json:
-        say_json(len(names) if count else names)
-    elif count:
-        say(str(len(names)))
-    elif names:
-        say("\n".join(names))
-    else:
+    show_of_type(dict(names_and_types(ends)), type_, count=count, json=json)
+    if not (count or json or any(is_named(each.type_name, type_) for each in ends)):
         tell(f"no topic is of type {shown(type_)}{nearest(type_, _spellings(ends))}")
 
 
