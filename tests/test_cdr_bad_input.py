@@ -49,7 +49,7 @@ from robolink.message import (
 HEAD = b"\x00\x01\x00\x00"
 DAEH = b"\x00\x00\x00\x00"
 """The encapsulation headers of little- and big-endian messages."""
-QUICK = settings(deadline=None, suppress_health_check=list(HealthCheck), max_examples=60)
+QUICK = settings(deadline=None, suppress_health_check=list(HealthCheck), max_examples=30)
 
 
 class Mixed(Message):
@@ -110,12 +110,12 @@ def test_cut_off_anywhere(sample: Any) -> None:
         assert str(error).startswith(f"{type_name(type(sample))}: ")
 
 
-@pytest.mark.parametrize("name", names("msg"))
-def test_every_type_cut_off_anywhere(name: str) -> None:
-    cls: Any = find(name)
-    data = encode(cls())
-    for length in range(len(data)):
-        assert isinstance(message_or_error(cls, data[:length]), DecodeError)
+def test_every_type_cut_off_anywhere() -> None:
+    for name in names("msg"):
+        cls: Any = find(name)
+        data = encode(cls())
+        for length in range(len(data)):
+            assert isinstance(message_or_error(cls, data[:length]), DecodeError), name
 
 
 @each_sample

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import importlib
 import inspect
 import os
@@ -53,6 +54,12 @@ def _forget() -> None:
     for name in filter(_is_ros, list(sys.modules)):
         del sys.modules[name]
     vars(robolink).pop("compat", None)
+    for module in [each for name, each in sys.modules.items() if name.startswith("robolink.")]:
+        asked = vars(module).get("__getattr__")
+        if isinstance(asked, functools.partial):  # with robolink's own at the end, if there is one
+            vars(module).update(__getattr__=asked.args[-1])
+            if asked.args[-1] is None:
+                del vars(module)["__getattr__"]
 
 
 @pytest.fixture

@@ -203,9 +203,9 @@ CALLEES = [
 ]
 
 
-@pytest.mark.parametrize("callee", CALLEES, ids=lambda each: each.path)
-def test_every_signature_takes_what_rclpys_takes(callee: Callee) -> None:
-    assert difference(their_parameters(callee), our_parameters(callee)) == ""
+def test_every_signature_takes_what_rclpys_takes() -> None:
+    said = {each.path: difference(their_parameters(each), our_parameters(each)) for each in CALLEES}
+    assert {path: text for path, text in said.items() if text} == {}
 
 
 USED = [

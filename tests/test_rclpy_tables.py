@@ -89,40 +89,33 @@ def takes(function: Callable[..., Any], keyword: str) -> bool:
 # --- The walk ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", USE["module"])
-def test_what_programs_take_from_the_module_is_there(name: str) -> None:
-    found(name.removeprefix("rclpy."))
+def test_what_programs_take_from_the_module_is_there() -> None:
+    for name in USE["module"]:
+        found(name.removeprefix("rclpy."))
 
 
-@pytest.mark.parametrize("name", [each for each in USE["imports"] if each != "import rclpy"])
-def test_what_programs_import_is_there(name: str) -> None:
-    found(name.removeprefix("import ").removeprefix("rclpy."))
+def test_what_programs_import_is_there() -> None:
+    for name in USE["imports"]:
+        if name != "import rclpy":
+            found(name.removeprefix("import ").removeprefix("rclpy."))
 
 
-@pytest.mark.parametrize(
-    ("owner", "name"),
-    [
-        (owner, name)
-        for owner, names in USE["attributes"].items()
-        for name in names
-        if owner in CLASSES and f"{owner}.{name}" not in OTHERS
-    ],
-)
-def test_what_programs_use_of_an_object_is_there(owner: str, name: str) -> None:
-    assert hasattr(found(CLASSES[owner]), name) or f"{owner}.{name}" in OWN_ATTRIBUTES
+def test_what_programs_use_of_an_object_is_there() -> None:
+    used = {(owner, name) for owner, names in USE["attributes"].items() if owner in CLASSES for name in names}
+    lacking = {f"{owner}.{name}" for owner, name in used if not hasattr(found(CLASSES[owner]), name)}
+    assert lacking - {*OTHERS, *OWN_ATTRIBUTES} == set()
 
 
-@pytest.mark.parametrize(
-    ("function", "keyword"),
-    [
+def test_what_programs_pass_by_keyword_is_taken() -> None:
+    passed = [
         (function, keyword)
         for function, keywords in USE["keywords"].items()
         for keyword in keywords
         if f"{function}({keyword}=)" not in OTHERS and keyword not in FILTERS and function != "lookup_transform"
-    ],
-)
-def test_what_programs_pass_by_keyword_is_taken(function: str, keyword: str) -> None:
-    assert takes(found(FUNCTIONS[function]), keyword)
+    ]
+    assert [
+        f"{function}({keyword}=)" for function, keyword in passed if not takes(found(FUNCTIONS[function]), keyword)
+    ] == []
 
 
 @pytest.mark.parametrize("keyword", USE["keywords"]["lookup_transform"])
@@ -131,8 +124,12 @@ def test_what_programs_ask_of_a_buffer_is_taken(keyword: str) -> None:
     assert any(takes(each, keyword) for each in (buffer.lookup_transform, buffer.lookup_transform_full))
 
 
-@pytest.mark.parametrize("name", USE["types"])
-def test_every_type_that_programs_use_crosses_the_wire(name: str) -> None:
+def test_every_type_that_programs_use_crosses_the_wire() -> None:
+    for name in USE["types"]:
+        crosses_the_wire(name)
+
+
+def crosses_the_wire(name: str) -> None:
     made = found(f"interfaces.{name}")
     messages = {"msg": [made], "srv": [], "action": []}[name.split(".")[1]]
     messages += [

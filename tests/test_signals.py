@@ -182,10 +182,11 @@ DEAF = """
 LONELY = """
     rclpy.init()
     rate = Talker().create_rate(1.0)
-    print("spinning")
     try:
+        print("spinning")
         while rclpy.ok():
             rate.sleep()
+        sys.exit(3)
     except KeyboardInterrupt:
         sys.exit(3)
 """

@@ -114,7 +114,7 @@ def _say_where(fullname: str, module: Any) -> None:
         cls = getattr(module, short)
         parts = {f"{short}_{part}": vars(cls)[part] for part in PARTS if part in vars(cls)}
         for name, each in {short: cls, **parts}.items():
-            each.__module__, each.__name__, each.__qualname__ = f"{fullname}._{snake_case(short)}", name, name
+            each.__module__, each.__qualname__ = f"{fullname}._{snake_case(short)}", name
 
 
 def _asked(fullname: str, module: ModuleType, own: Callable[[str], Any] | None, name: str) -> Any:
