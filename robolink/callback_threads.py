@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from robolink.callback_groups import CallbackGroup
 from robolink.entity import Entity
 from robolink.inbox import A_WHILE, Inbox
+from robolink.queues import get_within
 from robolink.task import Future
 
 if TYPE_CHECKING:
@@ -145,7 +146,7 @@ class CallbackThreads:
         if desk.deadline is not None and not self._time.virtual:
             left = min(A_WHILE, max(0.0, (desk.deadline - self._time.steady()) / 1e9))
         try:
-            job = desk.jobs.get(timeout=left)
+            job = get_within(desk.jobs, left)
         except queue.Empty:
             job = None
         if job is not None:

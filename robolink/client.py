@@ -24,6 +24,7 @@ from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, encoder, service_type
 from robolink.qos import QoSProfile
+from robolink.queues import get_within
 from robolink.service_introspection import Introspection, introspect
 from robolink.service_introspection import ServiceIntrospectionState as ServiceIntrospectionState
 from robolink.task import Future
@@ -164,7 +165,7 @@ class Client(Receiver):
         reason: ServiceError | None = None
         while True:
             try:
-                answer = answers.get(timeout=None if deadline is None else max(0.0, deadline - time.monotonic()))
+                answer = answers.get() if deadline is None else get_within(answers, deadline - time.monotonic())
             except queue.Empty:
                 raise self._timeout(timeout_sec, reason) from None
             if answer is _RELEASED:

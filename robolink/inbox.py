@@ -21,6 +21,8 @@ from typing import Any, Protocol
 
 import msgspec
 
+from robolink.queues import get_within
+
 A_WHILE = 0.1 if sys.platform == "win32" else 0.5
 """Seconds of one wait at the most: on Windows Ctrl-C does not break into a wait, only between two of them."""
 
@@ -103,7 +105,7 @@ class Inbox:
         A while, since a signal that comes just before the wait begins would otherwise be noticed only at its end.
         """
         try:
-            return self._queue.get(timeout=A_WHILE if timeout is None else min(timeout, A_WHILE))
+            return get_within(self._queue, A_WHILE if timeout is None else min(timeout, A_WHILE))
         except queue.Empty:
             return None
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import gc
+import queue
 import sys
 import threading
 import weakref
@@ -15,6 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.inbox import Inbox, Mailbox, Sweeper
+from robolink.queues import get_within
 
 PATIENCE = 30.0
 
@@ -164,3 +166,23 @@ def test_an_inbox_that_was_let_go_is_not_swept() -> None:
     assert other.delivered.wait(PATIENCE)
     assert mine.got == []
     sweeper.close()
+
+
+def test_a_wait_that_is_shorter_than_the_call_ends() -> None:
+    """Python's own `SimpleQueue.get` waits for ever then, before 3.13: after a few hundred of these."""
+    inbox = Inbox()
+    for _ in range(20_000):
+        inbox.wake()
+        inbox.sweep()
+        assert inbox.wait(1e-6) is None
+
+
+def test_taking_from_a_queue_within_a_time() -> None:
+    source: queue.SimpleQueue[int] = queue.SimpleQueue()
+    for seconds in (-1.0, 0.0, 1e-6, 0.01):
+        source.put(1)
+        assert get_within(source, seconds) == 1
+        with pytest.raises(queue.Empty):
+            get_within(source, seconds)
+    threading.Timer(0.01, source.put, (2,)).start()
+    assert get_within(source, PATIENCE) == 2

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from types import FrameType
 from typing import TextIO, TypeAlias
 
+from robolink.queues import get_within
 from robolink.supervisor.guardian import Guardian
 from robolink.supervisor.lifeline import Lifeline
 from robolink.supervisor.policy import Action, Ask, Policy, Step
@@ -122,7 +123,7 @@ class Supervisor:
     def _next_event(self, deadline: float | None) -> _Event | None:
         timeout = _LOOK_UP if deadline is None else min(_LOOK_UP, max(0.0, deadline - self._clock()))
         try:
-            return self._events.get(timeout=timeout)
+            return get_within(self._events, timeout)
         except queue.Empty:
             return None
 

@@ -18,6 +18,7 @@ import zenoh
 
 from robolink.exceptions import TransportError
 from robolink.qos import DurabilityPolicy, QoSProfile, resolved
+from robolink.queues import get_within
 from robolink.transport import lifetime, network
 from robolink.transport import zenoh_declare as declare
 from robolink.transport import zenoh_handles as handles
@@ -197,7 +198,7 @@ def _settled(
         nonlocal news
         while (longest := min(left(), quiet)) > 0:
             try:
-                sample = arrived.get(timeout=longest)
+                sample = get_within(arrived, longest)
             except queue.Empty:
                 return
             if sample is None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from robolink.cli.doctor.facts import ClockOffset, Seen
 from robolink.exceptions import RobolinkError, WireError
+from robolink.queues import get_within
 from robolink.transport import connect
 from robolink.wire import (
     DataKey,
@@ -142,7 +143,7 @@ def _answered(
     deadline = time.monotonic() + CLOCKS_WITHIN
     while calls and (left := deadline - time.monotonic()) > 0:
         try:
-            server, sent, received, arrived = answers.get(timeout=left)
+            server, sent, received, arrived = get_within(answers, left)
         except queue.Empty:
             break
         if arrived is None:
