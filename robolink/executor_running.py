@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, cast
 
 from robolink.entity import Entity
-from robolink.exceptions import ExternalShutdownException, RobolinkError
+from robolink.exceptions import ExternalShutdownException, InvalidHandle, RobolinkError
 from robolink.executor_queue import ExecutorQueue
 from robolink.logging import get_logger
 from robolink.task import Future, Task
@@ -91,6 +91,8 @@ class ExecutorRunning(ExecutorQueue):
         """Log a callback's exception, with its traceback, in the name of its node; once, however often it passes."""
         if getattr(error, "__robolink_logged__", False):
             return
+        if isinstance(error, InvalidHandle) and not self._context.ok():
+            return  # another thread has ended the context meanwhile
         error.__robolink_logged__ = True  # type: ignore[attr-defined]
         owner = entity.origin.node
         name = "robolink" if owner is None else owner.get_logger().name

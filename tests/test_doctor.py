@@ -343,7 +343,7 @@ def routers_port(monkeypatch: pytest.MonkeyPatch) -> int:
 
 
 @pytest.fixture
-def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+def patient(monkeypatch: pytest.MonkeyPatch, patient_looks: None) -> None:
     """A doctor who gives a busy machine its time."""
     for name in ("ANSWER_WITHIN", "LOOK_WITHIN", "COUNT_WITHIN"):
         monkeypatch.setattr(facts, name, 10.0)

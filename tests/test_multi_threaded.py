@@ -12,6 +12,7 @@ from robolink import Context, Node
 from robolink.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from robolink.exceptions import InterruptedByUser
 from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from robolink.impl.log_output import Record
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.interfaces.std_srvs.srv import Trigger
 from tests.spins import numbers, spin_for, spin_until
@@ -162,6 +163,25 @@ def test_the_end_of_the_context_ends_the_spin_quietly(node: Node, context: Conte
     two.spin()
     assert not context.ok()
     two.spin_once()
+
+
+def test_what_the_end_of_the_context_takes_away_from_a_callback_is_no_fault_of_it(
+    node: Node, context: Context, two: MultiThreadedExecutor, log_lines: list[Record]
+) -> None:
+    publisher, tried = node.create_publisher(Int32, "topic", 1), threading.Event()
+
+    def end_and_go_on() -> None:
+        context.shutdown()
+        try:
+            publisher.publish(Int32())
+        finally:
+            tried.set()
+
+    node.create_guard_condition(end_and_go_on).trigger()
+    two.spin()
+    assert tried.wait(PATIENCE)
+    assert two.shutdown()
+    assert log_lines == []
 
 
 def test_an_interrupt_is_told(node: Node, context: Context, two: MultiThreadedExecutor) -> None:

@@ -39,7 +39,10 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     monkeypatch.delenv(VARIABLE, raising=False)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
-    monkeypatch.setattr(sys, "meta_path", list(sys.meta_path))
+    monkeypatch.setattr(sys, "meta_path", [each for each in sys.meta_path if each is not FINDER])
+    monkeypatch.setattr(FINDER, "makers", [])
+    for name in [each for each in sys.modules if each.partition(".")[0] in PACKAGES]:
+        monkeypatch.delitem(sys.modules, name)
     monkeypatch.setattr(interfaces, "_sources", ())
     monkeypatch.setattr(WORKSPACE_TYPES, "_added", [])
     before = dict(sys.modules)

@@ -14,7 +14,7 @@ from robolink.wire import EndpointKind, EndpointToken, graph_pattern, parse_toke
 if TYPE_CHECKING:
     from robolink.context import Context
 
-MOST = 4
+MOST = 8
 """So many other domains of this machine are joined for a look: each takes some 0.1 s."""
 
 PORTS_WITHIN = 0.5
