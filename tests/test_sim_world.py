@@ -9,7 +9,9 @@ import pytest
 
 from robolink.exceptions import RobolinkError
 from robolink.sim import CommandError, Pose, Robot, World, load_world
-from robolink.sim.odometry import Odometry, sinc, wrapped
+from robolink.sim.arithmetic import sinc
+from robolink.sim.motion import motion_of_one
+from robolink.sim.odometry import wrapped
 
 ROOM = "walls: [{polyline: [[0, 0], [8, 0], [8, 5], [0, 5]], closed: true}]\n"
 SHARP = "a_max: 500, alpha_max: 1000"
@@ -58,21 +60,22 @@ def test_odometry_stays_with_the_truth_through_changing_commands() -> None:
 
 
 def test_odometry_is_exact_in_one_step_or_many() -> None:
-    one, many = Odometry(1.0, 2.0, 0.5), Odometry(1.0, 2.0, 0.5)
-    one.advance(0.4, 0.3, 10.0)
-    for _ in range(1000):
-        many.advance(0.4, 0.3, 0.01)
+    one, many = (motion_of_one(dt, Pose(1.0, 2.0, 0.5), {}) for dt in (10.0, 0.01))
+    for motion, steps in ((one, 1), (many, 1000)):
+        motion.v, motion.w, motion.chord = 0.4, 0.3, sinc(0.3 * motion.dt / 2)
+        for _ in range(steps):
+            motion.count(None)
     assert (many.x, many.y, many.theta) == pytest.approx((one.x, one.y, one.theta), abs=1e-11)
 
 
 def test_speed_and_acceleration_are_limited() -> None:
     made = world("pose: [1, 2.5, 0], drive: {v_max: 0.5, w_max: 1.0, a_max: 0.5, alpha_max: 2}")
     robot = drive(made, 0.5, 9.0, -9.0)
-    assert robot.twist == pytest.approx((0.25, -1.0))
+    assert robot.twist[:2] == pytest.approx((0.25, -1.0))
     drive(made, 1.0, 9.0, -9.0)
-    assert robot.twist == pytest.approx((0.5, -1.0))
+    assert robot.twist[:2] == pytest.approx((0.5, -1.0))
     drive(made, 0.2, -9.0, 0.0)
-    assert robot.twist == pytest.approx((0.4, -0.6))
+    assert robot.twist[:2] == pytest.approx((0.4, -0.6))
 
 
 def test_the_robot_stops_when_no_command_comes() -> None:
@@ -207,3 +210,14 @@ def test_robots_that_run_into_each_other_both_count_it_once() -> None:
     assert (first.touching, second.touching) == (1, 1)
     drive(made, 2.0, -0.3)
     assert (first.touching, second.touching) == (0, 0)
+
+
+def test_odometry_does_not_notice_that_a_robot_is_pushed_aside() -> None:
+    made = world("pose: [4, 2.5, 0]", "obstacles: [{box: [0.5, 0.5], path: [[4, 1], [4, 3.5]], speed: 0.5}]\n")
+    robot = drive(made, 5.0, 0.0)
+    assert robot.pose.y == pytest.approx(3.5 + 0.25 + 0.17, abs=0.01)
+    assert robot.odometry.y == 2.5
+    slipping = world("pose: [4, 2.5, 0]", "obstacles: [{box: [0.5, 0.5], path: [[4, 1], [4, 4]], speed: 0.5}]\n")
+    robot = drive(slipping, 4.0, 0.0)
+    assert robot.twist.sideways == pytest.approx(0.5, abs=0.01)
+    assert robot.odometry_twist.sideways == 0.0

@@ -9,6 +9,7 @@ import contextlib
 import re
 import threading
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -116,6 +117,23 @@ def launch_files(ctx: Context, incomplete: str) -> list[str]:
 
         return offered((each.stem for each in list_launches(workspace=ctx.params.get("workspace") or None)), incomplete)
     return []
+
+
+def world_files(ctx: Context, incomplete: str) -> list[str]:
+    """Give the worlds that are known by name, and the folders and world files that begin so."""
+    with contextlib.suppress(Exception):
+        from robolink.workspace import list_worlds
+
+        known = [each.stem for each in list_worlds(workspace=ctx.params.get("workspace") or None)]
+        return offered([*known, *_files(incomplete, (".yaml", ".yml", ".wbt"))], incomplete)
+    return []
+
+
+def _files(incomplete: str, suffixes: tuple[str, ...]) -> list[str]:
+    """Give the folders, and the files of these kinds, whose paths begin so."""
+    folder, slash, _ = incomplete.rpartition("/")
+    found = [each for each in Path(folder + slash or ".").iterdir() if each.is_dir() or each.suffix in suffixes]
+    return [f"{folder}{slash}{each.name}{'/' if each.is_dir() else ''}" for each in found]
 
 
 def _endpoint_names(incomplete: str, *kinds: Any) -> list[str]:

@@ -3,8 +3,23 @@
 from robolink.sim.description import Pose, WorldDescription
 from robolink.sim.drive import CommandError
 from robolink.sim.lidar import Scan
-from robolink.sim.robot import Robot, Velocity
+from robolink.sim.placing import WorldError
+from robolink.sim.readings import Inertia, Reading, Velocity, WheelState
+from robolink.sim.robot import Robot
 from robolink.sim.world import World
 from robolink.sim.worldfile import load_world
 
-__all__ = ["CommandError", "Pose", "Robot", "Scan", "Velocity", "World", "WorldDescription", "load_world"]
+__all__ = [
+    "CommandError",
+    "Inertia",
+    "Pose",
+    "Reading",
+    "Robot",
+    "Scan",
+    "Velocity",
+    "WheelState",
+    "World",
+    "WorldDescription",
+    "WorldError",
+    "load_world",
+]

@@ -6,7 +6,8 @@ Metres, radians (degrees where a field of view is meant), seconds, kilograms. Po
 from __future__ import annotations
 
 import math
-from typing import Annotated, TypeAlias
+from collections.abc import Iterator, Sequence
+from typing import Annotated, Literal, TypeAlias
 
 from msgspec import Meta, Struct
 
@@ -43,6 +44,7 @@ class Wall(Struct, frozen=True, forbid_unknown_fields=True):
 
     polyline: Annotated[tuple[Point, ...], Meta(min_length=2)]
     closed: bool = False
+    reflectance: Share = 1.0
 
     def segments(self) -> list[tuple[Point, Point]]:
         """Give the wall as pairs of end points."""
@@ -50,64 +52,227 @@ class Wall(Struct, frozen=True, forbid_unknown_fields=True):
         return list(zip(self.polyline, ends, strict=False))
 
 
+class MapWalls(Wall, frozen=True):
+    """The walls that a map's occupied cells have towards free ones: each two points of `polyline` are one of them."""
+
+    def segments(self) -> list[tuple[Point, Point]]:
+        """Give the walls as pairs of end points."""
+        return list(zip(self.polyline[::2], self.polyline[1::2], strict=True))
+
+
 class Shape(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """An outline about its own centre: a box (length along x, width along y) or a circle (radius)."""
+    """An outline about its own origin: a box (length along x, width along y), a circle (radius) or a polygon.
+
+    A polygon's corners go round in either direction, and it may be concave; it must not cross itself.
+    """
 
     box: tuple[Length, Length] | None = None
     circle: Length | None = None
+    polygon: Annotated[tuple[Point, ...], Meta(min_length=3, max_length=1000)] | None = None
 
     def corners(self) -> list[Point]:
-        """Give a box's corners, counter-clockwise; a circle has none."""
+        """Give the corners of a box or polygon, counter-clockwise; a circle has none."""
+        if self.polygon is not None:
+            return list(self.polygon if signed_area(self.polygon) > 0.0 else reversed(self.polygon))
         x, y = (side / 2 for side in self.box or (0.0, 0.0))
         return [(x, y), (-x, y), (-x, -y), (x, -y)] if self.box else []
 
     def inner_radius(self) -> float:
-        """Give the radius of the largest circle about the centre that fits in, in metres."""
+        """Give the distance of the nearest point of the outline from the origin, in metres; 0 if that is outside."""
+        if self.polygon is not None:
+            return _inner_radius(self.corners())
         return self.circle or min(self.box or (0.0, 0.0)) / 2
 
     def outer_radius(self) -> float:
-        """Give the distance of the farthest point from the centre, in metres."""
-        return self.circle or math.hypot(*(self.box or (0.0, 0.0))) / 2
+        """Give the distance of the farthest point from the origin, in metres."""
+        return self.circle or max((math.hypot(*corner) for corner in self.corners()), default=0.0)
 
     def inertia(self, mass: float) -> float:
-        """Give the moment of inertia about the centre of a solid of this shape, in kg m²."""
+        """Give the moment of inertia about the origin of a solid of this shape, in kg m²."""
         if self.circle is not None:
             return mass * self.circle**2 / 2
-        length, width = self.box or (0.0, 0.0)
-        return mass * (length**2 + width**2) / 12
+        corners = self.corners()
+        crosses = [x1 * y2 - x2 * y1 for (x1, y1), (x2, y2) in _pairs(corners)]
+        squares = [x1 * x1 + x1 * x2 + x2 * x2 + y1 * y1 + y1 * y2 + y2 * y2 for (x1, y1), (x2, y2) in _pairs(corners)]
+        weighted = math.fsum(c * s for c, s in zip(crosses, squares, strict=True))  # `sum` differs between Pythons
+        return mass / 6 * weighted / math.fsum(crosses)
+
+
+def signed_area(polygon: Sequence[Point]) -> float:
+    """Give the area of a polygon in m², negative if it goes round clockwise."""
+    return math.fsum(x1 * y2 - x2 * y1 for (x1, y1), (x2, y2) in _pairs(polygon)) / 2
+
+
+def _pairs(polygon: Sequence[Point]) -> Iterator[tuple[Point, Point]]:
+    return zip(polygon, [*polygon[1:], polygon[0]], strict=True)
+
+
+def _inner_radius(corners: Sequence[Point]) -> float:
+    """Give the distance from the origin to a polygon's nearest edge; 0 unless the origin lies inside."""
+    inside, nearest = False, math.inf
+    for (x1, y1), (x2, y2) in _pairs(corners):
+        if (y1 > 0.0) != (y2 > 0.0) and x1 - y1 * (x2 - x1) / (y2 - y1) > 0.0:
+            inside = not inside
+        dx, dy = x2 - x1, y2 - y1
+        share = min(1.0, max(0.0, -(x1 * dx + y1 * dy) / max(dx * dx + dy * dy, 1e-18)))
+        nearest = min(nearest, math.hypot(x1 + share * dx, y1 + share * dy))
+    return nearest if inside else 0.0
 
 
 class Obstacle(Shape, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """A thing in the way: fixed, or with a mass one that can be pushed."""
+    """A thing in the way: fixed, or with a mass one that can be pushed, or one that moves along a `path` by itself.
 
-    pose: Pose
+    It goes along its path at `speed` m/s whatever is in its way, to the end and back, or round and round if the
+    path is `closed`. `reflectance` is the share of light that it sends back.
+    """
+
+    pose: Pose | None = None
     mass: Mass | None = None
+    path: Annotated[tuple[Point, ...], Meta(min_length=2)] | None = None
+    speed: Limit = 0.5
+    closed: bool = False
+    reflectance: Share = 1.0
+
+    @property
+    def start(self) -> Pose:
+        """Where it is in the beginning: its pose, or the first point of its path."""
+        return self.pose or Pose(*(self.path or ((0.0, 0.0),))[0])
+
+
+class Map(Struct, frozen=True, forbid_unknown_fields=True):
+    """A map of ROS's map_server: the path of its YAML file, from the world file's folder."""
+
+    yaml: str
 
 
 class Drive(Struct, frozen=True, forbid_unknown_fields=True):
-    """A differential drive: limits in m/s, rad/s, m/s², rad/s²; it stops `timeout` seconds after its last command."""
+    """What drives a robot: limits in m/s, rad/s, m/s², rad/s²; it stops `timeout` seconds after its last command.
 
-    type: str = "diff"
+    `diff` goes ahead and turns; `omni` goes sideways too; `ackermann` steers like a car, its reference point in the
+    middle of the rear axle, `wheelbase` metres behind the front axle, and turns its wheels by `steer_max` radians at
+    most, `steer_rate` radians a second.
+    """
+
+    type: Literal["diff", "omni", "ackermann"] = "diff"
     v_max: Limit = 0.5
     w_max: Limit = 2.0
     a_max: Limit = 1.5
     alpha_max: Limit = 10.0
     timeout: Limit = 0.5
+    wheelbase: Length = 0.3
+    steer_max: Annotated[float, Meta(ge=0.01, le=1.5)] = 0.5
+    steer_rate: Limit = 2.0
+
+
+class Wheel(Struct, frozen=True, forbid_unknown_fields=True):
+    """A wheel that a motor turns: `at` is where it stands on the robot and which way it rolls, `radius` in metres.
+
+    `speed_max` is the most that the motor called `motor` turns it by, in rad/s.
+    """
+
+    motor: str
+    at: Pose
+    radius: Length = 0.05
+    speed_max: Limit = 100.0
+
+
+class OdomNoise(Struct, frozen=True, forbid_unknown_fields=True):
+    """How wrong the speeds of odometry are, as standard deviations: a share of `v` and of `w`, anew at each step."""
+
+    v: Share = 0.0
+    w: Share = 0.0
 
 
 class Odom(Struct, frozen=True, forbid_unknown_fields=True):
     """Odometry, published `rate` times a second."""
 
     rate: Rate = 50.0
+    noise: OdomNoise = OdomNoise()
 
 
-class Lidar(Struct, frozen=True, forbid_unknown_fields=True):
+class GroundTruth(Struct, frozen=True, forbid_unknown_fields=True):
+    """Where the robot truly is, published `rate` times a second."""
+
+    rate: Rate = 10.0
+
+
+class Sensor:
+    """What a robot senses with; a sensor's first key says its kind and names its topic."""
+
+    __slots__ = ()
+    rate: float
+
+    @property
+    def kind(self) -> str:
+        """The kind of sensor, as a world file spells it: `lidar`, `imu` ..."""
+        fields: tuple[str, ...] = self.__struct_fields__  # type: ignore[attr-defined]
+        return fields[0]
+
+    @property
+    def topic(self) -> str:
+        """The topic that the sensor publishes on."""
+        return str(getattr(self, self.kind))
+
+
+class Bumper(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
+    """Tells, on the topic `bumper`, whether the robot touches something within `fov` degrees about `start`'s middle.
+
+    `fov` and `start` (the sector's right end; by default half of `fov` to the right) are in degrees.
+    """
+
+    bumper: str
+    rate: Rate = 10.0
+    fov: Annotated[float, Meta(ge=0.01, le=360.0)] = 360.0
+    start: Annotated[float, Meta(ge=-360.0, le=360.0)] | None = None
+
+
+class ImuNoise(Struct, frozen=True, forbid_unknown_fields=True):
+    """Standard deviations of a reading: turning in rad/s, acceleration in m/s²."""
+
+    gyro: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0
+    accel: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0
+
+
+class Imu(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
+    """An inertial unit on the topic `imu`: heading, turning speed and acceleration, in the robot's frame."""
+
+    imu: str
+    rate: Rate = 50.0
+    noise: ImuNoise = ImuNoise()
+
+
+class RangeFinder(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
+    """A sonar or infrared sensor on the topic `range_finder`: the distance to the nearest thing within its cone.
+
+    `fov` is in degrees, `range` is [nearest, farthest] in metres, `noise` a standard deviation in metres, `offset`
+    its pose on the robot.
+    """
+
+    range_finder: str
+    rate: Rate = 10.0
+    fov: Annotated[float, Meta(ge=0.01, le=180.0)] = 15.0
+    range: tuple[Annotated[float, Meta(ge=0.0, le=10_000.0)], Length] = (0.02, 4.0)
+    noise: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0
+    offset: Pose = Pose(0.0, 0.0, 0.0)
+    radiation: Literal["ultrasound", "infrared"] = "ultrasound"
+
+
+class Encoders(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
+    """The turns of all wheels on the topic `encoders`, counted in `ticks` to a turn (0: exactly)."""
+
+    encoders: str
+    rate: Rate = 50.0
+    ticks: Annotated[int, Meta(ge=0, le=10_000_000)] = 0
+
+
+class Lidar(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
     """A planar laser scanner that publishes on the topic `lidar`.
 
     `fov` and `start` (the first beam; by default half of `fov` to the right) are in degrees, `range` is
     [nearest, farthest] in metres, `noise` a standard deviation in metres, `dropout` the share of beams that get
     no return, `offset` its pose on the robot. A full circle has a beam each 360/beams degrees, so that none is
-    doubled; a smaller field of view has a beam at both ends.
+    doubled; a smaller field of view has a beam at both ends. With `intensities` a scan also tells how much light
+    came back: the reflectance of what was hit, times the cosine of the angle at which the beam met it.
     """
 
     lidar: str
@@ -119,24 +284,41 @@ class Lidar(Struct, frozen=True, forbid_unknown_fields=True):
     noise: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0
     dropout: Share = 0.0
     offset: Pose = Pose(0.0, 0.0, 0.0)
+    intensities: bool = False
 
 
 class RobotDescription(Struct, frozen=True, forbid_unknown_fields=True):
-    """A robot: where it starts, its outline, what drives it and what it senses."""
+    """A robot: where it starts, its outline, what drives it and what it senses.
+
+    With `wheels` their motors can be driven one by one, and what turns is told by encoders.
+    """
 
     name: str
     pose: Pose
     shape: Shape = Shape(circle=0.17)
     mass: Mass = 3.0
     drive: Drive = Drive()
+    wheels: tuple[Wheel, ...] = ()
     odom: Odom = Odom()
-    sensors: tuple[Lidar, ...] = ()
+    ground_truth: GroundTruth = GroundTruth()
+    sensors: tuple[Sensor, ...] = ()
 
 
 class WorldDescription(Struct, frozen=True, forbid_unknown_fields=True):
     """A whole world file."""
 
     world: Settings = Settings()
+    map: Map | None = None
     walls: tuple[Wall, ...] = ()
     obstacles: tuple[Obstacle, ...] = ()
     robots: tuple[RobotDescription, ...] = ()
+
+
+SENSORS: dict[str, type[Sensor]] = {
+    "lidar": Lidar,
+    "bumper": Bumper,
+    "imu": Imu,
+    "range_finder": RangeFinder,
+    "encoders": Encoders,
+}
+"""The kinds of sensors, by the key that says which."""

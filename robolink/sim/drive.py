@@ -1,19 +1,19 @@
-"""The differential drive: commands with limits and a watchdog, and the force that follows them on exact arcs.
-
-A body whose velocity is set drives through walls, because Chipmunk moves it before it solves contacts. So the
-drive pushes, and only as hard as wheels grip the floor.
-"""
+"""What drives a robot: velocity commands and motors, brought within the limits of its kind of drive."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import pymunk
 
 from robolink.exceptions import RobolinkError
+from robolink.sim.arithmetic import clipped
 from robolink.sim.bodies import GRAVITY
-from robolink.sim.description import Drive
-from robolink.sim.odometry import sinc
+from robolink.sim.description import Drive, RobotDescription
+from robolink.sim.motion import NEVER, Motion, motion_of_one
+from robolink.sim.readings import WheelState
+from robolink.sim.wheels import Wheels
 
 GRIP = 0.8
 """Friction between wheels and floor: the drive's force is at most this share of the robot's weight."""
@@ -23,91 +23,84 @@ class CommandError(RobolinkError, ValueError):
     """A velocity command that is not a finite number."""
 
 
-class DiffDrive:
-    """Drives one body: `v` and `w` are its true speeds (m/s, rad/s) of the step that is about to be made."""
+class Driver:
+    """Tells the `motion` of one robot what it shall be.
 
-    __slots__ = (
-        "_a_max_dt",
-        "_alpha_max_dt",
-        "_deadline",
-        "_dt",
-        "_grip_dt",
-        "_inertia_dt",
-        "_limits",
-        "_mass_dt",
-        "_ramp_v",
-        "_ramp_w",
-        "_target",
-        "_timeout_steps",
-        "_turn_grip_dt",
-        "v",
-        "w",
-    )
+    The reference point of every drive is the body's origin, base_link; of `ackermann` that is the middle of the
+    rear axle. Its mass is taken to be centred there.
+    """
 
-    def __init__(self, drive: Drive, body: pymunk.Body, radius: float, dt: float) -> None:
-        self._dt = dt
-        self._limits = (drive.v_max, drive.w_max)
-        self._a_max_dt, self._alpha_max_dt = drive.a_max * dt, drive.alpha_max * dt
-        grip = max(GRIP * GRAVITY, drive.a_max)
-        self._grip_dt = grip * dt
-        self._turn_grip_dt = max(grip * radius * body.mass / body.moment, drive.alpha_max) * dt
-        self._mass_dt, self._inertia_dt = body.mass / dt, body.moment / dt
-        self._timeout_steps = round(drive.timeout / dt)
-        self._target = (0.0, 0.0)
-        self._deadline = -1
-        self._ramp_v = self._ramp_w = self.v = self.w = 0.0
+    def __init__(self, robot: RobotDescription, body: pymunk.Body, dt: float) -> None:
+        self._drive, self._timeout_steps = robot.drive, round(robot.drive.timeout / dt)
+        self._wheels = Wheels(robot.wheels, robot.name, sideways=robot.drive.type == "omni")
+        limits = _limits(robot.drive, body, robot.shape.outer_radius(), dt)
+        self.motion: Motion[float] = motion_of_one(dt, robot.pose, limits, wheeled=bool(robot.wheels))
 
-    def command(self, v: float, w: float, step: int) -> None:
+    def command(self, v: float, w: float, sideways: float, step: int) -> None:
         """Ask for a velocity from `step` on, cut to the limits; it holds for the drive's timeout.
 
         Raises `CommandError` when it is not finite.
         """
-        if not (math.isfinite(v) and math.isfinite(w)):
-            raise CommandError(f"expected a finite velocity, got v={v:g} m/s, w={w:g} rad/s")
-        v_max, w_max = self._limits
-        self._target = (clipped(v, v_max), clipped(w, w_max))
-        self._deadline = step + self._timeout_steps
+        if not (math.isfinite(v) and math.isfinite(w) and math.isfinite(sideways)):
+            raise CommandError(f"expected a finite velocity, got v={v:g} m/s, w={w:g} rad/s, sideways={sideways:g} m/s")
+        self._wheels.forget()
+        self._aim(*self._within_limits(v, sideways, w))
+        self.motion.deadline = self.motion.expiry = step + self._timeout_steps
 
-    def target(self, step: int) -> tuple[float, float]:
-        """Give the velocity that is asked for at `step`: nothing once the last command is too old."""
-        return self._target if step < self._deadline else (0.0, 0.0)
+    def turn_wheels(self, speeds: Mapping[str, float]) -> None:
+        """Turn motors at these speeds (rad/s), each until it or the whole robot is told otherwise.
 
-    def push(self, body: pymunk.Body, step: int) -> None:
-        """Read the body's true speeds, and apply the force and torque of one step.
-
-        The step first moves the body by its present velocity, which is the chord of this arc; the force then
-        turns that into the chord of the next one: heading theta + w dt + w' dt / 2, length v' sinc(w' dt / 2).
+        Raises `NotFoundError` for an unknown motor and `CommandError` for a speed that is not finite.
         """
-        velocity, w, dt = body.velocity, body.angular_velocity, self._dt
-        heading, half = body.angle + w * dt, w * dt / 2
-        self.v, slip = along(velocity, heading - half, half)
-        self.w = w
-        self._ramp(step)
-        half = self._ramp_w * dt / 2
-        cos, sin = math.cos(heading + half), math.sin(heading + half)
-        chord, slip = self._ramp_v * sinc(half), slip - clipped(slip, self._grip_dt)
-        vx, vy = chord * cos - slip * sin, chord * sin + slip * cos
-        body.force = (self._mass_dt * (vx - velocity[0]), self._mass_dt * (vy - velocity[1]))
-        body.torque = self._inertia_dt * (self._ramp_w - w)
+        for name, speed in speeds.items():
+            if not math.isfinite(speed):
+                raise CommandError(f"expected a finite speed of motor '{name}', got {speed:g} rad/s")
+        v, s, w = self._wheels.turn(speeds)
+        share = self._share_within_limits(v, s, w)
+        self._aim(v * share, s * share, w * share)
+        self.motion.deadline = self.motion.expiry = NEVER
 
-    def _ramp(self, step: int) -> None:
-        """Move the set speeds towards the target, within the limits and never far from the true speeds."""
-        target_v, target_w = self.target(step)
-        ramp_v = self._ramp_v + clipped(target_v - self._ramp_v, self._a_max_dt)
-        ramp_w = self._ramp_w + clipped(target_w - self._ramp_w, self._alpha_max_dt)
-        self._ramp_v = self.v + clipped(ramp_v - self.v, self._grip_dt)
-        self._ramp_w = self.w + clipped(ramp_w - self.w, self._turn_grip_dt)
+    def wheels(self, motion: Motion[float], v: float, s: float, w: float) -> tuple[WheelState, ...]:
+        """Give how far each wheel has turned on the way of a motion, and how fast it turns at these true speeds."""
+        wheels = self._wheels
+        ways = wheels.speeds(motion.rolled, motion.slid, motion.turned)
+        return tuple(map(WheelState, wheels.names, ways, wheels.speeds(v, s, w)))
+
+    def _within_limits(self, v: float, s: float, w: float) -> tuple[float, float, float]:
+        drive = self._drive
+        if drive.type == "omni":
+            share = min(1.0, drive.v_max / max(math.sqrt(v * v + s * s), drive.v_max))
+            return v * share, s * share, clipped(w, drive.w_max)
+        if drive.type == "ackermann":  # slower, but on the path that was asked for
+            share = self._share_within_limits(v, 0.0, w)
+            return v * share, 0.0, w * share
+        return clipped(v, drive.v_max), 0.0, clipped(w, drive.w_max)
+
+    def _share_within_limits(self, v: float, s: float, w: float) -> float:
+        """Give what all speeds are to be multiplied by, so that the way stays the same and none is too fast."""
+        v_max, w_max = self._drive.v_max, self._drive.w_max
+        return min(v_max / max(math.sqrt(v * v + s * s), v_max), w_max / max(abs(w), w_max))
+
+    def _aim(self, v: float, s: float, w: float) -> None:
+        """Set the targets; a car that is to stand keeps its front wheels as they are."""
+        motion, drive = self.motion, self._drive
+        motion.target_v, motion.target_s, motion.target_w = v, s, w
+        if drive.type == "ackermann" and v:
+            motion.target_steer = clipped(math.atan(drive.wheelbase * w / v), drive.steer_max)
 
 
-def along(velocity: tuple[float, float], middle: float, half: float) -> tuple[float, float]:
-    """Split a step's chord velocity into the speed along the arc and the slip across it, in m/s.
-
-    `middle` is the heading halfway through the step, `half` half of the angle that the step turns by.
-    """
-    (vx, vy), cos, sin = velocity, math.cos(middle), math.sin(middle)
-    return (vx * cos + vy * sin) / sinc(half), vy * cos - vx * sin
-
-
-def clipped(value: float, limit: float) -> float:
-    """Bring a value into [-limit, limit]."""
-    return limit if value > limit else -limit if value < -limit else value
+def _limits(drive: Drive, body: pymunk.Body, radius: float, dt: float) -> dict[str, float]:
+    """Give the limits of a robot's `Motion`; what nothing but grip holds back has an infinite one."""
+    return {
+        "a_dt": drive.a_max * dt,
+        "side_dt": drive.a_max * dt if drive.type == "omni" else math.inf,
+        "alpha_dt": drive.alpha_max * dt,
+        "steer_dt": drive.steer_rate * dt,
+        "grip_dt": max(GRIP * GRAVITY, drive.a_max) * dt,
+        "turn_grip_dt": max(GRIP * GRAVITY * radius * body.mass / body.moment, drive.alpha_max) * dt,
+        "mass_dt": body.mass / dt,
+        "inertia_dt": body.moment / dt,
+        "wheelbase": drive.wheelbase,
+        "car": float(drive.type == "ackermann"),
+        "omni": float(drive.type == "omni"),
+    }

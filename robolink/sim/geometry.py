@@ -16,19 +16,28 @@ Corners: TypeAlias = Sequence[tuple[float, float]]
 
 
 def fixed_segments(description: WorldDescription) -> Array:
-    """Give walls and the edges of fixed boxes as rows x1, y1, x2, y2."""
+    """Give walls and the edges of fixed boxes and polygons as rows x1, y1, x2, y2."""
     rows = [[*start, *end] for wall in description.walls for start, end in wall.segments()]
     parts = [np.array(rows, dtype=np.float64).reshape(-1, 4)]
     for thing in _fixed(description):
-        if thing.box is not None:
-            parts.append(edges(thing.corners(), thing.pose))
+        if thing.circle is None:
+            parts.append(edges(thing.corners(), thing.start))
     return np.concatenate(parts)
 
 
 def fixed_circles(description: WorldDescription) -> Array:
     """Give the fixed circles as rows x, y, radius."""
-    rows = [[thing.pose.x, thing.pose.y, thing.circle] for thing in _fixed(description) if thing.circle is not None]
+    rows = [[thing.start.x, thing.start.y, thing.circle] for thing in _fixed(description) if thing.circle is not None]
     return np.array(rows, dtype=np.float64).reshape(-1, 3)
+
+
+def fixed_reflectances(description: WorldDescription) -> tuple[Array, Array]:
+    """Give the shares of light that the fixed segments and the fixed circles send back, in their order."""
+    of_walls = [wall.reflectance for wall in description.walls for _ in wall.segments()]
+    fixed = _fixed(description)
+    of_edges = [thing.reflectance for thing in fixed for _ in thing.corners()]
+    of_circles = [thing.reflectance for thing in fixed if thing.circle is not None]
+    return np.array(of_walls + of_edges, dtype=np.float64), np.array(of_circles, dtype=np.float64)
 
 
 def edges(corners: Corners, pose: Pose) -> Array:
@@ -52,11 +61,12 @@ def segment_distances(segments: Array, x: float, y: float) -> Array:
     """Give the distance from a point to each segment, in metres."""
     start, along = segments[:, :2], segments[:, 2:] - segments[:, :2]
     to_point = np.array((x, y)) - start
-    share = np.clip((to_point * along).sum(axis=1) / (along * along).sum(axis=1), 0.0, 1.0)
+    square = np.maximum((along * along).sum(axis=1), 1e-300)  # a segment without length is a point
+    share = np.clip((to_point * along).sum(axis=1) / square, 0.0, 1.0)
     gap = to_point - share[:, None] * along
     distances: Array = np.hypot(gap[:, 0], gap[:, 1])
     return distances
 
 
 def _fixed(description: WorldDescription) -> list[Obstacle]:
-    return [thing for thing in description.obstacles if thing.mass is None]
+    return [thing for thing in description.obstacles if thing.mass is None and thing.path is None]

@@ -1,8 +1,8 @@
-"""A planar laser scanner, exact and without rays: each shape covers one interval of beams.
+"""Planar laser scanners, exact and without rays: each shape covers one interval of beams.
 
 Seen from the sensor a segment spans an interval of beam indices. All intervals are expanded once into (beam,
 shape) pairs; the inverse range of a beam with direction u to a line is ``u . g``, linear in u, where ``g`` is the
-line's foot point over its squared distance. The nearest shape is then the largest inverse range of each beam.
+line's unit normal over its distance. The nearest shape is then the largest inverse range of each beam.
 """
 
 from __future__ import annotations
@@ -11,19 +11,40 @@ import math
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from robolink.sim.description import Lidar, Pose
 from robolink.sim.geometry import Array
+from robolink.sim.surroundings import NOBODY, Circles, Indices, Surroundings
+from robolink.sim.tiles import NORMAL, REFLECTANCE, X, Y
+from robolink.sim.trigonometry import cos_and_sin
 
-Indices: TypeAlias = npt.NDArray[np.intp]
+Numbers: TypeAlias = "float | Array"
+"""One for all, or one for each."""
 
-_EDGE = 1e-6
+Place: TypeAlias = "tuple[float, float, float]"
+"""x, y and heading of a sensor in the world."""
+
+_EDGE = 1e-9
 """How far, in beams, an interval reaches beyond its ends, so that rounding leaves no gap at a corner."""
+
+_GRAZING = 0.01
+"""A line nearer than this (in metres) may be seen so edge-on that its range beside its ends would mean nothing."""
+
+_EDGE_ON = 1e-9
+"""A line nearer than this (in metres) has no range of its own: of a segment so seen the nearest point counts."""
+
+_TOUCHING = 1e-12
+"""The range in metres of what touches the sensor."""
+
+_AT_ONCE = 10_000
+"""Beams that are worked on together, so that arrays stay in the processor's cache."""
 
 
 class Scan(NamedTuple):
-    """One scan: angles in radians, ranges in metres as float64; +inf no return, -inf nearer than `range_min`."""
+    """One scan: angles in radians, ranges in metres as float64; +inf no return, -inf nearer than `range_min`.
+
+    `intensities` are the shares of light that came back, 0 to 1, if the lidar has them.
+    """
 
     angle_min: float
     angle_max: float
@@ -31,103 +52,279 @@ class Scan(NamedTuple):
     range_min: float
     range_max: float
     ranges: Array
+    intensities: Array | None = None
 
 
 class Beams:
-    """The fixed directions of a scanner's beams, in its own frame."""
+    """The fixed directions of a scanner's beams, in its own frame, and how far it may ever read."""
 
     def __init__(self, lidar: Lidar) -> None:
-        full = lidar.fov == 360.0
-        fov = math.tau if full else math.radians(lidar.fov)
+        self.full = lidar.fov == 360.0
+        fov = math.tau if self.full else math.radians(lidar.fov)
         self.count = lidar.beams
-        self.increment = fov / (lidar.beams if full else lidar.beams - 1)
+        self.increment = fov / (lidar.beams if self.full else lidar.beams - 1)
         self.start = -fov / 2 if lidar.start is None else math.radians(lidar.start)
-        self.period = float(lidar.beams) if full else math.tau / self.increment
-        angles = self.start + self.increment * np.arange(lidar.beams)
-        self.cos, self.sin = np.cos(angles), np.sin(angles)
+        self.period = float(lidar.beams) if self.full else math.tau / self.increment
+        self.reach = lidar.range[1] + 8 * lidar.noise
+        self.stride = 2 * lidar.beams if self.full else lidar.beams  # twice round, so that no interval is split
+        self.cos, self.sin = cos_and_sin(self.start + self.increment * np.arange(lidar.beams, dtype=np.float64))
+        self._table = np.resize(self.cos, self.stride), np.resize(self.sin, self.stride)
+
+    def table(self, sensors: int) -> tuple[Array, Array]:
+        """Give the cosines and sines of all beams of so many sensors, `stride` of each."""
+        if len(self._table[0]) < sensors * self.stride:
+            cos, sin = self._table
+            self._table = np.resize(cos, sensors * self.stride), np.resize(sin, sensors * self.stride)
+        return self._table
 
 
-def distances(beams: Beams, sensor: Pose, segments: Array, circles: Array) -> Array:
-    """Give what each beam of a sensor at a pose (in the world) hits first: metres, inf for nothing."""
-    inverse = np.zeros(beams.count)
-    if len(segments):
-        _see_segments(inverse, beams, _segments_in_frame(sensor, segments))
-    if len(circles):
-        _see_circles(inverse, beams, sensor, circles)
-    with np.errstate(divide="ignore"):
-        return 1.0 / inverse
+def distances(beams: Beams, sensor: Pose, surroundings: Surroundings, own: int = NOBODY) -> Array:
+    """Give what each beam of a sensor at a pose (in the world) hits first: metres, inf for nothing within reach.
+
+    `own` is the number of the moving shape that the sensor is mounted on, which it doesn't see.
+    """
+    found: Array = _measured(beams, [(sensor.x, sensor.y, sensor.theta)], [own], surroundings, lit=False)[0][0]
+    return found
+
+
+def distances_batch(beams: Beams, poses: Array, surroundings: Surroundings, own: Indices | None = None) -> Array:
+    """Measure with many sensors of one kind at once: an array (sensors, beams), each row as `distances` gives it.
+
+    `poses` are rows x, y, theta in the world; `own` says for each the number of the moving shape that it is mounted
+    on (`Scene.number`). How many are measured together changes no bit of a result.
+    """
+    return _measured(beams, *_listed(poses, own), surroundings, lit=False)[0]
+
+
+def returns_batch(
+    beams: Beams, poses: Array, surroundings: Surroundings, own: Indices | None = None
+) -> tuple[Array, Array]:
+    """Give what `distances_batch` gives, and as an array of the same shape the share of light that comes back.
+
+    That is the reflectance of what a beam hits times the cosine of the angle at which it does; 0 where there is
+    nothing.
+    """
+    return _measured(beams, *_listed(poses, own), surroundings, lit=True)
 
 
 def limited(ranges: Array, range_min: float, range_max: float) -> Array:
     """Apply a scanner's limits as REP 117 has it: beyond the farthest +inf, nearer than the nearest -inf."""
-    ranges = np.where(ranges > range_max, np.inf, ranges)
-    return np.where(ranges < range_min, -np.inf, ranges)
+    found: Array = ranges.copy()
+    np.copyto(found, np.inf, where=ranges > range_max)
+    np.copyto(found, -np.inf, where=ranges < range_min)
+    return found
 
 
-def _segments_in_frame(sensor: Pose, segments: Array) -> tuple[Array, Array, Array, Array]:
-    """Turn segments into the sensor's frame: x and y of both ends."""
-    cos, sin = math.cos(sensor.theta), math.sin(sensor.theta)
-    x1, y1 = segments[:, 0] - sensor.x, segments[:, 1] - sensor.y
-    x2, y2 = segments[:, 2] - sensor.x, segments[:, 3] - sensor.y
-    return cos * x1 + sin * y1, cos * y1 - sin * x1, cos * x2 + sin * y2, cos * y2 - sin * x2
+class _Eyes(NamedTuple):
+    """A number of sensors: for each the index of its first beam among all, its place, its heading, its first direction.
 
-
-def _see_segments(inverse: Array, beams: Beams, ends: tuple[Array, Array, Array, Array]) -> None:
-    x1, y1, x2, y2 = ends
-    first, second = np.arctan2(y1, x1), np.arctan2(y2, x2)
-    turn = second - first
-    turn -= math.tau * np.rint(turn / math.tau)
-    beam, owner = _pairs(beams, np.where(turn >= 0.0, first, second), np.abs(turn))
-    gx, gy, largest = _inverse_ranges(x1, y1, x2, y2)
-    seen = beams.cos[beam] * gx[owner] + beams.sin[beam] * gy[owner]
-    np.maximum.at(inverse, beam, np.minimum(seen, largest[owner]))
-
-
-def _inverse_ranges(x1: Array, y1: Array, x2: Array, y2: Array) -> tuple[Array, Array, Array]:
-    """Give the vector g of each segment's line, and the inverse of the segment's least distance.
-
-    No beam can see a segment nearer than that: it bounds the beams that pass just beside an end, whose range to
-    the line would mean nothing when the segment is seen edge-on.
+    Each is an array, with an entry for each sensor or for each shape that one looks at. Of one sensor it is a plain
+    number, which is quicker and gives the same. The direction of the first beam is in beams, from the x axis.
     """
-    dx, dy = x2 - x1, y2 - y1
-    along = x1 * dx + y1 * dy
-    share = np.minimum(np.maximum(-along / (dx * dx + dy * dy), 0.0), 1.0)
-    near_x, near_y = x1 + share * dx, y1 + share * dy
-    largest = 1.0 / np.maximum(np.hypot(near_x, near_y), 1e-12)
-    cross = x1 * dy - y1 * dx
-    edge_on = np.abs(cross) < 1e-12
-    cross = np.where(edge_on, 1.0, cross)
-    square = largest * largest
-    return np.where(edge_on, near_x * square, dy / cross), np.where(edge_on, near_y * square, -dx / cross), largest
+
+    number: int
+    first: int | Indices
+    x: Numbers
+    y: Numbers
+    cos: Numbers
+    sin: Numbers
+    turn: Numbers
+
+    def of(self, rows: Indices) -> _Eyes:
+        """Give for each shape the sensor that looks at it."""
+        if self.number == 1:
+            return self
+        facts: list[Array] = [np.take(each, rows) for each in self[2:]]
+        return _Eyes(self.number, np.take(self.first, rows), *facts)
 
 
-def _see_circles(inverse: Array, beams: Beams, sensor: Pose, circles: Array) -> None:
-    """Merge circles in: with p the centre along the beam and k beside it, the range is p - sqrt(r² - k²)."""
-    cos, sin = math.cos(sensor.theta), math.sin(sensor.theta)
-    dx, dy, radius = circles[:, 0] - sensor.x, circles[:, 1] - sensor.y, circles[:, 2]
-    x, y = cos * dx + sin * dy, cos * dy - sin * dx
-    distance = np.hypot(x, y)
-    outside = distance > radius
-    half = np.where(outside, np.arcsin(np.minimum(radius / np.maximum(distance, 1e-12), 1.0)), math.pi)
-    beam, owner = _pairs(beams, np.arctan2(y, x) - half, 2 * half)
-    along = beams.cos[beam] * x[owner] + beams.sin[beam] * y[owner]
-    beside = beams.cos[beam] * y[owner] - beams.sin[beam] * x[owner]
-    seen = along - np.sqrt(np.maximum(radius[owner] ** 2 - beside**2, 0.0))
-    np.maximum.at(inverse, beam, 1.0 / np.maximum(seen, 1e-12))
+class _Spans(NamedTuple):
+    """Intervals of beams: whose they are (None: one of each, in order), how many beams each has, and which."""
+
+    who: Indices | None
+    counts: Indices
+    beams: Indices
+
+    def spread(self, values: Array) -> Array:
+        """Repeat what each shape has for each of its beams."""
+        return (values if self.who is None else values.take(self.who)).repeat(self.counts)
 
 
-def _pairs(beams: Beams, start: Array, width: Array) -> tuple[Indices, Indices]:
-    """Expand intervals of angles into all (beam, owner) pairs; `owner` is the interval's index."""
-    low = (start - beams.start) / beams.increment
-    low -= beams.period * np.floor(low / beams.period)
-    high = low + width / beams.increment
-    again = np.flatnonzero(high > beams.period - 1.0)  # these reach round to the first beams
-    owner = np.concatenate((np.arange(len(low)), again))
-    low = np.concatenate((low, low[again] - beams.period))
-    high = np.concatenate((high, high[again] - beams.period))
-    first = np.maximum(np.ceil(low - _EDGE), 0.0).astype(np.intp)
-    last = np.minimum(np.floor(high + _EDGE), beams.count - 1.0).astype(np.intp)
-    counts = np.maximum(last - first + 1, 0)
-    ends = np.cumsum(counts)
-    beam = np.arange(ends[-1]) + np.repeat(first - ends + counts, counts)
-    return beam, np.repeat(owner, counts)
+class _Hits(NamedTuple):
+    """What beams meet, nearest or not: which beam, its inverse range, the share of light that comes back if wanted."""
+
+    beams: Indices
+    inverse: Array
+    light: Array
+
+
+def _listed(poses: Array, own: Indices | None) -> tuple[list[Place], list[int]]:
+    return poses.tolist(), [NOBODY] * len(poses) if own is None else np.asarray(own).tolist()
+
+
+def _measured(
+    beams: Beams, places: list[Place], own: list[int], surroundings: Surroundings, lit: bool
+) -> tuple[Array, Array]:
+    """Give ranges and light of sensors (of light no columns unless `lit`), working on some of them at a time."""
+    if len(places) == 1:
+        return _nearest(beams, 1, _look(beams, places, own, surroundings, lit), lit)
+    ranges, light = np.empty((len(places), beams.count)), np.empty((len(places), beams.count if lit else 0))
+    first = 0
+    while first < len(places):
+        segments = surroundings.segments_near(*places[first][:2], beams.reach, own[first]).shape[1]
+        part = slice(first, min(first + max(1, _AT_ONCE // max(beams.stride, 3 * segments)), len(places)))
+        looked = _look(beams, places[part], own[part], surroundings, lit)
+        ranges[part], light[part] = _nearest(beams, part.stop - first, looked, lit)
+        first = part.stop
+    return ranges, light
+
+
+def _look(beams: Beams, places: list[Place], own: list[int], surroundings: Surroundings, lit: bool) -> list[_Hits]:
+    """Give all that the beams of some sensors meet."""
+    found, eyes = [], _eyes(beams, places)
+    near = [
+        surroundings.segments_near(x, y, beams.reach, number) for (x, y, _), number in zip(places, own, strict=True)
+    ]
+    columns = near[0] if len(near) == 1 else np.concatenate(near, axis=1)
+    if columns.size:
+        seeing = eyes if len(near) == 1 else eyes.of(np.arange(len(near)).repeat([each.shape[1] for each in near]))
+        found.append(_see_segments(beams, seeing, columns, lit))
+    if len(surroundings.circles.x):
+        sensors, which = surroundings.circles_near(places, beams.reach, own)
+        if len(which):
+            found.append(_see_circles(beams, eyes.of(sensors), surroundings.circles.taken(which), lit))
+    return found
+
+
+def _nearest(beams: Beams, sensors: int, found: list[_Hits], lit: bool) -> tuple[Array, Array]:
+    """Give for each beam the range of the nearest of its hits, and that one's light (an empty array unless `lit`)."""
+    inverse: Array = np.zeros(sensors * beams.stride)
+    for hits in found:
+        np.maximum.at(inverse, hits.beams, hits.inverse)
+    light: Array = _light(inverse, found) if lit else inverse[:0]
+    inverse, light = inverse.reshape(sensors, -1), light.reshape(sensors, -1)
+    if beams.full:  # lay the two turns on each other
+        once, again = inverse[:, : beams.count], inverse[:, beams.count :]
+        light = np.where(once >= again, light[:, : beams.count], light[:, beams.count :]) if lit else light
+        inverse = np.maximum(once, again)
+    within, ranges = inverse >= 1.0 / beams.reach, np.empty(inverse.shape)
+    ranges.fill(np.inf)
+    np.divide(1.0, inverse, out=ranges, where=within)
+    return ranges, np.minimum(light * within, 1.0) if lit else light
+
+
+def _light(inverse: Array, found: list[_Hits]) -> Array:
+    """Give for each beam the light of its nearest hit."""
+    light = np.zeros(len(inverse))
+    for hits in found:
+        nearest = np.flatnonzero(hits.inverse == inverse.take(hits.beams))
+        light[hits.beams.take(nearest)] = hits.light.take(nearest)
+    return light
+
+
+def _eyes(beams: Beams, places: list[Place]) -> _Eyes:
+    facts = [
+        (x, y, math.cos(theta), math.sin(theta), (theta + beams.start) / beams.increment) for x, y, theta in places
+    ]
+    if len(places) == 1:
+        return _Eyes(1, 0, *facts[0])
+    first = beams.stride * np.arange(len(places))
+    return _Eyes(len(places), first, *np.array(facts).T.copy())
+
+
+def _see_segments(beams: Beams, eyes: _Eyes, columns: Array, lit: bool) -> _Hits:
+    x, y, normal = columns[X] - eyes.x, columns[Y] - eyes.y, columns[NORMAL]
+    ends = _in_beams(beams, eyes, x, y)
+    width = ends[1] - ends[0]
+    width -= beams.period * np.rint(width / beams.period)
+    spans = _spans(beams, eyes, ends[0] + np.minimum(width, 0.0), np.abs(width))
+    distance, limit = normal[0] * x[0] + normal[1] * y[0], None
+    away = np.abs(distance)
+    if np.count_nonzero(away < _GRAZING):
+        normal, distance, limit = _mended(normal, x, y, distance, width)
+    turned = (eyes.cos * normal[:2] + eyes.sin * normal[1:]) / distance
+    cos, sin = beams.table(eyes.number)
+    inverse = cos.take(spans.beams) * spans.spread(turned[0])
+    inverse += sin.take(spans.beams) * spans.spread(turned[1])
+    if limit is not None:
+        np.minimum(inverse, spans.spread(limit), out=inverse)
+    return _Hits(spans.beams, inverse, spans.spread(away * columns[REFLECTANCE]) * inverse if lit else inverse)
+
+
+def _mended(normal: Array, x: Array, y: Array, distance: Array, width: Array) -> tuple[Array, Array, Array]:
+    """Give normals and distances with those mended of lines that a sensor is nearly on, and the most of each inverse.
+
+    No beam sees a segment nearer than it is: that bounds the beams that pass just beside an end. A segment that is
+    seen edge-on counts as its nearest point; one that the sensor stands on is on the side that its beams are on.
+    """
+    grazing = np.flatnonzero(np.abs(distance) < _GRAZING)
+    nx, ny = normal.take(grazing, axis=1)[:2]
+    away, width = distance.take(grazing), width.take(grazing)
+    first, last = nx * y.take(grazing, axis=1) - ny * x.take(grazing, axis=1)
+    along = np.minimum(np.maximum(first, 0.0), last)
+    nearest = np.maximum(np.sqrt(away * away + along * along), _TOUCHING)
+    edge_on = np.abs(away) < _EDGE_ON
+    beside = edge_on & (along != 0.0)
+    nx, ny = (
+        np.where(beside, (away * nx - along * ny) / nearest, nx),
+        np.where(beside, (away * ny + along * nx) / nearest, ny),
+    )
+    normal, distance, limit = normal.copy(), distance.copy(), np.full(len(distance), np.inf)
+    normal[:, grazing] = nx, ny, -nx
+    distance[grazing] = np.where(beside, nearest, np.where(edge_on, np.copysign(_TOUCHING, width), away))
+    limit[grazing] = 1.0 / nearest
+    return normal, distance, limit
+
+
+def _see_circles(beams: Beams, eyes: _Eyes, circles: Circles, lit: bool) -> _Hits:
+    """See circles: with p the centre along a beam and w a tangent squared, 1 / range is (p + sqrt(p² - w)) / w."""
+    dx, dy, radius = circles.x - eyes.x, circles.y - eyes.y, circles.radius
+    square = dx * dx + dy * dy
+    inside = np.flatnonzero(square <= radius * radius)
+    square[inside] = np.inf
+    power = square - radius * radius
+    share = 1.0 / power
+    x, y = (eyes.cos * dx + eyes.sin * dy) * share, (eyes.cos * dy - eyes.sin * dx) * share
+    half = np.arcsin(radius / np.sqrt(square)) / beams.increment
+    low, width = _in_beams(beams, eyes, dx, dy) - half, 2.0 * half
+    low[inside], width[inside], share[inside] = 0.0, beams.count - 1.0, -1.0 / _TOUCHING**2  # all beams touch
+    spans, (cos, sin) = _spans(beams, eyes, low, width), beams.table(eyes.number)
+    inverse = cos.take(spans.beams) * spans.spread(x)
+    inverse += sin.take(spans.beams) * spans.spread(y)
+    root = inverse * inverse
+    root -= spans.spread(share)
+    np.sqrt(np.maximum(root, 0.0, out=root), out=root)
+    inverse += root
+    light = root * spans.spread(power * circles.reflectance / radius) if lit else inverse
+    return _Hits(spans.beams, inverse, light)
+
+
+def _in_beams(beams: Beams, eyes: _Eyes, x: Array, y: Array) -> Array:
+    """Give the directions of points as seen by the sensors, in beams from their first one."""
+    angles: Array = np.arctan2(y, x)
+    angles /= beams.increment
+    angles -= eyes.turn
+    return angles
+
+
+def _spans(beams: Beams, eyes: _Eyes, low: Array, width: Array) -> _Spans:
+    """Give the beams that lie in intervals (from `low`, `width` wide, in beams)."""
+    low = low - beams.period * np.floor(low / beams.period)
+    high, who, first = low + width, None, eyes.first
+    if not beams.full:  # some reach round to the first beams again
+        again = np.flatnonzero(high >= beams.period - _EDGE)
+        who = np.concatenate((np.arange(len(low)), again))
+        low = np.concatenate((low, np.zeros(len(again))))
+        high = np.minimum(np.concatenate((high, high.take(again) - beams.period)), beams.count - 1.0)
+        first = first if isinstance(first, int) else first.take(who)
+    begin = (low + (1.0 - _EDGE)).astype(np.intp)  # the next whole number
+    counts = (high + (1.0 + _EDGE)).astype(np.intp)
+    counts -= begin
+    if not beams.full:
+        np.maximum(counts, 0, out=counts)
+    begin += counts
+    begin -= counts.cumsum()
+    begin += first
+    found = begin.repeat(counts)
+    found += np.arange(len(found))
+    return _Spans(who, counts, found)

@@ -1,30 +1,40 @@
-"""Dead reckoning along exact arcs."""
+"""What odometry gets wrong, and angles as it tells them."""
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
 
-class Odometry:
-    """Where a robot believes to be, from its own speeds alone: metres, and radians that keep counting."""
+from robolink.sim.description import OdomNoise
+from robolink.sim.geometry import Array
 
-    __slots__ = ("theta", "x", "y")
-
-    def __init__(self, x: float = 0.0, y: float = 0.0, theta: float = 0.0) -> None:
-        self.x, self.y, self.theta = x, y, theta
-
-    def advance(self, v: float, w: float, dt: float) -> None:
-        """Move on by an arc of `dt` seconds with forward speed `v` and turning speed `w`."""
-        middle = self.theta + w * dt / 2
-        chord = v * dt * sinc(w * dt / 2)
-        self.x += chord * math.cos(middle)
-        self.y += chord * math.sin(middle)
-        self.theta += w * dt
+BLOCK = 256
+"""Steps whose errors of odometry are drawn at once, which is cheaper than one by one."""
 
 
-def sinc(x: float) -> float:
-    """Give sin(x) / x: the chord of an arc that turns by 2x, as a share of the arc."""
-    return math.sin(x) / x if abs(x) > 1e-4 else 1.0 - x * x / 6.0
+class OdometryNoise:
+    """The errors of one robot's odometry: what its speeds v, s and w are multiplied by, anew at each step."""
+
+    def __init__(self, noise: OdomNoise, random: np.random.Generator) -> None:
+        self._shares, self._random = np.array((noise.v, noise.v, noise.w)), random
+        self._number, self._block = -1, np.ones((0, 3))
+        self._rows: list[tuple[float, float, float]] = []
+
+    def block(self, step: int) -> Array:
+        """Give the errors of the `BLOCK` steps that `step` is among, as rows; steps only go on."""
+        if step // BLOCK != self._number:
+            self._number = step // BLOCK
+            self._block = 1.0 + self._shares * self._random.standard_normal((BLOCK, 3))
+            self._rows = []
+        return self._block
+
+    def at(self, step: int) -> tuple[float, float, float]:
+        """Give the errors of one step."""
+        block = self.block(step)
+        if not self._rows:
+            self._rows = [(v, s, w) for v, s, w in block.tolist()]
+        return self._rows[step % BLOCK]
 
 
 def wrapped(angle: float) -> float:

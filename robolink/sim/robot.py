@@ -3,78 +3,111 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import pymunk
 
-from robolink.sim.bodies import body_at, solid
-from robolink.sim.description import Lidar, Pose, RobotDescription, WorldDescription
-from robolink.sim.drive import DiffDrive, along
-from robolink.sim.lidar import Beams, Scan, distances, limited
-from robolink.sim.noise import LidarNoise, stream
-from robolink.sim.odometry import Odometry, wrapped
+from robolink.sim.arithmetic import sinc
+from robolink.sim.bodies import body_at, placed, solids
+from robolink.sim.contacts import Contacts, Touches
+from robolink.sim.description import Pose, RobotDescription
+from robolink.sim.drive import Driver
+from robolink.sim.fleet import Fleet, Member
+from robolink.sim.lidar import Scan
+from robolink.sim.motion import Motion
+from robolink.sim.noise import stream
+from robolink.sim.odometry import OdometryNoise, wrapped
+from robolink.sim.placing import WorldError, check_place, check_pose
+from robolink.sim.readings import Velocity, WheelState
 from robolink.sim.scene import Scene
+from robolink.sim.sensors import LidarSensor, device
 
 
-class Velocity(NamedTuple):
-    """Forward speed in m/s and turning speed in rad/s, counter-clockwise."""
+class Parts(NamedTuple):
+    """The parts of a world that each robot has to do with."""
 
-    v: float
-    w: float
-
-
-class LidarSensor:
-    """A lidar on a robot."""
-
-    def __init__(self, lidar: Lidar, noise: LidarNoise) -> None:
-        self.description = lidar
-        self.beams = Beams(lidar)
-        self._noise = noise
-
-    def scan(self, robot: pymunk.Body, scene: Scene) -> Scan:
-        """Measure once; each call draws from the sensor's random stream."""
-        lidar, beams = self.description, self.beams
-        exact = distances(beams, self._pose_on(robot), *scene.around(robot))
-        ranges = limited(self._noise.disturbed(exact), *lidar.range)
-        angle_max = beams.start + (beams.count - 1) * beams.increment
-        return Scan(beams.start, angle_max, beams.increment, *lidar.range, ranges)
-
-    def _pose_on(self, robot: pymunk.Body) -> Pose:
-        offset, (x, y), theta = self.description.offset, robot.position, robot.angle
-        cos, sin = math.cos(theta), math.sin(theta)
-        return Pose(x + cos * offset.x - sin * offset.y, y + sin * offset.x + cos * offset.y, theta + offset.theta)
+    space: pymunk.Space
+    scene: Scene
+    fleet: Fleet
+    contacts: Contacts
+    dt: float
+    seed: int
 
 
 class Robot:
-    """One robot of a `World`, which makes it, moves it and counts its contacts.
+    """One robot of a `World`, which makes it and moves it. Its pose is that of its shape's origin, base_link."""
 
-    `contacts` counts what it has run into since the start, `touching` what it touches now, `penetration` is the
-    deepest that it has ever been inside something, in metres.
-    """
+    def __init__(self, description: RobotDescription, parts: Parts) -> None:
+        self.description, self.name = description, description.name
+        self.dt, self.scene, self._parts = parts.dt, parts.scene, parts
+        self.body = body_at(description.pose, description.mass, description.shape)
+        self.shapes = solids(description.shape, self.body)
+        self.touches = Touches(self.body)
+        self._driver = Driver(description, self.body, parts.dt)
+        noise = description.odom.noise
+        random = stream(parts.seed, self.name, "odom")
+        self._noise = OdometryNoise(noise, random) if noise.v or noise.w else None
+        self._member = Member(self.body, self._driver.motion, self._noise)
+        self.devices = {each.topic: device(each, self, parts.seed) for each in description.sensors}
 
-    def __init__(self, robot: RobotDescription, world: WorldDescription, scene: Scene, seed: int) -> None:
-        self.description, self.name = robot, robot.name
-        self.body = body_at(robot.pose, robot.mass, robot.shape)
-        self.shape = solid(robot.shape, self.body)
-        self.drive = DiffDrive(robot.drive, self.body, robot.shape.outer_radius(), world.world.dt)
-        self.sensors = {each.lidar: _sensor(each, robot, seed) for each in robot.sensors}
-        self.contacts = self.touching = 0
-        self.penetration = 0.0
-        self._odometry = Odometry(*_numbers(robot.pose))
-        self._scene, self.dt = scene, world.world.dt
-        scene.add(self.body, robot.shape)
+    def enter(self) -> None:
+        """Come into the world."""
+        self._parts.space.add(self.body, *self.shapes)
+        self._parts.contacts.add(self.touches, self.shapes)
+        self._parts.scene.add(self.body, self.description.shape)
+        self._parts.fleet.add(self._member)
 
-    def command(self, v: float, w: float) -> None:
-        """Drive at `v` m/s and turn at `w` rad/s, within the robot's limits, until the drive's timeout.
+    def leave(self) -> None:
+        """Go out of the world."""
+        self._parts.space.remove(self.body, *self.shapes)
+        self._parts.contacts.remove(self.touches, self.shapes)
+        self._parts.scene.remove(self.body)
+        self._parts.fleet.remove(self._member)
 
-        Raises `CommandError` when it is not finite.
+    def command(self, v: float, w: float, sideways: float = 0.0) -> None:
+        """Drive at `v` m/s, turn at `w` rad/s and go left at `sideways` m/s, until the drive's timeout.
+
+        That is cut to the drive's limits, and only `omni` goes sideways. `ackermann` steers so that it goes on the
+        circle that v and w make; it doesn't turn on the spot. Raises `CommandError` when it is not finite.
         """
-        self.drive.command(v, w, self._scene.step)
+        self._driver.command(v, w, sideways, self.scene.step)
+        self._parts.fleet.told(self._member)
 
-    def advance(self) -> None:
-        """Prepare a step: push the body, and count into the odometry the arc that the step makes."""
-        self.drive.push(self.body, self._scene.step)
-        self._odometry.advance(self.drive.v, self.drive.w, self.dt)
+    def turn_wheels(self, speeds: Mapping[str, float]) -> None:
+        """Turn motors at speeds in rad/s, each until it is told otherwise or a velocity command comes.
+
+        Motors have no timeout. The speeds are cut to each motor's own, and all by one share to the drive's limits.
+        Raises `NotFoundError` for a motor that is not there, `CommandError` for a speed that is not finite.
+        """
+        self._driver.turn_wheels(speeds)
+        self._parts.fleet.told(self._member)
+
+    def teleport(self, pose: Pose) -> None:
+        """Stand at another place at once, at rest; odometry doesn't notice, and a command goes on.
+
+        Raises `WorldError` when that is inside of something, or no place at all; the robot stays where it was.
+        """
+        check_pose(self.name, pose)
+        before = self.pose
+        try:
+            self._put(pose)
+            check_place(self._parts.space, self.shapes, self.name, pose)
+        except WorldError:
+            self._put(before)
+            raise
+        self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
+        self._parts.fleet.rest(self._member)
+
+    def _put(self, pose: Pose) -> None:
+        placed(self.body, pose)
+        self._parts.space.reindex_shapes_for_body(self.body)
+        self.scene.moved()
+
+    @property
+    def motion(self) -> Motion[float]:
+        """What drives the robot, as it is now."""
+        return self._parts.fleet.motion(self._member)
 
     @property
     def pose(self) -> Pose:
@@ -84,27 +117,55 @@ class Robot:
     @property
     def odometry(self) -> Pose:
         """Where the robot is by its own speeds, in the world's frame (it starts at its true pose)."""
-        return Pose(self._odometry.x, self._odometry.y, wrapped(self._odometry.theta))
+        x, y, theta = self._parts.fleet.odometry(self._member)
+        return Pose(x, y, wrapped(theta))
 
     @property
     def twist(self) -> Velocity:
-        """The robot's true speeds along and about its heading."""
-        w = self.body.angular_velocity
+        """The robot's true speeds along, about and across its heading."""
+        (vx, vy), w = self.body.velocity, self.body.angular_velocity
         half = w * self.dt / 2
-        return Velocity(along(self.body.velocity, self.body.angle + half, half)[0], w)
+        middle = self.body.angle + half
+        cos, sin, chord = math.cos(middle), math.sin(middle), sinc(half)
+        return Velocity((vx * cos + vy * sin) / chord, w, (vy * cos - vx * sin) / chord)
+
+    @property
+    def odometry_twist(self) -> Velocity:
+        """The robot's speeds as odometry believes them: with its noise, and without slipping."""
+        v, w, sideways = self.twist
+        if self.description.drive.type != "omni":
+            sideways = 0.0
+        if self._noise is None:
+            return Velocity(v, w, sideways)
+        of_v, of_s, of_w = self._noise.at(self.scene.step)
+        return Velocity(v * of_v, w * of_w, sideways * of_s)
+
+    @property
+    def wheels(self) -> tuple[WheelState, ...]:
+        """How far each wheel has turned since the start, and how fast it turns, as the robot truly goes."""
+        v, w, sideways = self.twist
+        return self._driver.wheels(self.motion, v, sideways, w)
+
+    @property
+    def contacts(self) -> int:
+        """How many things the robot has run into since the start."""
+        return self.touches.contacts
+
+    @property
+    def touching(self) -> int:
+        """How many things the robot touches now."""
+        return self.touches.touching
+
+    @property
+    def penetration(self) -> float:
+        """The deepest that the robot has ever been inside something, in metres."""
+        return self.touches.penetration
 
     def scan(self, sensor: str | None = None) -> Scan:
         """Measure with a lidar (the first one by default); each call is a new measurement.
 
-        Raises `KeyError` when the robot has no such sensor.
+        Raises `KeyError` when the robot has no such lidar.
         """
-        name = sensor if sensor is not None else next(iter(self.sensors), "")
-        return self.sensors[name].scan(self.body, self._scene)
-
-
-def _sensor(lidar: Lidar, robot: RobotDescription, seed: int) -> LidarSensor:
-    return LidarSensor(lidar, LidarNoise(lidar, stream(seed, robot.name, lidar.lidar)))
-
-
-def _numbers(pose: Pose) -> tuple[float, float, float]:
-    return pose.x, pose.y, pose.theta
+        lidars = {topic: each for topic, each in self.devices.items() if isinstance(each, LidarSensor)}
+        name = sensor if sensor is not None else next(iter(lidars), "")
+        return lidars[name].measure()

@@ -1,57 +1,111 @@
-"""What a lidar can see: the fixed shapes, and where the moving ones are now."""
+"""What sensors can see in a world: the fixed shapes, and where the moving ones are now."""
 
 from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import pymunk
 
-from robolink.sim.description import Pose, Shape, WorldDescription
-from robolink.sim.geometry import Array, Corners, edges, fixed_circles, fixed_segments
+from robolink.sim.description import Shape, WorldDescription
+from robolink.sim.geometry import fixed_circles, fixed_reflectances, fixed_segments
+from robolink.sim.surroundings import FIXED, Circles, Edges, Surroundings, circles_of
+from robolink.sim.tiles import Tiles, columns
 
 
 class Scene:
-    """All shapes of a world as arrays of segments and circles, read anew when `step` has changed."""
+    """All shapes of a world; those that move are looked at anew when `step` has changed or `moved` was called."""
 
     def __init__(self, description: WorldDescription) -> None:
-        self.fixed_segments = fixed_segments(description)
-        self.fixed_circles = fixed_circles(description)
-        self._discs: list[tuple[pymunk.Body, float]] = []
-        self._boxes: list[tuple[pymunk.Body, Corners]] = []
-        self._segments, self._circles = self.fixed_segments, self.fixed_circles
+        self.fixed_segments, self.fixed_circles = fixed_segments(description), fixed_circles(description)
+        of_segments, of_circles = fixed_reflectances(description)
+        self._walls = Tiles(self.fixed_segments, of_segments)
+        self._standing = circles_of(self.fixed_circles, of_circles, np.full(len(of_circles), FIXED))
+        self._discs, self._polygons = _Discs(), _Polygons()
+        self._moving: dict[pymunk.Body, _Moving] = {}
+        self._next_number = 0
         self.step, self._seen = 0, -1
+        self._surroundings = Surroundings(self._walls, self._standing)
 
-    def add(self, body: pymunk.Body, shape: Shape) -> None:
+    def add(self, body: pymunk.Body, shape: Shape, reflectance: float = 1.0) -> None:
         """Add something that moves."""
-        if shape.circle is not None:
-            self._discs.append((body, shape.circle))
-        else:
-            self._boxes.append((body, shape.corners()))
+        self._moving[body] = _Moving(body, shape, reflectance, self._next_number)
+        self._next_number += 1
+        self._sort()
+
+    def remove(self, body: pymunk.Body) -> None:
+        """Take away something that moves; raises `KeyError` if it isn't there."""
+        del self._moving[body]
+        self._sort()
+
+    def number(self, body: pymunk.Body) -> int:
+        """Give the number of what moves: a sensor that is told it doesn't see it. Raises `KeyError`."""
+        return self._moving[body].number
+
+    def moved(self) -> None:
+        """Take note that something was moved other than by a step."""
         self._seen = -1
 
-    def around(self, body: pymunk.Body) -> tuple[Array, Array]:
-        """Give the segments (x1, y1, x2, y2) and circles (x, y, radius) of all but `body`."""
+    def surroundings(self) -> Surroundings:
+        """Give all that can be seen now."""
         if self._seen != self.step:
-            self._update()
+            self._surroundings = Surroundings(self._walls, self._discs.beside(self._standing), self._polygons.edges())
             self._seen = self.step
-        return self._segments_without(body), self._circles_without(body)
+        return self._surroundings
 
-    def _update(self) -> None:
-        if self._discs:
-            rows = [[*body.position, radius] for body, radius in self._discs]
-            self._circles = np.concatenate((self.fixed_circles, rows))
-        if self._boxes:
-            boxes = [edges(corners, Pose(*body.position, body.angle)) for body, corners in self._boxes]
-            self._segments = np.concatenate((self.fixed_segments, *boxes))
+    def _sort(self) -> None:
+        moving = list(self._moving.values())
+        self._discs = _Discs([each for each in moving if each.shape.circle is not None])
+        self._polygons = _Polygons([each for each in moving if each.shape.circle is None])
+        self.moved()
 
-    def _circles_without(self, body: pymunk.Body) -> Array:
-        for index, (each, _) in enumerate(self._discs):
-            if each is body:
-                return np.delete(self._circles, len(self.fixed_circles) + index, axis=0)
-        return self._circles
 
-    def _segments_without(self, body: pymunk.Body) -> Array:
-        for index, (each, _) in enumerate(self._boxes):
-            if each is body:
-                first = len(self.fixed_segments) + 4 * index
-                return np.delete(self._segments, slice(first, first + 4), axis=0)
-        return self._segments
+class _Moving(NamedTuple):
+    body: pymunk.Body
+    shape: Shape
+    reflectance: float
+    number: int
+
+
+class _Discs:
+    """Circles that move: all but their places is known beforehand."""
+
+    def __init__(self, moving: Sequence[_Moving] = ()) -> None:
+        self._bodies = [each.body for each in moving]
+        self._radius = np.array([each.shape.circle for each in moving], dtype=np.float64)
+        self._reflectance = np.array([each.reflectance for each in moving], dtype=np.float64)
+        self._number = np.array([each.number for each in moving], dtype=np.intp)
+
+    def beside(self, fixed: Circles) -> Circles:
+        """Give fixed circles, and these as they are now."""
+        if not self._bodies:
+            return fixed
+        x, y = zip(*(body.position for body in self._bodies), strict=True)
+        own = (np.array(x), np.array(y), self._radius, self._reflectance, self._number)
+        return Circles(*(np.concatenate(both) for both in zip(fixed, own, strict=True)))
+
+
+class _Polygons:
+    """Boxes and polygons that move: their edges in their own frames."""
+
+    def __init__(self, moving: Sequence[_Moving] = ()) -> None:
+        self._bodies = [each.body for each in moving]
+        corners = [each.shape.corners() for each in moving]
+        counts = [len(each) for each in corners]
+        self._which = np.repeat(np.arange(len(moving)), counts)
+        self._first = np.array([point for each in corners for point in each]).reshape(-1, 2).T
+        self._second = np.array([point for each in corners for point in [*each[1:], each[0]]]).reshape(-1, 2).T
+        self._radius = np.repeat([each.shape.outer_radius() for each in moving], counts)
+        self._reflectance = np.repeat([each.reflectance for each in moving], counts)
+        self._number = np.repeat(np.array([each.number for each in moving], dtype=np.intp), counts)
+
+    def edges(self) -> Edges | None:
+        """Give all edges as they are now, if there are any."""
+        if not self._bodies:
+            return None
+        poses = [(*body.position, math.cos(body.angle), math.sin(body.angle)) for body in self._bodies]
+        x, y, cos, sin = np.array(poses).T.take(self._which, axis=1)
+        first, second = ((x + cos * a - sin * b, y + sin * a + cos * b) for a, b in (self._first, self._second))
+        return Edges(columns(np.stack((*first, *second), axis=1), self._reflectance), x, y, self._radius, self._number)

@@ -14,13 +14,20 @@ from types import MappingProxyType
 
 import pymunk
 
-from robolink.sim.bodies import body_at, floor_friction, solid, wall_shapes
-from robolink.sim.description import Obstacle, WorldDescription
+from robolink.exceptions import NotFoundError
+from robolink.sim.bodies import body_at, floor_friction, pushable_body, solids, wall_shapes
+from robolink.sim.contacts import Contacts
+from robolink.sim.description import Obstacle, RobotDescription, WorldDescription
+from robolink.sim.fleet import Fleet
 from robolink.sim.geometry import nearest_wall_distance
-from robolink.sim.robot import Robot
+from robolink.sim.mover import Mover
+from robolink.sim.placing import WorldError, check_place, check_pose
+from robolink.sim.readings import Reading
+from robolink.sim.robot import Parts, Robot
+from robolink.sim.robot_problems import robot_problems
 from robolink.sim.scene import Scene
+from robolink.sim.schedule import Schedule
 
-_ROBOT = 1
 _ITERATIONS = 20
 
 
@@ -28,26 +35,27 @@ class World:
     """A world made from a description; to reset it, make another one.
 
     Time is `steps` times `dt_ns`: an integer. Everything is a pure function of the description, the seed (by
-    default the description's) and the commands with the steps at which they came.
+    default the description's) and the commands with the steps at which they came. `robots` are those that are in
+    the world now, by their names.
     """
 
     def __init__(self, description: WorldDescription, *, seed: int | None = None) -> None:
         self.description = description
         self.dt_ns = round(description.world.dt * 1e9)
         self.steps = 0
-        self._dt = description.world.dt
+        self._dt = dt = description.world.dt
         self._space = _space(description)
-        self._scene = Scene(description)
+        self._scene, self._fleet, self._contacts = Scene(description), Fleet(self._space), Contacts(self._space, dt)
+        self._movers: list[Mover] = []
         for obstacle in description.obstacles:
             self._add_obstacle(obstacle)
         seed = description.world.seed if seed is None else seed
-        robots = [Robot(each, description, self._scene, seed) for each in description.robots]
-        self.robots: Mapping[str, Robot] = MappingProxyType({robot.name: robot for robot in robots})
-        self._robots, self._by_shape = robots, {robot.shape: robot for robot in robots}
-        for robot in robots:
-            robot.shape.collision_type = _ROBOT
-            self._space.add(robot.body, robot.shape)
-        self._space.on_collision(_ROBOT, None, begin=self._begin, pre_solve=self._touch, separate=self._separate)
+        self._parts = Parts(self._space, self._scene, self._fleet, self._contacts, dt, seed)
+        self._robots: dict[str, Robot] = {}
+        self.robots: Mapping[str, Robot] = MappingProxyType(self._robots)
+        for robot in description.robots:
+            self._add_robot(robot)
+        self._schedule = Schedule(self._robots.values())
 
     @property
     def time_ns(self) -> int:
@@ -56,38 +64,72 @@ class World:
 
     def step(self) -> None:
         """Move the world on by one step of `dt`."""
-        for robot in self._robots:
-            robot.advance()
+        self._fleet.advance(self.steps)
+        for mover in self._movers:
+            mover.aim(self.steps + 1)
         self._space.step(self._dt)
         self.steps += 1
         self._scene.step = self.steps
+        self._contacts.measure()
+
+    def readings(self) -> list[Reading]:
+        """Measure with all sensors that are due at the present step; each call is a new measurement."""
+        return self._schedule.readings(self.steps)
+
+    def spawn(self, description: RobotDescription) -> Robot:
+        """Put another robot into the world and give it.
+
+        Raises `WorldError` when its name is taken, when it would start inside of something, or for what
+        `load_world` would refuse in a world file.
+        """
+        for problem in robot_problems(description, self._dt):
+            raise WorldError(f"robot '{description.name}': {problem.path[1:]}: {problem.message}")
+        check_pose(description.name, description.pose)
+        robot = self._add_robot(description)
+        try:
+            check_place(self._space, robot.shapes, robot.name, description.pose)
+        except WorldError:
+            self.delete(robot.name)
+            raise
+        self._schedule = Schedule(self._robots.values())
+        return robot
+
+    def delete(self, name: str) -> None:
+        """Take a robot out of the world. Raises `NotFoundError` when there is none of that name."""
+        if name not in self._robots:
+            raise NotFoundError("robot", name, self._robots)
+        self._robots.pop(name).leave()
+        self._schedule = Schedule(self._robots.values())
 
     def nearest_wall_distance(self, x: float, y: float) -> float:
         """Give the distance in metres from a point to the nearest wall or fixed obstacle; inf if there is none."""
         return nearest_wall_distance(self._scene.fixed_segments, self._scene.fixed_circles, x, y)
 
+    def _add_robot(self, description: RobotDescription) -> Robot:
+        if description.name in self._robots:
+            raise WorldError(f"there is a robot named '{description.name}' already")
+        robot = self._robots[description.name] = Robot(description, self._parts)
+        robot.enter()
+        return robot
+
     def _add_obstacle(self, obstacle: Obstacle) -> None:
-        body = body_at(obstacle.pose, obstacle.mass, obstacle)
-        self._space.add(body, solid(obstacle, body))
-        if obstacle.mass is not None:
+        if obstacle.path is not None:
+            mover = Mover(obstacle, self._dt)
+            self._movers.append(mover)
+            body = mover.body
+        elif obstacle.mass is not None:
+            body = pushable_body(obstacle, obstacle.mass)
+        else:
+            body = body_at(obstacle.start, None, obstacle)
+        shapes = solids(obstacle, body)
+        self._space.add(body, *shapes)
+        if obstacle.path is not None:
+            self._contacts.add_mover(shapes)
+        elif obstacle.mass is not None:
+            self._contacts.add_pushable(body)
             self._space.add(*floor_friction(body, self._space.static_body, obstacle))
-            self._scene.add(body, obstacle)
-
-    def _begin(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
-        """Count a contact; when two robots meet, each is the first shape of a call of its own."""
-        robot = self._by_shape[arbiter.shapes[0]]
-        robot.contacts += 1
-        robot.touching += 1
-
-    def _touch(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
-        robot = self._by_shape[arbiter.shapes[0]]
-        deepest = max((-point.distance for point in arbiter.contact_point_set.points), default=0.0)
-        robot.penetration = max(robot.penetration, deepest)
-
-    def _separate(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
-        robot = self._by_shape.get(arbiter.shapes[0])
-        if robot is not None:  # a space that goes away names the shapes in any order
-            robot.touching -= 1
+        if body.body_type != pymunk.Body.STATIC:
+            self._scene.add(body, obstacle, obstacle.reflectance)
 
 
 def _space(description: WorldDescription) -> pymunk.Space:

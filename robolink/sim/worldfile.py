@@ -1,195 +1,161 @@
-"""Reads world files, and finds in them what is wrong and types cannot say.
+"""Reads world files, and finds in them what is wrong.
 
 description = load_world("configs/worlds/corners.yaml")
 """
 
 from __future__ import annotations
 
-import math
+import itertools
 import os
-import re
-from collections.abc import Iterator, Sequence
-from typing import TypeAlias
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import pymunk
+import msgspec
 
 from robolink import yamlfile
-from robolink.exceptions import nearest
-from robolink.sim.bodies import body_at, solid, wall_shapes
-from robolink.sim.description import Lidar, Obstacle, Point, RobotDescription, Shape, Wall, WorldDescription
+from robolink.exceptions import DocumentError, RobolinkError, nearest
+from robolink.sim.description import SENSORS, MapWalls, Sensor, WorldDescription
+from robolink.sim.overlaps import overlaps
+from robolink.sim.problems import (
+    Problem,
+    misfits,
+    obstacle_problems,
+    repeated_names,
+    size_problems,
+    steps_between,
+    under,
+    wall_problems,
+)
+from robolink.sim.robot_problems import robot_problems
+from robolink.yamlfile import Document
 
-Problem: TypeAlias = "tuple[str, str]"
+if TYPE_CHECKING:
+    from robolink.sim.gridmap import GridMap
 
-DRIVES = ("diff",)
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
-_TAKEN = ("cmd_vel", "odom", "tf", "clock", "rosout")
-_TOUCHING = 1e-9
+__all__ = ["check_world", "load_world", "problems", "steps_between"]
 
 
 def load_world(path: str | os.PathLike[str], *, text: str | None = None) -> WorldDescription:
-    """Read a world file (or `text` in its place).
+    """Read a world file, ours or Webots' (`.wbt`), or `text` in its place; a map of ROS becomes walls.
 
     Raises `DocumentError` with `file:line:column` for everything that is wrong with it: YAML, an unknown key, a
-    value of the wrong type or out of range, a shape without extent, a robot that starts inside something.
+    value of the wrong type or out of range, a degenerate shape, shapes that overlap, a robot that starts inside
+    something, a map that cannot be read.
     """
-    document = yamlfile.read(path, WorldDescription, text=text)
-    for where, message in problems(document.value):
-        raise document.error(where, message)
-    return document.value
+    if _is_webots(path):
+        return _load_webots(path, text)
+    document = yamlfile.read(path, WorldDescription, text=text, hook=_kind_of_sensor)
+    grid = _map_of(document)
+    description = _with_map(document, grid)
+    for error in _mistakes(document, description, grid):
+        raise error
+    return description
 
 
-def problems(description: WorldDescription) -> Iterator[Problem]:
-    """Yield (path, message) for all that is wrong, such as ``$.robots[0].pose``; overlaps once all else is right."""
+class Checked(NamedTuple):
+    """What a world file describes, or None if anything is wrong with it, and what that is."""
+
+    description: WorldDescription | None
+    errors: list[RobolinkError]
+
+
+def check_world(path: str | os.PathLike[str], *, text: str | None = None) -> Checked:
+    """Read a world file as `load_world` does, but give all mistakes that can be seen at once."""
+    if _is_webots(path):
+        try:
+            return Checked(_load_webots(path, text), [])
+        except RobolinkError as error:
+            return Checked(None, [error])
+    errors: list[RobolinkError] = [*yamlfile.mistakes(path, WorldDescription, text=text, hook=_kind_of_sensor)]
+    if errors:
+        return Checked(None, errors)
+    document = yamlfile.read(path, WorldDescription, text=text, hook=_kind_of_sensor)
+    description, grid = document.value, None
+    try:
+        grid = _map_of(document)
+        description = _with_map(document, grid)
+    except DocumentError as error:
+        errors.append(error)
+    errors += _mistakes(document, description, grid)
+    return Checked(None if errors else description, errors)
+
+
+def _is_webots(path: str | os.PathLike[str]) -> bool:
+    return Path(path).suffix.lower() == ".wbt"
+
+
+def _kind_of_sensor(kind: type, data: Any) -> type[Sensor]:
+    """Give the class of a sensor, which one of its keys tells. Raises ValueError when none does, or several."""
+    if not isinstance(data, dict):
+        raise ValueError("expected a mapping such as {lidar: scan}")
+    kinds = [key for key in data if key in SENSORS]
+    if len(kinds) > 1:
+        raise ValueError(f"one sensor cannot be both {' and '.join(kinds)}: make each of them an item of its own")
+    if not kinds:
+        near = next(filter(None, (nearest(key, SENSORS) for key in data)), "")
+        raise ValueError(f"this sensor has no kind{near}: one of its keys must be {', '.join(SENSORS)}")
+    return SENSORS[kinds[0]]
+
+
+def problems(description: WorldDescription, grid: GridMap | None = None) -> Iterator[Problem]:
+    """Yield all that is wrong with a description, such as ``$.robots[0].pose``; overlaps once all else is right."""
     found = False
     for problem in _local_problems(description):
         found = True
         yield problem
     if not found:
-        yield from _overlaps(description)
-
-
-def steps_between(rate: float, dt: float) -> int:
-    """Give the whole number of steps of `dt` seconds from one reading to the next at `rate` Hz; 0 if there is none."""
-    steps = 1.0 / (rate * dt)
-    whole = round(steps)
-    return whole if whole >= 1 and abs(steps - whole) < 1e-6 * steps else 0
+        yield from overlaps(description, grid)
 
 
 def _local_problems(description: WorldDescription) -> Iterator[Problem]:
+    dt = description.world.dt
     for index, wall in enumerate(description.walls):
-        yield from _under(f"$.walls[{index}]", _wall_problems(wall))
+        if not isinstance(wall, MapWalls):
+            yield from under(f"$.walls[{index}]", wall_problems(wall))
     for index, obstacle in enumerate(description.obstacles):
-        yield from _under(f"$.obstacles[{index}]", _shape_problems(obstacle))
+        yield from under(f"$.obstacles[{index}]", obstacle_problems(obstacle, dt))
     for index, robot in enumerate(description.robots):
-        yield from _under(f"$.robots[{index}]", _robot_problems(robot, description.world.dt))
-    names = [robot.name for robot in description.robots]
-    yield from _repeated(names, "$.robots[{}].name", "two robots are called")
-    yield from _size_problems(description)
+        yield from under(f"$.robots[{index}]", robot_problems(robot, dt))
+    yield from repeated_names([each.name for each in description.robots], "$.robots[{}].name", "two robots are called")
+    yield from size_problems(description)
 
 
-def _under(path: str, found: Iterator[Problem]) -> Iterator[Problem]:
-    return ((path + where, message) for where, message in found)
+def _mistakes(
+    document: Document[WorldDescription], description: WorldDescription, grid: GridMap | None
+) -> Iterator[DocumentError]:
+    """Yield what is wrong with a world file whose every value is of the right type and in its range."""
+    data: Any = document.data
+    for each in itertools.chain(misfits(data), problems(description, grid)):
+        yield document.error(each.path, each.message, key=each.key)
 
 
-def _wall_problems(wall: Wall) -> Iterator[Problem]:
-    points = wall.polyline
-    if wall.closed and len(points) < 3:
-        yield ".polyline", f"a closed wall needs 3 points or more, got {len(points)}"
-        return
-    for index, (start, end) in enumerate(wall.segments()):
-        if math.dist(start, end) < 1e-6:
-            last = len(points) - 1
-            yield f".polyline[{min(index + 1, last)}]", _no_length(start, closing=index == last)
+def _map_of(document: Document[WorldDescription]) -> GridMap | None:
+    """Read the map that a world file names, from its own folder."""
+    if document.value.map is None:
+        return None
+    from robolink.sim.gridmap import load_map
+
+    path = Path(document.name).parent / document.value.map.yaml
+    try:
+        return load_map(path)
+    except yamlfile.DocumentNotFoundError as error:
+        raise document.error("$.map.yaml", str(error)) from None
 
 
-def _no_length(point: Point, closing: bool) -> str:
-    at = f"[{point[0]:g}, {point[1]:g}]"
-    if closing:
-        return f"'closed: true' already leads back to the first point, {at}: leave this one out"
-    return f"a wall from {at} to the same point has no length"
+def _with_map(document: Document[WorldDescription], grid: GridMap | None) -> WorldDescription:
+    if grid is None:
+        return document.value
+    from robolink.sim.gridmap import map_walls
+
+    try:
+        walls = map_walls(grid)
+    except ValueError as error:
+        raise document.error("$.map", str(error)) from None
+    return msgspec.structs.replace(document.value, walls=(*document.value.walls, walls))
 
 
-def _shape_problems(shape: Shape) -> Iterator[Problem]:
-    if (shape.box is None) == (shape.circle is None):
-        found = "neither" if shape.box is None else "both"
-        yield "", f"expected one of 'box' and 'circle', got {found}"
+def _load_webots(path: str | os.PathLike[str], text: str | None) -> WorldDescription:
+    from robolink.sim import webots
 
-
-def _robot_problems(robot: RobotDescription, dt: float) -> Iterator[Problem]:
-    if not _NAME.fullmatch(robot.name):
-        yield ".name", _bad_name(robot.name)
-    if bad := list(_shape_problems(robot.shape)):
-        yield from _under(".shape", iter(bad))
-    else:
-        yield from _under(".drive", _drive_problems(robot, dt))
-    yield from _rate_problems(".odom.rate", robot.odom.rate, dt)
-    for index, sensor in enumerate(robot.sensors):
-        yield from _under(f".sensors[{index}]", _lidar_problems(sensor, dt))
-    topics = [sensor.lidar for sensor in robot.sensors]
-    yield from _repeated(topics, ".sensors[{}].lidar", "two sensors publish on")
-
-
-def _bad_name(name: str) -> str:
-    return f"{name!r} is no name: letters, digits and '_', a letter first, 64 at most"
-
-
-def _repeated(names: Sequence[str], path: str, words: str) -> Iterator[Problem]:
-    for index, name in enumerate(names):
-        if names.index(name) < index:
-            yield path.format(index), f"{words} '{name}'"
-
-
-def _drive_problems(robot: RobotDescription, dt: float) -> Iterator[Problem]:
-    drive, reach = robot.drive, robot.shape.inner_radius()
-    if drive.type not in DRIVES:
-        known = ", ".join(DRIVES)
-        yield ".type", f"no drive is called '{drive.type}'{nearest(drive.type, DRIVES)}; there is: {known}"
-    if drive.v_max * dt > reach:
-        way = f"{drive.v_max:g} m/s is {drive.v_max * dt:.3g} m in a step of {dt:g} s"
-        yield ".v_max", f"{way}, and a robot of {reach:g} m could pass through walls: at most {reach / dt:.4g}"
-    if drive.w_max * dt > math.pi / 2:
-        yield ".w_max", f"more than a quarter turn in a step of {dt:g} s: at most {math.pi / 2 / dt:.4g}"
-
-
-def _lidar_problems(lidar: Lidar, dt: float) -> Iterator[Problem]:
-    if not _NAME.fullmatch(lidar.lidar):
-        yield ".lidar", _bad_name(lidar.lidar)
-    elif lidar.lidar in _TAKEN:
-        yield ".lidar", f"the topic '{lidar.lidar}' is taken: choose another, such as 'scan'"
-    yield from _rate_problems(".rate", lidar.rate, dt)
-    if lidar.range[0] >= lidar.range[1]:
-        yield ".range", f"the nearest, {lidar.range[0]:g} m, must be less than the farthest, {lidar.range[1]:g} m"
-
-
-def _rate_problems(path: str, rate: float, dt: float) -> Iterator[Problem]:
-    if steps_between(rate, dt):
-        return
-    steps = math.floor(1.0 / (rate * dt))
-    fitting = " or ".join(f"{1.0 / (dt * whole):.6g}" for whole in (steps + 1, steps) if whole)
-    yield path, f"{rate:g} Hz is no whole number of steps of {dt:g} s: take {fitting}"
-
-
-def _size_problems(description: WorldDescription) -> Iterator[Problem]:
-    if description.world.size is None:
-        return
-    width, height = description.world.size
-    poses = {f"$.robots[{index}].pose": each.pose for index, each in enumerate(description.robots)}
-    poses |= {f"$.obstacles[{index}].pose": each.pose for index, each in enumerate(description.obstacles)}
-    for path, pose in poses.items():
-        if not (0.0 <= pose.x <= width and 0.0 <= pose.y <= height):
-            yield path, f"[{pose.x:g}, {pose.y:g}] lies outside of the world's size, [{width:g}, {height:g}]"
-
-
-def _overlaps(description: WorldDescription) -> Iterator[Problem]:
-    """Find robots and pushable obstacles that start inside something else."""
-    space, places = pymunk.Space(), dict[pymunk.Shape, str]()
-    for index, wall in enumerate(description.walls):
-        segments = wall_shapes(wall, space.static_body)
-        places |= dict.fromkeys(segments, f"walls[{index}]")
-        space.add(*segments)
-    free = [_placed(space, robot, robot.shape, robot.mass) for robot in description.robots]
-    things = [_placed(space, obstacle, obstacle, obstacle.mass) for obstacle in description.obstacles]
-    places |= {shape: f"robots[{index}]" for index, shape in enumerate(free)}
-    places |= {shape: f"obstacles[{index}]" for index, shape in enumerate(things)}
-    free += [shape for shape, each in zip(things, description.obstacles, strict=True) if each.mass is not None]
-    for shape in free:
-        if other := _inside(space, shape):
-            yield f"$.{places[shape]}.pose", f"this starts inside of {places[other]}"
-
-
-def _placed(
-    space: pymunk.Space, thing: RobotDescription | Obstacle, outline: Shape, mass: float | None
-) -> pymunk.Shape:
-    body = body_at(thing.pose, mass, outline)
-    shape = solid(outline, body)
-    space.add(body, shape)
-    return shape
-
-
-def _inside(space: pymunk.Space, shape: pymunk.Shape) -> pymunk.Shape | None:
-    """Find what a shape overlaps with by more than a touch; of things with one centre Chipmunk knows no normal."""
-    for info in space.shape_query(shape):
-        contact = info.contact_point_set
-        if contact.normal.length < 0.5 or any(point.distance < -_TOUCHING for point in contact.points):
-            return info.shape
-    return None
+    return webots.load(path, text)

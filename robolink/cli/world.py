@@ -1,0 +1,168 @@
+"""robolink world: check, draw and list the worlds that are simulated."""
+
+from __future__ import annotations
+
+import contextlib
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from robolink.cli import complete
+
+if TYPE_CHECKING:
+    from robolink.sim import WorldDescription
+    from robolink.sim.worldfile import Checked
+
+app = typer.Typer(no_args_is_help=True, help="Check, draw and list the worlds that are simulated.")
+
+Workspace = Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Where to look first.")]
+
+
+@app.command("check")
+def check_worlds(
+    files: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="NAME|FILE...", help="Worlds, ours or Webots' (.wbt).", autocompletion=complete.world_files
+        ),
+    ],
+    workspace: Workspace = "",
+    as_json: Annotated[bool, typer.Option("--json", help="JSON: a list with the problems of each file.")] = False,
+) -> None:
+    """Say what is wrong with worlds, a line for each problem; the exit code is 1 if anything is."""
+    found = [_checked(each, workspace) for each in files]
+    if as_json:
+        import json
+
+        report = [{"file": path, "problems": [str(each) for each in checked.errors]} for path, checked in found]
+        typer.echo(json.dumps(report, ensure_ascii=False))
+    else:
+        for path, checked in found:
+            for line in _lines(path, checked):
+                typer.echo(line)
+    if any(checked.errors for _, checked in found):
+        raise typer.Exit(1)
+
+
+@app.command("draw")
+def draw_world(
+    file: Annotated[
+        str,
+        typer.Argument(metavar="NAME|FILE", help="A world.", autocompletion=complete.world_files),
+    ],
+    out: Annotated[Path, typer.Argument(metavar="OUT", help="A .png, .svg or .pdf file.")],
+    size: Annotated[
+        int, typer.Option("--size", metavar="PIXELS", help="Of the longer side.", min=100, max=20_000)
+    ] = 1000,
+    workspace: Workspace = "",
+) -> None:
+    """Draw a world as it begins, into a picture (needs matplotlib: pip install 'robolink[plot]')."""
+    from robolink.drawing import check_picture, save_world
+    from robolink.sim.worldfile import load_world
+
+    check_picture(out)
+    with _told_warnings():
+        description = load_world(_found(file, workspace))
+    save_world(description, out, size)
+
+
+@app.command("list")
+def list_all(
+    workspace: Workspace = "",
+    as_json: Annotated[bool, typer.Option("--json", help="JSON: names and files.")] = False,
+) -> None:
+    """List the worlds that there are."""
+    from robolink.workspace import list_worlds
+
+    found = list_worlds(workspace=workspace or None)
+    if as_json:
+        import json
+
+        typer.echo(json.dumps([{"name": each.stem, "file": str(each)} for each in found], ensure_ascii=False))
+        return
+    for each in found:
+        typer.echo(each.stem)
+
+
+@app.command("schema")
+def show_schema(
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write it there instead of showing it.")
+    ] = None,
+) -> None:
+    """Show the JSON schema of world files, by which editors complete and check them while one writes.
+
+    An editor takes it from a world's first line: # yaml-language-server: $schema=world.schema.json
+    """
+    from robolink.sim.schema import schema_text
+
+    if out is None:
+        typer.echo(schema_text(), nl=False)
+    else:
+        out.write_text(schema_text(), encoding="utf-8", newline="\n")
+
+
+def _found(name: str, workspace: str) -> str:
+    """Give a world's path, as short as it can be said from here."""
+    from robolink.workspace import find_world
+
+    path = find_world(name, workspace=workspace or None)
+    here = Path.cwd()
+    return str(path.relative_to(here) if path.is_relative_to(here) else path)
+
+
+def _checked(name: str, workspace: str) -> tuple[str, Checked]:
+    """Check a world; one that is not found is one of the problems."""
+    from robolink.exceptions import NotFoundError
+    from robolink.sim.worldfile import Checked, check_world
+
+    try:
+        path = _found(name, workspace)
+    except NotFoundError as error:
+        return name, Checked(None, [error])
+    with _told_warnings():
+        return path, check_world(path)
+
+
+def _lines(path: str, checked: Checked) -> list[str]:
+    if checked.description is not None:
+        return [f"{path}: OK: {summary(checked.description)}"]
+    return [_one_line(str(error)) for error in checked.errors]
+
+
+def _one_line(text: str) -> str:
+    return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
+
+
+def summary(description: WorldDescription) -> str:
+    """Say what there is in a world: "4 walls, 1 robot with 2 sensors"."""
+    from robolink.sim.description import MapWalls
+
+    drawn = sum(len(each.segments()) for each in description.walls if not isinstance(each, MapWalls))
+    mapped = sum(len(each.segments()) for each in description.walls if isinstance(each, MapWalls))
+    sensors = sum(len(each.sensors) for each in description.robots)
+    with_sensors = f" with {_counted(sensors, 'sensor')}" if sensors else ""
+    parts = [
+        _counted(drawn, "wall") if drawn or not mapped else "",
+        f"a map of {_counted(mapped, 'wall')}" if mapped else "",
+        _counted(len(description.obstacles), "obstacle") if description.obstacles else "",
+        _counted(len(description.robots), "robot") + with_sensors,
+    ]
+    return ", ".join(filter(None, parts))
+
+
+def _counted(count: int, word: str) -> str:
+    return f"{count} {word}" + ("" if count == 1 else "s")
+
+
+@contextlib.contextmanager
+def _told_warnings() -> Iterator[None]:
+    """Write what a world warns of to standard error, a line each."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        yield
+    for each in caught:
+        typer.echo(f"robolink: {_one_line(str(each.message))}", err=True)

@@ -1,0 +1,194 @@
+"""Draws worlds with matplotlib: into axes of one's own, or into a picture file.
+
+    draw_world(axes, load_world("configs/worlds/lab.yaml"))
+    save_world(load_world("configs/worlds/lab.yaml"), Path("lab.png"))
+
+matplotlib is an optional part: `pip install 'robolink[plot]'`.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from robolink.exceptions import RobolinkError
+from robolink.sim.description import (
+    Bumper,
+    Lidar,
+    MapWalls,
+    Obstacle,
+    Point,
+    Pose,
+    RangeFinder,
+    RobotDescription,
+    Shape,
+    WorldDescription,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.patches import Patch
+
+FORMATS = (".png", ".svg", ".pdf")
+
+# Okabe and Ito's colours, which people who see few colours can tell apart.
+WALL, ROBOT, TOUCH = "#222222", "#009E73", "#E69F00"
+KINDS = {"fixed": "#A8A8A8", "can be pushed": "#E69F00", "moves by itself": "#56B4E9"}
+"""The colours of obstacles."""
+
+_INCH = 100.0
+"""Pixels of a picture to an inch."""
+
+_NAMED = 30
+"""Of so many robots, the names are written beside them."""
+
+
+class DrawingError(RobolinkError, ValueError):
+    """Nothing can be drawn so; the text says why, and what would do."""
+
+
+def check_picture(path: Path) -> None:
+    """Raise `DrawingError` when no picture can be drawn into such a file, or when matplotlib is not installed."""
+    if path.suffix.lower() not in FORMATS:
+        raise DrawingError(f"'{path.name}' is no picture that can be drawn: end its name in {', '.join(FORMATS)}")
+    try:
+        import matplotlib as _  # noqa: F401
+    except ImportError:
+        raise DrawingError("drawing needs matplotlib, which is not installed: pip install 'robolink[plot]'") from None
+
+
+def save_world(description: WorldDescription, path: Path, size: int = 1000) -> None:
+    """Draw a world into a .png, .svg or .pdf file, `size` pixels (or hundredths of an inch) on its longer side.
+
+    No window is opened. Raises `DrawingError` for another kind of file or without matplotlib, OSError when the file
+    cannot be written.
+    """
+    check_picture(path)
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=_figure_size(description, size / _INCH), dpi=_INCH, layout="constrained")
+    axes = figure.add_subplot()
+    kinds = draw_world(axes, description)
+    axes.set_title(description.world.name)
+    if len(kinds) > 1:
+        figure.legend(handles=kinds, loc="outside lower center", ncols=len(kinds), frameon=False)
+    figure.savefig(path)
+
+
+def draw_world(axes: Axes, description: WorldDescription) -> list[Patch]:
+    """Draw a world as it begins: walls, obstacles, the paths of what moves, robots with their headings and sensors.
+
+    Gives what a legend may explain: a handle for each kind of obstacle that there is. One metre is as long in both
+    directions.
+    """
+    from matplotlib.patches import Patch
+
+    _draw_walls(axes, description)
+    for obstacle in description.obstacles:
+        _draw_obstacle(axes, obstacle)
+    for robot in description.robots:
+        _draw_robot(axes, robot, named=len(description.robots) <= _NAMED)
+    axes.set_aspect("equal")
+    axes.autoscale_view()
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
+    axes.set_axisbelow(True)
+    axes.grid(color="#E5E5E5", linewidth=0.6)
+    kinds = {_kind(each) for each in description.obstacles}
+    return [Patch(facecolor=KINDS[kind], edgecolor=WALL, label=kind) for kind in KINDS if kind in kinds]
+
+
+def _draw_walls(axes: Axes, description: WorldDescription) -> None:
+    from matplotlib.collections import LineCollection
+
+    for wall in description.walls:
+        width = 1.0 if isinstance(wall, MapWalls) else 2.0
+        lines = LineCollection(wall.segments(), colors=WALL, linewidths=width, capstyle="round", zorder=3)
+        axes.add_collection(lines, autolim=True)
+
+
+def _kind(obstacle: Obstacle) -> str:
+    if obstacle.path is not None:
+        return "moves by itself"
+    return "fixed" if obstacle.mass is None else "can be pushed"
+
+
+def _draw_obstacle(axes: Axes, obstacle: Obstacle) -> None:
+    if obstacle.path is not None:
+        points = [*obstacle.path, obstacle.path[0]] if obstacle.closed else obstacle.path
+        axes.plot(
+            *zip(*points, strict=True), linestyle=(0, (5, 4)), color=KINDS[_kind(obstacle)], linewidth=1.2, zorder=2
+        )
+    style = {"facecolor": KINDS[_kind(obstacle)], "edgecolor": WALL, "linewidth": 0.8, "zorder": 4}
+    axes.add_patch(_outline(obstacle, obstacle.start, style))
+
+
+def _draw_robot(axes: Axes, robot: RobotDescription, *, named: bool) -> None:
+    reach = robot.shape.outer_radius()
+    for sensor in robot.sensors:
+        if isinstance(sensor, Lidar | RangeFinder | Bumper):
+            _draw_view(axes, robot, sensor)
+    style = {"facecolor": ROBOT, "edgecolor": WALL, "linewidth": 0.8, "zorder": 6}
+    axes.add_patch(_outline(robot.shape, robot.pose, style))
+    for wheel in robot.wheels:
+        tyre = Shape(box=(2 * wheel.radius, max(wheel.radius / 2, 0.005)))
+        axes.add_patch(_outline(tyre, _on(robot.pose, wheel.at), {"facecolor": WALL, "zorder": 7}))
+    nose = _on(robot.pose, Pose(reach, 0.0))
+    axes.plot([robot.pose.x, nose.x], [robot.pose.y, nose.y], color="white", linewidth=1.6, zorder=8)
+    if named:
+        place = (robot.pose.x, robot.pose.y - reach)
+        axes.annotate(robot.name, place, (0, -3), textcoords="offset points", ha="center", va="top", zorder=9, size=8)
+
+
+def _draw_view(axes: Axes, robot: RobotDescription, sensor: Lidar | RangeFinder | Bumper) -> None:
+    """Draw the sector into which a sensor looks, not as far as it sees: that would be the whole picture."""
+    from matplotlib.patches import Wedge
+
+    reach = robot.shape.outer_radius()
+    start = -sensor.fov / 2 if isinstance(sensor, RangeFinder) or sensor.start is None else sensor.start
+    at = robot.pose if isinstance(sensor, Bumper) else _on(robot.pose, sensor.offset)
+    radius = 1.15 * reach if isinstance(sensor, Bumper) else min(sensor.range[1], 2.5 * reach + 0.3)
+    first = math.degrees(at.theta) + start
+    color = TOUCH if isinstance(sensor, Bumper) else ROBOT
+    axes.add_patch(
+        Wedge((at.x, at.y), radius, first, first + sensor.fov, color=color, alpha=0.15, linewidth=0, zorder=5)
+    )
+
+
+def _outline(shape: Shape, pose: Pose, style: dict[str, Any]) -> Patch:
+    """Make the outline of a shape at a pose."""
+    from matplotlib.patches import Circle, Polygon
+
+    if shape.circle is not None:
+        return Circle((pose.x, pose.y), shape.circle, **style)
+    return Polygon([_point(_on(pose, Pose(x, y))) for x, y in shape.corners()], closed=True, **style)
+
+
+def _point(pose: Pose) -> Point:
+    return pose.x, pose.y
+
+
+def _on(base: Pose, pose: Pose) -> Pose:
+    """Give where something is that is at `pose` on what is at `base`."""
+    cos, sin = math.cos(base.theta), math.sin(base.theta)
+    x, y = base.x + cos * pose.x - sin * pose.y, base.y + sin * pose.x + cos * pose.y
+    return Pose(x, y, base.theta + pose.theta)
+
+
+def _figure_size(description: WorldDescription, longer: float) -> Point:
+    """Give a figure's width and height, in inches, that the world fills."""
+    width, height = _extent(description)
+    scale = longer / max(width, height)
+    return max(width * scale, longer / 3), max(height * scale, longer / 3)
+
+
+def _extent(description: WorldDescription) -> Point:
+    points = [point for wall in description.walls for segment in wall.segments() for point in segment]
+    points += [(each.start.x, each.start.y) for each in description.obstacles]
+    points += [point for each in description.obstacles for point in each.path or ()]
+    points += [(each.pose.x, each.pose.y) for each in description.robots]
+    if not points:
+        return 1.0, 1.0
+    xs, ys = zip(*points, strict=True)
+    return max(max(xs) - min(xs), 1.0), max(max(ys) - min(ys), 1.0)

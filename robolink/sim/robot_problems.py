@@ -1,0 +1,141 @@
+"""What is wrong with the description of one robot: its drive, its wheels, its sensors."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from robolink.sim.description import Encoders, Lidar, RangeFinder, RobotDescription, Sensor, Wheel
+from robolink.sim.problems import Problem, rate_problems, repeated_names, shape_problems, speed_problems, under
+
+TAKEN = (
+    "clock",
+    "cmd_vel",
+    "diagnostics",
+    "ground_truth",
+    "joint_command",
+    "joint_commands",
+    "odom",
+    "parameter_events",
+    "robot_description",
+    "rosout",
+    "tf",
+    "tf_static",
+)
+"""Topics that the simulation itself publishes or listens to."""
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
+_LONGEST_NAME = 64
+_CROOKED = 0.02
+"""Radians by which a wheel of a drive that cannot go sideways may point elsewhere than ahead."""
+
+
+def robot_problems(robot: RobotDescription, dt: float) -> Iterator[Problem]:
+    """Yield what is wrong with a robot in a world with steps of `dt` seconds."""
+    if not _NAME.fullmatch(robot.name):
+        yield Problem(".name", _bad_name(robot.name))
+    shape = list(_outline_problems(robot))
+    yield from under(".shape", iter(shape))
+    yield from under(".drive", _drive_problems(robot, dt, has_shape=not shape))
+    yield from under(".wheels", _wheel_problems(robot))
+    yield from under(".odom.rate", rate_problems(robot.odom.rate, dt))
+    yield from under(".ground_truth.rate", rate_problems(robot.ground_truth.rate, dt))
+    for index, sensor in enumerate(robot.sensors):
+        yield from under(f".sensors[{index}]", _sensor_problems(sensor, robot, dt))
+    yield from _repeated_topics(robot.sensors)
+
+
+def _bad_name(name: str) -> str:
+    return f"{name!r} is no name: letters, digits and '_', a letter first, {_LONGEST_NAME} at most"
+
+
+def _outline_problems(robot: RobotDescription) -> Iterator[Problem]:
+    found = list(shape_problems(robot.shape))
+    yield from found
+    if not found and robot.shape.inner_radius() < 0.001:
+        yield Problem(".polygon", "it must go round [0, 0], the point that the robot's pose is about")
+
+
+def _drive_problems(robot: RobotDescription, dt: float, *, has_shape: bool) -> Iterator[Problem]:
+    drive = robot.drive
+    if has_shape:
+        yield from under(".v_max", speed_problems(drive.v_max, dt, robot.shape, "walls"))
+    if drive.w_max * dt > math.pi / 2:
+        yield Problem(".w_max", f"more than a quarter turn in a step of {dt:g} s: at most {math.pi / 2 / dt:.4g}")
+    if drive.timeout < dt:
+        yield Problem(".timeout", f"shorter than a step, so that no command would count: at least {dt:g}")
+    if drive.type == "ackermann" and has_shape:
+        yield from under(".wheelbase", _steering_problems(robot, dt))
+
+
+def _steering_problems(robot: RobotDescription, dt: float) -> Iterator[Problem]:
+    drive, length = robot.drive, 2 * robot.shape.outer_radius()
+    tightest = drive.v_max * math.tan(drive.steer_max) * dt / (math.pi / 2)
+    if drive.wheelbase > length:
+        yield Problem(
+            "", f"axles {drive.wheelbase:g} m apart do not fit a robot of {length:.4g} m: at most {length:.4g}"
+        )
+    elif drive.wheelbase < tightest:
+        turning = f"at {drive.v_max:g} m/s and steered by {drive.steer_max:g} rad"
+        yield Problem("", f"{turning}, more than a quarter turn in a step of {dt:g} s: at least {tightest:.4g}")
+
+
+def _wheel_problems(robot: RobotDescription) -> Iterator[Problem]:
+    for index, wheel in enumerate(robot.wheels):
+        if not wheel.motor or not wheel.motor.isprintable() or len(wheel.motor) > _LONGEST_NAME:
+            yield Problem(f"[{index}].motor", f"expected 1 to {_LONGEST_NAME} letters, got {wheel.motor[:80]!r}")
+    yield from repeated_names([each.motor for each in robot.wheels], "[{}].motor", "two motors are called")
+    if robot.wheels:
+        crooked = [] if robot.drive.type == "omni" else list(_crooked(robot))
+        yield from crooked or _driving_problems(robot)
+
+
+def _crooked(robot: RobotDescription) -> Iterator[Problem]:
+    for index, wheel in enumerate(robot.wheels):
+        if abs(math.sin(wheel.at.theta)) > _CROOKED:
+            reason = f"a wheel of a drive of type '{robot.drive.type}' rolls ahead"
+            yield Problem(f"[{index}].at", f"{reason}, theta 0, not {wheel.at.theta:g}: or say 'type: omni'")
+
+
+def _driving_problems(robot: RobotDescription) -> Iterator[Problem]:
+    """Say so if no turning of the wheels can make all the motions that the drive is for."""
+    kind = robot.drive.type
+    motions = np.array([_motion(each) for each in robot.wheels])
+    if kind == "diff" and np.ptp(motions[:, 2] / motions[:, 0]) < 1e-4:
+        sides = f"all stand {robot.wheels[0].at.y:g} m to the left: put one on each side"
+        yield Problem("", f"these wheels cannot turn the robot, {sides}" if len(robot.wheels) > 1 else _lonely())
+    if kind == "omni" and np.linalg.matrix_rank(motions, tol=1e-4) < 3:
+        yield Problem(
+            "", "these wheels cannot drive it ahead, sideways and round: it takes three that roll different ways"
+        )
+
+
+def _lonely() -> str:
+    return "one wheel cannot turn the robot: put one on each side"
+
+
+def _motion(wheel: Wheel) -> tuple[float, float, float]:
+    """Give how fast a wheel rolls when the robot goes ahead, goes sideways, and turns."""
+    cos, sin = math.cos(wheel.at.theta), math.sin(wheel.at.theta)
+    return cos, sin, sin * wheel.at.x - cos * wheel.at.y
+
+
+def _sensor_problems(sensor: Sensor, robot: RobotDescription, dt: float) -> Iterator[Problem]:
+    if not _NAME.fullmatch(sensor.topic):
+        yield Problem(f".{sensor.kind}", _bad_name(sensor.topic))
+    elif sensor.topic in TAKEN:
+        yield Problem(f".{sensor.kind}", f"the simulation itself has a topic '{sensor.topic}': take another name")
+    yield from under(".rate", rate_problems(sensor.rate, dt))
+    if isinstance(sensor, Lidar | RangeFinder) and sensor.range[0] >= sensor.range[1]:
+        near, far = sensor.range
+        yield Problem(".range", f"the nearest, {near:g} m, must be less than the farthest, {far:g} m")
+    if isinstance(sensor, Encoders) and not robot.wheels:
+        yield Problem("", "encoders count the turns of wheels, and this robot has no 'wheels'")
+
+
+def _repeated_topics(sensors: Sequence[Sensor]) -> Iterator[Problem]:
+    for problem in repeated_names([each.topic for each in sensors], "{}", "two sensors publish on"):
+        yield problem._replace(path=f".sensors[{problem.path}].{sensors[int(problem.path)].kind}")

@@ -1,0 +1,291 @@
+"""What is wrong with YAML data that should become Structs, and where: msgspec's reports in words of ours."""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import re
+import types
+import typing
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeGuard, TypeVar
+
+import msgspec
+
+from robolink.exceptions import DocumentError, nearest, shown
+
+if TYPE_CHECKING:
+    import yaml
+
+    from robolink.yamltext import Data
+
+T = TypeVar("T")
+Step: TypeAlias = "str | int"
+Hook: TypeAlias = "Callable[[type, Any], type]"
+
+_ANY_ITEM = "[...]"
+_STEP = r"\.([^.\[\]]+)|\[(\d+)\]|\[\"((?:[^\"\\]|\\.)*)\"\]|(\[\.\.\.\])"
+_PLACED = r"(?P<text>.*?)(?: - at (?P<key>`key` in )?`\$(?P<path>.*)`)?"
+
+
+class _InsideError(ValueError):
+    """What went wrong with a value of a type that the hook chose; msgspec keeps it as its report's cause."""
+
+    def __init__(self, data: Data, type_: type, error: msgspec.ValidationError) -> None:
+        super().__init__(str(error).replace("`", ""))  # no path, which the report outside has in full
+        self.data, self.type, self.error = data, type_, error
+
+
+class Reader:
+    """A YAML text with the places of everything in it; `data` is what it says, as plain dicts and lists."""
+
+    def __init__(self, text: str, name: str, hook: Hook | None = None) -> None:
+        from robolink import yamltext
+
+        self._name, self._hook = name, hook
+        self._root = yamltext.compose(text, name)
+        self.data: Data = yamltext.plain(self._root, name)
+
+    def convert(self, data: Data, type_: type[T]) -> T:
+        """Make a value of `type_`; raises msgspec's error, which `explained` explains."""
+        return msgspec.convert(data, type_, str_keys=True, dec_hook=None if self._hook is None else self._chosen)
+
+    def _chosen(self, type_: type, data: Data) -> object:
+        """Make a value of the type that the hook chooses."""
+        assert self._hook is not None
+        chosen = self._hook(type_, data)
+        try:
+            return self.convert(data, chosen)
+        except msgspec.ValidationError as error:
+            raise _InsideError(data, chosen, error) from None
+
+    def error(self, steps: Sequence[Step], message: str, *, key: bool = False) -> DocumentError:
+        """Make an error about what stands at the end of these steps, or about its key."""
+        node = self._node(steps, key)
+        where = f"{self._name}:1:1"
+        if node is not None:
+            where = f"{self._name}:{node.start_mark.line + 1}:{node.start_mark.column + 1}"
+        spelled = _spelled(steps)
+        return DocumentError(f"{where}: " + shown(f"{spelled}: {message}" if spelled else message, 300))
+
+    def mistakes(self, data: Data, type_: object, above: Sequence[Step] = ()) -> Iterator[DocumentError]:
+        """Yield an error for each part of the data that is wrong: the smallest parts, each on its own."""
+        try:
+            self.convert(data, typing.cast("type", type_))
+        except msgspec.ValidationError as error:
+            found = False
+            for each in self._mistakes_inside(data, type_, above):
+                found = True
+                yield each
+            if not found:
+                yield self.explained(data, type_, error, above)
+
+    def _mistakes_inside(self, data: Data, type_: object, above: Sequence[Step]) -> Iterator[DocumentError]:
+        for each in self._members(type_, data):
+            for step, part, part_type in _parts(data, each):
+                yield from self.mistakes(part, part_type, [*above, step])
+            for name in _unknown_keys(data, each):
+                yield self._unknown_key(name, _fields([each]), above)
+
+    def explained(
+        self, data: Data, type_: object, error: msgspec.ValidationError, above: Sequence[Step] = ()
+    ) -> DocumentError:
+        """Turn msgspec's report into ours: the place, the nearest key, what was found."""
+        report = str(error)
+        match = re.fullmatch(_PLACED, report, re.DOTALL)
+        assert match is not None
+        text, path = match["text"], "$" + (match["path"] or "")
+        inner = self._exact(data, steps_of(path), type_, report)
+        steps = [*above, *inner]
+        if isinstance(error.__cause__, _InsideError):
+            cause = error.__cause__
+            return self.explained(cause.data, cause.type, cause.error, steps)
+        if unknown := re.fullmatch(r"Object contains unknown field `(.*)`", text, re.DOTALL):
+            return self._unknown_key(unknown[1], _fields(_types_at(type_, inner)), steps)
+        if missing := re.fullmatch(r"Object missing required field `(.*)`", text, re.DOTALL):
+            return self.error(steps, f"missing key '{missing[1]}'")
+        if text.startswith("Invalid enum value"):
+            return self.error(steps, _none_of(_at(data, inner), _types_at(type_, inner)))
+        if match["key"]:
+            return self.error(steps, f"a key: {_worded(text, None)}")
+        return self.error(steps, _worded(text, self._node(steps)))
+
+    def _unknown_key(self, name: str, known: Sequence[str], above: Sequence[Step]) -> DocumentError:
+        return self.error([*above, name], f"unknown key '{name}'{nearest(name, known)}", key=True)
+
+    def _node(self, steps: Sequence[Step], key: bool = False) -> yaml.Node | None:
+        """Walk down to the node at the end of the steps, or as far as the text goes."""
+        node = self._root
+        for index, step in enumerate(steps):
+            entry = _child(node, step)
+            if entry is None:
+                break
+            node = entry[0] if key and index == len(steps) - 1 else entry[1]
+        return node
+
+    def _members(self, type_: object, data: Data) -> Iterator[object]:
+        """Yield the types that the data may be, with what the hook chooses in the place of its own types."""
+        for each in _members(type_):
+            if self._hook is None or _is_struct(each) or not isinstance(each, type) or not _is_custom(each):
+                yield each
+                continue
+            with contextlib.suppress(ValueError):
+                yield self._hook(each, data)
+
+    def _exact(self, data: Data, steps: list[Step], type_: object, report: str) -> list[Step]:
+        """Replace each `[...]`, for which msgspec names no key, by the first key that gives the same report."""
+        if _ANY_ITEM in steps:
+            data = copy.deepcopy(data)  # whose mappings lose all keys but the culprit
+        while _ANY_ITEM in steps:
+            at = steps.index(_ANY_ITEM)
+            holder = _at(data, steps[:at])
+            key = self._culprit(data, holder, type_, report) if isinstance(holder, dict) else None
+            if key is None:
+                return steps[:at]
+            steps[at] = key
+        return steps
+
+    def _culprit(self, data: Data, holder: dict[str, Data], type_: object, report: str) -> str | None:
+        """Find the key of `holder`, a mapping inside `data`, that alone gives the same report; leave only that one."""
+        whole = dict(holder)
+        for key in whole:
+            holder.clear()
+            holder[key] = whole[key]
+            if self._report(data, type_) == report:
+                return key
+        return None
+
+    def _report(self, data: Data, type_: object) -> str:
+        try:
+            self.convert(data, typing.cast("type", type_))
+        except msgspec.ValidationError as error:
+            return str(error)
+        return ""
+
+
+def steps_of(path: str) -> list[Step]:
+    """Split `$.robots[0].pose` into `["robots", 0, "pose"]`; msgspec's `[...]` stays as it is."""
+    steps: list[Step] = []
+    for name, index, quoted, item in re.findall(_STEP, path.removeprefix("$")):
+        steps.append(int(index) if index else name or item or re.sub(r"\\(.)", r"\1", quoted))
+    return steps
+
+
+def _spelled(steps: Sequence[Step]) -> str:
+    """Spell a path for a reader: `robots[0].pose`."""
+    parts = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps)
+    return "".join(parts).removeprefix(".")
+
+
+def _child(node: yaml.Node | None, step: Step) -> tuple[yaml.Node, yaml.Node] | None:
+    """Give the key and the value that a step leads to (in a list, the value twice), or None."""
+    import yaml
+
+    from robolink import yamltext
+
+    if isinstance(node, yaml.SequenceNode) and isinstance(step, int) and step < len(node.value):
+        return node.value[step], node.value[step]
+    if isinstance(node, yaml.MappingNode):
+        return next((pair for pair in yamltext.pairs(node) if pair[0].value == step), None)
+    return None
+
+
+def _at(data: Data, steps: Sequence[Step]) -> Data:
+    for step in steps:
+        data = typing.cast("dict[Step, Data]", data)[step]
+    return data
+
+
+def _types_at(type_: object, steps: Sequence[Step]) -> list[object]:
+    """Follow a path through the types it may lead to: fields of Structs, items of lists and mappings."""
+    found = list(_members(type_))
+    for step in steps:
+        found = [each for outer in found for inner in _inside(outer, step) for each in _members(inner)]
+    return found
+
+
+def _members(type_: object) -> Iterator[object]:
+    """Yield the types that a union may be, without what limits them; a type that is no union is its only member."""
+    origin, inner = typing.get_origin(type_), typing.get_args(type_)
+    if origin in (typing.Union, types.UnionType):
+        for each in inner:
+            yield from _members(each)
+    elif origin is typing.Annotated:
+        yield from _members(inner[0])
+    else:
+        yield type_
+
+
+def _inside(type_: object, step: Step) -> list[object]:
+    if _is_struct(type_):
+        return [each.type for each in msgspec.structs.fields(type_) if each.encode_name == step]
+    return list(typing.get_args(type_))
+
+
+def _parts(data: Data, type_: object) -> Iterator[tuple[Step, Data, object]]:
+    """Yield the parts of a mapping or list that a type knows: step, data, type."""
+    if isinstance(data, dict):
+        known = _types_of_keys(data, type_)
+        yield from ((key, data[key], known[key]) for key in data if key in known)
+    elif isinstance(data, list):
+        parts = enumerate(zip(data, _types_of_items(data, type_), strict=False))
+        yield from ((index, part, part_type) for index, (part, part_type) in parts)
+
+
+def _types_of_keys(data: dict[str, Data], type_: object) -> dict[str, object]:
+    origin, inner = typing.get_origin(type_), typing.get_args(type_)
+    if _is_struct(type_):
+        return {each.encode_name: each.type for each in msgspec.structs.fields(type_)}
+    return dict.fromkeys(data, inner[1]) if isinstance(origin, type) and issubclass(origin, Mapping) else {}
+
+
+def _types_of_items(data: list[Data], type_: object) -> Sequence[object]:
+    origin, inner = typing.get_origin(type_), typing.get_args(type_)
+    if _is_struct(type_):
+        return [each.type for each in msgspec.structs.fields(type_)] if type_.__struct_config__.array_like else []
+    if not isinstance(origin, type) or issubclass(origin, Mapping):
+        return []
+    return inner if origin is tuple and inner[-1] is not Ellipsis else [inner[0]] * len(data)
+
+
+def _unknown_keys(data: Data, type_: object) -> list[str]:
+    if not isinstance(data, dict) or not _is_struct(type_) or not type_.__struct_config__.forbid_unknown_fields:
+        return []
+    known = _fields([type_])
+    return [key for key in data if key not in known]
+
+
+def _is_struct(type_: object) -> TypeGuard[type[msgspec.Struct]]:
+    return isinstance(type_, type) and issubclass(type_, msgspec.Struct)
+
+
+def _is_custom(type_: type) -> bool:
+    """Say whether msgspec leaves a type to the hook."""
+    return isinstance(msgspec.inspect.type_info(type_), msgspec.inspect.CustomType)
+
+
+def _fields(found: Sequence[object]) -> list[str]:
+    return [field.encode_name for each in found if _is_struct(each) for field in msgspec.structs.fields(each)]
+
+
+def _none_of(data: Data, found: Sequence[object]) -> str:
+    """Say which words are allowed in the place of another one."""
+    words = [word for each in found if typing.get_origin(each) is typing.Literal for word in typing.get_args(each)]
+    given = shown(str(data))
+    return f"expected one of {', '.join(map(str, words))}, got '{given}'{nearest(given, map(str, words))}"
+
+
+_PLAIN_WORDS = {"object": "mapping", "array": "list", "null": "nothing"}
+
+
+def _worded(text: str, node: yaml.Node | None) -> str:
+    """Say "expected float, got 'fast'" for msgspec's "Expected `float`, got `str`"."""
+    import yaml
+
+    text = re.sub(r"\b(object|array|null)\b", lambda match: _PLAIN_WORDS[match[1]], text).replace("`", "")
+    if text.startswith("Expected"):
+        text = "e" + text[1:]
+    if not isinstance(node, yaml.ScalarNode) or node.value == "":
+        return text
+    found = f"'{shown(node.value)}'"
+    return re.sub(r", got .*", "", text) + f", got {found}" if text.startswith("expected") else text
