@@ -6,7 +6,7 @@ A rule is a pattern of what must not be, so that every complaint knows the index
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 MAX_NODE_NAME = 255
@@ -88,3 +88,20 @@ def absolute_namespace(namespace: str) -> str:
 def join(namespace: str, name: str) -> str:
     """Put a relative name into an absolute namespace: ('/', 'a') is '/a', ('/ns', 'a') is '/ns/a'."""
     return f"{namespace.rstrip('/')}/{name}"
+
+
+def spelled(text: str, fallback: str, longest: int = 60) -> str:
+    """Spell any text as ROS could name something: letters, digits and `_`, a letter first.
+
+    >>> spelled("my robot", "robot"), spelled("2nd", "robot"), spelled("LDS-01", "lidar"), spelled("?", "lidar")
+    ('my_robot', 'robot_2nd', 'LDS_01', 'lidar')
+    """
+    name = re.sub(r"[^A-Za-z0-9]+", "_", text).strip("_")
+    name = name if not name or name[0].isalpha() else f"{fallback}_{name}"
+    return name[:longest].rstrip("_") or fallback
+
+
+def unlike(name: str, taken: Collection[str]) -> str:
+    """Give the name, or the first of `name_2`, `name_3` ... that is not taken."""
+    numbered = (f"{name}_{number}" for number in range(2, len(taken) + 3))
+    return name if name not in taken else next(each for each in numbered if each not in taken)

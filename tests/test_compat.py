@@ -253,7 +253,6 @@ def test_a_name_that_is_missing(code: str, kind: type[Exception], report: str) -
         ("tf2_kdl", "tf2_geometry_msgs"),
         ("launch", "robolink launch"),
         ("launch_ros", "robolink launch"),
-        ("webots_ros2_driver", "robolink run world"),
         ("rospy", "ROS 1"),
         ("ament_flake8", "ruff"),
         ("moveit_msgs", "interfaces/moveit_msgs/msg"),

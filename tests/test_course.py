@@ -1,8 +1,8 @@
 """The programs of a ROS 2 course run as they stand in its text, beside the simulated world.
 
 The text is no part of this repository: ../shared/course, or the folder that ROBOLINK_COURSE names. Where it is absent
-these tests are skipped. Two kinds of its programs are not run: the Webots controller, which waits for the simulator
-that stands for Webots, and those that draw with matplotlib, which opens windows and is no dependency of robolink.
+these tests are skipped. What it does with Webots runs in the simulated world, which reads its world file. Not run are
+its programs that draw with matplotlib, which opens windows and is no dependency of robolink.
 """
 
 from __future__ import annotations
@@ -75,6 +75,11 @@ NODES = {
 }
 """By node name: the rclpy program."""
 
+WEBOTS_WORLD = "meu_mundo.wbt"
+found_world = re.search(r"^#VRML_SIM.*?^}$(?=\n\nController)", TEXT, re.MULTILINE | re.DOTALL)
+WEBOTS = found_world[0] + "\n" if found_world else ""
+"""The world that the text has its readers save as meu_mundo.wbt."""
+
 PLAIN = [text for text in PROGRAMS if "import rclpy" not in text and "print(" in text and "matplotlib" not in text]
 COMMANDS = [shlex.split(each) for each in re.findall(r"^ros2 (.*)$", TEXT, re.MULTILINE)]
 
@@ -112,6 +117,7 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "setup.py").write_text(SETUP.format(name=name, entry_points=entry_points[0]), encoding="utf-8")
     for node, text in NODES.items():
         (folder / name / f"{node}.py").write_text(text, encoding="utf-8")
+    (top / WEBOTS_WORLD).write_text(WEBOTS, encoding="utf-8")
     return top
 
 
@@ -135,6 +141,7 @@ SCENES = {
     "react": ("obstacles", "controle_reativo"),
     "follow": ("corners", "seguidor_parede"),
     "command": ("obstacles",),
+    "webots": (WEBOTS_WORLD, "webots_controller"),
 }
 
 
@@ -208,6 +215,23 @@ def test_what_the_course_types_works_with_robolink_in_ros2s_place(scenes: Mappin
     driver.interrupt()
     driver.end()
     assert "Traceback" not in "".join(line.text for line in driver.lines)
+
+
+def test_the_webots_controller_turns_the_motors_of_its_world(scenes: Mapping[str, Scene]) -> None:
+    (controller,), (pub,) = scenes["webots"].nodes, commands("topic", "pub")
+    assert f"webots {WEBOTS_WORLD}" in TEXT
+    controller.wait_for("[webots_controller]: Webots controller iniciado!")
+    driver = scenes["webots"].run(*pub)
+    controller.wait_for("Motores: E=0.50, D=0.50")
+    robot = scenes["webots"].robot
+    turning = robot.find(lambda each: each.speed > 0.05)
+    ahead = robot.find(lambda each: each.x > turning.x + 0.1)
+    assert abs(ahead.y) < 0.001
+    assert max(each.speed for each in robot.samples) < 0.1  # the motors' speed, not the one that cmd_vel asks for
+    driver.interrupt()
+    driver.end()
+    ends_quietly(controller)
+    robot.wait(lambda each: each.speed < 0.001)
 
 
 @pytest.mark.parametrize("text", PLAIN, ids=[f"program {number + 1}" for number in range(len(PLAIN))])

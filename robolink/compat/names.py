@@ -19,6 +19,7 @@ ROOMS = {
     "rosidl_parser": "",
     "rosidl_parser.definition": "robolink.message.slot_types",
     "rosidl_runtime_py": "robolink.rosidl_runtime",
+    "webots_ros2_driver": "robolink.webots",
     "ament_index_python": "robolink.ament_index",
 }
 """Name to module; '' is a package with nothing in it. What is below a name is below its module."""
@@ -29,7 +30,6 @@ INSTEAD = {
     "launch_ros": "a system is started by 'robolink launch' from a YAML file",
     "launch_testing": "a test makes its nodes itself, in memory and in virtual time",
     "launch_pytest": "a test makes its nodes itself, in memory and in virtual time",
-    "webots_ros2_driver": "it belongs to a Webots that is installed; 'robolink run world' is a simulated robot",
     "tf2_kdl": "tf2_geometry_msgs transforms the types of geometry_msgs, tf_transformations has the matrices",
     "tf2_eigen": "tf2_geometry_msgs transforms the types of geometry_msgs, tf_transformations has the matrices",
     "tf": "that is ROS 1: tf2_ros has the listener and the broadcaster, tf_transformations the angles",

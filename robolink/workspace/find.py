@@ -20,6 +20,7 @@ from robolink.workspace.source import Folder, NodeSource, canonical
 VARIABLE = "ROBOLINK_WORKSPACE"
 ENTRY_POINTS = "robolink.nodes"
 YAML = (".yaml", ".yml")
+WORLDS = (*YAML, ".wbt")
 ROS_NODES = {
     ("teleop_twist_keyboard", "teleop_twist_keyboard"): "teleop",
     ("tf2_ros", "static_transform_publisher"): "static_transform_publisher",
@@ -81,12 +82,12 @@ def list_executables(*, workspace: Folder = None) -> dict[str, list[NodeSource]]
 
 def find_launch(name: str, *, workspace: Folder = None) -> Path:
     """Find a launch file by name or path. Raises `NotFoundError` with the nearest name."""
-    return _find_yaml("launch file", name, "configs", workspace)
+    return _find_file("launch file", name, "configs", workspace, YAML)
 
 
 def find_world(name: str, *, workspace: Folder = None) -> Path:
-    """Find a world file by name or path. Raises `NotFoundError` with the nearest name."""
-    return _find_yaml("world", name, "configs/worlds", workspace)
+    """Find a world file, ours or Webots', by name or path. Raises `NotFoundError` with the nearest name."""
+    return _find_file("world", name, "configs/worlds", workspace, WORLDS)
 
 
 def list_nodes(*, workspace: Folder = None) -> list[NodeSource]:
@@ -96,12 +97,12 @@ def list_nodes(*, workspace: Folder = None) -> list[NodeSource]:
 
 def list_launches(*, workspace: Folder = None) -> list[Path]:
     """Give every launch file that a name finds, by name."""
-    return _list_yaml("configs", workspace)
+    return _list_files("configs", workspace, YAML)
 
 
 def list_worlds(*, workspace: Folder = None) -> list[Path]:
     """Give every world file that a name finds, by name."""
-    return _list_yaml("configs/worlds", workspace)
+    return _list_files("configs/worlds", workspace, WORLDS)
 
 
 def user_workspace(workspace: Folder = None) -> Path | None:
@@ -197,25 +198,25 @@ def _installed_nodes() -> Iterator[NodeSource]:
         yield NodeSource(each.name, entry_point=each)
 
 
-def _find_yaml(kind: str, name: str, inside: str, workspace: Folder) -> Path:
-    path = _as_path(name, workspace, YAML)
+def _find_file(kind: str, name: str, inside: str, workspace: Folder, suffixes: tuple[str, ...]) -> Path:
+    path = _as_path(name, workspace, suffixes)
     if path is not None:
         return path
-    asked = canonical(Path(name).stem if Path(name).suffix in YAML else name)
-    for each in _yaml_files(inside, workspace):
+    asked = canonical(Path(name).stem if Path(name).suffix in suffixes else name)
+    for each in _files_in(inside, workspace, suffixes):
         if canonical(each.stem) == asked:
             return each
-    raise _not_found(kind, name, workspace, (each.stem for each in _yaml_files(inside, workspace)))
+    raise _not_found(kind, name, workspace, (each.stem for each in _files_in(inside, workspace, suffixes)))
 
 
-def _list_yaml(inside: str, workspace: Folder) -> list[Path]:
-    first = {canonical(path.stem): path for path in reversed(list(_yaml_files(inside, workspace)))}
+def _list_files(inside: str, workspace: Folder, suffixes: tuple[str, ...]) -> list[Path]:
+    first = {canonical(path.stem): path for path in reversed(list(_files_in(inside, workspace, suffixes)))}
     return sorted(first.values(), key=lambda each: each.stem)
 
 
-def _yaml_files(inside: str, workspace: Folder) -> Iterator[Path]:
+def _files_in(inside: str, workspace: Folder, suffixes: tuple[str, ...]) -> Iterator[Path]:
     for folder in _workspaces(workspace):
-        for suffix in YAML:
+        for suffix in suffixes:
             yield from sorted((folder / inside).glob(f"*{suffix}"))
 
 

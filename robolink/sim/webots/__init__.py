@@ -1,0 +1,67 @@
+"""Worlds of Webots (.wbt) as worlds of this simulator: what of them is flat, and what their robots drive and sense.
+
+description, notes = read("meu_mundo.wbt")
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import warnings
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from robolink import yamlfile
+from robolink.sim.description import WorldDescription
+
+__all__ = ["WebotsWorld", "WorldWarning", "load", "read", "told_by"]
+
+
+class WorldWarning(UserWarning):
+    """Something of a world is left out or guessed; the text begins with the file's name."""
+
+
+class WebotsWorld(NamedTuple):
+    """A world of Webots, converted, and what was left out or guessed: a sentence each."""
+
+    description: WorldDescription
+    notes: tuple[str, ...]
+
+    def warning(self, name: str | os.PathLike[str]) -> str:
+        """Give all notes as one text; '' when there are none."""
+        return f"{os.fspath(name)}: {'; '.join(self.notes)}" if self.notes else ""
+
+
+@contextlib.contextmanager
+def told_by(tell: Callable[[str], object]) -> Iterator[None]:
+    """Have this function tell what loading a world inside of the block warns of, line by line."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always", WorldWarning)
+        yield
+    for each in found:
+        tell(str(each.message))
+
+
+def load(path: str | os.PathLike[str], text: str | None = None) -> WorldDescription:
+    """Read a world of Webots (or `text` in its place); what was left out is told in one `WorldWarning`.
+
+    The errors are those of `read`.
+    """
+    world = read(path, text)
+    if world.notes:
+        warnings.warn(world.warning(path), WorldWarning, stacklevel=2)
+    return world.description
+
+
+def read(path: str | os.PathLike[str], text: str | None = None) -> WebotsWorld:
+    """Read a world of Webots (or `text` in its place).
+
+    Lengths, angles and heights are the file's; seen from above, x is east and y north. Raises `DocumentError` with
+    `file:line:column` for what is no VRML, impossible sizes, and robots that start inside something.
+    """
+    from robolink.sim.webots.convert import convert
+    from robolink.sim.webots.vrml import parse
+
+    name = os.fspath(path)
+    description, notes = convert(parse(yamlfile.read_text(path) if text is None else text, name), name)
+    return WebotsWorld(description, notes)

@@ -1,0 +1,172 @@
+"""Makes a world of what was found in one of Webots: it becomes flat, and every problem has its place in the file."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import msgspec
+
+from robolink.exceptions import DocumentError
+from robolink.sim.description import Obstacle, Settings, Wall, WorldDescription
+from robolink.sim.webots.footprint import footprint, merged
+from robolink.sim.webots.geometry import ORIGIN, Placement
+from robolink.sim.webots.robots import Converted, robot
+from robolink.sim.webots.things import Found, Thing
+from robolink.sim.webots.vrml import Node
+
+FLAT = 0.02
+"""Metres: what is lower lies on the floor, and robots drive over it."""
+
+HEIGHT = 0.5
+"""Metres of height in which things count where no robot says it."""
+
+LOWEST_ROBOT = 0.05
+"""Metres: things count at least up to here."""
+
+STEPS = (0.001, 0.1)
+"""Seconds that a step may take."""
+
+ATTEMPTS = 3
+_OBSTACLE = r"\$\.obstacles\[(\d+)\]\.pose"
+
+
+class Standing(NamedTuple):
+    """A thing that is in the way, and where it comes from."""
+
+    obstacle: Obstacle
+    thing: Thing
+
+
+def convert(nodes: list[Node], name: str) -> tuple[WorldDescription, tuple[str, ...]]:
+    """Make a world out of the nodes of a file called `name`; give it with what was left out or guessed.
+
+    Raises `DocumentError` with the place in the file.
+    """
+    found = Found(nodes, ORIGIN)
+    settings = _settings(found.information)
+    robots = _robots(found, settings.dt)
+    floor = found.floors[0] if found.floors else 0.0
+    height = max((each.height for each in robots), default=HEIGHT)
+    low, high = floor + FLAT, floor + max(height, LOWEST_ROBOT)
+    under = [placement for _, placement in found.robots]
+    things = [each for thing in found.things if (each := _standing(thing, low, high, under))]
+    description = WorldDescription(
+        world=settings,
+        walls=tuple(Wall(tuple(each.corners), closed=True) for each in found.arenas if each.height[1] > low),
+        obstacles=tuple(each.obstacle for each in things),
+        robots=tuple(each.description for each in robots),
+    )
+    description, moved = _settled(description, things, [node for node, _ in found.robots], floor, name)
+    notes = [note for each in robots for note in each.notes] + moved
+    return description, (*_unknown(found.unknown), *notes)
+
+
+def _settings(information: Node | None) -> Settings:
+    if information is None:
+        return Settings(dt=0.032)
+    system = information.text("coordinateSystem", "ENU")
+    if system != "ENU":
+        raise information.error(f"'{system}' is not read, only 'ENU', which has z upwards", "coordinateSystem")
+    step = information.length("basicTimeStep", 32.0) / 1000.0
+    if step < STEPS[0]:
+        raise information.error(f"expected 1 ms or more, got {step * 1000:g}", "basicTimeStep")
+    seed = information.number("randomSeed", 0.0)
+    title = information.text("title") or information.text("info")
+    return Settings(name=title, dt=step / math.ceil(step / STEPS[1] - 1e-9), seed=int(min(max(seed, 0.0), 2.0**62)))
+
+
+def _robots(found: Found, dt: float) -> list[Converted]:
+    """Convert the robots, and leave in `found` those that there are."""
+    converted: list[Converted] = []
+    kept = []
+    for node, placement in found.robots:
+        names = [each.description.name for each in converted]
+        if made := robot(found, node, placement, names, dt):
+            converted.append(made)
+            kept.append((node, placement))
+    found.robots = kept
+    return converted
+
+
+def _standing(thing: Thing, low: float, high: float, robots: Sequence[Placement]) -> Standing | None:
+    """Make what is in the way of a thing: None for what is above, below, or what a robot stands on."""
+    outline = merged([each for part in thing.parts if (each := footprint(part, low, high))])
+    if outline is None or (thing.mass is None and any(_bears(thing, each) for each in robots)):
+        return None
+    shape, pose = outline.placed()
+    return Standing(
+        Obstacle(box=shape.box, circle=shape.circle, polygon=shape.polygon, pose=pose, mass=thing.mass), thing
+    )
+
+
+def _bears(thing: Thing, robot: Placement) -> bool:
+    """Say whether a robot's origin is above a thing's top, within the box around it."""
+    x, y, z = map(float, robot.offset)
+    for part in thing.parts:
+        (west, south), (east, north) = part.points[:, :2].min(axis=0), part.points[:, :2].max(axis=0)
+        if part.radius:
+            west, south, east, north = west - part.radius, south - part.radius, east + part.radius, north + part.radius
+        if west <= x <= east and south <= y <= north and part.top <= z + FLAT:
+            return True
+    return False
+
+
+def _settled(
+    description: WorldDescription, things: list[Standing], robots: Sequence[Node], floor: float, name: str
+) -> tuple[WorldDescription, list[str]]:
+    """Leave out what stands on other things, and fix what could be pushed but starts inside of something."""
+    from robolink.sim.worldfile import problems
+
+    notes: list[str] = []
+    for _ in range(ATTEMPTS):
+        found = [each for each in problems(description) if not _is_fixed(each.path, things)]
+        inside = {int(match[1]) for each in found if (match := re.fullmatch(_OBSTACLE, each.path))}
+        if not inside:
+            break
+        things, more = _moved(things, inside, floor)
+        notes += more
+        description = msgspec.structs.replace(description, obstacles=tuple(each.obstacle for each in things))
+    for problem in found:
+        raise _placed(problem.path, problem.message, things, robots, name)
+    return description, notes
+
+
+def _is_fixed(path: str, things: list[Standing]) -> bool:
+    """Say whether a problem is the place of something fixed: walls may run into each other."""
+    match = re.fullmatch(_OBSTACLE, path)
+    return match is not None and things[int(match[1])].obstacle.mass is None
+
+
+def _moved(things: list[Standing], inside: set[int], floor: float) -> tuple[list[Standing], list[str]]:
+    kept, notes = [], []
+    for index, each in enumerate(things):
+        if index not in inside:
+            kept.append(each)
+        elif min(part.bottom for part in each.thing.parts) > floor + FLAT:
+            notes.append(f"{each.thing.node.called} stands on something else: left out")
+        else:
+            kept.append(Standing(msgspec.structs.replace(each.obstacle, mass=None), each.thing))
+            notes.append(f"{each.thing.node.called} starts inside of something else: nothing can push it")
+    return kept, notes
+
+
+def _placed(path: str, message: str, things: list[Standing], robots: Sequence[Node], name: str) -> DocumentError:
+    """Make an error of a problem of the description: at the node that it comes from."""
+    message = re.sub(r"obstacles\[(\d+)\]", lambda match: things[int(match[1])].thing.node.called, message)
+    message = re.sub(r"robots\[(\d+)\]", lambda match: robots[int(match[1])].called, message)
+    message = re.sub(r"walls\[\d+\]", "the walls of the arena", message)
+    match = re.match(r"\$\.(robots|obstacles)\[(\d+)\](.*)", path)
+    if match is None:
+        return DocumentError(f"{name}:1:1: {path.removeprefix('$.')}: {message}")
+    index = int(match[2])
+    node = robots[index] if match[1] == "robots" else things[index].thing.node
+    return node.error(f"{node.called}: {message}")
+
+
+def _unknown(unknown: dict[str, int]) -> Iterator[str]:
+    if unknown:
+        listed = ", ".join(f"{name} ({count} times)" if count > 1 else name for name, count in sorted(unknown.items()))
+        yield f"not known here, so it is not there: {listed}"

@@ -1,0 +1,225 @@
+"""Solid geometry in space: where nodes are, and the pieces that their shapes stand for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from robolink.sim.description import Pose
+from robolink.sim.webots.vrml import Node
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+LEVEL = 0.01
+"""Radians by which something may lean and still counts as upright: editors save angles with such errors."""
+
+SIDES = 32
+"""Corners of a circle that is seen from elsewhere than from above."""
+
+MOST_POINTS = 500
+"""So many corners a mesh may have; what has more is made for the eye, not for collisions."""
+
+FARTHEST = 100_000.0
+"""Metres from the origin at most."""
+
+_TURNS = np.linspace(0.0, math.tau, SIDES, endpoint=False)
+RIM = np.column_stack((np.cos(_TURNS), np.sin(_TURNS), np.zeros(SIDES)))
+_CUBE = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+
+
+def rounded(value: float) -> float:
+    """Give a length or angle without the errors of a computation, and without a minus before 0."""
+    return round(float(value), 9) + 0.0
+
+
+class Placement(NamedTuple):
+    """Where a node's own axes are: a point p of the node is at `matrix` p + `offset`."""
+
+    matrix: Array
+    offset: Array
+
+    def inside(self, node: Node, translation: Sequence[float] = (0.0, 0.0, 0.0)) -> Placement:
+        """Give the placement of what is inside of a node; `translation` is the default of that field."""
+        matrix = rotation(node) * np.array(node.lengths("scale", 1.0, 1.0, 1.0))
+        offset = self.at(np.array(node.numbers("translation", *translation)))
+        if not np.all(np.abs(offset) <= FARTHEST):
+            raise node.error(f"this is more than {FARTHEST / 1000:g} km away", "translation")
+        matrix = _levelled(self.matrix @ matrix)
+        if not np.all(np.abs(matrix) <= FARTHEST):
+            raise node.error(f"this makes things more than {FARTHEST:g} times as large", "scale")
+        return Placement(matrix, offset)
+
+    def at(self, points: Array) -> Array:
+        """Give where points of the node are."""
+        there: Array = points @ self.matrix.T + self.offset
+        return there
+
+    @property
+    def pose(self) -> Pose:
+        """The placement seen from above."""
+        x, y, _ = self.offset
+        return Pose(rounded(x), rounded(y), rounded(math.atan2(self.matrix[1, 0], self.matrix[0, 0])))
+
+
+ORIGIN = Placement(np.eye(3), np.zeros(3))
+
+
+def turned(angle: float) -> Placement:
+    """Give the placement of something at the origin that is turned about z, by so many radians."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    return Placement(np.array([(cos, -sin, 0.0), (sin, cos, 0.0), (0.0, 0.0, 1.0)]), np.zeros(3))
+
+
+def rotation(node: Node) -> Array:
+    """Give the matrix of a node's rotation, an axis and an angle; an axis without length turns nothing."""
+    x, y, z, angle = node.numbers("rotation", 0.0, 0.0, 1.0, 0.0)
+    length = math.hypot(x, y, z)
+    if length < 1e-12:
+        return np.eye(3)
+    axis = np.array((x, y, z)) / length
+    cross = np.cross(np.eye(3), axis)
+    turned: Array = np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * (cross @ cross)
+    return turned
+
+
+def _levelled(matrix: Array) -> Array:
+    """Put axes that are nearly upright or nearly level exactly so."""
+    limit = LEVEL * np.linalg.norm(matrix, axis=0)
+    found: Array = matrix.copy()
+    found[2, np.abs(matrix[2]) < limit] = 0.0
+    found[:2, np.hypot(matrix[0], matrix[1]) < limit] = 0.0
+    return found
+
+
+class Part(NamedTuple):
+    """A piece of something solid, in space.
+
+    `points` are the corners of its convex hull; with a `radius` they are the ends of an upright cylinder's axis, or
+    the centre of a ball. `volume` is in m³.
+    """
+
+    points: Array
+    volume: float
+    radius: float = 0.0
+    ball: bool = False
+
+    @property
+    def bottom(self) -> float:
+        """Its least height."""
+        return float(self.points[:, 2].min()) - (self.radius if self.ball else 0.0)
+
+    @property
+    def top(self) -> float:
+        """Its greatest height."""
+        return float(self.points[:, 2].max()) + (self.radius if self.ball else 0.0)
+
+    def farthest(self, centre: Array, axis: Array) -> float:
+        """Give the distance of its farthest point from a line."""
+        if self.ball:
+            return self.radius + _from_line(self.points, centre, axis)
+        if self.radius:
+            ends = [point + self.radius * RIM for point in self.points]
+            return max(_from_line(end, centre, axis) for end in ends)
+        return _from_line(self.points, centre, axis)
+
+
+def _from_line(points: Array, centre: Array, axis: Array) -> float:
+    return float(np.linalg.norm(np.cross(points - centre, axis), axis=1).max())
+
+
+def part(geometry: Node, placement: Placement) -> Part | None:
+    """Make the part that a geometry node stands for, or None where it has no extent.
+
+    Raises `KeyError` for a node that is no geometry known here, and `DocumentError` for impossible sizes.
+    """
+    return _GEOMETRIES[geometry.type](geometry, placement)
+
+
+def _scaled(volume: float, placement: Placement) -> float:
+    return volume * abs(float(np.linalg.det(placement.matrix)))
+
+
+def box(sides: Sequence[float], placement: Placement, *, raised: bool = False) -> Part:
+    """Make a box about the placement's origin, or one that stands on it."""
+    corners = (_CUBE + np.array((0.0, 0.0, 0.5 if raised else 0.0))) * np.array(sides)
+    return Part(placement.at(corners), _scaled(math.prod(sides), placement))
+
+
+def _upright(placement: Placement) -> float:
+    """Give the scale of what is round about z and stays so, seen from above; 0 for what does not."""
+    matrix = placement.matrix
+    across, along = matrix[:2, :2], matrix[2, :2]
+    scale = math.hypot(matrix[0, 0], matrix[1, 0])
+    if np.abs(along).max() > 0.0 or np.abs(matrix[:2, 2]).max() > 0.0:
+        return 0.0
+    return scale if np.abs(across.T @ across - scale**2 * np.eye(2)).max() < 1e-3 * scale**2 else 0.0
+
+
+def cylinder(radius: float, height: float, placement: Placement, volume: float) -> Part:
+    """Make what is round about the placement's z axis, `height` high."""
+    if scale := _upright(placement):
+        ends = placement.at(np.array([(0.0, 0.0, -height / 2), (0.0, 0.0, height / 2)]))
+        return Part(ends, _scaled(volume, placement), radius * scale)
+    rims = [RIM * radius + (0.0, 0.0, z) for z in (-height / 2, height / 2)]
+    return Part(placement.at(np.concatenate(rims)), _scaled(volume, placement))
+
+
+def _box(node: Node, placement: Placement) -> Part:
+    return box(node.lengths("size", 2.0, 2.0, 2.0), placement)
+
+
+def _cylinder(node: Node, placement: Placement) -> Part:
+    radius, height = node.length("radius", 1.0), node.length("height", 2.0)
+    return cylinder(radius, height, placement, math.pi * radius**2 * height)
+
+
+def _capsule(node: Node, placement: Placement) -> Part:
+    radius, height = node.length("radius", 1.0), node.length("height", 2.0)
+    volume = math.pi * radius**2 * (height + 4 / 3 * radius)
+    return cylinder(radius, height + 2 * radius, placement, volume)
+
+
+def _cone(node: Node, placement: Placement) -> Part:
+    radius, height = node.length("bottomRadius", 1.0), node.length("height", 2.0)
+    corners = np.vstack((RIM * radius - (0.0, 0.0, height / 2), [(0.0, 0.0, height / 2)]))
+    return Part(placement.at(corners), _scaled(math.pi * radius**2 * height / 3, placement))
+
+
+def _sphere(node: Node, placement: Placement) -> Part:
+    """A ball; one that is stretched is seen as large as its greatest radius."""
+    scale = float(np.linalg.norm(placement.matrix, axis=0).max())
+    radius = node.length("radius", 1.0)
+    return Part(placement.at(np.zeros((1, 3))), _scaled(4 / 3 * math.pi * radius**3, placement), radius * scale, True)
+
+
+def _mesh(node: Node, placement: Placement) -> Part | None:
+    """The convex hull of a mesh; its volume is that of the box around it."""
+    coordinates = node.node("coord")
+    numbers = coordinates.all_numbers("point") if coordinates else []
+    points = np.array(numbers[: len(numbers) // 3 * 3]).reshape(-1, 3)
+    if coordinates is not None and len(points) > MOST_POINTS:
+        raise KeyError(f"{node.type} of {len(points)} points")
+    if len(points) < 3:
+        return None
+    return Part(placement.at(points), _scaled(float(np.prod(np.ptp(points, axis=0))), placement))
+
+
+def _nothing(node: Node, placement: Placement) -> None:
+    """A plane is a floor, lines and points are thin air."""
+
+
+_GEOMETRIES: dict[str, Callable[[Node, Placement], Part | None]] = {
+    "Box": _box,
+    "Cylinder": _cylinder,
+    "Capsule": _capsule,
+    "Cone": _cone,
+    "Sphere": _sphere,
+    "IndexedFaceSet": _mesh,
+    "Plane": _nothing,
+    "IndexedLineSet": _nothing,
+    "PointSet": _nothing,
+}

@@ -1,0 +1,161 @@
+"""A robot of Webots as this simulator has it: outline, limits, wheels and sensors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Literal, NamedTuple
+
+import msgspec
+import numpy as np
+
+from robolink.names import spelled, unlike
+from robolink.sim.description import Drive, Encoders, GroundTruth, Odom, Pose, RobotDescription, Shape, Wheel
+from robolink.sim.robot_problems import robot_problems
+from robolink.sim.webots.footprint import Footprint, footprint, merged
+from robolink.sim.webots.geometry import ORIGIN, Part, Placement, turned
+from robolink.sim.webots.sensors import lacking, measured, rate_near, sensors
+from robolink.sim.webots.things import GROUPS, JOINTS, SOLIDS, Found, inside, mass
+from robolink.sim.webots.vrml import Node
+from robolink.sim.webots.wheels import SPEEDS, heading, listed, motors, resolutions, wheels
+
+NO_SHAPE = 0.1
+"""Metres: radius of a robot without any shape."""
+
+NARROWEST = 0.01
+"""Metres that a robot's outline must go round its origin."""
+
+
+class Converted(NamedTuple):
+    """A robot, its height in metres, and what to tell about it."""
+
+    description: RobotDescription
+    height: float
+    notes: list[str]
+
+
+class Pieces(NamedTuple):
+    """What a robot consists of, in its own frame."""
+
+    parts: list[Part]
+    nodes: list[tuple[Node, Placement]]
+
+    @property
+    def outline(self) -> Footprint:
+        """The outline of all parts from above."""
+        whole = merged([each for part in self.parts if (each := footprint(part, -math.inf, math.inf))])
+        return whole or Footprint(np.empty((0, 2)), (0.0, 0.0, NO_SHAPE))
+
+    @property
+    def height(self) -> float:
+        """From the lowest to the highest point."""
+        return max((each.top for each in self.parts), default=0.0) - min(
+            (each.bottom for each in self.parts), default=0.0
+        )
+
+    @property
+    def devices(self) -> list[tuple[Node, Placement]]:
+        """Its sensors, and what else it carries."""
+        return [each for each in self.nodes if each[0].type not in JOINTS | GROUPS | {"Robot", "Solid", "Shape"}]
+
+
+def robot(found: Found, node: Node, placement: Placement, taken: Sequence[str], dt: float) -> Converted | None:
+    """Convert a robot; None for one without shape and motors, which only looks on.
+
+    `taken` are the names of other robots, `dt` is the world's step in seconds. A robot whose wheels roll to its side
+    is turned round: ahead is where they roll to.
+    """
+    pieces = _pieces(found, node, ORIGIN)
+    if not pieces.parts and not motors(found, pieces.nodes):
+        return None
+    turn = heading([each.wheel for each in motors(found, pieces.nodes) if each.wheel])
+    pieces = _pieces(found, node, turned(-turn)) if turn else pieces
+    pose = placement.pose
+    pose = Pose(pose.x, pose.y, math.remainder(pose.theta + turn, math.tau))
+    description, notes = _described(found, node, pieces, pose, dt)
+    name, asked = unlike(description.name, taken), node.text("name", "robot")
+    if name != asked:
+        notes.insert(0, f"this is how the robot '{asked}' is called here")
+    return Converted(msgspec.structs.replace(description, name=name), pieces.height, [f"{name}: {n}" for n in notes])
+
+
+def _pieces(found: Found, node: Node, frame: Placement) -> Pieces:
+    return Pieces(list(found.parts(node, frame, nested=True)), list(_descend(node, frame)))
+
+
+def _descend(node: Node, outer: Placement) -> Iterator[tuple[Node, Placement]]:
+    """Yield all solids, devices and joints of a robot, each with the placement of its own axes."""
+    for field in ("children", "endPoint"):
+        for child in node.nodes(field) if field in node.fields else ():
+            inner = inside(child, outer)
+            yield child, inner
+            if child.type in GROUPS | JOINTS | SOLIDS:
+                yield from _descend(child, inner)
+
+
+def _described(found: Found, node: Node, pieces: Pieces, pose: Pose, dt: float) -> tuple[RobotDescription, list[str]]:
+    shape = _shape(pieces.outline)
+    turning, notes = wheels(motors(found, pieces.nodes), pieces.outline)
+    description = RobotDescription(
+        spelled(node.text("name", "robot"), "robot"),
+        pose,
+        shape=shape,
+        mass=_mass(found, node, pieces),
+        drive=_drive(turning, shape, dt),
+        wheels=turning,
+        odom=Odom(rate=rate_near(50.0, dt)),
+        ground_truth=GroundTruth(rate=rate_near(10.0, dt)),
+        sensors=sensors(pieces.devices, resolutions(pieces.nodes) if turning else [], dt),
+    )
+    description, more = _without_bad_wheels(description, dt)
+    return description, [*notes, *more, *_missing(description, [each for each, _ in pieces.devices])]
+
+
+def _shape(outline: Footprint) -> Shape:
+    """Make the robot's shape; a circle about its origin if that lies at its edge or outside."""
+    shape = outline.about(Pose(0.0, 0.0))
+    return shape if shape.inner_radius() > NARROWEST else Shape(circle=max(shape.outer_radius(), NARROWEST))
+
+
+def _mass(found: Found, node: Node, pieces: Pieces) -> float:
+    """Give the mass in kg of all that has physics; the default of this simulator where nothing has."""
+    solids = [(node, ORIGIN), *(each for each in pieces.nodes if each[0].type in SOLIDS)]
+    total = sum(mass(each, list(found.parts(each, inner))) for each, inner in solids if each.nodes("physics"))
+    return min(total, 100_000.0) or RobotDescription("robot", Pose(0.0, 0.0)).mass
+
+
+def _drive(wheels: Sequence[Wheel], shape: Shape, dt: float) -> Drive:
+    """Give the limits that the wheels set: the fastest of them, and turning on the spot."""
+    reach = shape.inner_radius() / dt
+    if not wheels:
+        return Drive(v_max=min(Drive().v_max, reach))
+    v_max = max(each.radius * each.speed_max for each in wheels)
+    arm = max(math.hypot(each.at.x, each.at.y) for each in wheels)
+    parallel = len({round(abs(math.sin(each.at.theta)), 1) for each in wheels}) == 1 and heading(wheels) == 0.0
+    kind: Literal["diff", "omni"] = "diff" if parallel else "omni"
+    return Drive(kind, v_max=_limited(min(v_max, reach)), w_max=_limited(min(v_max / max(arm, 0.01), 1.5 / dt)))
+
+
+def _limited(value: float) -> float:
+    return min(max(value, SPEEDS[0]), SPEEDS[1])
+
+
+def _without_bad_wheels(description: RobotDescription, dt: float) -> tuple[RobotDescription, list[str]]:
+    """Let cmd_vel alone drive a robot whose wheels cannot."""
+    found = [each.message for each in robot_problems(description, dt) if each.path.startswith(".wheels")]
+    if not found:
+        return description, []
+    drive = msgspec.structs.replace(description.drive, type="diff")
+    others = tuple(each for each in description.sensors if not isinstance(each, Encoders))
+    description = msgspec.structs.replace(description, wheels=(), drive=drive, sensors=others)
+    return description, [f"its motors are left out: {found[0]}"]
+
+
+def _missing(description: RobotDescription, nodes: Sequence[Node]) -> Iterator[str]:
+    """Say what the robot has not."""
+    if not description.wheels:
+        yield "no motor turns its wheels, only cmd_vel drives it"
+    if left_out := lacking(nodes):
+        yield f"left out: {', '.join(left_out)}"
+    if others := measured(nodes):
+        yield f"metres, not what the lookupTable says, come from {listed(others)}"

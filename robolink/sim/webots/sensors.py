@@ -1,0 +1,180 @@
+"""A robot's sensors in a world of Webots as this simulator has them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Literal, NamedTuple
+
+from robolink.names import spelled, unlike
+from robolink.sim.description import Bumper, Encoders, Imu, Lidar, RangeFinder, Sensor
+from robolink.sim.robot_problems import TAKEN
+from robolink.sim.webots.geometry import Placement
+from robolink.sim.webots.vrml import Node
+
+SCAN = "scan"
+"""The topic of a robot's only lidar."""
+
+NARROW = 1.0
+"""Degrees across which a distance sensor of a single ray sees."""
+
+FULL_TURN = math.radians(359.5)
+"""A field of view from here on, such as 6.28, means all around."""
+
+TABLE = [0.0, 0.0, 0.0, 0.1, 1000.0, 0.0]
+"""Webots' default `lookupTable`: rows of a distance, what the sensor says then, and its noise."""
+
+INERTIAL = frozenset({"Accelerometer", "Gyro", "InertialUnit"})
+LACKING = frozenset({"Camera", "Compass", "GPS", "LightSensor", "Radar", "RangeFinder", "Receiver"})
+"""Sensors of Webots that this world has not."""
+
+
+class Model(NamedTuple):
+    """A lidar that can be bought: name, beams, field of view in degrees, range in metres, noise in metres."""
+
+    name: str
+    beams: int
+    fov: float
+    range: tuple[float, float]
+    noise: float = 0.0
+
+
+LIDARS = {
+    "HokuyoUrg04lx": Model("Hokuyo URG-04LX", 667, 240.0, (0.06, 4.095)),
+    "HokuyoUrg04lxug01": Model("Hokuyo URG-04LX-UG01", 667, 240.0, (0.2, 5.6)),
+    "HokuyoUtm30lx": Model("Hokuyo UTM-30LX", 1080, 270.0, (0.1, 30.0)),
+    "RobotisLds01": Model("LDS-01", 360, 360.0, (0.12, 3.5), 0.0043),
+    "SickLms291": Model("Sick LMS 291", 180, 180.0, (0.1, 80.0)),
+}
+"""Those of Webots' library that scan in a plane. Source: Webots' user guide, "Lidar Sensors"."""
+
+
+def rate_near(wanted: float, dt: float) -> float:
+    """Give the rate in Hz that is nearest to the one wanted and a whole number of steps of `dt` seconds apart."""
+    return 1.0 / (max(1, round(1.0 / (wanted * dt))) * dt)
+
+
+def sensors(devices: Sequence[tuple[Node, Placement]], resolutions: Sequence[float], dt: float) -> tuple[Sensor, ...]:
+    """Make the sensors of a robot out of its devices; `resolutions` are those of its position sensors, in radians.
+
+    Exact ones need no encoders: the angles of all wheels are told anyway.
+    """
+    names = _Names(devices)
+    found: list[Sensor] = [made for each in devices if (made := _sensor(*each, names, dt))]
+    if any(node.type in INERTIAL for node, _ in devices):
+        found.append(Imu(names.free("imu"), rate=rate_near(50.0, dt)))
+    finest = min((each for each in resolutions if each > 0.0), default=0.0)
+    if finest:
+        ticks = min(max(round(math.tau / finest), 1), 10_000_000)
+        found.append(Encoders(names.free("encoders"), rate=rate_near(50.0, dt), ticks=ticks))
+    return tuple(found)
+
+
+def lacking(nodes: Iterable[Node]) -> list[str]:
+    """Name the devices that this world has not."""
+    return [node.called for node in nodes if node.type in LACKING]
+
+
+class _Names:
+    """Gives each sensor a topic of its own; a robot's only lidar has `scan`."""
+
+    def __init__(self, devices: Sequence[tuple[Node, Placement]]) -> None:
+        self._taken = set(TAKEN)
+        self._only_lidar = sum(_is_lidar(node) for node, _ in devices) == 1
+
+    def free(self, name: str) -> str:
+        name = unlike(name, self._taken)
+        self._taken.add(name)
+        return name
+
+    def of(self, node: Node, default: str) -> str:
+        if self._only_lidar and _is_lidar(node):
+            return self.free(SCAN)
+        return self.free(spelled(node.text("name", default), default.replace(" ", "_")))
+
+
+def _is_lidar(node: Node) -> bool:
+    return node.type == "Lidar" or node.type in LIDARS
+
+
+def _sensor(node: Node, placement: Placement, names: _Names, dt: float) -> Sensor | None:
+    if node.type in LIDARS:
+        return _bought_lidar(node, LIDARS[node.type], placement, names, dt)
+    if node.type == "Lidar":
+        return _lidar(node, placement, names, dt)
+    if node.type == "DistanceSensor":
+        return _range_finder(node, placement, names, dt)
+    if node.type == "TouchSensor":
+        return _bumper(node, placement, names, dt)
+    return None
+
+
+def _lidar(node: Node, placement: Placement, names: _Names, dt: float) -> Lidar:
+    nearest, farthest = node.number("minRange", 0.01), node.length("maxRange", 1.0)
+    if not 0.0 <= nearest < farthest:
+        raise node.error(f"expected 0 to less than maxRange, {farthest:g}, got {nearest:g}", "minRange")
+    beams = node.number("horizontalResolution", 512)
+    if not 2 <= beams <= 100_000:
+        raise node.error(f"expected 2 to 100000 beams, got {beams:g}", "horizontalResolution")
+    angle = node.length("fieldOfView", math.pi / 2)
+    turns = node.text("type") == "rotating" or angle >= FULL_TURN
+    return Lidar(
+        names.of(node, "lidar"),
+        rate=rate_near(10.0, dt),
+        beams=int(beams),
+        fov=360.0 if turns else max(math.degrees(angle), 0.01),
+        range=(nearest, max(farthest, 0.001)),
+        noise=min(max(node.number("noise", 0.0), 0.0) * farthest, 100.0),
+        offset=placement.pose,
+    )
+
+
+def _bought_lidar(node: Node, model: Model, placement: Placement, names: _Names, dt: float) -> Lidar:
+    return Lidar(
+        names.of(node, model.name),
+        rate=rate_near(10.0, dt),
+        beams=min(max(int(node.number("resolution", model.beams)), 2), 100_000),
+        fov=model.fov,
+        range=model.range,
+        noise=min(max(node.number("noise", model.noise), 0.0), 100.0),
+        offset=placement.pose,
+    )
+
+
+def _range_finder(node: Node, placement: Placement, names: _Names, dt: float) -> RangeFinder:
+    """A distance sensor; it tells metres, up to the last distance of its `lookupTable`."""
+    table = node.all_numbers("lookupTable") or TABLE
+    if len(table) % 3 or not table[-3] > 0.0:
+        raise node.error("expected rows of distance, value and noise, the last distance more than 0", "lookupTable")
+    kind = node.text("type", "generic")
+    radiation: Literal["ultrasound", "infrared"] = "ultrasound" if kind == "sonar" else "infrared"
+    wide = node.number("numberOfRays", 1.0) > 1.0 and kind != "laser"
+    angle = math.degrees(node.number("aperture", math.pi / 2)) if wide else NARROW
+    return RangeFinder(
+        names.of(node, "distance sensor"),
+        rate=rate_near(10.0, dt),
+        fov=min(max(angle, 0.01), 180.0),
+        range=(0.0, max(table[-3], 0.001)),
+        offset=placement.pose,
+        radiation=radiation,
+    )
+
+
+def _bumper(node: Node, placement: Placement, names: _Names, dt: float) -> Bumper:
+    """A touch sensor: one at the robot's side feels that half of it, one in its middle everything."""
+    pose = placement.pose
+    topic, rate = names.of(node, "touch sensor"), rate_near(10.0, dt)
+    if math.hypot(pose.x, pose.y) < 0.001:
+        return Bumper(topic, rate=rate)
+    middle = math.degrees(math.atan2(pose.y, pose.x))
+    return Bumper(topic, rate=rate, fov=180.0, start=middle - 90.0)
+
+
+def measured(nodes: Iterable[Node]) -> list[str]:
+    """Name the distance sensors whose `lookupTable` gives something else than metres."""
+    found = []
+    for node in nodes:
+        table = (node.all_numbers("lookupTable") or TABLE) if node.type == "DistanceSensor" else []
+        if any(distance != value for distance, value in zip(table[::3], table[1::3], strict=False)):
+            found.append(node.text("name", "distance sensor"))
+    return found
