@@ -3,70 +3,26 @@
 from __future__ import annotations
 
 import hashlib
-import itertools
 import math
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from robolink import Context, Node, Parameter, RobolinkError, VirtualTime, logging
+from robolink import Node, RobolinkError
 from robolink.exceptions import InvalidParameterValueException
-from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from tests.nodefiles import load_node_file
+from tests.simulated import START, System
 
 simulation, follower, reactive, teleop = map(
     load_node_file, ("world", "wall_follower", "reactive_controller", "teleop")
 )
-START = 1_000_000_000
-NUMBERS = itertools.count()
-
-
-class System:
-    """Nodes of one process on a bus of their own, in virtual time."""
-
-    def __init__(self) -> None:
-        self.context = Context(transport=f"memory://sim{next(NUMBERS)}", time=VirtualTime(START))
-        self.context.init([])
-        self.executor = SingleThreadedExecutor(context=self.context)
-        self.probe = self.add(Node, node_name="probe")
-        self.log = list[str]()
-        logging.add_handler(self._note)
-
-    def _note(self, record: logging.Record) -> None:
-        self.log.append(record.message)
-
-    def add(self, node_class: Callable[..., Any], parameters: dict[str, Any] | None = None, **options: Any) -> Any:
-        overrides = [Parameter(name, value=value) for name, value in (parameters or {}).items()]
-        node = node_class(context=self.context, parameter_overrides=overrides, **options)
-        self.executor.add_node(node)
-        return node
-
-    def hear(self, message_class: type[Any], topic: str) -> list[Any]:
-        heard = list[Any]()
-        self.probe.create_subscription(message_class, topic, heard.append, 1000)
-        return heard
-
-    def run(self, seconds: float) -> None:
-        end = self.context.time.now() + round(seconds * 1e9)
-        timer = self.probe.create_timer(seconds, lambda: None)
-        while self.context.time.now() < end:
-            self.executor.spin_once()
-        self.probe.destroy_timer(timer)
-
-    def close(self) -> None:
-        logging.remove_handler(self._note)
-        for node in self.executor.get_nodes():
-            node.destroy_node()
-        self.executor.shutdown()
-        self.context.shutdown()
 
 
 @pytest.fixture
@@ -78,6 +34,10 @@ def system() -> Iterator[System]:
 
 def stamps(messages: list[Any]) -> list[float]:
     return [each.header.stamp.sec + each.header.stamp.nanosec * 1e-9 - START * 1e-9 for each in messages]
+
+
+def links(message: TFMessage) -> list[tuple[str, str]]:
+    return [(each.header.frame_id, each.child_frame_id) for each in message.transforms]
 
 
 def test_a_world_publishes_scan_odom_and_tf_at_their_rates(system: System) -> None:
@@ -95,10 +55,8 @@ def test_a_world_publishes_scan_odom_and_tf_at_their_rates(system: System) -> No
     assert scan.ranges[90] == pytest.approx(0.9)
     assert (odom.header.frame_id, odom.child_frame_id) == ("odom", "base_link")
     assert (odom.pose.pose.position.x, odom.pose.pose.position.y) == (3.0, 0.9)
-    assert [(each.header.frame_id, each.child_frame_id) for each in transforms[0].transforms] == [
-        ("odom", "base_link"),
-        ("base_link", "base_scan"),
-    ]
+    assert stamps([each.transforms[0] for each in transforms]) == stamps(odometry)
+    assert links(transforms[0]) == [("odom", "base_link")]
     assert transforms[0].transforms[0].transform.translation == Vector3(x=3.0, y=0.9)
 
 
@@ -126,8 +84,8 @@ def test_nonsense_on_cmd_vel_is_ignored_counted_and_warned_about_once(system: Sy
         cmd_vel.publish(Twist(linear=Vector3(x=x), angular=Vector3(z=z)))
     cmd_vel.publish(Twist(linear=Vector3(y=math.nan)))
     system.run(0.3)
-    assert world.ports[0].refused == 5
-    assert world.world.robots["robot"].twist.v == pytest.approx(0.3)
+    assert world.simulation.refused == 5
+    assert world.simulation.world.robots["robot"].twist.v == pytest.approx(0.3)
     assert sum("ignored a cmd_vel" in line for line in system.log) == 1
 
 
@@ -171,7 +129,8 @@ def test_each_of_several_robots_has_a_namespace(system: System, tmp_path: Path) 
     assert scans[-1].ranges[2] > 2.0
     assert odometry[-1].header.frame_id == "r2/odom"
     frames = {each.child_frame_id for message in transforms for each in message.transforms}
-    assert frames == {"r1/base_link", "r1/base_scan", "r2/base_link"}
+    assert frames == {"r1/base_link", "r2/base_link"}
+    assert len(transforms[0].transforms) == 2
 
 
 def test_with_its_clock_published_time_counts_from_zero(system: System) -> None:
@@ -185,7 +144,7 @@ def test_with_its_clock_published_time_counts_from_zero(system: System) -> None:
 def test_a_world_can_run_faster_than_time(system: System) -> None:
     world = system.add(simulation.SimulatedWorld, {"world": "empty_room", "rtf": 4.0})
     system.run(1.0)
-    assert world.world.time_ns == pytest.approx(4e9, abs=5e7)
+    assert world.simulation.world.time_ns == pytest.approx(4e9, abs=5e7)
 
 
 @pytest.mark.parametrize("rtf", [-1.0, math.nan, math.inf])
@@ -199,45 +158,28 @@ def test_an_unknown_world_is_an_error_of_robolink(system: System) -> None:
         system.add(simulation.SimulatedWorld, {"world": "cornrs"})
 
 
-def test_the_pace_does_not_drift_and_catches_up() -> None:
-    pace = simulation.Pace(start=7, dt=10_000_000, rtf=1.0)
-    assert [pace.due(7 + now * 1_000_000)[0] for now in (0, 9, 10, 25, 100, 590)] == [0, 0, 1, 1, 8, 49]
-    assert pace.due(7 + 3_590_000_000) == (50, pytest.approx(2.5))
-    assert pace.due(7 + 3_600_000_000) == (1, 0.0)
-
-
-def test_short_steps_are_made_in_bunches_and_rtf_0_knows_no_clock() -> None:
-    assert (simulation.Pace(0, 1_000_000, 1.0).bunch, simulation.Pace(0, 1_000_000, 1.0).period) == (10, 0.01)
-    assert simulation.Pace(0, 10_000_000, 0.5).period == pytest.approx(0.02)
-    assert simulation.Pace(0, 1_000_000, 0.0).due(123) == (10, 0.0)
-
-
 LIFE = 20.0  # s
 
 
-def life(controller: type[Node], world: str) -> tuple[str, float]:
-    """The beginning of a robot's life: a hash of all that was published, and how long that took."""
+def life(controller: type[Node], world: str) -> str:
+    """The beginning of a robot's life: a hash of all that was published."""
     system = System()
     digest = hashlib.sha256()
     for topic, kind in (("/scan", LaserScan), ("/odom", Odometry), ("/tf", TFMessage), ("/cmd_vel", Twist)):
         system.probe.create_subscription(kind, topic, digest.update, 1000, raw=True)
-    started = time.perf_counter()
     node = system.add(simulation.SimulatedWorld, {"world": world})
     system.add(controller)
     system.run(LIFE)
-    took = time.perf_counter() - started
-    assert node.world.robots["robot"].contacts == 0
+    assert node.simulation.world.robots["robot"].contacts == 0
     system.close()
-    return digest.hexdigest(), took
+    return digest.hexdigest()
 
 
 @pytest.mark.parametrize(
     ("controller", "world"), [(follower.WallFollower, "corners"), (reactive.ReactiveController, "obstacles")]
 )
-def test_a_life_is_the_same_twice_and_quick(controller: type[Node], world: str) -> None:
-    (first, took), (again, _) = life(controller, world), life(controller, world)
-    assert first == again
-    assert took < LIFE, "slower than life"
+def test_a_life_is_the_same_twice(controller: type[Node], world: str) -> None:
+    assert life(controller, world) == life(controller, world)
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from robolink.workspace.find import (
     workspace_of,
 )
 from robolink.workspace.interfaces import InterfaceImportError, use_interfaces
-from robolink.workspace.load import NodeLoadError, load_module, load_node
+from robolink.workspace.load import NodeLoadError, load_module, load_node, own_process_needed
 from robolink.workspace.packages import executable, executables, named_executables
 from robolink.workspace.source import Folder, NodeSource, canonical
 
@@ -44,6 +44,7 @@ __all__ = [
     "load_module",
     "load_node",
     "named_executables",
+    "own_process_needed",
     "use_interfaces",
     "user_workspace",
     "workspace_of",

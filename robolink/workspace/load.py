@@ -50,11 +50,31 @@ def load_node(source: NodeSource) -> Runnable:
     tree = _parse(source.path)
     if source.attribute:
         return _attribute(_loaded(source), source)
-    has_main = _defines(tree, "FunctionDef", "main")
-    if _has_guard(tree) or _acts(tree) or (not _defines(tree, "ClassDef") and not has_main):
+    if _is_script(tree):
         return _script(source, source.path)
     module = _loaded(source)
-    return module.main if has_main else _only_node(module, source.path)
+    return module.main if _defines(tree, "FunctionDef", "main") else _only_node(module, source.path)
+
+
+def own_process_needed(source: NodeSource) -> str:
+    """Say why a node cannot share a process with others, without running its file; '' where nothing shows.
+
+    Only a Node class can: a `main()` or a script makes and spins its nodes itself. Raises `NodeLoadError`.
+    """
+    if source.path is None:
+        return ""
+    tree = _parse(source.path)
+    if source.attribute:
+        is_program, what = _defines(tree, "FunctionDef", source.attribute), f"a function ({source.attribute})"
+    else:
+        has_main = _defines(tree, "FunctionDef", "main")
+        is_program, what = has_main or _is_script(tree), "a main()" if has_main else "a script"
+    if not is_program:
+        return ""
+    classes = [each.name for each in tree.body if type(each).__name__ == "ClassDef"]  # type: ignore[attr-defined]
+    instead = " or ".join(f"{source.path.name}:{each}" for each in classes)
+    advice = f"name its class, {instead}, or " if classes else ""
+    return f"{source.path.name} is run by {what}, which needs a process of its own: {advice}leave `process` out"
 
 
 def load_module(path: Path) -> ModuleType:
@@ -102,6 +122,12 @@ def _parse(path: Path) -> ast.Module:
         raise NodeLoadError(f"{place}: {error.msg}") from None
     except (OSError, ValueError, RecursionError, MemoryError) as error:
         raise NodeLoadError(f"{path}: cannot be read: {error}") from None
+
+
+def _is_script(tree: ast.Module) -> bool:
+    """Whether a file is run as Python runs it, not asked for what it defines."""
+    is_plain = not _defines(tree, "ClassDef") and not _defines(tree, "FunctionDef", "main")
+    return _has_guard(tree) or _acts(tree) or is_plain
 
 
 def _has_guard(tree: ast.Module) -> bool:

@@ -1,0 +1,70 @@
+"""When the steps of a world are due, and how fast it really runs."""
+
+from __future__ import annotations
+
+from collections import deque
+
+TURN = 0.01
+"""Simulated seconds that are made in one turn at the most; then other callbacks have theirs."""
+
+OFTENEST, RAREST = 0.001, 1.0
+"""Seconds between two looks at the clock, at the least and at the most."""
+
+BACKLOG = 0.5
+"""Seconds that the simulation may be late and still catches up; what is more is given up."""
+
+WINDOW = 3
+"""Seconds over which the real-time factor is measured, with a mark in each."""
+
+
+class Pace:
+    """How many steps of `dt` nanoseconds are due by the clock, without drift; `rtf` 0 is always one more turn.
+
+    `period` is the seconds between two looks at the clock. Of `left` steps all are made, and then none is due.
+    """
+
+    def __init__(self, start: int, dt: int, rtf: float, left: int | None = None) -> None:
+        self.start, self.dt, self.rtf, self.left = start, dt, rtf, left
+        self.turn = max(1, round(TURN * 1e9 / dt))
+        self.period = min(max(OFTENEST, self.turn * dt / rtf / 1e9), RAREST) if rtf else 1e-6
+        self.behind = False
+        """Whether more steps are due than `due` has given: it is to be asked again, after the others' turn."""
+        self._done = 0
+
+    def due(self, now: int) -> tuple[int, float]:
+        """Give the steps to make at `now`, and the simulated seconds that are given up, for it is too late."""
+        if not self.rtf:
+            return self._next_of_left(), 0.0
+        late = int((now - self.start) * self.rtf) // self.dt - self._done
+        most = max(self.turn, int(BACKLOG * 1e9 * self.rtf) // self.dt)
+        given_up = max(0, late - most) * self.dt
+        self.start += int(given_up / self.rtf)
+        late = min(late, most)
+        steps = min(late, self.turn)
+        self._done += steps
+        self.behind = late > steps
+        return steps, given_up / 1e9
+
+    def _next_of_left(self) -> int:
+        if self.left is None:
+            return self.turn
+        steps = min(self.turn, self.left)
+        self.left -= steps
+        return steps
+
+
+class RateMeter:
+    """Measures the real-time factor over the last seconds, from a mark a second."""
+
+    def __init__(self) -> None:
+        self._marks: deque[tuple[int, int]] = deque(maxlen=WINDOW + 1)
+
+    def restart(self) -> None:
+        """Forget what was: another pace holds from now on."""
+        self._marks.clear()
+
+    def mark(self, now: int, simulated: int) -> float | None:
+        """Note what time it is and how much has been simulated, in nanoseconds; give the factor once it is known."""
+        self._marks.append((now, simulated))
+        then, simulated_then = self._marks[0]
+        return (simulated - simulated_then) / (now - then) if now > then else None

@@ -1,0 +1,53 @@
+"""How sure a robot's odometry can be, from the noise that its world file states: covariances for its messages.
+
+Noise is a share of the speeds, drawn anew at each step, so that errors grow with the root of the way.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from robolink.sim import Pose, Velocity
+from robolink.sim.description import OdomNoise
+
+Covariance: TypeAlias = npt.NDArray[np.float64]
+"""The 36 numbers of a 6 x 6 matrix, row by row: x, y, z, and the turns about them."""
+
+_IN_PLANE = np.ix_((0, 1, 5), (0, 1, 5))
+"""Where x, y and the heading stand in such a matrix."""
+
+
+class Uncertainty:
+    """The covariance of where a robot believes to be, since it started; `dt` is the seconds of a step."""
+
+    def __init__(self, noise: OdomNoise, dt: float) -> None:
+        self._noise, self._dt = noise, dt
+        self._matrix = np.zeros((3, 3))
+
+    def advance(self, pose: Pose, twist: Velocity, steps: int) -> None:
+        """Count in that the robot has come to `pose` by so many steps at about these speeds."""
+        dt, noise = self._dt, self._noise
+        sin, cos = math.sin(pose.theta), math.cos(pose.theta)
+        ahead, across = twist.v * dt, twist.sideways * dt
+        to_world = np.array(((cos, -sin, 0.0), (sin, cos, 0.0), (0.0, 0.0, 1.0)))
+        errors = np.diag(((noise.v * ahead) ** 2, (noise.v * across) ** 2, (noise.w * twist.w * dt) ** 2))
+        turned = np.eye(3)  # a wrong heading leads the whole way astray
+        turned[:2, 2] = to_world[:2, :2] @ (-across * steps, ahead * steps)
+        self._matrix = turned @ self._matrix @ turned.T + steps * to_world @ errors @ to_world.T
+
+    def of_pose(self) -> Covariance:
+        """Give the covariance of the pose, in the frame in which the odometry is."""
+        whole = np.zeros((6, 6))
+        whole[_IN_PLANE] = self._matrix
+        return whole.ravel()
+
+    def of_twist(self, twist: Velocity) -> Covariance:
+        """Give the covariance of these speeds, in the robot's own frame."""
+        noise = self._noise
+        return np.diag(
+            ((noise.v * twist.v) ** 2, (noise.v * twist.sideways) ** 2, 0.0, 0.0, 0.0, (noise.w * twist.w) ** 2)
+        ).ravel()

@@ -1,0 +1,404 @@
+"""The services of a simulated world: what they do, and how they answer nonsense."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from robolink import Parameter
+from robolink.exceptions import InvalidParameterValueException
+from robolink.interfaces import names
+from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
+from robolink.interfaces.nav_msgs.msg import Odometry
+from robolink.interfaces.sensor_msgs.msg import LaserScan
+from robolink.interfaces.std_srvs.srv import Trigger
+from robolink.interfaces.tf2_msgs.msg import TFMessage
+from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.sim_node.services import MOST_STEPS, own_type
+from robolink.workspace.interfaces import WORKSPACE_TYPES
+from tests.nodefiles import load_node_file
+from tests.simulated import START, System
+
+simulation = load_node_file("world")
+Step, Teleport, Spawn, Delete, SetRate = map(own_type, ("Step", "Teleport", "Spawn", "Delete", "SetRate"))
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+HALL = """
+world: {name: hall, size: [10, 10], seed: 3}
+walls:
+  - {polyline: [[0, 0], [10, 0], [10, 10], [0, 10]], closed: true}
+obstacles:
+  - {circle: 0.5, pose: [7, 7], mass: 1.0}
+robots:
+  - name: ada
+    pose: [2, 2, 0]
+    odom: {noise: {v: 0.1, w: 0.1}}
+    sensors: [{lidar: scan, beams: 8, noise: 0.05}]
+  - {name: bob, pose: [2, 8, 0], sensors: [{bumper: bump}]}
+"""
+
+
+@pytest.fixture
+def system() -> Iterator[System]:
+    system = System()
+    yield system
+    system.close()
+
+
+@pytest.fixture
+def hall(tmp_path: Path) -> str:
+    path = tmp_path / "hall.yaml"
+    path.write_text(HALL)
+    return str(path)
+
+
+@pytest.fixture
+def world(system: System, hall: str) -> Any:
+    return system.add(simulation.SimulatedWorld, {"world": hall})
+
+
+def ask(system: System, name: str, /, **fields: Any) -> tuple[bool, str]:
+    kinds = {"step": Step, "teleport": Teleport, "spawn": Spawn, "delete": Delete, "set_rate": SetRate}
+    return system.ask(kinds.get(name, Trigger), f"/world/{name}", **fields)
+
+
+def refused(answer: tuple[bool, str]) -> str:
+    success, message = answer
+    assert not success
+    assert message
+    return message
+
+
+def robots(world: Any) -> Any:
+    return world.simulation.world.robots
+
+
+# Pausing
+
+
+def test_a_paused_world_stands_still_until_it_is_resumed(system: System, world: Any) -> None:
+    odometry = system.hear(Odometry, "/ada/odom")
+    system.run(0.1)
+    assert ask(system, "pause") == (True, "paused at 0.1 s")
+    heard = len(odometry)
+    system.run(5.0)
+    assert len(odometry) == heard == 5
+    assert ask(system, "resume")[0]
+    system.run(0.105)
+    assert len(odometry) == 10
+    stamps = [each.header.stamp.sec * 10**9 + each.header.stamp.nanosec - START for each in odometry]
+    assert stamps == [20_000_000 * (i + 1) for i in range(10)]  # what was slept through is not made up for
+
+
+def test_steps_are_made_one_by_one_while_it_is_paused(system: System, world: Any) -> None:
+    scans = system.hear(LaserScan, "/ada/scan", qos=10)
+    ask(system, "pause")
+    assert ask(system, "step") == (True, "1 steps, at 0.01 s")
+    assert ask(system, "step", steps=299) == (True, "299 steps, at 3 s")
+    assert len(scans) == 30  # none was lost: whoever listens has a turn between the steps
+    system.run(1.0)
+    assert world.simulation.world.steps == 300
+
+
+def test_a_step_of_a_running_world_or_of_an_absurd_number_is_refused(system: System, world: Any) -> None:
+    assert "pause it" in refused(ask(system, "step", steps=1))
+    ask(system, "pause")
+    for steps in (0, -1, -(2**31), MOST_STEPS + 1, 2**31 - 1):
+        assert f"got {steps}" in refused(ask(system, "step", steps=steps))
+    assert world.simulation.world.steps < 100
+
+
+@pytest.mark.parametrize("other", ["pause", "resume"])
+def test_who_waits_for_steps_is_told_when_something_else_comes_first(system: System, world: Any, other: str) -> None:
+    ask(system, "pause")
+    client = system.probe.create_client(Step, "/world/step")
+    future = client.call_async(Step.Request(steps=MOST_STEPS))
+    for _ in range(20):
+        system.executor.spin_once()
+    made = world.simulation.world.steps
+    assert 0 < made < 100
+    assert ask(system, other)[0]
+    system.executor.spin_until_future_complete(future, timeout_sec=1.0)
+    answer = future.result()
+    assert answer is not None
+    assert not answer.success
+    assert "something else" in answer.message
+
+
+# Reset
+
+
+def trace(world: Any, system: System) -> str:
+    """Have it live a second, with a command at its beginning; a hash of what was published, but for the stamps."""
+    digest = hashlib.sha256()
+
+    def note(message: Any) -> None:
+        message.header.stamp.sec = message.header.stamp.nanosec = 0
+        digest.update(repr(message).encode())
+
+    kinds = {"/ada/scan": LaserScan, "/ada/odom": Odometry, "/bob/ground_truth": Odometry}
+    heard = [system.probe.create_subscription(kind, topic, note, 100) for topic, kind in kinds.items()]
+    cmd_vel = system.probe.create_publisher(Twist, "/ada/cmd_vel", 10)
+    cmd_vel.publish(Twist(linear=Vector3(x=0.4), angular=Vector3(z=0.3)))
+    ask(system, "step", steps=100)
+    for each in heard:
+        system.probe.destroy_subscription(each)
+    system.probe.destroy_publisher(cmd_vel)
+    return digest.hexdigest()
+
+
+def test_after_a_reset_the_same_life_begins_again_and_time_goes_on(system: System, world: Any) -> None:
+    ask(system, "pause")
+    first, again = trace(world, system), trace(world, system)
+    assert first != again
+    assert ask(system, "spawn", name="eve", x=5.0, y=5.0)[0]
+    assert ask(system, "delete", name="bob")[0]
+    assert ask(system, "reset")[0]
+    assert list(robots(world)) == ["ada", "bob"]
+    assert robots(world)["ada"].pose.x == 2.0
+    odometry = system.hear(Odometry, "/bob/odom")
+    assert trace(world, system) == first
+    assert odometry[0].header.stamp.sec * 10**9 + odometry[0].header.stamp.nanosec == START + 2_020_000_000
+
+
+def test_a_reset_while_it_runs_keeps_its_pace(system: System, world: Any) -> None:
+    system.run(0.5)
+    assert ask(system, "reset")[0]
+    system.run(1.0)
+    assert world.simulation.world.time_ns == pytest.approx(1e9, abs=2e7)
+
+
+def test_what_a_robot_was_told_before_a_reset_does_not_drive_it_afterwards(system: System, world: Any) -> None:
+    cmd_vel = system.probe.create_publisher(Twist, "/ada/cmd_vel", 10)
+    cmd_vel.publish(Twist(linear=Vector3(x=0.4)))
+    system.run(0.2)
+    assert robots(world)["ada"].pose.x > 2.0
+    ask(system, "reset")
+    system.run(1.0)
+    assert robots(world)["ada"].pose.x == 2.0
+
+
+# Teleport
+
+
+def test_a_robot_is_put_elsewhere(system: System, world: Any) -> None:
+    static = system.hear(TFMessage, "/tf_static", LATCHED)
+    truth = system.hear(Odometry, "/ada/ground_truth")
+    ask(system, "pause")
+    assert ask(system, "teleport", robot="ada", x=5.0, y=4.0, theta=math.pi / 2)[0]
+    ask(system, "step", steps=10)
+    pose, odometry = truth[-1].pose.pose, robots(world)["ada"].odometry
+    assert (pose.position.x, pose.position.y, pose.orientation.z) == pytest.approx((5.0, 4.0, math.sqrt(0.5)))
+    assert (odometry.x, odometry.y, odometry.theta) == pytest.approx((2.0, 2.0, 0.0))
+    on_map = static[-1].transforms[0]
+    assert (on_map.header.frame_id, on_map.child_frame_id) == ("map", "ada/odom")
+    # the map's frame, the odometry's (2, 2) ahead of it and turned by a quarter: there the robot stands
+    assert (on_map.transform.translation.x, on_map.transform.translation.y) == pytest.approx((7.0, 2.0))
+    assert on_map.transform.rotation.z == pytest.approx(math.sqrt(0.5))
+
+
+@pytest.mark.parametrize(
+    ("fields", "reason"),
+    [
+        ({"robot": "adda", "x": 5.0, "y": 5.0}, "did you mean 'ada'"),
+        ({"robot": "ada", "x": math.nan, "y": 5.0}, "finite"),
+        ({"robot": "ada", "x": 5.0, "y": math.inf}, "finite"),
+        ({"robot": "ada", "x": 5.0, "y": 5.0, "theta": -math.inf}, "finite"),
+        ({"robot": "ada", "x": 1e300, "y": 5.0}, "finite"),
+        ({"robot": "ada", "x": 11.0, "y": 5.0}, "outside of the world's size"),
+        ({"robot": "ada", "x": 0.1, "y": 5.0}, "wall"),
+        ({"robot": "ada", "x": 7.0, "y": 7.0}, "an obstacle"),
+        ({"robot": "ada", "x": 2.0, "y": 8.0}, "another robot"),
+    ],
+)
+def test_an_impossible_place_is_refused(system: System, world: Any, fields: dict[str, Any], reason: str) -> None:
+    assert reason in refused(ask(system, "teleport", **fields))
+    assert robots(world)["ada"].pose.x == 2.0
+
+
+# Spawn and delete
+
+
+def test_a_robot_is_spawned_with_its_topics_and_frames_and_deleted_with_them(system: System, world: Any) -> None:
+    static, tf = system.hear(TFMessage, "/tf_static", LATCHED), system.hear(TFMessage, "/tf")
+    scans = system.hear(LaserScan, "/eve/scan")
+    system.run(0.1)
+    assert ask(system, "spawn", name="eve", x=5.0, y=5.0, theta=1.0)[0]
+    cmd_vel = system.probe.create_publisher(Twist, "/eve/cmd_vel", 10)
+    cmd_vel.publish(Twist(linear=Vector3(x=0.5)))
+    system.run(0.5)
+    assert scans[-1].header.frame_id == "eve/base_scan"
+    assert len(scans[-1].ranges) == 8
+    assert robots(world)["eve"].pose.y > 5.0
+    assert "eve/base_link" in [each.child_frame_id for each in tf[-1].transforms]
+    assert "eve/base_scan" in [each.child_frame_id for each in static[-1].transforms]
+    assert ask(system, "delete", name="eve")[0]
+    heard = len(scans)
+    system.run(0.5)
+    assert len(scans) == heard
+    assert list(robots(world)) == ["ada", "bob"]
+    assert "eve/base_scan" not in [each.child_frame_id for each in static[-1].transforms]
+    assert system.probe.count_publishers("/eve/scan") == 0
+    assert ask(system, "spawn", name="eve", x=5.0, y=5.0)[0]
+
+
+def test_a_robot_is_like_the_one_that_is_named(system: System, world: Any) -> None:
+    assert ask(system, "spawn", name="bert", x=5.0, y=5.0, model="bob")[0]
+    assert robots(world)["bert"].description.sensors == robots(world)["bob"].description.sensors
+
+
+def test_a_robot_is_as_a_text_says(system: System, world: Any) -> None:
+    model = "shape: {box: [0.4, 0.2]}\ndrive: {v_max: 1.5}\nsensors:\n  - {lidar: eyes, beams: 4}\n"
+    eyes = system.hear(LaserScan, "/box/eyes")
+    assert ask(system, "spawn", name="box", x=5.0, y=5.0, model=model)[0]
+    system.run(0.2)
+    assert robots(world)["box"].description.drive.v_max == 1.5
+    assert len(eyes[-1].ranges) == 4
+
+
+@pytest.mark.parametrize(
+    ("fields", "reason"),
+    [
+        ({"name": "ada"}, "ada"),
+        ({"name": ""}, "no name"),
+        ({"name": "a/b"}, "no name"),
+        ({"name": "eve", "x": math.nan}, "finite"),
+        ({"name": "eve", "x": -5.0}, "outside of the world's size"),
+        ({"name": "eve", "x": 2.0, "y": 2.0}, "another robot"),
+        ({"name": "eve", "model": "bop"}, "did you mean 'bob'"),
+        ({"name": "eve", "model": "{}["}, "model"),
+        ({"name": "eve", "model": "- 1"}, "expected a mapping"),
+        ({"name": "eve", "model": "drive: {type: dif}"}, "did you mean 'diff'"),
+        ({"name": "eve", "model": "wheel: []"}, "wheel"),
+        ({"name": "eve", "model": "sensors: [{lidar: scan, rate: 33}]"}, "33 Hz"),
+        ({"name": "eve", "model": "sensors: [{lidar: odom}]"}, "'odom'"),
+        ({"name": "eve", "model": "shape: {circle: .nan}"}, "circle"),
+        ({"name": "eve", "model": "shape: {circle: 200}"}, "inside"),
+        ({"name": "eve", "model": "a: &a [*a]"}, "model"),
+        ({"name": "eve", "model": "\x00"}, "model"),
+    ],
+)
+def test_an_impossible_robot_is_refused(system: System, world: Any, fields: dict[str, Any], reason: str) -> None:
+    assert reason in refused(ask(system, "spawn", **{"x": 5.0, "y": 5.0, **fields}))
+    assert list(robots(world)) == ["ada", "bob"]
+
+
+def test_an_unknown_robot_cannot_be_deleted(system: System, world: Any) -> None:
+    assert "did you mean 'bob'" in refused(ask(system, "delete", name="bop"))
+
+
+def test_all_robots_may_go_and_others_come(system: System, world: Any) -> None:
+    for name in ("ada", "bob"):
+        assert ask(system, "delete", name=name)[0]
+    system.run(2.5)
+    assert "no robot" in refused(ask(system, "spawn", name="eve", x=5.0, y=5.0))
+    assert ask(system, "spawn", name="eve", x=5.0, y=5.0, model="sensors: [{lidar: scan}]")[0]
+
+
+def test_the_only_robot_keeps_its_topics_when_others_come(system: System, hall: str) -> None:
+    system.add(simulation.SimulatedWorld, {"world": "empty_room"})
+    first, second = system.hear(LaserScan, "/scan"), system.hear(LaserScan, "/eve/scan")
+    assert ask(system, "spawn", name="eve", x=1.0, y=1.0)[0]
+    system.run(1.005)
+    ask(system, "reset")
+    system.run(1.005)
+    assert (len(first), len(second)) == (20, 10)
+
+
+# The pace
+
+
+def test_the_pace_is_set_while_it_runs(system: System, world: Any) -> None:
+    system.run(1.0)
+    assert ask(system, "set_rate", rtf=4.0) == (True, "4 times real time")
+    system.run(1.0)
+    assert world.simulation.world.time_ns == pytest.approx(5e9, abs=5e7)
+    assert world.get_parameter("rtf").value == 4.0
+    assert ask(system, "set_rate", rtf=0.0) == (True, "as fast as it goes")
+
+
+@pytest.mark.parametrize("rtf", [-1.0, math.nan, math.inf, 1000.1])
+def test_an_impossible_pace_is_refused(system: System, world: Any, rtf: float) -> None:
+    assert "rtf" in refused(ask(system, "set_rate", rtf=rtf))
+    assert world.get_parameter("rtf").value == 1.0
+
+
+@pytest.mark.parametrize("rtf", ["fast", True, [1.0]])
+def test_a_pace_that_is_no_number_is_refused(system: System, world: Any, hall: str, rtf: Any) -> None:
+    assert not world.set_parameters([Parameter("rtf", value=rtf)])[0].successful
+    with pytest.raises(InvalidParameterValueException, match="expected a number"):
+        system.add(simulation.SimulatedWorld, {"world": hall, "rtf": rtf})
+    assert world.set_parameters([Parameter("rtf", value=2)])[0].successful
+    system.run(1.0)
+    assert world.simulation.world.time_ns == pytest.approx(2e9, abs=5e7)
+
+
+def test_as_fast_as_it_goes_all_others_have_their_turn(system: System, hall: str) -> None:
+    world = system.add(simulation.SimulatedWorld, {"world": hall, "rtf": 0})
+    odometry = system.hear(Odometry, "/ada/odom", qos=1)
+    for _ in range(500):
+        system.executor.spin_once()
+    assert 0 <= world.simulation.world.steps // 2 - len(odometry) <= 1  # one may be under way
+    assert len(odometry) > 50
+    assert ask(system, "pause")[0]
+    paused_at = world.simulation.world.steps
+    system.run(1.0)
+    assert world.simulation.world.steps == paused_at
+
+
+# Bad input
+
+
+def test_the_types_are_found_from_everywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    found = WORKSPACE_TYPES.names("srv")["robolink_interfaces"]
+    assert {"Step", "Teleport", "Spawn", "Delete", "SetRate"} <= set(found)
+    assert Step.Request().steps == 1
+    assert "robolink_interfaces/srv/Spawn" not in names("srv")  # until `use_interfaces`, as for any workspace
+
+
+def test_nodes_of_users_import_them(tmp_path: Path) -> None:
+    program = "from robolink_interfaces.srv import Spawn; print(Spawn.Request(name='eve').name)"
+    text = f"from robolink.workspace import use_interfaces; use_interfaces(); {program}"
+    found = subprocess.run([sys.executable, "-c", text], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert found.stdout == "eve\n"
+
+
+numbers = st.floats(allow_nan=True, allow_infinity=True) | st.floats(0, 10)
+texts = st.sampled_from(["ada", "bob", "eve", "", "robots: x", "{", "sensors: [{lidar: 3}]"]) | st.text(max_size=30)
+REQUESTS = st.one_of(
+    st.builds(dict, name=st.just("teleport"), robot=texts, x=numbers, y=numbers, theta=numbers),
+    st.builds(dict, name=st.just("delete"), robot=texts),
+    st.builds(dict, name=st.just("spawn"), robot=texts, x=numbers, y=numbers, theta=numbers, model=texts),
+    st.builds(dict, name=st.just("step"), steps=st.integers(-(2**31), 10)),
+    st.builds(dict, name=st.just("set_rate"), rtf=numbers),
+    st.builds(dict, name=st.sampled_from(["reset", "pause", "resume"])),
+)
+
+
+@given(st.lists(REQUESTS, max_size=12))
+@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_no_request_ends_the_node(hall: str, requests: list[dict[str, Any]]) -> None:
+    system = System()
+    world = system.add(simulation.SimulatedWorld, {"world": hall})
+    for request in requests:
+        name = request.pop("name")
+        if name in ("spawn", "delete"):
+            request["name"] = request.pop("robot")
+        kinds = {"step": Step, "teleport": Teleport, "spawn": Spawn, "delete": Delete, "set_rate": SetRate}
+        success, message = system.ask(kinds.get(name, Trigger), f"/world/{name}", **request)
+        assert success or message
+    system.run(0.02)
+    for robot in robots(world).values():
+        assert 0.0 <= robot.pose.x <= 10.0
+        assert 0.0 <= robot.pose.y <= 10.0
+    system.close()
