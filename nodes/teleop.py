@@ -1,35 +1,65 @@
 """Drive a robot by the keyboard; it stops when no key has come for half a second."""
 
 import atexit
+import contextlib
 import os
 import re
 import sys
 from typing import Any, NamedTuple, Protocol
 
-from robolink import Node
+import robolink
+from robolink import Node, Parameter
 from robolink.clock import Clock
 from robolink.clock_type import ClockType
-from robolink.exceptions import RobolinkError
+from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
+from robolink.parameter_descriptors import described
 
-HELP = "drive with w a s d, the arrows or u i o j k l m , . - q and z change the speed, space stops, Ctrl-C ends"
+HELP = (
+    "drive with w a s d, the arrows or u i o j k l m , . - with shift an omnidirectional robot goes sideways - "
+    "q and z change the speed, r and f that ahead, e and c that of turning - space stops, Ctrl-C ends"
+)
 RATE = 20.0
 
-DIRECTIONS = {
-    **dict.fromkeys(("w", "i", "up"), (1.0, 0.0)),
-    **dict.fromkeys(("s", ",", "down"), (-1.0, 0.0)),
-    **dict.fromkeys(("a", "j", "left"), (0.0, 1.0)),
-    **dict.fromkeys(("d", "l", "right"), (0.0, -1.0)),
-    **dict.fromkeys((" ", "k"), (0.0, 0.0)),
-    "u": (1.0, 1.0),
-    "o": (1.0, -1.0),
-    "m": (-1.0, -1.0),
-    ".": (-1.0, 1.0),
-}
-"""Shares of the speeds ahead and to the left; the letters are those of teleop_twist_keyboard, and w a s d."""
 
-SPEED_STEPS = {"q": 1.1, "z": 1 / 1.1}
-"""Factors of the keys that make it faster and slower."""
+class Shares(NamedTuple):
+    """What a key asks for, as shares of the speeds: ahead, to the left, and turning to the left."""
+
+    ahead: float = 0.0
+    left: float = 0.0
+    turn: float = 0.0
+
+
+DIRECTIONS = {
+    **dict.fromkeys(("w", "i", "up"), Shares(ahead=1.0)),
+    **dict.fromkeys(("s", ",", "<", "down"), Shares(ahead=-1.0)),
+    **dict.fromkeys(("a", "j", "left"), Shares(turn=1.0)),
+    **dict.fromkeys(("d", "l", "right"), Shares(turn=-1.0)),
+    **dict.fromkeys((" ", "k"), Shares()),
+    "u": Shares(ahead=1.0, turn=1.0),
+    "o": Shares(ahead=1.0, turn=-1.0),
+    "m": Shares(ahead=-1.0, turn=-1.0),
+    ".": Shares(ahead=-1.0, turn=1.0),
+    **dict.fromkeys(("A", "J"), Shares(left=1.0)),
+    **dict.fromkeys(("D", "L"), Shares(left=-1.0)),
+    "U": Shares(ahead=1.0, left=1.0),
+    "O": Shares(ahead=1.0, left=-1.0),
+    "M": Shares(ahead=-1.0, left=1.0),
+    ">": Shares(ahead=-1.0, left=-1.0),
+}
+"""The letters are those of teleop_twist_keyboard, and w a s d; with shift it goes to a side in place of turning."""
+
+FASTER = 1.1
+
+SPEED_STEPS = {
+    "q": (FASTER, FASTER),
+    "z": (1 / FASTER, 1 / FASTER),
+    "r": (FASTER, 1.0),
+    "f": (1 / FASTER, 1.0),
+    "e": (1.0, FASTER),
+    "c": (1.0, 1 / FASTER),
+}
+"""Factors of the speed ahead and of the turning speed, for the keys that make it faster and slower."""
 
 ARROWS = dict(zip("ABCDHPMK", ("up", "down", "right", "left") * 2, strict=True))
 """The letter that ends what a terminal sends for an arrow key (A to D), or what Windows' console sends."""
@@ -67,8 +97,10 @@ class Teleop(Node):
 
     def __init__(self, keyboard: Keyboard | None = None, **options: Any) -> None:
         self.keyboard: Keyboard = NoKeyboard()
+        self.twist, self.ticks_left = Twist(), 0
         super().__init__("teleop", **options)
-        required = self.declare_parameter("require_terminal", True).value
+        words = "end at once where no terminal is, in place of living on without keys"
+        required = self.declare_parameter("require_terminal", True, described(words, read_only=True)).value
         try:
             self.keyboard = keyboard or open_keyboard()
         except NoTerminalError as error:
@@ -78,9 +110,9 @@ class Teleop(Node):
             example = "robolink pub /cmd_vel Twist '{linear: {x: 0.3}}' -r 10"
             self.get_logger().warning(f"{error}; drive with: {example}")
         defaults = Speeds()
-        v, w = self.declare_parameter("speed", defaults.v).value, self.declare_parameter("turn_speed", defaults.w).value
-        self.speeds, self.twist, self.ticks_left = Speeds(v, w), Twist(), 0
-        self.timeout_ticks = max(1, round(self.declare_parameter("timeout", 0.5).value * RATE))
+        self.declare_parameter("speed", defaults.v, described("m/s; keys change it too", 0.0, 10.0))
+        self.declare_parameter("turn_speed", defaults.w, described("rad/s; keys change it too", 0.0, 20.0))
+        self.declare_parameter("timeout", 0.5, described("seconds after the last key until the robot stops", 0.1, 5.0))
         self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
         steady = Clock(clock_type=ClockType.STEADY_TIME, time_base=self.context.time)
         self.create_timer(1.0 / RATE, self.on_timer, clock=steady)
@@ -90,17 +122,29 @@ class Teleop(Node):
     def on_timer(self) -> None:
         """Take the keys, and publish what the last one asks for until it is too old; then stop once."""
         for key in keys(self.keyboard.read()):
+            speeds = Speeds(self.get_parameter("speed").value, self.get_parameter("turn_speed").value)
             if key in SPEED_STEPS:
-                self.speeds = changed(self.speeds, key)
-                self.get_logger().info(f"speed {self.speeds.v:.2f} m/s, {self.speeds.w:.2f} rad/s")
-            if (twist := wanted(key, self.speeds)) is not None:
-                self.twist, self.ticks_left = twist, self.timeout_ticks
+                self.set_speeds(changed(speeds, key))
+            elif (twist := wanted(key, speeds)) is not None:
+                self.twist, self.ticks_left = twist, max(2, round(self.get_parameter("timeout").value * RATE))
         if self.ticks_left > 0:
             self.ticks_left -= 1
             self.cmd_vel.publish(self.twist if self.ticks_left else Twist())
 
+    def set_speeds(self, speeds: Speeds) -> None:
+        """Drive at other speeds from the next key on: they are this node's parameters."""
+        given = [Parameter("speed", value=speeds.v), Parameter("turn_speed", value=speeds.w)]
+        if (result := self.set_parameters_atomically(given)).successful:
+            self.get_logger().info(f"speed {speeds.v:.2f} m/s, {speeds.w:.2f} rad/s")
+        else:
+            self.get_logger().warning(result.reason)
+
     def destroy_node(self) -> None:
-        """Give the terminal back."""
+        """Stop the robot if it is being driven, and give the terminal back."""
+        if self.ticks_left > 0:
+            self.ticks_left = 0
+            with contextlib.suppress(RobolinkError):  # the session may have ended
+                self.cmd_vel.publish(Twist())
         self.keyboard.close()
         super().destroy_node()
 
@@ -109,21 +153,26 @@ def wanted(key: str, speeds: Speeds) -> Twist | None:
     """Give the velocity that a key asks for; None for a key without meaning."""
     if key not in DIRECTIONS:
         return None
-    ahead, left = DIRECTIONS[key]
-    return Twist(linear=Vector3(x=ahead * speeds.v), angular=Vector3(z=left * speeds.w))
+    ahead, left, turn = DIRECTIONS[key]
+    return Twist(linear=Vector3(x=ahead * speeds.v, y=left * speeds.v), angular=Vector3(z=turn * speeds.w))
 
 
 def changed(speeds: Speeds, key: str) -> Speeds:
     """Give the speeds after a key of `SPEED_STEPS`."""
-    return Speeds(speeds.v * SPEED_STEPS[key], speeds.w * SPEED_STEPS[key])
+    v, w = SPEED_STEPS[key]
+    return Speeds(speeds.v * v, speeds.w * w)
 
 
 def keys(text: str) -> list[str]:
-    """Split what a terminal sent into keys: small letters, `up`, `down`, `left`, `right`, and nothing for others."""
+    """Split what a terminal sent into keys: letters, `up`, `down`, `left`, `right`, and nothing for others.
+
+    A letter is small, unless shift makes a difference.
+    """
     found = []
     for match in KEY.finditer(text):
         special = match["escape"] or match["windows"]
-        found.append(ARROWS.get(special, "") if special else match["plain"].lower())
+        plain = match["plain"]
+        found.append(ARROWS.get(special, "") if special else plain if plain in DIRECTIONS else plain.lower())
     return found
 
 
@@ -201,3 +250,17 @@ class WindowsKeyboard:
 
     def close(self) -> None:
         """Nothing was changed."""
+
+
+def main(args: list[str] | None = None) -> None:
+    """Drive until Ctrl-C, then stop the robot and give the terminal back."""
+    with robolink.init(args=args), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        node = Teleop()
+        try:
+            robolink.spin(node)
+        finally:
+            node.destroy_node()
+
+
+if __name__ == "__main__":
+    main()

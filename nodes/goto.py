@@ -1,0 +1,400 @@
+"""Drive to a pose: a goal of the action navigate_to_pose, as Nav2 has it, or a message on the topic goal_pose.
+
+robolink action send_goal /navigate_to_pose nav2_msgs/action/NavigateToPose \
+    '{pose: {pose: {position: {x: 2, y: 1}}}}' --feedback
+"""
+
+import contextlib
+import math
+from typing import Any, NamedTuple
+
+import robolink
+from robolink import Duration, Future, Node, Time
+from robolink.action import ActionClient, ActionServer, CancelResponse, GoalResponse
+from robolink.action.server import ServerGoalHandle
+from robolink.exceptions import ExternalShutdownException
+from robolink.interfaces.builtin_interfaces.msg import Time as TimeMessage
+from robolink.interfaces.geometry_msgs.msg import Pose as PoseMessage
+from robolink.interfaces.geometry_msgs.msg import PoseStamped, Twist, Vector3
+from robolink.interfaces.nav2_msgs.action import FollowPath, NavigateToPose
+from robolink.interfaces.nav_msgs.msg import Odometry
+from robolink.interfaces.sensor_msgs.msg import LaserScan
+from robolink.laser import lane_ahead, returns
+from robolink.parameter_descriptors import described
+from robolink.tf2 import Buffer, TransformException, TransformListener
+from robolink.tf2.geometry import do_transform_pose
+
+ACTION = "navigate_to_pose"
+
+Codes = FollowPath.Result
+"""Nav2's numbers for why a goal was not reached."""
+
+K_TURN = 2.5
+"""1/s: how fast it turns for each radian that it is off."""
+
+K_SLOW = 1.5
+"""1/s: near the goal it drives so fast for each metre that is left."""
+
+K_SWING = 1.5
+"""How far it swings out for each radian that the goal's heading differs from the direction to it (more than 1)."""
+
+TURN_FIRST = math.radians(60)
+"""Off its direction by this or more it turns on the spot."""
+
+SETTLED = 0.3
+"""It drives on until it is within this share of the tolerances."""
+
+FEEDBACK_PERIOD, STALE_SCAN, LONGEST_STEP = 0.2, 1.0, 0.2
+"""Seconds: from feedback to feedback, after which a scan is too old, and by which speeds change at once at most."""
+
+FARTHEST = 1e6
+
+
+class Pose(NamedTuple):
+    """A place in metres and a heading in radians."""
+
+    x: float
+    y: float
+    theta: float
+
+
+class Left(NamedTuple):
+    """What is left to a goal: metres, the direction to it as seen by the robot, and the turn at the end, in radians."""
+
+    distance: float
+    bearing: float
+    turn: float
+
+
+class Limits(NamedTuple):
+    """How the robot may drive; the parameters of the node have the same names."""
+
+    speed: float = 0.4
+    acceleration: float = 0.8
+    turn_speed: float = 1.2
+    turn_acceleration: float = 4.0
+    swing: float = 0.4
+    position_tolerance: float = 0.05
+    heading_tolerance: float = 0.1
+
+
+PARAMETERS = {
+    "speed": ("m/s at most", 0.01, 10.0),
+    "acceleration": ("m/s², and to brake", 0.05, 20.0),
+    "turn_speed": ("rad/s at most", 0.05, 20.0),
+    "turn_acceleration": ("rad/s²", 0.1, 100.0),
+    "swing": ("metres by which it may leave the straight line to arrive with the right heading", 0.0, 10.0),
+    "position_tolerance": ("metres from the goal that are near enough", 0.005, 10.0),
+    "heading_tolerance": ("radians off the goal's heading that are near enough", 0.01, 3.15),
+}
+
+
+class Speeds(NamedTuple):
+    """The speed ahead in m/s, and the turning speed in rad/s."""
+
+    v: float = 0.0
+    w: float = 0.0
+
+
+class Trip:
+    """A goal that is being driven to; `result` is what its client gets at the end."""
+
+    def __init__(self, handle: ServerGoalHandle, now: Time) -> None:
+        self.handle, self.goal, self.started = handle, handle.request.pose, now
+        self.result: Future[NavigateToPose.Result] = Future()
+        self.arrived = False
+        """Whether it has come to the place, and only turns."""
+        self.checkpoint: Pose | None = None
+        self.moved_at = self.told_at = now
+
+    def note_movement(self, pose: Pose, now: Time) -> None:
+        """Note that the robot gets on, if it has moved since the last time that it had."""
+        last = self.checkpoint
+        if last is None or math.dist(pose[:2], last[:2]) > 0.05 or abs(wrapped(pose.theta - last.theta)) > 0.1:
+            self.checkpoint, self.moved_at = pose, now
+
+
+class Goto(Node):
+    """Drives to one goal at a time, by odometry; a new goal replaces the one before. The robot must turn on the spot.
+
+    Goals are in the frame of odometry, or in one that /tf connects with it. It plans no way round obstacles: with a
+    scanner it waits before what is in its lane.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("goto", **options)
+        for name, (words, low, high) in PARAMETERS.items():
+            self.declare_parameter(name, Limits._field_defaults[name], described(words, low, high))
+        self.declare_parameter("obstacle_stop", True, described("wait for what is in the lane ahead"))
+        self.declare_parameter("stop_distance", 0.35, described("metres before the scanner", 0.0, 10.0))
+        self.declare_parameter("half_width", 0.22, described("metres, of the lane", 0.01, 10.0))
+        self.declare_parameter("progress_timeout", 10.0, described("seconds to give up after", 0.5, 3600.0))
+        self.declare_parameter("odom_timeout", 1.0, described("seconds without odometry to give up after", 0.1, 60.0))
+        self.trip: Trip | None = None
+        self.here = PoseStamped()
+        self.odom_at = self.get_clock().now()
+        self.speeds, self.free = Speeds(), math.inf
+        self.scan_at: Time | None = None
+        self.buffer = Buffer()
+        self.listener = TransformListener(self.buffer, self)
+        self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_subscription(Odometry, "odom", self.on_odom, 10)
+        self.create_subscription(LaserScan, "scan", self.on_scan, 10)
+        self.server = ActionServer(self, NavigateToPose, ACTION, self.on_execute, goal_callback=self.on_goal)
+        self.server.register_cancel_callback(lambda _: CancelResponse.ACCEPT)
+        self.goals = ActionClient(self, NavigateToPose, ACTION)
+        self.create_subscription(PoseStamped, "goal_pose", self.on_goal_pose, 10)
+        self.create_timer(0.1, self.on_timer)
+
+    # Goals
+
+    def on_goal_pose(self, pose: PoseStamped) -> None:
+        """Take a goal as RViz sends it: it becomes one of the action."""
+        self.goals.send_goal_async(NavigateToPose.Goal(pose=pose))
+
+    def on_goal(self, goal: NavigateToPose.Goal) -> GoalResponse:
+        """Refuse what nobody can drive to."""
+        reason = fault(goal.pose.pose)
+        try:
+            self.in_odom(goal.pose)
+        except TransformException as error:
+            reason = reason or f"its frame '{goal.pose.header.frame_id}' is not known here: {error}"
+        if reason:
+            self.get_logger().warning(f"refused a goal: {reason}")
+        return GoalResponse.REJECT if reason else GoalResponse.ACCEPT
+
+    async def on_execute(self, handle: ServerGoalHandle) -> NavigateToPose.Result | None:
+        """Drive to a goal from now on, and no longer to another; odometry does the rest."""
+        if self.trip is not None:
+            self.end("replaced by another goal")
+        now = self.get_clock().now()
+        trip = self.trip = Trip(handle, now)
+        self.odom_at = now  # the timeout begins here
+        place = trip.goal.pose.position
+        self.get_logger().info(f"driving to ({place.x:.2f}, {place.y:.2f})")
+        return await trip.result
+
+    def end(self, words: str = "", code: int = Codes.NONE, *, succeeded: bool = False) -> None:
+        """End the trip, for this reason."""
+        trip, self.trip = self.trip, None
+        assert trip is not None
+        if succeeded:
+            trip.handle.succeed()
+        elif trip.handle.is_cancel_requested:
+            trip.handle.canceled()
+        else:
+            trip.handle.abort()
+        trip.result.set_result(NavigateToPose.Result(error_code=code, error_msg=words))
+
+    def give_up(self, words: str, code: int) -> None:
+        """Stop short of the goal, and say why."""
+        self.command(Speeds())
+        self.get_logger().error(f"gave up: {words}")
+        self.end(words, code)
+
+    def stop(self) -> None:
+        """Leave the robot standing, and its goal unreached."""
+        if self.trip is not None:
+            self.command(Speeds())
+            self.end("the node has ended", Codes.UNKNOWN)
+
+    def in_odom(self, goal: PoseStamped) -> Pose:
+        """Give where a goal is in the frame of odometry, as far as is known now. Raises TransformException."""
+        frame, odom = (each.removeprefix("/") for each in (goal.header.frame_id, self.here.header.frame_id))
+        if frame in ("", "odom", odom):
+            return pose_of(goal.pose)
+        transform = self.buffer.lookup_transform(odom or "odom", frame, Time())
+        return pose_of(do_transform_pose(goal.pose, transform))
+
+    # Driving
+
+    def on_scan(self, scan: LaserScan) -> None:
+        """Look how far the lane ahead is free."""
+        self.free = lane_ahead(*returns(scan), self.get_parameter("half_width").value)
+        self.scan_at = self.get_clock().now()
+
+    def on_odom(self, odometry: Odometry) -> None:
+        """Drive on, to where the goal is now."""
+        if fault(odometry.pose.pose):
+            return  # after too many of them the odometry is stale
+        pose = pose_of(odometry.pose.pose)
+        dt = seconds(odometry.header.stamp) - seconds(self.here.header.stamp)
+        self.here = PoseStamped(header=odometry.header, pose=odometry.pose.pose)
+        self.odom_at = self.get_clock().now()
+        if self.trip is None:
+            return
+        try:
+            left = left_to(self.in_odom(self.trip.goal), pose)
+        except TransformException as error:
+            self.give_up(f"the goal's frame is lost: {error}", Codes.TF_ERROR)
+        else:
+            self.trip.note_movement(pose, self.odom_at)
+            self.drive(self.trip, left, min(max(dt, 0.0), LONGEST_STEP))
+
+    def drive(self, trip: Trip, left: Left, dt: float) -> None:
+        """Send the next command, or end the trip: its goal has been reached, or it shall not be any more."""
+        limits = Limits(*(self.get_parameter(name).value for name in Limits._fields))
+        trip.arrived = has_arrived(left, limits, trip.arrived)
+        room = math.inf if trip.arrived else self.room(left)
+        still = (self.odom_at - trip.moved_at).nanoseconds / 1e9
+        is_stuck = still > self.get_parameter("progress_timeout").value
+        if trip.handle.is_cancel_requested:
+            self.command(Speeds())
+            self.get_logger().info("cancelled")
+            self.end("cancelled")
+        elif (trip.arrived and is_reached(left, limits, SETTLED)) or (is_stuck and is_reached(left, limits)):
+            self.command(Speeds())
+            self.get_logger().info(f"reached the goal, {100 * left.distance:.1f} cm off")
+            self.end(succeeded=True)
+        elif is_stuck:
+            reason = "something is in the way" if room <= 0.0 else "the robot does not move"
+            self.give_up(f"no progress {left.distance:.2f} m from the goal: {reason}", Codes.FAILED_TO_MAKE_PROGRESS)
+        else:
+            self.command(decide(left, self.speeds, limits, room, trip.arrived, dt))
+            self.tell(trip, left, limits)
+
+    def room(self, left: Left) -> float:
+        """Give the metres that it may drive ahead before it must stop; what lies beyond the goal is not in the way."""
+        if not self.get_parameter("obstacle_stop").value or self.scan_at is None:
+            return math.inf
+        if (self.odom_at - self.scan_at).nanoseconds > STALE_SCAN * 1e9:
+            self.get_logger().warning("waiting: no scan has come for a second", throttle_duration_sec=2.0)
+            return 0.0
+        if self.free > left.distance + self.get_parameter("half_width").value:
+            return math.inf
+        room = self.free - float(self.get_parameter("stop_distance").value)
+        if room <= 0.0 and abs(left.bearing) < TURN_FIRST:
+            self.get_logger().warning(f"waiting: something is {self.free:.2f} m ahead", throttle_duration_sec=2.0)
+        return max(0.0, room)
+
+    def command(self, speeds: Speeds) -> None:
+        """Have the robot drive so."""
+        self.speeds = speeds
+        self.cmd_vel.publish(Twist(linear=Vector3(x=speeds.v), angular=Vector3(z=speeds.w)))
+
+    def tell(self, trip: Trip, left: Left, limits: Limits) -> None:
+        """Tell the client how far it is, now and then."""
+        now = self.odom_at
+        if (now - trip.told_at).nanoseconds < FEEDBACK_PERIOD * 1e9:
+            return
+        trip.told_at = now
+        remaining = left.distance / limits.speed + abs(left.turn) / limits.turn_speed
+        feedback = NavigateToPose.Feedback(
+            current_pose=self.here,
+            navigation_time=(now - trip.started).to_msg(),
+            estimated_time_remaining=Duration(seconds=remaining).to_msg(),
+            distance_remaining=left.distance,
+        )
+        trip.handle.publish_feedback(feedback)
+
+    def on_timer(self) -> None:
+        """Give up when odometry fails: nobody knows where the robot is then."""
+        silent = (self.get_clock().now() - self.odom_at).nanoseconds / 1e9
+        if self.trip is not None and silent > self.get_parameter("odom_timeout").value:
+            self.give_up(f"no odometry on {self.resolve_topic_name('odom')} for {silent:.1f} s", Codes.TF_ERROR)
+
+
+# The law
+
+
+def left_to(goal: Pose, pose: Pose) -> Left:
+    """Tell how far it is from a pose to a goal."""
+    dx, dy = goal.x - pose.x, goal.y - pose.y
+    return Left(math.hypot(dx, dy), wrapped(math.atan2(dy, dx) - pose.theta), wrapped(goal.theta - pose.theta))
+
+
+def has_arrived(left: Left, limits: Limits, already: bool) -> bool:
+    """Say whether the robot is at the place and has only to turn; once it was, a little drift does not count."""
+    near = left.distance <= limits.position_tolerance
+    is_passing = abs(left.bearing) > math.pi / 2
+    return near and (already or is_passing or left.distance <= SETTLED * limits.position_tolerance)
+
+
+def is_reached(left: Left, limits: Limits, share: float = 1.0) -> bool:
+    """Say whether the goal is reached within the tolerances, that of the heading taken by a share of it."""
+    return left.distance <= limits.position_tolerance and abs(left.turn) <= share * limits.heading_tolerance
+
+
+def decide(left: Left, speeds: Speeds, limits: Limits, room: float, arrived: bool, dt: float) -> Speeds:
+    """Give the next speeds, `dt` seconds after `speeds`; `room` is what is free ahead, in metres.
+
+    On the way it aims beside the goal, so that it comes round to the goal's heading, but never off the straight line
+    by much more than `swing` metres. At the place it turns on the spot.
+    """
+    if arrived:
+        return Speeds(slowed(0.0, speeds.v, limits, dt), turning(left.turn, speeds.w, limits, dt))
+    off = wrapped(left.bearing - swing(left, limits))
+    most = min(limits.speed, K_SLOW * left.distance, braking(left.distance, limits))
+    v = slowed(most * max(0.0, 1.0 - abs(off) / TURN_FIRST), speeds.v, limits, dt)
+    return Speeds(min(v, braking(room, limits)), turning(off, speeds.w, limits, dt))
+
+
+def swing(left: Left, limits: Limits) -> float:
+    """Give the angle by which to aim beside the goal: it fades out near the goal, which would be circled otherwise."""
+    most = math.atan2(limits.swing, left.distance) * min(1.0, left.distance / (4.0 * limits.position_tolerance))
+    return clipped(K_SWING * wrapped(left.turn - left.bearing), most)
+
+
+def braking(distance: float, limits: Limits) -> float:
+    """Give the greatest speed from which the robot can stop within a distance."""
+    return math.sqrt(1.6 * limits.acceleration * distance) if distance > 0.0 else 0.0
+
+
+def slowed(wanted: float, speed: float, limits: Limits, dt: float) -> float:
+    """Give the speed ahead after `dt` seconds, which cannot change faster than the limit allows."""
+    return speed + clipped(wanted - speed, limits.acceleration * dt)
+
+
+def turning(off: float, speed: float, limits: Limits, dt: float) -> float:
+    """Give the turning speed after `dt` seconds: it falls in time not to turn too far."""
+    most = min(limits.turn_speed, math.sqrt(1.6 * limits.turn_acceleration * abs(off)))
+    return speed + clipped(clipped(K_TURN * off, most) - speed, limits.turn_acceleration * dt)
+
+
+def wrapped(angle: float) -> float:
+    """Bring an angle into [-pi, pi]."""
+    return math.remainder(angle, math.tau)
+
+
+def clipped(value: float, most: float) -> float:
+    """Bring a value into [-most, most]."""
+    return min(most, max(-most, value))
+
+
+# Messages
+
+
+def fault(pose: PoseMessage) -> str:
+    """Say what is wrong with a pose; nothing if a robot can be there."""
+    place, turn = pose.position, pose.orientation
+    numbers = (place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w)
+    if not all(abs(each) <= FARTHEST for each in numbers):
+        return f"expected finite numbers, and places within {FARTHEST:g} m, got {pose}"
+    if math.hypot(*numbers[3:]) < 1e-3:
+        return "its orientation is all zero, which is no quaternion: w is 1 for no rotation"
+    return ""
+
+
+def seconds(stamp: TimeMessage) -> float:
+    """Read a stamp."""
+    return float(stamp.sec + stamp.nanosec * 1e-9)
+
+
+def pose_of(pose: PoseMessage) -> Pose:
+    """Read a pose in the plane; a quaternion of any length will do."""
+    place, q = pose.position, pose.orientation
+    return Pose(place.x, place.y, math.atan2(2 * (q.w * q.z + q.x * q.y), q.w**2 + q.x**2 - q.y**2 - q.z**2))
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node until Ctrl-C, then stop the robot."""
+    with robolink.init(args=args), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        node = Goto()
+        try:
+            robolink.spin(node)
+        finally:
+            node.stop()
+
+
+if __name__ == "__main__":
+    main()

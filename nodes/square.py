@@ -1,0 +1,231 @@
+"""Drive a perfect square by odometry alone, and end where it began.
+
+robolink run square -p side:=1.5 -p direction:=right
+"""
+
+import contextlib
+import math
+import sys
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import robolink
+from robolink import Future, Node
+from robolink.exceptions import ExternalShutdownException, InvalidParameterValueException
+from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
+from robolink.interfaces.nav_msgs.msg import Odometry
+from robolink.parameter_descriptors import described
+
+SETTLING = 4.0
+"""1/s: at the very end of a way what is left shrinks by this rate, since no command takes effect at once."""
+
+K_ASIDE, K_HEADING = 3.0, 4.0
+"""1/m and 1/s: how a robot that has left its line turns back to it."""
+
+MOST_ASIDE = 0.5
+"""Radians by which it turns towards its line at most."""
+
+ENOUGH = 0.001
+"""Metres or radians that may be left when the next way begins."""
+
+STUCK = 10.0
+"""Seconds without coming nearer after which it gives up."""
+
+
+class Pose(NamedTuple):
+    """A place in metres and a heading in radians."""
+
+    x: float
+    y: float
+    theta: float
+
+
+class Way(NamedTuple):
+    """A part of the square, which ends at `goal`: a straight side, or a turn on the spot."""
+
+    goal: Pose
+    is_turn: bool
+
+
+class Left(NamedTuple):
+    """How far a robot is from a goal, seen along the goal's heading: metres ahead and to the left, and radians."""
+
+    ahead: float
+    aside: float
+    turn: float
+
+
+class Limits(NamedTuple):
+    """What the robot may do, in m/s, m/s², rad/s and rad/s²."""
+
+    speed: float = 0.3
+    acceleration: float = 0.5
+    turn_speed: float = 1.0
+    turn_acceleration: float = 2.0
+
+
+class Speeds(NamedTuple):
+    """The speed ahead in m/s, and the turning speed in rad/s."""
+
+    v: float = 0.0
+    w: float = 0.0
+
+
+class Square(Node):
+    """Drives one way after the other, a command for each message of odometry; `done` gets an exit code at the end."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("square", **options)
+        fixed: dict[str, Any] = {"read_only": True}
+        side = self.declare_parameter("side", 1.0, described("metres", 0.05, 1000.0, **fixed)).value
+        turns = self.declare_parameter("turns", 1, described("how often it goes round", 1, 1000, **fixed)).value
+        direction = self.declare_parameter("direction", "left", described("to which side it turns", **fixed)).value
+        if direction not in ("left", "right"):
+            raise InvalidParameterValueException("direction", direction, "expected 'left' or 'right'")
+        usual = Limits()
+        self.declare_parameter("speed", usual.speed, described("m/s along a side", 0.01, 10.0))
+        self.declare_parameter("acceleration", usual.acceleration, described("m/s², and to brake", 0.01, 10.0))
+        self.declare_parameter("turn_speed", usual.turn_speed, described("rad/s at a corner", 0.05, 20.0))
+        self.declare_parameter("turn_acceleration", usual.turn_acceleration, described("rad/s²", 0.05, 100.0))
+        self.shape = (side, turns, 1 if direction == "left" else -1)
+        self.done: Future[int] = Future()
+        self.start: Pose | None = None
+        self.ways = list[Way]()
+        self.speeds, self.stamp = Speeds(), 0
+        self.least_left, self.nearer_at = math.inf, 0
+        self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_subscription(Odometry, "odom", self.on_odom, 10)
+        self.create_timer(5.0, self.on_timer)
+
+    def on_odom(self, odometry: Odometry) -> None:
+        """Drive on."""
+        pose, stamp = pose_of(odometry), odometry.header.stamp
+        now = stamp.sec * 10**9 + stamp.nanosec
+        if self.done.done() or not all(map(math.isfinite, pose)):
+            return
+        if self.start is None:
+            self.start, self.stamp, self.nearer_at = pose, now, now
+            self.ways = list(square(pose, *self.shape))
+            side, turns, _ = self.shape
+            often = "once" if turns == 1 else f"{turns} times"
+            self.get_logger().info(f"driving {often} round a square with sides of {side:g} m")
+        dt, self.stamp = min(max((now - self.stamp) / 1e9, 0.0), 0.2), now
+        left = left_to(self.ways[0].goal, pose)
+        if has_ended(self.ways[0], left, self.speeds):
+            self.begin_next(pose)
+            return
+        self.give_up_if_stuck(pose, left, now)
+        if not self.done.done():
+            limits = Limits(*(self.get_parameter(name).value for name in Limits._fields))
+            self.drive(decide(self.ways[0], left, self.speeds, limits, dt))
+
+    def drive(self, speeds: Speeds) -> None:
+        """Send a command."""
+        self.speeds = speeds
+        self.cmd_vel.publish(Twist(linear=Vector3(x=speeds.v), angular=Vector3(z=speeds.w)))
+
+    def begin_next(self, pose: Pose) -> None:
+        """Stand still at the end of a way; after the last one the square is done."""
+        self.drive(Speeds())
+        ended = self.ways.pop(0)
+        self.least_left, self.nearer_at = math.inf, self.stamp
+        if not ended.is_turn:
+            self.get_logger().info(f"at a corner: ({pose.x:.3f}, {pose.y:.3f})")
+        if not self.ways:
+            assert self.start is not None
+            off = math.dist(pose[:2], self.start[:2])
+            self.get_logger().info(f"square done, {100 * off:.1f} cm from the start")
+            self.done.set_result(0)
+
+    def give_up_if_stuck(self, pose: Pose, left: Left, now: int) -> None:
+        """End in failure when for a while the goal has come no nearer: something is in the way."""
+        remaining = abs(left.turn) if self.ways[0].is_turn else abs(left.ahead)
+        if remaining < self.least_left - ENOUGH / 10:
+            self.least_left, self.nearer_at = remaining, now
+        elif now - self.nearer_at > STUCK * 1e9:
+            self.drive(Speeds())
+            words = f"gave up at ({pose.x:.2f}, {pose.y:.2f}): no nearer to the corner for {STUCK:g} s"
+            self.get_logger().error(f"{words}; is something in the way?")
+            self.done.set_result(1)
+
+    def on_timer(self) -> None:
+        """Say why nothing happens."""
+        if self.start is None:
+            topic = self.resolve_topic_name("odom")
+            self.get_logger().warning(f"no odometry so far on {topic}: is a robot, or robolink run world, there?")
+
+    def stop(self) -> None:
+        """Leave the robot standing."""
+        self.drive(Speeds())
+
+
+def square(start: Pose, side: float, turns: int, to_left: int) -> Iterator[Way]:
+    """Give the sides and turns of a square that begins and ends at `start`; `to_left` is 1, or -1 to the right.
+
+    All goals are reckoned from the start and not from where the robot came to, so that errors do not add up.
+    """
+    x, y, quarter = start.x, start.y, to_left * math.pi / 2
+    for corner in range(4 * turns):
+        theta = start.theta + corner % 4 * quarter
+        x, y = x + side * math.cos(theta), y + side * math.sin(theta)
+        if corner % 4 == 3:
+            x, y = start.x, start.y
+        yield Way(Pose(x, y, theta), is_turn=False)
+        yield Way(Pose(x, y, theta + quarter), is_turn=True)
+
+
+def left_to(goal: Pose, pose: Pose) -> Left:
+    """Tell how far it is from a pose to a goal."""
+    dx, dy = goal.x - pose.x, goal.y - pose.y
+    cos, sin = math.cos(goal.theta), math.sin(goal.theta)
+    return Left(dx * cos + dy * sin, dy * cos - dx * sin, math.remainder(goal.theta - pose.theta, math.tau))
+
+
+def has_ended(way: Way, left: Left, speeds: Speeds) -> bool:
+    """Say whether the robot has come to the end of a way and all but stands."""
+    remaining, speed = (left.turn, speeds.w) if way.is_turn else (left.ahead, speeds.v)
+    return abs(remaining) < ENOUGH and abs(speed) <= 2 * SETTLING * ENOUGH
+
+
+def decide(way: Way, left: Left, speeds: Speeds, limits: Limits, dt: float) -> Speeds:
+    """Give the next speeds, `dt` seconds after `speeds`: along a side, kept on its line, or round a corner."""
+    if way.is_turn:
+        return Speeds(0.0, eased(left.turn, speeds.w, limits.turn_speed, limits.turn_acceleration, dt))
+    v = eased(left.ahead, speeds.v, limits.speed, limits.acceleration, dt)
+    to_line = min(MOST_ASIDE, max(-MOST_ASIDE, K_ASIDE * left.aside))
+    w = K_HEADING * (left.turn + (to_line if v >= 0.0 else -to_line))
+    return Speeds(v, min(limits.turn_speed, max(-limits.turn_speed, w)))
+
+
+def eased(left: float, speed: float, most: float, acceleration: float, dt: float) -> float:
+    """Give the next speed on a way of which `left` is left: a trapezoid over time.
+
+    It rises by the acceleration up to the most, and falls in time to be 0 at the end; what is left may be negative.
+    """
+    distance = abs(left)
+    braking = min(math.sqrt(2.0 * acceleration * distance), SETTLING * distance)
+    rising = math.copysign(1.0, left) * speed + acceleration * dt
+    return math.copysign(max(0.0, min(most, braking, rising)), left)
+
+
+def pose_of(odometry: Odometry) -> Pose:
+    """Read where odometry has the robot, in the plane."""
+    place, turn = odometry.pose.pose.position, odometry.pose.pose.orientation
+    theta = math.atan2(2.0 * (turn.w * turn.z + turn.x * turn.y), 1.0 - 2.0 * (turn.y**2 + turn.z**2))
+    return Pose(place.x, place.y, theta)
+
+
+def main(args: list[str] | None = None) -> int:
+    """Drive the square; give the exit code: 0 when it is done, or Ctrl-C has ended it, and 1 if it gave up."""
+    with robolink.init(args=args), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        node = Square()
+        try:
+            robolink.spin_until_future_complete(node, node.done)
+        finally:
+            node.stop()
+        return node.done.result() or 0
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,62 @@
+"""Publish velocities for a robot: faster and faster up to a top speed, then from standstill again."""
+
+import contextlib
+from typing import Any
+
+import robolink
+from robolink import Node
+from robolink.exceptions import ExternalShutdownException
+from robolink.interfaces.geometry_msgs.msg import Twist
+from robolink.parameter_descriptors import described
+
+PERIOD = 0.4
+"""Seconds between two messages: less than the half second after which a robot that hears nothing stops."""
+
+
+class VelocityPublisher(Node):
+    """Publishes a Twist on `cmd_vel` at each tick of its timer, each a little faster than the one before."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("velocity_publisher", **options)
+        self.declare_parameter("step", 0.1, described("m/s by which each message is faster", 0.0, 2.0))
+        self.declare_parameter("top_speed", 1.0, described("m/s, the greatest speed ahead", 0.0, 10.0))
+        self.declare_parameter("turn_speed", 0.0, described("rad/s, to the left if positive", -10.0, 10.0))
+        self.speed = 0.0
+        self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_timer(PERIOD, self.on_timer)
+
+    def on_timer(self) -> None:
+        """Publish the speed, and think of the next."""
+        twist = Twist()
+        twist.linear.x = self.speed
+        twist.angular.z = self.get_parameter("turn_speed").value
+        self.cmd_vel.publish(twist)
+        self.get_logger().info(f"{twist.linear.x:.2f} m/s ahead, turning at {twist.angular.z:.2f} rad/s")
+        self.speed = next_speed(self.speed, self.get_parameter("step").value, self.get_parameter("top_speed").value)
+
+    def stop(self) -> None:
+        """Leave the robot standing: who has driven it must not end with it driving on."""
+        self.cmd_vel.publish(Twist())
+
+
+def next_speed(speed: float, step: float, top_speed: float) -> float:
+    """Give the speed that comes after `speed`: a step more, or 0 where that is beyond the top.
+
+    It is rounded, since ten times 0.1 is a little less than 1 for a computer.
+    """
+    faster = round(speed + step, 6)
+    return faster if faster <= top_speed else 0.0
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node until Ctrl-C, then stop the robot."""
+    with robolink.init(args=args), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        node = VelocityPublisher()
+        try:
+            robolink.spin(node)
+        finally:
+            node.stop()
+
+
+if __name__ == "__main__":
+    main()

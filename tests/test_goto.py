@@ -1,0 +1,312 @@
+"""The node goto: the law that it drives by, and its action from the first goal to the last, in a simulated room."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robolink import Parameter
+from robolink.action import ActionClient
+from robolink.action.client import GoalStatus
+from robolink.interfaces.geometry_msgs.msg import PoseStamped, TransformStamped, Twist
+from robolink.interfaces.nav2_msgs.action import FollowPath, NavigateToPose
+from robolink.interfaces.nav_msgs.msg import Odometry
+from robolink.interfaces.tf2_msgs.msg import TFMessage
+from robolink.qos import DurabilityPolicy, QoSProfile
+from tests.driving import Drive, drive
+from tests.nodefiles import load_node_file
+
+goto = load_node_file("goto")
+Codes = FollowPath.Result
+
+DT = 0.02
+
+
+# The law
+
+
+def driven(start: Any, goal: Any, limits: Any, seconds: float = 120.0) -> tuple[Any, list[Any], list[Any]]:
+    """Drive by the law, each command a step late: what is left in the end, the poses and the commands."""
+    poses, commands, arrived = [start], [goto.Speeds(), goto.Speeds()], False
+    while len(poses) < seconds / DT:
+        left = goto.left_to(goal, poses[-1])
+        arrived = goto.has_arrived(left, limits, arrived)
+        if arrived and goto.is_reached(left, limits, goto.SETTLED):
+            break
+        commands.append(goto.decide(left, commands[-1], limits, math.inf, arrived, DT))
+        v, w = commands[-2]
+        x, y, theta = poses[-1]
+        middle = theta + w * DT / 2
+        poses.append(goto.Pose(x + v * DT * math.cos(middle), y + v * DT * math.sin(middle), theta + w * DT))
+    return left, poses, commands
+
+
+angles = st.floats(-math.pi, math.pi)
+
+
+@given(st.floats(0.0, 5.0), angles, angles, angles, st.sampled_from([0.0, 0.4, 1.0]))
+def test_it_comes_to_any_pose_within_the_tolerances_and_the_limits(
+    distance: float, bearing: float, start: float, end: float, swing: float
+) -> None:
+    limits = goto.Limits(swing=swing)
+    goal = goto.Pose(distance * math.cos(bearing), distance * math.sin(bearing), end)
+    left, poses, commands = driven(goto.Pose(0.0, 0.0, start), goal, limits)
+    assert left.distance <= limits.position_tolerance
+    assert abs(left.turn) <= limits.heading_tolerance
+    assert all(0.0 <= v <= limits.speed and abs(w) <= limits.turn_speed for v, w in commands)
+    changes = [(b.v - a.v, b.w - a.w) for a, b in itertools.pairwise(commands)]
+    assert max((abs(v) for v, _ in changes), default=0.0) <= limits.acceleration * DT + 1e-9
+    assert max((abs(w) for _, w in changes), default=0.0) <= limits.turn_acceleration * DT + 1e-9
+    aside = (math.cos(bearing) * pose.y - math.sin(bearing) * pose.x for pose in poses)
+    assert max(map(abs, aside)) <= swing + 0.15  # the arcs on which it turns to its direction are beside the line too
+
+
+def test_it_turns_on_the_spot_first_where_the_goal_is_behind() -> None:
+    _, poses, _ = driven(goto.Pose(0.0, 0.0, 0.0), goto.Pose(-2.0, 0.0, math.pi), goto.Limits())
+    before = [pose for pose in poses if abs(pose.theta) < 2.0]
+    assert max(math.hypot(*pose[:2]) for pose in before) == 0.0
+
+
+def test_it_swings_out_to_arrive_with_the_goals_heading() -> None:
+    _, poses, _ = driven(goto.Pose(0.0, 0.0, 0.0), goto.Pose(3.0, 0.0, math.pi / 2), goto.Limits())
+    assert min(pose.y for pose in poses) < -0.1
+    near = [pose for pose in poses if math.dist(pose[:2], (3.0, 0.0)) < 0.1]
+    assert near[0].theta > 0.5, "it comes with most of the turn behind it"
+
+
+@pytest.mark.parametrize(("room", "speed"), [(0.0, 0.0), (0.01, 0.11), (0.2, 0.4), (math.inf, 0.4)])
+def test_it_drives_so_slowly_that_it_can_stop_before_what_is_ahead(room: float, speed: float) -> None:
+    decided = goto.decide(goto.Left(3.0, 0.0, 0.0), goto.Speeds(0.4, 0.0), goto.Limits(), room, False, DT)
+    assert decided == pytest.approx((speed, 0.0), abs=0.005)
+
+
+def message(**fields: float) -> Any:
+    goal = PoseStamped()
+    for name, value in fields.items():
+        part = goal.pose.position if name in "xyz" else goal.pose.orientation
+        setattr(part, name[-1], value)
+    return goal
+
+
+FAULTS = {
+    "expected finite numbers": [{"x": math.nan}, {"y": math.inf}, {"qz": math.nan}, {"x": -1e9}],
+    "no quaternion": [{"qw": 0.0}],
+}
+
+
+@pytest.mark.parametrize(("words", "fields"), [(words, each) for words, some in FAULTS.items() for each in some])
+def test_nonsense_is_no_goal(words: str, fields: dict[str, float]) -> None:
+    assert words in goto.fault(message(**fields).pose)
+
+
+@given(angles, st.floats(0.1, 10.0))
+def test_a_quaternion_of_any_length_is_a_heading(theta: float, length: float) -> None:
+    pose = message(qz=length * math.sin(theta / 2), qw=length * math.cos(theta / 2)).pose
+    assert math.remainder(goto.pose_of(pose).theta - theta, math.tau) == pytest.approx(0.0, abs=1e-9)
+
+
+# The node
+
+
+class Client:
+    """Somebody who sends goals, and keeps the feedback."""
+
+    def __init__(self, system: Drive) -> None:
+        self.system, self.feedback = system, list[NavigateToPose.Feedback]()
+        self.client = ActionClient(system.probe, NavigateToPose, "navigate_to_pose")
+
+    def send(self, goal: PoseStamped) -> Any:
+        """Give the goal's handle, accepted or not."""
+        future = self.client.send_goal_async(
+            NavigateToPose.Goal(pose=goal), lambda told: self.feedback.append(told.feedback)
+        )
+        return self.system.result(future)
+
+    def end(self, handle: Any) -> tuple[int, NavigateToPose.Result]:
+        """Wait for the end of a goal: its status and its result."""
+        ended = self.system.result(handle.get_result_async())
+        return ended.status, ended.result
+
+
+@pytest.fixture
+def room() -> Iterator[Drive]:
+    """An empty room of 6 by 6 metres, a robot in its middle."""
+    with drive() as system:
+        system.add_world("empty_room")
+        yield system
+
+
+def is_at(system: Drive, x: float, y: float, theta: float) -> bool:
+    pose = system.robot.pose
+    return math.hypot(pose.x - x, pose.y - y) < 0.05 and abs(math.remainder(pose.theta - theta, math.tau)) < 0.1
+
+
+def test_goals_are_reached_one_after_the_other_with_feedback(room: Drive) -> None:
+    room.add(goto.Goto)
+    client = Client(room)
+    for x, y, theta in ((4.5, 4.0, 1.5), (4.5, 4.0, -1.5), (2.0, 3.0, 3.1)):
+        handle = client.send(message(x=x, y=y, qz=math.sin(theta / 2), qw=math.cos(theta / 2)))
+        assert client.end(handle) == (GoalStatus.STATUS_SUCCEEDED, NavigateToPose.Result())
+        room.run(0.5)
+        assert is_at(room, x, y, theta)
+        assert abs(room.robot.twist.v) + abs(room.robot.twist.w) < 1e-6
+    first, last = client.feedback[0], client.feedback[-1]
+    assert first.distance_remaining == pytest.approx(math.hypot(1.5, 1.0), abs=0.05)
+    assert first.current_pose.header.frame_id == "odom"
+    assert last.distance_remaining < 0.1
+    assert last.navigation_time.sec >= 5
+    assert first.estimated_time_remaining.sec > last.estimated_time_remaining.sec
+    assert room.said("reached the goal") == 3
+
+
+def test_a_cancelled_goal_stops_the_robot(room: Drive) -> None:
+    room.add(goto.Goto)
+    client = Client(room)
+    handle = client.send(message(x=5.0, y=3.0))
+    room.run(3.0)
+    assert room.robot.twist.v > 0.3
+    assert room.result(handle.cancel_goal_async()).goals_canceling
+    assert client.end(handle)[0] == GoalStatus.STATUS_CANCELED
+    room.run(1.0)
+    assert room.robot.twist.v == pytest.approx(0.0, abs=1e-6)
+    assert room.robot.pose.x < 4.5
+
+
+def test_a_new_goal_replaces_the_one_before_without_a_stop(room: Drive) -> None:
+    room.add(goto.Goto)
+    client = Client(room)
+    first = client.send(message(x=5.0, y=3.0))
+    room.run(3.0)
+    commands = room.hear(Twist, "cmd_vel")
+    second = client.send(message(x=5.4, y=3.1))
+    status, result = client.end(first)
+    assert (status, result.error_msg) == (GoalStatus.STATUS_ABORTED, "replaced by another goal")
+    room.run(0.5)
+    assert min(each.linear.x for each in commands) > 0.2
+    assert client.end(second)[0] == GoalStatus.STATUS_SUCCEEDED
+    assert is_at(room, 5.4, 3.1, 0.0)
+
+
+@pytest.mark.parametrize("fields", [{"x": math.nan}, {"qw": 0.0}])
+def test_a_refused_goal_says_why_and_leaves_the_present_one_alone(room: Drive, fields: dict[str, float]) -> None:
+    room.add(goto.Goto)
+    client = Client(room)
+    handle = client.send(message(x=4.0, y=3.0))
+    assert not client.send(message(**fields)).accepted
+    assert room.said("refused a goal: ") == 1
+    assert client.end(handle)[0] == GoalStatus.STATUS_SUCCEEDED
+
+
+def test_rviz_sends_goals_by_a_topic(room: Drive) -> None:
+    room.add(goto.Goto)
+    publisher = room.probe.create_publisher(PoseStamped, "goal_pose", 10)
+    publisher.publish(message(x=math.inf))
+    publisher.publish(message(x=4.0, y=3.0))
+    room.run(10.0)
+    assert (room.said("refused a goal"), room.said("reached the goal")) == (1, 1)
+    assert is_at(room, 4.0, 3.0, 0.0)
+
+
+def test_a_goal_of_another_frame_needs_a_transform(room: Drive) -> None:
+    room.add(goto.Goto)
+    client = Client(room)
+    goal = message(x=1.0, y=0.0)
+    goal.header.frame_id = "site"
+    room.run(0.1)
+    assert not client.send(goal).accepted
+    assert room.said("refused a goal: its frame 'site' is not known here") == 1
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    transform = TransformStamped(child_frame_id="site")  # it begins at (5, 4) in the room, turned by 90 degrees
+    transform.header.frame_id = "odom"
+    place, turn = transform.transform.translation, transform.transform.rotation
+    place.x, place.y, turn.z, turn.w = 5.0, 4.0, math.sqrt(0.5), math.sqrt(0.5)
+    room.probe.create_publisher(TFMessage, "/tf_static", latched).publish(TFMessage(transforms=[transform]))
+    room.run(0.1)
+    handle = client.send(goal)
+    assert handle.accepted
+    assert client.end(handle)[0] == GoalStatus.STATUS_SUCCEEDED
+    assert is_at(room, 5.0, 5.0, math.pi / 2)
+
+
+def test_without_odometry_it_gives_up(room: Drive) -> None:
+    node = room.add(goto.Goto, {"odom_timeout": 2.0})
+    client = Client(room)
+    handle = client.send(message(x=5.0, y=3.0))
+    room.run(3.0)
+    room.remove(next(each for each in room.executor.get_nodes() if each.get_name() == "world"))
+    status, result = client.end(handle)
+    assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, Codes.TF_ERROR)
+    assert result.error_msg.startswith("no odometry on /odom for 2.")
+    handle = client.send(message(x=5.0, y=3.0))
+    lost = room.probe.create_publisher(Odometry, "odom", 10)
+    for x in (math.nan, math.inf, 1e300):
+        odometry = Odometry()
+        odometry.pose.pose.position.x = x
+        lost.publish(odometry)
+    assert client.end(handle)[1].error_code == Codes.TF_ERROR
+    assert node.trip is None
+
+
+def test_odometry_may_bear_any_stamp(room: Drive) -> None:
+    node = room.add(goto.Goto)
+    client = Client(room)
+    client.send(message(x=5.0, y=3.0))
+    odom = room.probe.create_publisher(Odometry, "odom", 10)
+    for sec in (-5, 2**31 - 1, 0, -(2**31)):
+        odometry = Odometry()
+        odometry.header.stamp.sec = sec
+        odometry.pose.pose.position.x = -1e6
+        odom.publish(odometry)
+        room.run(0.02)
+        assert 0.0 <= node.speeds.v <= goto.Limits().speed
+
+
+WALL = """
+world: {name: wall, size: [6, 6]}
+obstacles: [{circle: 0.2, pose: [4.5, 3]}]
+robots: [{name: robot, pose: [3, 3, 0], sensors: [{lidar: scan}]}]
+"""
+
+
+def test_it_waits_before_an_obstacle_then_gives_up(tmp_path: Path) -> None:
+    path = tmp_path / "wall.yaml"
+    path.write_text(WALL)
+    with drive() as system:
+        system.add_world(path)
+        node = system.add(goto.Goto, {"progress_timeout": 3.0})
+        client = Client(system)
+        status, result = client.end(client.send(message(x=5.5, y=3.0)))
+        assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, Codes.FAILED_TO_MAKE_PROGRESS)
+        assert result.error_msg.endswith("from the goal: something is in the way")
+        assert system.robot.contacts == 0
+        assert 3.85 < system.robot.pose.x < 4.0
+        node.set_parameters([Parameter("obstacle_stop", value=False)])
+        status, result = client.end(client.send(message(x=5.5, y=3.0)))
+        assert result.error_msg.endswith("from the goal: the robot does not move")
+        assert system.robot.contacts > 0
+
+
+def test_what_is_beyond_the_goal_is_not_in_the_way(room: Drive) -> None:
+    room.add(goto.Goto)
+    client = Client(room)
+    assert client.end(client.send(message(x=5.7, y=3.0)))[0] == GoalStatus.STATUS_SUCCEEDED
+    assert room.robot.contacts == 0
+
+
+def test_the_speed_can_be_changed_on_the_way_and_has_a_range(room: Drive) -> None:
+    node = room.add(goto.Goto)
+    client = Client(room)
+    client.send(message(x=5.0, y=3.0))
+    room.run(2.0)
+    assert not node.set_parameters([Parameter("speed", value=-1.0)])[0].successful
+    assert node.set_parameters([Parameter("speed", value=0.1)])[0].successful
+    room.run(1.0)
+    assert room.robot.twist.v == pytest.approx(0.1)
+    assert all(each.description for each in node.describe_parameters(list(goto.PARAMETERS)))
