@@ -1,0 +1,67 @@
+"""robolink plot: draw where robots go, and values over time. Here is what is asked; each job's own file does it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from robolink.cli.options import seconds
+
+app = typer.Typer(no_args_is_help=True, help="Draw where robots go, and values over time (needs matplotlib).")
+
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", "-o", metavar="FILE", help="Write a .png, .svg or .pdf instead of opening a window."),
+]
+Duration = Annotated[
+    float | None, seconds("--duration", "Draw after so many seconds of listening; without it, after Ctrl-C.")
+]
+World = Annotated[
+    str,
+    typer.Option(
+        "--world", metavar="NAME", help="Draw over this world; by default the one that is simulated; 'none' for none."
+    ),
+]
+
+
+@app.command("odom")
+def plot_odometry(
+    topics: Annotated[list[str], typer.Argument(metavar="TOPIC...", help="Such as /odom /ground_truth.")],
+    out: Out = None,
+    duration: Duration = None,
+    world: World = "",
+) -> None:
+    """Draw the way of whatever messages say where something is: Odometry, PoseStamped and the like."""
+    from robolink.cli.plot import record, ways
+
+    ways.run(topics, ways.POSES, world, record.Wish(out, duration))
+
+
+@app.command("path")
+def plot_path(
+    topics: Annotated[list[str], typer.Argument(metavar="TOPIC...", help="Of nav_msgs/msg/Path, such as /plan.")],
+    out: Out = None,
+    duration: Duration = None,
+    world: World = "",
+) -> None:
+    """Draw the paths that were published last, over the world."""
+    from robolink.cli.plot import record, ways
+
+    ways.run(topics, ways.PATHS, world, record.Wish(out, duration))
+
+
+@app.command("topic")
+def plot_topic(
+    fields: Annotated[
+        list[str],
+        typer.Argument(metavar="TOPIC.FIELD...", help="Such as /odom.twist.twist.linear.x or /cmd_vel/linear/x."),
+    ],
+    out: Out = None,
+    duration: Duration = None,
+) -> None:
+    """Draw values over time."""
+    from robolink.cli.plot import record, values
+
+    values.run(fields, record.Wish(out, duration))

@@ -1,0 +1,115 @@
+"""What all plots share: listen to topics for a while, and turn what was heard into a picture."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robolink.cli.session import tell
+from robolink.cli.topic.echo import matching_qos
+from robolink.cli.types import message_type
+from robolink.exceptions import RobolinkError
+from robolink.executors import SingleThreadedExecutor
+from robolink.task import Future
+from robolink.wire import EndpointKind
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from robolink.context import Context
+    from robolink.node import Node
+
+WINDOW_NEEDED = "there is no screen to open a window on: give --out FILE.png"
+FORMATS = (".png", ".svg", ".pdf")
+DOTS_PER_INCH = 150
+TOLD_AFTER = 2.0
+"""Seconds until it is said that a topic is waited for."""
+
+
+class PlotError(RobolinkError, ValueError):
+    """Something that cannot be drawn."""
+
+
+class Wish(NamedTuple):
+    """Where the picture goes (None: into a window), and how many seconds to listen (None: until Ctrl-C)."""
+
+    out: Path | None = None
+    duration: float | None = None
+
+
+def check(wish: Wish) -> None:
+    """Raise `PlotError` before any listening when the picture could not be made in the end."""
+    if wish.out is not None:
+        if wish.out.suffix.lower() not in FORMATS:
+            raise PlotError(f"'{wish.out}' is no picture: its name must end in {', '.join(FORMATS)}")
+        if not wish.out.absolute().parent.is_dir():
+            raise PlotError(f"no folder '{wish.out.absolute().parent}' to write '{wish.out.name}' to")
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError:
+        raise PlotError("plots need matplotlib: pip install 'robolink[plot]'") from None
+    if wish.out is None and plt.get_backend().lower() == "agg":
+        raise PlotError(WINDOW_NEEDED)
+
+
+def wait_for(context: Context, topic: str, deadline: float | None) -> type[Any]:
+    """Wait until somebody publishes a topic, named in full, and give its message class.
+
+    Raises `PlotError` when nobody does until `deadline` (of `time.monotonic`), and KeyboardInterrupt.
+    """
+    graph, begin, told = context.graph, time.monotonic(), False
+
+    def published() -> bool:
+        return bool(graph.endpoints(EndpointKind.PUBLISHER, name=topic)) or not context.ok()
+
+    while not published():
+        left = None if deadline is None else deadline - time.monotonic()
+        if left is not None and left <= 0:
+            raise PlotError(f"nobody publishes {topic}: see `robolink topic list`")
+        graph.wait_for(published, min(0.5, left) if left is not None else 0.5)
+        if not told and time.monotonic() - begin > TOLD_AFTER:
+            tell(f"waiting for somebody to publish {topic}")
+            told = True
+    if not context.ok():
+        raise KeyboardInterrupt
+    return message_type(context, topic)
+
+
+def listen(node: Node, topics: Mapping[str, tuple[type[Any], Callable[[Any], object]]], duration: float | None) -> int:
+    """Call each topic's function with its messages until `duration` has passed or Ctrl-C; how many there were."""
+    heard = 0
+
+    def taking(take: Callable[[Any], object]) -> Callable[[Any], None]:
+        def on_message(message: Any) -> None:
+            nonlocal heard
+            heard += 1
+            take(message)
+
+        return on_message
+
+    for name, (msg_type, take) in topics.items():
+        node.create_subscription(msg_type, name, taking(take), matching_qos(node.context, name))
+    tell(f"listening to {', '.join(topics)}" + ("; Ctrl-C draws" if duration is None else f" for {duration:g} s"))
+    with SingleThreadedExecutor(context=node.context) as executor:
+        executor.add_node(node)
+        try:
+            executor.spin_until_future_complete(Future[None](), timeout_sec=duration)
+        except KeyboardInterrupt:
+            tell("")
+    return heard
+
+
+def show(figure: Figure, wish: Wish) -> None:
+    """Write the picture to its file, or show it in a window until that is closed."""
+    if wish.out is not None:
+        try:
+            figure.savefig(wish.out, dpi=DOTS_PER_INCH, bbox_inches="tight")
+        except OSError as error:
+            raise PlotError(f"{wish.out}: cannot be written: {error.strerror or error}") from None
+        tell(f"wrote {wish.out}")
+        return
+    import matplotlib.pyplot as plt
+
+    plt.show()

@@ -1,0 +1,128 @@
+"""What `robolink plot topic` does: draw fields of messages over time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from robolink.cli import show as fields
+from robolink.cli.plot.record import PlotError, Wish, check, listen, show, wait_for
+from robolink.cli.session import node_of, opened
+from robolink.wire import EndpointKind
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+    from robolink.node import Node
+
+LEAST_WAIT = 5.0
+"""Seconds that somebody has at least to begin to publish."""
+
+NUMBERS = ("float", "int", "uint", "double", "bool", "byte", "char", "octet")
+
+
+class Curve:
+    """The values of one field, each with the seconds at which it came and, where messages have stamps, was stamped."""
+
+    def __init__(self, topic: str, field: str) -> None:
+        self.topic, self.field = topic, field
+        self.values: list[float] = []
+        self.arrived: list[float] = []
+        self.stamped: list[float] = []
+
+    @property
+    def name(self) -> str:
+        """How the curve is called: as it was asked for."""
+        return f"{self.topic}.{self.field}"
+
+    def take(self, message: Any) -> None:
+        """Add a message's value."""
+        self.values.append(float(fields.field_of(message, self.field)))
+        self.arrived.append(time.monotonic())
+        stamp = getattr(getattr(message, "header", None), "stamp", None)
+        if stamp is not None and (stamp.sec or stamp.nanosec):
+            self.stamped.append(stamp.sec + stamp.nanosec * 1e-9)
+
+
+def run(asked: list[str], wish: Wish) -> None:
+    """Listen, and draw the values."""
+    check(wish)
+    with opened() as context:
+        node = node_of(context)
+        deadline = None if wish.duration is None else time.monotonic() + max(wish.duration, LEAST_WAIT)
+        curves = [Curve(*_parted(node, each, deadline)) for each in dict.fromkeys(asked)]
+        types = {curve.topic: wait_for(context, curve.topic, deadline) for curve in curves}
+        for curve in curves:
+            _check_number(types[curve.topic], curve)
+        listen(node, {topic: (types[topic], _all_of(topic, curves)) for topic in types}, wish.duration)
+    if not any(curve.values for curve in curves):
+        raise PlotError(f"nothing was heard on {', '.join(types)}")
+    _draw([curve for curve in curves if curve.values], wish)
+
+
+def _all_of(topic: str, curves: Iterable[Curve]) -> Callable[[Any], None]:
+    own = [curve for curve in curves if curve.topic == topic]
+
+    def take(message: Any) -> None:
+        for curve in own:
+            curve.take(message)
+
+    return take
+
+
+def _parted(node: Node, asked: str, deadline: float | None) -> tuple[str, str]:
+    """Part `/odom.pose.x` or `/odom/pose/x` into topic and field: the topic is the longest name that is published."""
+    if "." in asked:
+        topic, _, field = asked.partition(".")
+        return node.resolve_topic_name(topic), field
+    parts = node.resolve_topic_name(asked.split("[")[0]).strip("/").split("/")
+    rest = asked[asked.index("[") :] if "[" in asked else ""
+    prefixes = ["/" + "/".join(parts[:count]) for count in range(len(parts) - 1, 0, -1)]
+
+    def published() -> str:
+        return next((each for each in prefixes if _is_published(node.context, each)), "")
+
+    while not published():
+        if not node.context.ok():
+            raise KeyboardInterrupt
+        if deadline is not None and time.monotonic() > deadline:
+            raise PlotError(f"'{asked}' names no field of a topic that is published: write TOPIC.FIELD, as in /odom.x")
+        node.context.graph.wait_for(lambda: bool(published()) or not node.context.ok(), 0.5)
+    topic = published()
+    return topic, ".".join(parts[topic.count("/") :]) + rest
+
+
+def _is_published(context: Context, topic: str) -> bool:
+    return bool(context.graph.endpoints(EndpointKind.PUBLISHER, name=topic))
+
+
+def _check_number(msg_type: type[Any], curve: Curve) -> None:
+    kind = fields.check_path(msg_type, curve.field)
+    if kind.message is not None or not kind.base.startswith(NUMBERS):
+        what = kind.message.__ros_type__ if kind.message is not None else kind.base
+        raise PlotError(f"{curve.name} is no number but {what}: name a field of it")
+
+
+def _times(curves: list[Curve]) -> list[list[float]]:
+    """Give the moments of each curve's values: as stamped if all messages were, so that simulated time counts."""
+    if all(len(curve.stamped) == len(curve.values) for curve in curves):
+        return [curve.stamped for curve in curves]
+    return [curve.arrived for curve in curves]
+
+
+def _draw(curves: list[Curve], wish: Wish) -> None:
+    import matplotlib.pyplot as plt
+
+    times = _times(curves)
+    start = min(map(min, times))
+    figure, axes = plt.subplots(figsize=(9, 4.5))
+    for curve, moments in zip(curves, times, strict=True):
+        axes.plot([each - start for each in moments], curve.values, linewidth=1.4, label=curve.name)
+    axes.set_xlabel("time (s)")
+    axes.grid(alpha=0.3)
+    if len(curves) > 1:
+        axes.legend(frameon=False)
+    else:
+        axes.set_ylabel(curves[0].name)
+    show(figure, wish)
+    plt.close(figure)
