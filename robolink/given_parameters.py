@@ -25,21 +25,22 @@ class GivenParameters:
 
     When nodes begin to spin, only a name is told of that is nearly that of a parameter which was declared and not
     given: another may still be declared, as by a lifecycle node when it is configured. The rest follows at the end.
+
+    Nodes that share a process may each have a command line of its own: what one is given is none of the others'.
     """
 
     def __init__(self) -> None:
-        self._open: dict[tuple[str, str], tuple[Override, str]] = {}
-        self._seen: set[tuple[str, str]] = set()
+        self._open: dict[int, tuple[Override, str]] = {}
+        self._seen: dict[int, Override] = {}
         self._declared: set[str] = set()
 
     def expect(self, node: Node, overrides: Iterable[Override]) -> None:
         """Note what is given to a new node."""
         full_name = node.get_fully_qualified_name()
-        for each in overrides:
-            key = (each.pattern, each.name)
-            if key not in self._seen and each.is_meant_for(full_name):
-                self._seen.add(key)
-                self._open[key] = each, node.get_logger().name
+        for each in {(each.pattern, each.name): each for each in overrides}.values():
+            if id(each) not in self._seen and each.is_meant_for(full_name):
+                self._seen[id(each)] = each
+                self._open[id(each)] = each, node.get_logger().name
 
     def look(self, node: Node) -> None:
         """Note what a node has declared by now; at its end, at the latest."""
@@ -47,9 +48,9 @@ class GivenParameters:
             return
         full_name, declared = node.get_fully_qualified_name(), node._declared_so_far_
         self._declared |= declared
-        for key, (each, _) in list(self._open.items()):
+        for each in node._arguments_.parameter_overrides:
             if each.name in declared and each.is_for(full_name):
-                del self._open[key]
+                self._open.pop(id(each), None)
 
     def warn_of_typos(self, nodes: Iterable[Node]) -> None:
         """Warn, once, of names that are nearly those of parameters that the nodes have."""
@@ -59,7 +60,7 @@ class GivenParameters:
 
         for node in nodes:
             self.look(node)
-        names = self._declared - {name for _, name in self._seen}
+        names = self._declared - {each.name for each in self._seen.values()}
         for key, (each, logger) in list(self._open.items()):
             near = difflib.get_close_matches(each.name, names, n=1, cutoff=ALIKE)
             if near:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import sys
 from pathlib import Path
@@ -13,17 +14,26 @@ from hypothesis import strategies as st
 
 from robolink.arguments import parse_arguments
 from robolink.exceptions import DocumentError
-from robolink.launch import plan, read_launch_file
+from robolink.launch import plan, read_launch_file, together
+from robolink.launch.substitution import SubstitutionError, filled
 from robolink.supervisor import Process
 from robolink.workspace import VARIABLE, built_in_workspace
 from robolink.yamlfile import DocumentNotFoundError, spell
+
+FILES = {
+    "mine": "from robolink import Node\nclass Mine(Node): pass\n",
+    "script": "import rclpy\nrclpy.init()\n",
+    "program": "class One: pass\nclass Two: pass\ndef start(): pass\ndef main(): pass\n",
+    "broken": "class",
+}
 
 
 @pytest.fixture
 def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "nodes").mkdir()
     (tmp_path / "configs").mkdir()
-    (tmp_path / "nodes" / "mine.py").write_text("from robolink import Node\nclass Mine(Node): pass\n")
+    for name, text in FILES.items():
+        (tmp_path / "nodes" / f"{name}.py").write_text(text)
     monkeypatch.delenv(VARIABLE, raising=False)
     monkeypatch.chdir(tmp_path)
     return tmp_path.resolve()
@@ -68,6 +78,81 @@ nodes:
         "on": "yes",
         "names": ["a", "b"],
     }
+
+
+def test_copies_are_numbered_in_all_that_is_said_of_them(home: Path) -> None:
+    processes = planned(
+        home,
+        """
+nodes:
+- node: mine
+  count: 3
+  name: n{i}
+  namespace: /r{i}
+  parameters: {id: "{i}", label: "no {i} of {{i}}", deep: {ids: ["{i}", 7], "j{i}": 1.5}, on: true}
+  remappings: {"/r{i}/scan": "/lidar_{i}"}
+  args: ["{i}", "--name=a{i}", 2.5]
+- node: mine
+  args: ["{i}"]
+""",
+    )
+    assert [each.name for each in processes] == ["r0/n0", "r1/n1", "r2/n2", "mine"]
+    assert processes[3].argv[5:] == ["--", "{i}", "--ros-args"]
+    second = processes[1]
+    assert second.argv[5:9] == ["--", "1", "--name=a1", "2.5"]
+    arguments = parse_arguments(list(second.argv))
+    assert arguments.node_name("mine") == "n1"
+    assert arguments.namespace("/", "n1") == "/r1"
+    assert arguments.remap_topic("/r1/scan", "n1", "/r1") == "/lidar_1"
+    assert arguments.overrides_for("/r1/n1") == {
+        "id": 1,
+        "label": "no 1 of {i}",
+        "deep.ids": [1, 7],
+        "deep.j1": 1.5,
+        "on": True,
+    }
+
+
+def test_one_copy_is_a_copy_too(home: Path) -> None:
+    [process] = planned(home, "nodes: [{node: mine, count: 1, name: 'a{i}', interactive: true}]")
+    assert (process.name, process.interactive) == ("a0", True)
+
+
+def test_nodes_that_name_a_process_share_it(home: Path) -> None:
+    world, shared, other, single = planned(
+        home,
+        """
+nodes:
+- node: world
+- {node: mine, count: 2, namespace: "r{i}", process: both, args: [a]}
+- {node: mine, process: "other{i}", count: 1}
+- {node: mine:Mine, name: last, process: both, parameters: {x: 1}, remappings: {a: b}}
+- {node: mine, name: world2}
+""",
+    )
+    assert [each.name for each in (world, shared, other, single)] == ["world", "both", "other0", "world2"]
+    assert shared.argv == [sys.executable, "-m", "robolink", "run-together"]
+    assert shared.env == {VARIABLE: str(home)}
+    file = str(home / "nodes" / "mine.py")
+    assert together.read(shared.input) == [
+        together.Member("r0/mine", file, ["a", "--ros-args", "-r", "__ns:=/r0"]),
+        together.Member("r1/mine", file, ["a", "--ros-args", "-r", "__ns:=/r1"]),
+        together.Member("last", f"{file}:Mine", ["--ros-args", "-r", "__node:=last", "-p", "x:=1", "-r", "a:=b"]),
+    ]
+    assert together.read(other.input) == [together.Member("mine", file, ["--ros-args"])]
+    assert world.input == single.input == b""
+
+
+@given(st.text(st.characters(exclude_categories=["Cs"])))
+def test_any_text_is_filled_or_refused(text: str) -> None:
+    doubled = text.replace("{", "{{").replace("}", "}}")
+    assert filled([doubled], {"i": 3}, []) == [text]
+    assert filled({doubled: "{i}"}, {"i": 3}, []) == {text: 3}
+    if not {*"{}"} & {*text}:
+        assert filled(text, {"i": 3}, []) == text
+    elif "{i}" not in text:
+        with contextlib.suppress(SubstitutionError):
+            assert filled(text, {"i": 3}, []) != text
 
 
 scalars: list[Any] = [
@@ -185,6 +270,73 @@ BAD = [
         "nodes:\n- {node: mine, interactive: true}\n- {node: world, interactive: true}",
         "3:30: nodes[1].interactive: there is one keyboard, and another node has it",
     ),
+    ("nodes:\n- {node: mine, count: 0}", "2:23: nodes[0].count: expected int >= 1, got '0'"),
+    ("nodes:\n- {node: mine, count: 10001}", "2:23: nodes[0].count: expected int <= 10000, got '10001'"),
+    ("nodes:\n- {node: mine, count: two}", "2:23: nodes[0].count: expected int, got 'two'"),
+    (
+        "nodes:\n- {node: mine, count: 2}",
+        "2:23: nodes[0].count: two of the copies are called 'mine': put {{i}} into `name` or `namespace`",
+    ),
+    (
+        "nodes:\n- {node: mine, count: 12, name: 'a{i}', namespace: r}\n- {node: mine, name: a11, namespace: /r}",
+        "3:22: nodes[1].name: two nodes are called 'r/a11': give",
+    ),
+    (
+        "nodes:\n- {node: mine, count: 2, name: 'a{i}', args: [x, 'b{j}']}",
+        "2:50: nodes[0].args[1]: nothing is called '{{j}}' here, only {{i}}; '{{{{' and '}}}}' are braces",
+    ),
+    (
+        "nodes:\n- {node: mine, count: 2, name: 'a{i}', parameters: {b: {c: ['{']}}}",
+        "2:61: nodes[0].parameters.b.c[0]: a lone '{{': write '{{{{' for one",
+    ),
+    (
+        "nodes:\n- {node: mine, count: 2, name: 'a{i}', parameters: {'{i}': 1, '1': 2}}",
+        "2:63: nodes[0].parameters.1: another key is '1', too",
+    ),
+    (
+        "nodes:\n- {node: mine, count: 2, name: 'a{i}', remappings: {'{i}b': c}}",
+        "2:53: nodes[0].remappings.{{i}}b: topic name '0b' must not start with",
+    ),
+    (
+        "nodes:\n- {node: mine, count: 2, name: 'a{i}', parameters: {'x {i}': c}}",
+        "2:53: nodes[0].parameters.x {{i}}: 'x 0' is no name for a parameter",
+    ),
+    (
+        "nodes:\n- {node: mine, count: 2, name: '{i}'}",
+        "2:32: nodes[0].name: '0' must not start with",
+    ),
+    (
+        "nodes:\n- {node: mine, count: 2, name: 'a{i}', interactive: true}",
+        "2:53: nodes[0].interactive: there is one keyboard, and another node has it",
+    ),
+    (
+        "nodes:\n- {node: mine, process: a b}",
+        "2:25: nodes[0].process: 'a b' must not contain characters other than",
+    ),
+    (
+        "nodes:\n- {node: mine, process: p, interactive: true}",
+        "2:41: nodes[0].interactive: a node with the keyboard cannot share a process: leave `process` out",
+    ),
+    (
+        "nodes:\n- {node: mine, process: world}\n- {node: world}",
+        "2:25: nodes[0].process: 'world' is what a node is called that has its own process: give another name",
+    ),
+    (
+        "nodes:\n- {node: script, process: p}",
+        "2:10: nodes[0].node: script.py is run by a script, which needs a process of its own: leave `process` out",
+    ),
+    (
+        "nodes:\n- {node: program, process: p}",
+        "2:10: nodes[0].node: program.py is run by a main(), which needs a process of its own: name its class, program",
+    ),
+    (
+        "nodes:\n- {node: 'program:start', process: p}",
+        "2:10: nodes[0].node: program.py is run by a function (start), which needs a process of its own: name its",
+    ),
+    (
+        "nodes:\n- {node: broken, process: p}",
+        "2:10: nodes[0].node: {home}/nodes/broken.py:1:",
+    ),
     ("nodes: *a", "1:8: found undefined alias 'a'"),
     ("nodes:\n\t- node: a", "2:1: a tab where only spaces may stand"),
 ]
@@ -209,7 +361,9 @@ def test_a_missing_launch_file_is_one_line(home: Path) -> None:
         lambda inside: (
             st.lists(inside)
             | st.dictionaries(
-                st.sampled_from(["nodes", "node", "name", "parameters", "remappings", "args"]) | st.text(), inside
+                st.sampled_from(["nodes", "node", "name", "parameters", "remappings", "args", "count", "process"])
+                | st.text(),
+                inside,
             )
         ),
     )

@@ -25,13 +25,14 @@ class Entry(NamedTuple):
 
     @property
     def hidden(self) -> bool:
-        """Whether it is an alias, which help does not list."""
+        """Whether help does not list it: an alias, or what one command asks of another process."""
         return not self.help
 
 
 COMMANDS = {
     "run": Entry("robolink.cli.run", "Run a node."),
     "launch": Entry("robolink.cli.launch", "Run a system of nodes that a file describes."),
+    "run-together": Entry("robolink.cli.together", ""),
     "pub": Entry("robolink.cli.topic", "Publish messages: short for topic pub.", "pub"),
     "topic": Entry("robolink.cli.topic", "See and send what nodes publish."),
     "node": Entry("robolink.cli.node", "See which nodes there are, and what each of them does."),
@@ -40,6 +41,8 @@ COMMANDS = {
     "lifecycle": Entry("robolink.cli.lifecycle", "See in which states managed nodes are, and move them on."),
     "action": Entry("robolink.cli.action", "See which actions there are, and send goals."),
     "tf": Entry("robolink.cli.tf", "See where frames are in each other."),
+    "plot": Entry("robolink.cli.plot", "Draw where robots go, and values over time."),
+    "world": Entry("robolink.cli.world", "Check, draw and list the worlds that are simulated."),
     "interface": Entry("robolink.cli.interface", "See the types of messages, services and actions."),
     "doctor": Entry("robolink.cli.doctor", "Find out what is wrong here or on the network."),
     "wtf": Entry("robolink.cli.doctor", ""),

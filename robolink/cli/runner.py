@@ -67,16 +67,26 @@ def run(asked: Asked, ros_args: list[str], workspace: str | None) -> int:
     when it lets the interrupt pass, it is 130 or 143, as shells count. An exception in the user's code is shown
     with its traceback, from the user's code on, and gives 1.
     """
+    terminated = prepare()
+    source, args = found(asked, workspace)
+    settle(source, workspace)
+    take_names()
+    sys.argv = [str(source.path or source.name), *args, *ros_args]
+    return outcome(lambda: _start(source), terminated)
+
+
+def prepare() -> list[int]:
+    """See to it that this process ends with its launcher, and on SIGTERM; give a list that notes a SIGTERM."""
     if sys.platform == "win32":
         signal.signal(signal.SIGBREAK, signal.default_int_handler)  # what a launcher sends there
     watch_lifeline()
-    terminated = _note_termination()
-    source, args = found(asked, workspace)
-    _settle(source, workspace)
-    _take_names()
-    sys.argv = [str(source.path or source.name), *args, *ros_args]
+    return _note_termination()
+
+
+def outcome(act: Callable[[], Any], terminated: list[int]) -> int:
+    """Run the user's code; give the exit code, as `run` says, having told of what went wrong."""
     try:
-        return _exit_code(lambda: _start(source))
+        return _exit_code(act)
     except (KeyboardInterrupt, ExternalShutdownException, ROSInterruptException):
         return TERMINATED if terminated else INTERRUPTED
     except LackingNameError as error:
@@ -127,16 +137,22 @@ def spin(node_class: Callable[[], Node]) -> None:
     """Run a Node class until its context ends."""
     import robolink
 
-    _check_needs_nothing(node_class)
     with robolink.init(), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
-        node = node_class()
-        if not hasattr(node, "_owner_"):
-            name = type(node).__name__
-            raise NodeLoadError(f"{name}.__init__ must call super().__init__('{name.lower()}') before all else")
+        node = made(node_class)
         try:
             robolink.spin(node)
         finally:
             node.destroy_node()
+
+
+def made(node_class: Callable[[], Node]) -> Node:
+    """Make a node. Raises NodeLoadError for a class that needs arguments, or does not make its base."""
+    _check_needs_nothing(node_class)
+    node = node_class()
+    if not hasattr(node, "_owner_"):
+        name = type(node).__name__
+        raise NodeLoadError(f"{name}.__init__ must call super().__init__('{name.lower()}') before all else")
+    return node
 
 
 def _check_needs_nothing(found: Callable[[], Any]) -> None:
@@ -158,7 +174,7 @@ def _check_needs_nothing(found: Callable[[], Any]) -> None:
         raise NodeLoadError(f"{name} needs {listed}: give a default value{otherwise}")
 
 
-def _take_names() -> None:
+def take_names() -> None:
     """Make rclpy and its companions robolink's, for what is run."""
     from robolink import compat  # late: its import takes names already
 
@@ -200,7 +216,7 @@ def _exit_code(act: Callable[[], Any]) -> int:
     return 1
 
 
-def _settle(source: NodeSource, workspace: str | None) -> None:
+def settle(source: NodeSource, workspace: str | None) -> None:
     """Let what the node looks up by name be found in the same workspace as the node."""
     home = user_workspace(workspace)
     if home is None and source.path is not None:

@@ -6,8 +6,10 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import IO, Any
 
@@ -30,7 +32,7 @@ class ProcessStartError(RobolinkError, OSError):
 class Process:
     """What to run: a command, under a name; `env` is added to our own environment.
 
-    An `interactive` process reads our standard input, the others read nothing.
+    An `interactive` process reads our standard input, the others what `input` holds.
     """
 
     name: str
@@ -38,6 +40,7 @@ class Process:
     env: Mapping[str, str] = field(default_factory=dict)
     cwd: str | os.PathLike[str] | None = None
     interactive: bool = False
+    input: bytes = b""
 
 
 class Child:
@@ -46,16 +49,17 @@ class Child:
     def __init__(self, process: Process, lifeline: Lifeline) -> None:
         variables, options = lifeline.options()
         try:
-            self._popen = subprocess.Popen(
-                list(process.argv),
-                env={**os.environ, "PYTHONUNBUFFERED": "1", **process.env, **variables},
-                cwd=process.cwd,
-                stdin=None if process.interactive else subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                **options,
-                **_own_group(),
-            )
+            with _standard_input(process) as stdin:
+                self._popen = subprocess.Popen(
+                    list(process.argv),
+                    env={**os.environ, "PYTHONUNBUFFERED": "1", **process.env, **variables},
+                    cwd=process.cwd,
+                    stdin=stdin,
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.STDOUT,
+                    **options,
+                    **_own_group(),
+                )
         except (OSError, ValueError) as error:
             raise ProcessStartError(f"cannot start {process.name} ({process.argv[0]}): {error}") from None
         self.name = process.name
@@ -101,6 +105,18 @@ class Child:
         returncode = self._popen.wait()
         reader.join(_LAST_WORDS)
         on_exit(self.name, returncode)
+
+
+@contextmanager
+def _standard_input(process: Process) -> Iterator[IO[bytes] | int | None]:
+    """Give what a process reads: a file without a name rather than a pipe, for which somebody would have to wait."""
+    if not process.input:
+        yield None if process.interactive else subprocess.DEVNULL
+        return
+    with tempfile.TemporaryFile() as file:
+        file.write(process.input)
+        file.seek(0)
+        yield file
 
 
 def _own_group() -> dict[str, Any]:

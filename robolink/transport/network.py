@@ -100,7 +100,10 @@ _BASE: dict[str, Any] = {
     "transport": {
         "link": {
             "protocols": ["tcp", "tls", "quic", "ws"],
-            "tx": {"lease": 5000},
+            # What finds no room for 50 ms is dropped, as Zenoh has it for what is larger than a batch, not for 1 ms: a
+            # busy machine lets no thread run that fast, and a burst of a hundred scans lost a tenth of them. A peer
+            # that is frozen holds up one message, the next are dropped at once.
+            "tx": {"lease": 5000, "queue": {"congestion_control": {"drop": {"wait_before_drop": 50_000}}}},
             "rx": {"max_message_size": 64 * 1024 * 1024},
         },
         "shared_memory": {"enabled": True},

@@ -1,0 +1,85 @@
+"""Several nodes in one process: one session and one executor, but each node with arguments of its own.
+
+What is not theirs alone is what Python keeps once a process: modules (two nodes of one file share what stands outside
+of their class), the working directory, and the environment.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from robolink.cli import runner
+from robolink.exceptions import ExternalShutdownException, RobolinkError
+from robolink.launch.together import Member
+from robolink.workspace import NodeLoadError, NodeSource, find_node, load_node
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+    from robolink.node import Node
+
+
+def run(members: Sequence[Member]) -> int:
+    """Run nodes until their context ends; give the exit code, which is that of `robolink run`.
+
+    They end together: with the first callback that raises, with `shutdown`, Ctrl-C or SIGTERM.
+    """
+    terminated = runner.prepare()
+    sources = [find_node(each.node) for each in members]
+    if sources:
+        runner.settle(sources[0], None)
+    runner.take_names()
+    return runner.outcome(lambda: _spin(members, sources), terminated)
+
+
+def _spin(members: Sequence[Member], sources: Sequence[NodeSource]) -> None:
+    import robolink
+    from robolink.arguments import Arguments
+
+    with (
+        robolink.init(args=[]) as begun,
+        contextlib.suppress(KeyboardInterrupt, ExternalShutdownException),
+        contextlib.ExitStack() as stack,
+    ):
+        executor = robolink.get_global_executor()  # what a node gets that spins itself
+        for member, source in zip(members, sources, strict=True):
+            node = make(member, source, begun.context)
+            stack.callback(node.destroy_node)
+            executor.add_node(node)
+        # Which node would make another one later, in a callback, cannot be told: that one gets no arguments.
+        begun.context.arguments, sys.argv = Arguments(), sys.argv[:1]
+        executor.spin()
+
+
+def make(member: Member, source: NodeSource, context: Context) -> Node:
+    """Make a node with the command line that it would have alone.
+
+    Raises NodeLoadError that begins with the node's name for what robolink refuses, and what the user's code raises,
+    after a line on stderr with that name.
+    """
+    from robolink.arguments import parse_arguments
+    from robolink.logging import set_logger_level
+
+    sys.argv = [str(source.path or source.name), *member.args]
+    try:
+        context.arguments = parse_arguments(sys.argv)
+        node = runner.made(_node_class(source))
+    except ExternalShutdownException:
+        raise
+    except RobolinkError as error:
+        raise NodeLoadError(f"{member.name}: {error}").with_traceback(error.__traceback__) from None
+    except Exception:
+        print(f"robolink: {member.name} raised while it was made:", file=sys.stderr)  # noqa: T201
+        raise
+    for name, level in context.arguments.log_levels:
+        set_logger_level(name or node.get_logger().name, level)
+    return node
+
+
+def _node_class(source: NodeSource) -> type[Node]:
+    found = load_node(source)
+    if not isinstance(found, type):
+        raise NodeLoadError(f"{source.spec} is no Node class, and needs a process of its own: leave `process` out")
+    return found
