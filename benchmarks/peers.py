@@ -134,7 +134,7 @@ def irsim_world(segments: Array, robots: Sequence[Place], beams: int, reach: flo
 
 
 def pyrobosim_scanner(segments: Array, beams: int, reach: float) -> Scan:
-    """pyrobosim's own lidar; walls are cut out of its free space as strips."""
+    """The lidar of pyrobosim itself; walls are cut out of its free space as strips."""
     lidar_module: Any = importlib.import_module("pyrobosim.sensors.lidar")
     pose_module: Any = importlib.import_module("pyrobosim.utils.pose")
     shapely: Any = importlib.import_module("shapely")

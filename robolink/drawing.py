@@ -40,6 +40,9 @@ KINDS = {"fixed": "#A8A8A8", "can be pushed": "#E69F00", "moves by itself": "#56
 _INCH = 100.0
 """Pixels of a picture to an inch."""
 
+_NARROWEST = 2.5
+"""Inches that a picture has at least in both directions."""
+
 _NAMED = 30
 """Of so many robots, the names are written beside them."""
 
@@ -125,19 +128,21 @@ def _draw_obstacle(axes: Axes, obstacle: Obstacle) -> None:
 
 
 def _draw_robot(axes: Axes, robot: RobotDescription, *, named: bool) -> None:
-    reach = robot.shape.outer_radius()
     for sensor in robot.sensors:
         if isinstance(sensor, Lidar | RangeFinder | Bumper):
             _draw_view(axes, robot, sensor)
     style = {"facecolor": ROBOT, "edgecolor": WALL, "linewidth": 0.8, "zorder": 6}
-    axes.add_patch(_outline(robot.shape, robot.pose, style))
+    outline = _outline(robot.shape, robot.pose, style)
+    axes.add_patch(outline)
     for wheel in robot.wheels:
         tyre = Shape(box=(2 * wheel.radius, max(wheel.radius / 2, 0.005)))
-        axes.add_patch(_outline(tyre, _on(robot.pose, wheel.at), {"facecolor": WALL, "zorder": 7}))
-    nose = _on(robot.pose, Pose(reach, 0.0))
+        axes.add_patch(_outline(tyre, placed_on(robot.pose, wheel.at), {"facecolor": WALL, "zorder": 7}))
+    front = robot.shape.circle or max(x for x, _ in robot.shape.corners())
+    nose = placed_on(robot.pose, Pose(front, 0.0))
     axes.plot([robot.pose.x, nose.x], [robot.pose.y, nose.y], color="white", linewidth=1.6, zorder=8)
     if named:
-        place = (robot.pose.x, robot.pose.y - reach)
+        box = outline.get_path().transformed(outline.get_patch_transform()).get_extents()
+        place = ((box.x0 + box.x1) / 2, box.y0)
         axes.annotate(robot.name, place, (0, -3), textcoords="offset points", ha="center", va="top", zorder=9, size=8)
 
 
@@ -147,12 +152,12 @@ def _draw_view(axes: Axes, robot: RobotDescription, sensor: Lidar | RangeFinder 
 
     reach = robot.shape.outer_radius()
     start = -sensor.fov / 2 if isinstance(sensor, RangeFinder) or sensor.start is None else sensor.start
-    at = robot.pose if isinstance(sensor, Bumper) else _on(robot.pose, sensor.offset)
-    radius = 1.15 * reach if isinstance(sensor, Bumper) else min(sensor.range[1], 2.5 * reach + 0.3)
+    at = robot.pose if isinstance(sensor, Bumper) else placed_on(robot.pose, sensor.offset)
+    radius = 1.15 * reach if isinstance(sensor, Bumper) else min(sensor.range[1], 1.5 * reach + 0.4)
     first = math.degrees(at.theta) + start
     color = TOUCH if isinstance(sensor, Bumper) else ROBOT
     axes.add_patch(
-        Wedge((at.x, at.y), radius, first, first + sensor.fov, color=color, alpha=0.15, linewidth=0, zorder=5)
+        Wedge((at.x, at.y), radius, first, first + sensor.fov, color=color, alpha=0.15, linewidth=0, zorder=1)
     )
 
 
@@ -162,14 +167,14 @@ def _outline(shape: Shape, pose: Pose, style: dict[str, Any]) -> Patch:
 
     if shape.circle is not None:
         return Circle((pose.x, pose.y), shape.circle, **style)
-    return Polygon([_point(_on(pose, Pose(x, y))) for x, y in shape.corners()], closed=True, **style)
+    return Polygon([_point(placed_on(pose, Pose(x, y))) for x, y in shape.corners()], closed=True, **style)
 
 
 def _point(pose: Pose) -> Point:
     return pose.x, pose.y
 
 
-def _on(base: Pose, pose: Pose) -> Pose:
+def placed_on(base: Pose, pose: Pose) -> Pose:
     """Give where something is that is at `pose` on what is at `base`."""
     cos, sin = math.cos(base.theta), math.sin(base.theta)
     x, y = base.x + cos * pose.x - sin * pose.y, base.y + sin * pose.x + cos * pose.y
@@ -177,10 +182,10 @@ def _on(base: Pose, pose: Pose) -> Pose:
 
 
 def _figure_size(description: WorldDescription, longer: float) -> Point:
-    """Give a figure's width and height, in inches, that the world fills."""
+    """Give a figure's width and height, in inches, that the world fills, and that leave room for what is written."""
     width, height = _extent(description)
     scale = longer / max(width, height)
-    return max(width * scale, longer / 3), max(height * scale, longer / 3)
+    return max(width * scale, _NARROWEST), max(height * scale, _NARROWEST)
 
 
 def _extent(description: WorldDescription) -> Point:

@@ -366,6 +366,21 @@ def test_the_types_are_found_from_everywhere(tmp_path: Path, monkeypatch: pytest
     assert "robolink_interfaces/srv/Spawn" not in names("srv")  # until `use_interfaces`, as for any workspace
 
 
+def test_a_users_types_of_the_same_names_change_nothing(
+    system: System, hall: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    theirs = tmp_path / "interfaces" / "robolink_interfaces" / "srv"
+    theirs.mkdir(parents=True)
+    for name in ("Spawn", "Step", "Teleport", "Delete", "SetRate"):
+        (theirs / f"{name}.srv").write_text("string who\n---\nbool ok\n")
+    monkeypatch.setenv("ROBOLINK_WORKSPACE", str(tmp_path))
+    assert WORKSPACE_TYPES.get("robolink_interfaces", "srv", "Spawn") is not Spawn
+    assert own_type("Spawn") is Spawn
+    world = system.add(simulation.SimulatedWorld, {"world": hall})
+    assert ask(system, "spawn", name="eve", x=5.0, y=5.0) == (True, "spawned eve at (5, 5)")
+    assert set(robots(world)) == {"ada", "bob", "eve"}
+
+
 def test_nodes_of_users_import_them(tmp_path: Path) -> None:
     program = "from robolink_interfaces.srv import Spawn; print(Spawn.Request(name='eve').name)"
     text = f"from robolink.workspace import use_interfaces; use_interfaces(); {program}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import msgspec
 import pytest
@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from robolink import yamlfile
 from robolink.exceptions import DocumentError
-from robolink.yamlfile import DocumentNotFoundError, load, parse, read, spell
+from robolink.yamlfile import DocumentNotFoundError, load, mistakes, parse, read, spell
 
 
 class Robot(msgspec.Struct, forbid_unknown_fields=True):
@@ -233,3 +233,93 @@ def report_of(path: str | Path, text: str | None = None) -> str:
     except DocumentError as error:
         return str(error)
     return ""
+
+
+# --- values whose type their keys tell ------------------------------------------------------------------------
+
+
+class Part:
+    """Something that msgspec does not know."""
+
+    __slots__ = ()
+
+
+class Arm(Part, msgspec.Struct, forbid_unknown_fields=True):
+    arm: str
+    reach: float = 1.0
+
+
+class Box(Part, msgspec.Struct, forbid_unknown_fields=True):
+    box: tuple[float, float]
+    inside: list[Part] = []
+
+
+class Machine(msgspec.Struct, forbid_unknown_fields=True):
+    parts: list[Part] = []
+    named: dict[str, Part] = {}
+    spare: Part | None = None
+    kind: Literal["big", "small"] = "big"
+
+
+def kind_of_part(type_: type, data: Any) -> type[Part]:
+    kinds: dict[str, type[Part]] = {"arm": Arm, "box": Box}
+    for key, kind in kinds.items():
+        if key in data:
+            return kind
+    raise ValueError("neither an arm nor a box")
+
+
+def test_a_hook_chooses_the_type_by_the_data() -> None:
+    text = (
+        "parts: [{arm: left}, {box: [1, 2], inside: [{arm: hidden, reach: 2}]}]\nspare: {arm: x}\nnamed: {a: {arm: y}}"
+    )
+    machine = read("m.yaml", Machine, text=text, hook=kind_of_part).value
+    assert machine.parts == [Arm("left"), Box((1.0, 2.0), [Arm("hidden", 2.0)])]
+    assert (machine.spare, machine.named) == (Arm("x"), {"a": Arm("y")})
+
+
+NOT_A_MACHINE = [
+    ("parts: [{arm: a, reech: 2}]", "m.yaml:1:18: parts[0].reech: unknown key 'reech' (did you mean 'reach'?)"),
+    ("parts: [{arm: a, reach: far}]", "m.yaml:1:25: parts[0].reach: expected float, got 'far'"),
+    ("parts: [{arm: a}, {leg: b}]", "m.yaml:1:19: parts[1]: neither an arm nor a box"),
+    ("spare: {arm: 3}", "m.yaml:1:14: spare.arm: expected str, got '3'"),
+    ("named: {a: {arm: b}, c: {arm: 4}}", "m.yaml:1:31: named.c.arm: expected str, got '4'"),
+    ("named: {a: {box: [1, 2]}, c: {box: [1]}}", "m.yaml:1:36: named.c.box: expected list of length 2, got 1"),
+    (
+        "parts: [{box: [1, 2], inside: [{arm: a}, {arm: b, reach: x}]}]",
+        "m.yaml:1:58: parts[0].inside[1].reach: expected float, got 'x'",
+    ),
+    ("kind: bigg", "m.yaml:1:7: kind: expected one of big, small, got 'bigg' (did you mean 'big'?)"),
+]
+
+
+@pytest.mark.parametrize(("text", "report"), NOT_A_MACHINE)
+def test_an_error_inside_of_what_the_hook_chose_has_its_place(text: str, report: str) -> None:
+    with pytest.raises(DocumentError) as caught:
+        read("m.yaml", Machine, text=text, hook=kind_of_part)
+    assert str(caught.value) == report
+    assert [str(each) for each in mistakes("m.yaml", Machine, text=text, hook=kind_of_part)] == [report]
+
+
+def test_all_mistakes_are_found_at_once() -> None:
+    text = (
+        "robots: [{name: 1, pose: [1, x, y]}, {nme: b}]\nzones: {a: {name: c, sped: 1}}\nrates: {1: fast, 2: 2}\nx: 1"
+    )
+    assert [str(each).partition(": ")[2] for each in mistakes("w.yaml", World, text=text)] == [
+        "robots[0].name: expected str, got '1'",
+        "robots[0].pose[1]: expected float, got 'x'",
+        "robots[0].pose[2]: expected float, got 'y'",
+        "robots[1].nme: unknown key 'nme' (did you mean 'name'?)",
+        "zones.a.sped: unknown key 'sped' (did you mean 'speed'?)",
+        "rates.1: expected float, got 'fast'",
+        "x: unknown key 'x'",
+    ]
+    assert [str(each) for each in mistakes("w.yaml", World, text="a: [")] == [report_of("w.yaml", "a: [")]
+    assert mistakes("w.yaml", World, text="robots: [{name: a}]") == []
+
+
+@given(st.text() | yaml_like | data.map(spell))
+def test_there_are_mistakes_where_reading_fails_and_only_there(text: str) -> None:
+    found = [str(each) for each in mistakes("w.yaml", World, text=text)]
+    assert bool(found) == bool(report_of("w.yaml", text))
+    assert all(each.startswith("w.yaml:") and "\n" not in each for each in found)

@@ -55,7 +55,7 @@ def draw_world(
     ],
     out: Annotated[Path, typer.Argument(metavar="OUT", help="A .png, .svg or .pdf file.")],
     size: Annotated[
-        int, typer.Option("--size", metavar="PIXELS", help="Of the longer side.", min=100, max=20_000)
+        int, typer.Option("--size", metavar="PIXELS", help="Of the longer side.", min=300, max=20_000)
     ] = 1000,
     workspace: Workspace = "",
 ) -> None:

@@ -298,7 +298,7 @@ class RobotDescription(Struct, frozen=True, forbid_unknown_fields=True):
     shape: Shape = Shape(circle=0.17)
     mass: Mass = 3.0
     drive: Drive = Drive()
-    wheels: tuple[Wheel, ...] = ()
+    wheels: Annotated[tuple[Wheel, ...], Meta(max_length=64)] = ()
     odom: Odom = Odom()
     ground_truth: GroundTruth = GroundTruth()
     sensors: tuple[Sensor, ...] = ()

@@ -62,16 +62,11 @@ class GridMap(NamedTuple):
 
     def walls(self) -> npt.NDArray[np.float64]:
         """Give the edges of the occupied cells, joined where they go on, as rows x1, y1, x2, y2 in metres."""
-        return self.origin_to_world(cell_edges(self.occupied) * self.resolution)
-
-    def origin_to_world(self, segments: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        """Turn segments by the origin's yaw and move them to where it is."""
+        x, y = (cell_edges(self.occupied) * self.resolution).reshape(-1, 2).T
         cos, sin = math.cos(self.origin.theta), math.sin(self.origin.theta)
-        points: npt.NDArray[np.float64] = segments.reshape(-1, 2) @ np.array([[cos, sin], [-sin, cos]]) + (
-            self.origin.x,
-            self.origin.y,
-        )
-        return points.reshape(-1, 4)
+        # Not as a product of matrices, whose last bits are those of the machine's library.
+        turned = np.column_stack((x * cos - y * sin + self.origin.x, x * sin + y * cos + self.origin.y))
+        return turned.reshape(-1, 4)
 
 
 def load_map(path: Path) -> GridMap:

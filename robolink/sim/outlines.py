@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-
-import numpy as np
-import numpy.typing as npt
+from typing import TypeAlias
 
 from robolink.sim.description import Point, signed_area
 
@@ -15,6 +13,8 @@ SHORTEST = 1e-6
 
 SMALLEST = 1e-6
 """Square metres that an outline encloses at least, as the smallest box does."""
+
+Edge: TypeAlias = "tuple[Point, Point]"
 
 
 def repeated(points: Sequence[Point], closed: bool) -> Iterator[int]:
@@ -28,9 +28,10 @@ def repeated(points: Sequence[Point], closed: bool) -> Iterator[int]:
 
 def in_line(polygon: Sequence[Point]) -> bool:
     """Say whether all corners lie on one straight line."""
-    corners = np.asarray(polygon, dtype=np.float64)
-    spread = np.linalg.svd(corners - corners.mean(axis=0), compute_uv=False)
-    return float(spread[1]) < SHORTEST
+    first = polygon[0]
+    far = max(polygon, key=lambda each: math.dist(first, each))
+    length = math.dist(first, far)
+    return all(abs(_cross(first, far, each)) <= SHORTEST * length for each in polygon)
 
 
 def has_area(polygon: Sequence[Point]) -> bool:
@@ -43,43 +44,41 @@ def meeting(polygon: Sequence[Point]) -> tuple[int, int] | None:
 
     An edge has the index of its first corner.
     """
-    start = np.asarray(polygon, dtype=np.float64)
-    end = np.roll(start, -1, axis=0)
-    sides_of_start, sides_of_end = _sides(start, end, start), _sides(start, end, end)
-    straddles = sides_of_start * sides_of_end <= 0  # edge j has an end on each side of the line of edge i, or on it
-    meets = straddles & straddles.T & _boxes_meet(start, end)
-    meets &= ~(_neighbours(len(start)) & ~_folded(start, end))
-    first, second = np.nonzero(np.triu(meets, 1))
-    return (int(first[0]), int(second[0])) if len(first) else None
+    edges = list(zip(polygon, [*polygon[1:], polygon[0]], strict=True))
+    waiting: list[tuple[float, int]] = []  # edges from the left that reach as far to the right as the present one
+    for left, index in sorted((min(start[0], end[0]), index) for index, (start, end) in enumerate(edges)):
+        waiting = [each for each in waiting if each[0] >= left]
+        for _, other in waiting:
+            first, second = sorted((index, other))
+            if _meet(edges, first, second):
+                return first, second
+        waiting.append((max(edges[index][0][0], edges[index][1][0]), index))
+    return None
 
 
-def _sides(
-    start: npt.NDArray[np.float64], end: npt.NDArray[np.float64], point: npt.NDArray[np.float64]
-) -> npt.NDArray[np.float64]:
-    """Give, for each edge (row) and each point (column), on which side it is: 1 left, -1 right, 0 on the line."""
-    along = end - start
-    to = point[None, :, :] - start[:, None, :]
-    sides: npt.NDArray[np.float64] = np.sign(along[:, None, 0] * to[:, :, 1] - along[:, None, 1] * to[:, :, 0])
-    return sides
+def _meet(edges: Sequence[Edge], first: int, second: int) -> bool:
+    if second - first == 1:
+        return _folded(*edges[first], edges[second][1])
+    if second - first == len(edges) - 1:
+        return _folded(*edges[second], edges[first][1])
+    (a, b), (c, d) = edges[first], edges[second]
+    apart = max(a[1], b[1]) < min(c[1], d[1]) or max(c[1], d[1]) < min(a[1], b[1])
+    apart = apart or max(a[0], b[0]) < min(c[0], d[0]) or max(c[0], d[0]) < min(a[0], b[0])
+    return not apart and _between(a, b, c, d) and _between(c, d, a, b)
 
 
-def _boxes_meet(start: npt.NDArray[np.float64], end: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-    low, high = np.minimum(start, end), np.maximum(start, end)
-    begins_before_end: npt.NDArray[np.bool_] = np.all(low[:, None] <= high[None, :], axis=2)
-    both: npt.NDArray[np.bool_] = begins_before_end & begins_before_end.T
-    return both
+def _between(a: Point, b: Point, c: Point, d: Point) -> bool:
+    """Say whether c and d are not both on the same side of the line through a and b."""
+    left, right = _cross(a, b, c), _cross(a, b, d)
+    return not (left > 0.0 < right or left < 0.0 > right)
 
 
-def _neighbours(count: int) -> npt.NDArray[np.bool_]:
-    index = np.arange(count)
-    apart = (index[:, None] - index[None, :]) % count
-    near: npt.NDArray[np.bool_] = (apart == 1) | (apart == count - 1)
-    return near
+def _folded(a: Point, b: Point, c: Point) -> bool:
+    """Say whether the way from b to c leads straight back over the one from a to b."""
+    back = (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0
+    return back and _cross(a, b, c) == 0.0
 
 
-def _folded(start: npt.NDArray[np.float64], end: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-    """Say of each two edges whether the one leads straight back over the other."""
-    along = end - start
-    crosses = along[:, None, 0] * along[None, :, 1] - along[:, None, 1] * along[None, :, 0]
-    back: npt.NDArray[np.bool_] = (crosses == 0.0) & (along @ along.T < 0.0)
-    return back
+def _cross(a: Point, b: Point, c: Point) -> float:
+    """Give twice the area of a triangle: positive if c lies to the left of the way from a to b."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
 import pymunk
 
 from robolink.sim.bodies import fixed_body, placed, solids, wall_shapes
@@ -95,6 +94,8 @@ def _add_walls(description: WorldDescription, space: pymunk.Space, free: Sequenc
 
 def _near(walls: MapWalls, free: Sequence[_Thing]) -> MapWalls:
     """Leave out the walls whose bounding boxes no free thing's bounding box meets."""
+    import numpy as np  # late: only worlds with a map need it
+
     ends = np.array(walls.polyline, dtype=np.float64).reshape(-1, 2, 2)
     low, high, near = ends.min(axis=1), ends.max(axis=1), np.zeros(len(ends), dtype=np.bool_)
     for shape in (shape for thing in free for shape in thing.shapes):

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from collections.abc import Iterator, Sequence
-
-import numpy as np
 
 from robolink.sim.description import Encoders, Lidar, RangeFinder, RobotDescription, Sensor, Wheel
 from robolink.sim.problems import Problem, rate_problems, repeated_names, shape_problems, speed_problems, under
@@ -29,6 +28,8 @@ TAKEN = (
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 _LONGEST_NAME = 64
+_ABREAST = 1e-4
+"""Metres: wheels nearer to each other than that, across the way that they roll, turn nothing."""
 _CROOKED = 0.02
 """Radians by which a wheel of a drive that cannot go sideways may point elsewhere than ahead."""
 
@@ -103,11 +104,11 @@ def _crooked(robot: RobotDescription) -> Iterator[Problem]:
 def _driving_problems(robot: RobotDescription) -> Iterator[Problem]:
     """Say so if no turning of the wheels can make all the motions that the drive is for."""
     kind = robot.drive.type
-    motions = np.array([_motion(each) for each in robot.wheels])
-    if kind == "diff" and np.ptp(motions[:, 2] / motions[:, 0]) < 1e-4:
-        sides = f"all stand {robot.wheels[0].at.y:g} m to the left: put one on each side"
-        yield Problem("", f"these wheels cannot turn the robot, {sides}" if len(robot.wheels) > 1 else _lonely())
-    if kind == "omni" and np.linalg.matrix_rank(motions, tol=1e-4) < 3:
+    sides = [each.at.y for each in robot.wheels]
+    if kind == "diff" and max(sides) - min(sides) < _ABREAST:
+        reason = f"all stand {sides[0]:g} m to the left: put one on each side"
+        yield Problem("", f"these wheels cannot turn the robot, {reason}" if len(sides) > 1 else _lonely())
+    if kind == "omni" and not any(_independent(*three) for three in itertools.combinations(robot.wheels, 3)):
         yield Problem(
             "", "these wheels cannot drive it ahead, sideways and round: it takes three that roll different ways"
         )
@@ -115,6 +116,12 @@ def _driving_problems(robot: RobotDescription) -> Iterator[Problem]:
 
 def _lonely() -> str:
     return "one wheel cannot turn the robot: put one on each side"
+
+
+def _independent(*wheels: Wheel) -> bool:
+    """Say whether three wheels, each turned alone, make three different motions: by the determinant of them."""
+    (a, b, c), (d, e, f), (g, h, i) = (_motion(each) for each in wheels)
+    return abs(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)) > _ABREAST
 
 
 def _motion(wheel: Wheel) -> tuple[float, float, float]:
