@@ -65,7 +65,7 @@ class Context:
         self._callbacks: list[Callable[[], Any]] = []
         self._teller = 0
         self._told: queue.SimpleQueue[None] = queue.SimpleQueue()
-        self._nodes: weakref.WeakSet[Any] = weakref.WeakSet()
+        self._nodes: weakref.WeakValueDictionary[int, Any] = weakref.WeakValueDictionary()  # in the order of making
 
     def init(
         self, args: list[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
@@ -155,11 +155,11 @@ class Context:
 
     def track_node(self, node: Any) -> None:
         """Remember a node, to destroy it when the context ends."""
-        self._nodes.add(node)
+        self._nodes[id(node)] = node
 
     def untrack_node(self, node: Any) -> None:
         """Forget it."""
-        self._nodes.discard(node)
+        self._nodes.pop(id(node), None)
 
     # The end
 
@@ -218,7 +218,7 @@ class Context:
 
     def _close(self) -> None:
         try:
-            for node in list(self._nodes):
+            for node in list(self._nodes.values()):
                 node.destroy_node()
             self.given_parameters.warn_of_rest()
         finally:  # a node's own destroy_node is anybody's code

@@ -219,3 +219,20 @@ def test_logs_are_stamped_with_virtual_time(log_lines: list[Record]) -> None:
     logging.get_logger("node").info("later")
     assert log_lines[0].stamp_ns == 15
     assert log_lines[1].stamp_ns > 10**18
+
+
+def test_nodes_are_destroyed_in_the_order_in_which_they_were_made() -> None:
+    """What they still publish then belongs to a run that is the same each time."""
+    destroyed: list[str] = []
+
+    class Leaving(Node):
+        def destroy_node(self) -> None:
+            destroyed.append(self.get_name())
+            super().destroy_node()
+
+    context = Context(transport="memory://leaving")
+    context.init([])
+    nodes = [Leaving(f"node_{number}", context=context) for number in range(20)]
+    nodes.pop(7).destroy_node()
+    context.shutdown()
+    assert destroyed == ["node_7", *(f"node_{number}" for number in range(20) if number != 7)]
