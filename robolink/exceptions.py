@@ -187,10 +187,20 @@ class InvalidParameterTypeException(ParameterException, TypeError):
         found = getattr(getattr(desired_parameter, "type_", None), "name", type(value).__name__)
         RobolinkError.__init__(
             self,
-            f"Trying to set parameter '{name}' to '{value}' of type '{found}', expecting type '{expected_type}'",
+            f"Trying to set parameter '{name}' to '{value}' of type '{found}', "
+            f"expecting type '{expected_type}'{_cure(found, expected_type, value)}",
             *args,
         )
         self.param_name, self.parameters = name, name
+
+
+def _cure(found: str, expected: str, value: object) -> str:
+    """Say how to write what was probably meant: YAML makes an integer of `1`, and of `0x10` too."""
+    if (found, expected) == ("INTEGER", "DOUBLE"):
+        return f": write {value}.0"
+    if expected == "STRING" and "ARRAY" not in found:
+        return ": text that is also a number, true or false needs quotes, two pairs in a shell: \"'...'\""
+    return ""
 
 
 class InvalidParameterValueException(ParameterException, ValueError):

@@ -91,12 +91,15 @@ def join(namespace: str, name: str) -> str:
 
 
 def spelled(text: str, fallback: str, longest: int = 60) -> str:
-    """Spell any text as ROS could name something: letters, digits and `_`, a letter first.
+    """Spell any text as ROS could name something: letters, digits and `_`, a letter first; letters lose their accents.
 
     >>> spelled("my robot", "robot"), spelled("2nd", "robot"), spelled("LDS-01", "lidar"), spelled("?", "lidar")
     ('my_robot', 'robot_2nd', 'LDS_01', 'lidar')
     """
-    name = re.sub(r"[^A-Za-z0-9]+", "_", text).strip("_")
+    import unicodedata  # late: few programs need it
+
+    bare = "".join(each for each in unicodedata.normalize("NFKD", text) if not unicodedata.combining(each))
+    name = re.sub(r"[^A-Za-z0-9]+", "_", bare).strip("_")
     name = name if not name or name[0].isalpha() else f"{fallback}_{name}"
     return name[:longest].rstrip("_") or fallback
 

@@ -80,10 +80,13 @@ def test_overrides_can_declare_all_that_they_name(make: Make) -> None:
 
 
 def test_an_override_of_another_type_is_refused(make: Make) -> None:
-    node = make({"speed": 1, "limit": "high"})
-    with pytest.raises(InvalidParameterTypeException, match=r"'speed' to '1' of type 'INTEGER', expecting .*DOUBLE"):
+    node = make({"speed": 1, "limit": "high", "route": 0x10})
+    told = r"'speed' to '1' of type 'INTEGER', expecting type 'DOUBLE': write 1\.0"
+    with pytest.raises(InvalidParameterTypeException, match=told):
         node.declare_parameter("speed", 0.5)
     assert not node.has_parameter("speed")
+    with pytest.raises(InvalidParameterTypeException, match=r"expecting type 'STRING': .* needs quotes"):
+        node.declare_parameter("route", "0x10")
     dynamic = ParameterDescriptor(dynamic_typing=True)
     limit: Parameter[Any] = node.declare_parameter("limit", 5, dynamic)
     assert limit.value == "high"

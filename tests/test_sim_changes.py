@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import msgspec
 import pytest
@@ -155,6 +156,28 @@ def test_a_robot_is_not_put_inside_of_something(pose: Pose) -> None:
     assert (robot.pose, robot.twist) == (before, speed)
     run(made, 0.5)
     assert robot.pose.x == pytest.approx(before.x + 0.1, abs=0.01)
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.3])
+def test_a_robot_is_not_put_into_the_middle_of_a_maps_walls(tmp_path: Path, heading: float) -> None:
+    wide, high = 60, 50  # cells of 0.1 m, among them a pillar of 2 m x 2 m
+    rows = [bytes(0 if 20 <= x < 40 and 20 <= y < 40 else 254 for x in range(wide)) for y in range(high)]
+    (tmp_path / "m.pgm").write_bytes(b"P5 %d %d 255\n" % (wide, high) + b"".join(rows))
+    rest = "negate: 0, occupied_thresh: 0.65, free_thresh: 0.25"
+    (tmp_path / "m.yaml").write_text(f"{{image: m.pgm, resolution: 0.1, origin: [0, 0, {heading}], {rest}}}")
+    text = "map: {yaml: m.yaml}\nrobots: [{name: b, pose: [-2, -2]}]"
+    made = World(load_world(str(tmp_path / "w.yaml"), text=text))
+    cos, sin = math.cos(heading), math.sin(heading)
+    middle = Pose(3 * cos - 2 * sin, 3 * sin + 2 * cos)
+    for place in (
+        lambda: made.robots["b"].teleport(middle),
+        lambda: made.spawn(msgspec.structs.replace(NEW, pose=middle)),
+    ):
+        with pytest.raises(WorldError, match="inside of the map's walls"):
+            place()
+    assert list(made.robots) == ["b"]
+    made.robots["b"].teleport(Pose(cos - sin, sin + cos))
+    made.robots["b"].teleport(Pose(9.0, 2.0))
 
 
 def test_a_robot_may_be_put_where_it_touches_and_where_it_was() -> None:

@@ -176,6 +176,9 @@ BAD = {
     SENSOR % "lidar: 'my scan'": "1:52: robots[0].sensors[0].lidar: 'my scan' is no name: letters, digits and '_'",
     SENSOR % "lidar: scan}, {imu: scan": "1:65: robots[0].sensors[1].imu: two sensors publish on 'scan': give this one",
     SENSOR % "lidar: odom": "sensors[0].lidar: the simulation itself has a topic 'odom': take another name",
+    ROBOT % "wheels: [{motor: a, at: [0, 0.1]}, {motor: b, at: [0, -0.1]}], sensors: [{lidar: joint_states}]": (
+        "sensors[0].lidar: the simulation itself has a topic 'joint_states': take another name"
+    ),
     SENSOR % "lidar: tf_static": "sensors[0].lidar: the simulation itself has a topic 'tf_static'",
     SENSOR
     % "lidar: scan, rate: 7": "sensors[0].rate: 7 Hz is no whole number of steps of 0.01 s: take 6.66667 or 7.14286",

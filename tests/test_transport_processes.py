@@ -156,6 +156,19 @@ def test_a_session_closes_while_its_publisher_waits_for_a_frozen_process(domain:
     assert (done.stdout, done.returncode) == ("True True\n", 0)
 
 
+SLOW_TO_CLOSE = """
+import time
+from robolink.transport import lifetime
+
+lifetime.finish(lambda: (time.sleep(1.0), print("closed")), 0.0)  # a loaded machine: seen to take 0.7 s
+"""
+
+
+def test_the_exit_waits_for_a_session_that_is_slow_to_close(domain: int) -> None:
+    done = run(domain, SLOW_TO_CLOSE)
+    assert (done.stdout, done.stderr, done.returncode) == ("closed\n", "", 0)
+
+
 FORK = """
 outlet = session.advertise(key, latched)
 subscription = session.subscribe(key, plain, arrived.put)

@@ -175,6 +175,10 @@ def test_unknown_launch_files_and_worlds_too(write: Write) -> None:
         find_launch("to_laps")
     with pytest.raises(NotFoundError, match=r"no world named 'corner'.*did you mean 'corners'"):
         find_world("corner")
+    write("meu_mundo.wbt")
+    for name in ("meu_mundo", "meu_mundo.wb"):
+        with pytest.raises(NotFoundError, match=r"did you mean 'meu_mundo\.wbt'"):
+            find_world(name)
 
 
 # --- loading --------------------------------------------------------------------------------------------------

@@ -47,17 +47,13 @@ class Touches:
     sectors: list[Sector] = field(default_factory=list)
 
     def feel(self, contact: Contact) -> None:
-        """Take in what touches the robot after a step."""
+        """Take in where the robot is touched after a step."""
         (_, _, count), (_, _, *points) = contact
-        deepest = -min(points[2::3][:count])
-        if deepest > self.penetration:
-            self.penetration = deepest
-        if self.sectors:
-            (x, y), theta = self.body.position, self.body.angle
-            for first in range(0, 3 * count, 3):
-                direction = math.atan2(points[first + 1] - y, points[first] - x) - theta
-                for sector in self.sectors:
-                    sector.feel(direction)
+        (x, y), theta = self.body.position, self.body.angle
+        for first in range(0, 3 * count, 3):
+            direction = math.atan2(points[first + 1] - y, points[first] - x) - theta
+            for sector in self.sectors:
+                sector.feel(direction)
 
 
 class Contacts:
@@ -70,6 +66,8 @@ class Contacts:
         self._squeeze = Squeeze(space, dt)
         self._buffer = pymunk.batch.Buffer()
         self._pairs = set[tuple[pymunk.Shape, pymunk.Shape]]()
+        self.begun = 0
+        """How many contacts of robots have begun since the start."""
         space.on_collision(ROBOT, None, begin=self._begin, separate=self._separate)
 
     def add(self, touches: Touches, shapes: Iterable[pymunk.Shape]) -> None:
@@ -107,17 +105,26 @@ class Contacts:
         numbers = np.frombuffer(buffer.float_buf(), dtype=np.float64).reshape(-1, 8).tolist()
         contacts = [contact for contact in zip(bodies, numbers, strict=True) if contact[0][2]]
         for contact in contacts:
-            for body in contact[0][:2]:
-                touches = self._by_body.get(body)
-                if touches is not None:
-                    touches.feel(contact)
+            self._feel(contact)
         self._squeeze.settle(contacts)
+
+    def _feel(self, contact: Contact) -> None:
+        (one, other, count), (_, _, _, _, first, _, _, second) = contact
+        deepest = -first if count == 1 or first < second else -second
+        for body in (one, other):
+            touches = self._by_body.get(body)
+            if touches is not None:
+                if deepest > touches.penetration:
+                    touches.penetration = deepest
+                if touches.sectors:
+                    touches.feel(contact)
 
     def _begin(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
         """Count a contact; when two robots meet, each is the first shape of a call of its own."""
         one, other = arbiter.shapes
         touches = self._touches[one]
         touches.contacts += 1
+        self.begun += 1
         touches.touching += 1
         self._pairs.add((one, other))
 

@@ -59,6 +59,13 @@ class MapWalls(Wall, frozen=True):
         """Give the walls as pairs of end points."""
         return list(zip(self.polyline[::2], self.polyline[1::2], strict=True))
 
+    def enclose(self, x: float, y: float) -> bool:
+        """Say whether a point is among occupied cells: on the way out from there one meets an odd number of walls."""
+        met = 0
+        for (x1, y1), (x2, y2) in self.segments():
+            met += (y1 > y) != (y2 > y) and x1 + (y - y1) * (x2 - x1) / (y2 - y1) > x
+        return met % 2 == 1
+
 
 class Shape(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """An outline about its own origin: a box (length along x, width along y), a circle (radius) or a polygon.

@@ -8,21 +8,19 @@ line's unit normal over its distance. The nearest shape is then the largest inve
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from robolink.sim.description import Lidar, Pose
 from robolink.sim.geometry import Array
-from robolink.sim.surroundings import NOBODY, Circles, Indices, Surroundings
+from robolink.sim.surroundings import NOBODY, Circles, Indices, Place, Surroundings
 from robolink.sim.tiles import NORMAL, REFLECTANCE, X, Y
 from robolink.sim.trigonometry import cos_and_sin
 
 Numbers: TypeAlias = "float | Array"
 """One for all, or one for each."""
-
-Place: TypeAlias = "tuple[float, float, float]"
-"""x, y and heading of a sensor in the world."""
 
 _EDGE = 1e-9
 """How far, in beams, an interval reaches beyond its ends, so that rounding leaves no gap at a corner."""
@@ -36,7 +34,7 @@ _EDGE_ON = 1e-9
 _TOUCHING = 1e-12
 """The range in metres of what touches the sensor."""
 
-_AT_ONCE = 30_000
+_AT_ONCE = 20_000
 """Beams that are worked on together, so that arrays stay in the processor's cache."""
 
 _KEPT = 4 << 20
@@ -71,15 +69,14 @@ class Beams:
         self.reach = lidar.range[1] + 8 * lidar.noise
         self.stride = 2 * lidar.beams if self.full else lidar.beams  # twice round, so that no interval is split
         self.cos, self.sin = cos_and_sin(self.start + self.increment * np.arange(lidar.beams, dtype=np.float64))
-        self._table = np.resize(self.cos, self.stride), np.resize(self.sin, self.stride)
+        self._directions = np.resize(np.column_stack((self.cos, self.sin)), (self.stride, 2))
 
-    def table(self, sensors: int) -> tuple[Array, Array]:
-        """Give the cosines and sines of all beams of so many sensors, `stride` of each."""
-        if len(self._table[0]) < sensors * self.stride:
+    def directions(self, sensors: int) -> Array:
+        """Give the directions of all beams of so many sensors, `stride` of each, as rows of cosine and sine."""
+        if len(self._directions) < sensors * self.stride:
             _keep_memory()
-            cos, sin = self._table
-            self._table = np.resize(cos, sensors * self.stride), np.resize(sin, sensors * self.stride)
-        return self._table
+            self._directions = np.resize(self._directions, (sensors * self.stride, 2))
+        return self._directions
 
 
 def _keep_memory() -> None:
@@ -96,7 +93,7 @@ def distances(beams: Beams, sensor: Pose, surroundings: Surroundings, own: int =
 
     `own` is the number of the moving shape that the sensor is mounted on, which it doesn't see.
     """
-    found: Array = _measured(beams, [(sensor.x, sensor.y, sensor.theta)], [own], surroundings, lit=False)[0][0]
+    found: Array = measured(beams, [(sensor.x, sensor.y, sensor.theta)], [own], surroundings)[0][0]
     return found
 
 
@@ -106,7 +103,7 @@ def distances_batch(beams: Beams, poses: Array, surroundings: Surroundings, own:
     `poses` are rows x, y, theta in the world; `own` says for each the number of the moving shape that it is mounted
     on (`Scene.number`). How many are measured together changes no bit of a result.
     """
-    return _measured(beams, *_listed(poses, own), surroundings, lit=False)[0]
+    return measured(beams, *_listed(poses, own), surroundings)[0]
 
 
 def returns_batch(
@@ -117,15 +114,34 @@ def returns_batch(
     That is the reflectance of what a beam hits times the cosine of the angle at which it does; 0 where there is
     nothing.
     """
-    return _measured(beams, *_listed(poses, own), surroundings, lit=True)
+    return measured(beams, *_listed(poses, own), surroundings, lit=True)
+
+
+def measured(
+    beams: Beams, places: Sequence[Place], own: Sequence[int], surroundings: Surroundings, lit: bool = False
+) -> tuple[Array, Array]:
+    """Give ranges and light of sensors (of light no columns unless `lit`), working on some of them at a time.
+
+    `places` and `own` are those of `distances_batch`, as lists.
+    """
+    if len(places) == 1:
+        return _nearest(beams, 1, _look(beams, places, own, surroundings, lit), lit)
+    ranges, light = np.empty((len(places), beams.count)), np.empty((len(places), beams.count if lit else 0))
+    first = 0
+    while first < len(places):
+        segments = surroundings.segments_near(*places[first][:2], beams.reach, own[first]).shape[1]
+        part = slice(first, min(first + max(1, _AT_ONCE // max(beams.stride, 3 * segments)), len(places)))
+        looked = _look(beams, places[part], own[part], surroundings, lit)
+        ranges[part], light[part] = _nearest(beams, part.stop - first, looked, lit)
+        first = part.stop
+    return ranges, light
 
 
 def limited(ranges: Array, range_min: float, range_max: float) -> Array:
-    """Apply a scanner's limits as REP 117 has it: beyond the farthest +inf, nearer than the nearest -inf."""
-    found: Array = ranges.copy()
-    np.copyto(found, np.inf, where=ranges > range_max)
-    np.copyto(found, -np.inf, where=ranges < range_min)
-    return found
+    """Apply a scanner's limits to ranges, in place, as REP 117 has it: too far is +inf, too near -inf."""
+    np.putmask(ranges, ranges > range_max, np.inf)
+    np.putmask(ranges, ranges < range_min, -np.inf)
+    return ranges
 
 
 class _Eyes(NamedTuple):
@@ -162,6 +178,15 @@ class _Spans(NamedTuple):
         """Repeat what each shape has for each of its beams."""
         return (values if self.who is None else values.take(self.who)).repeat(self.counts)
 
+    def along(self, directions: Array, vectors: Array) -> Array:
+        """Give the scalar product of each beam's direction and its shape's vector; x and y are rows of `vectors`."""
+        if self.who is not None:
+            vectors = vectors.take(self.who, axis=1)
+        products = vectors.T.repeat(self.counts, axis=0)
+        products *= directions.take(self.beams, axis=0)
+        found: Array = products[:, 0] + products[:, 1]
+        return found
+
 
 class _Hits(NamedTuple):
     """What beams meet, nearest or not: which beam, its inverse range, the share of light that comes back if wanted."""
@@ -175,24 +200,9 @@ def _listed(poses: Array, own: Indices | None) -> tuple[list[Place], list[int]]:
     return poses.tolist(), [NOBODY] * len(poses) if own is None else np.asarray(own).tolist()
 
 
-def _measured(
-    beams: Beams, places: list[Place], own: list[int], surroundings: Surroundings, lit: bool
-) -> tuple[Array, Array]:
-    """Give ranges and light of sensors (of light no columns unless `lit`), working on some of them at a time."""
-    if len(places) == 1:
-        return _nearest(beams, 1, _look(beams, places, own, surroundings, lit), lit)
-    ranges, light = np.empty((len(places), beams.count)), np.empty((len(places), beams.count if lit else 0))
-    first = 0
-    while first < len(places):
-        segments = surroundings.segments_near(*places[first][:2], beams.reach, own[first]).shape[1]
-        part = slice(first, min(first + max(1, _AT_ONCE // max(beams.stride, 3 * segments)), len(places)))
-        looked = _look(beams, places[part], own[part], surroundings, lit)
-        ranges[part], light[part] = _nearest(beams, part.stop - first, looked, lit)
-        first = part.stop
-    return ranges, light
-
-
-def _look(beams: Beams, places: list[Place], own: list[int], surroundings: Surroundings, lit: bool) -> list[_Hits]:
+def _look(
+    beams: Beams, places: Sequence[Place], own: Sequence[int], surroundings: Surroundings, lit: bool
+) -> list[_Hits]:
     """Give all that the beams of some sensors meet."""
     found, eyes = [], _eyes(beams, places)
     near = [
@@ -202,7 +212,7 @@ def _look(beams: Beams, places: list[Place], own: list[int], surroundings: Surro
     if columns.size:
         seeing = eyes if len(near) == 1 else eyes.of(np.arange(len(near)).repeat([each.shape[1] for each in near]))
         found.append(_see_segments(beams, seeing, columns, lit))
-    if len(surroundings.circles.x):
+    if surroundings.has_circles_but(own):
         sensors, which = surroundings.circles_near(places, beams.reach, own)
         if len(which):
             found.append(_see_circles(beams, eyes.of(sensors), surroundings.circles.taken(which), lit))
@@ -235,10 +245,8 @@ def _light(inverse: Array, found: list[_Hits]) -> Array:
     return light
 
 
-def _eyes(beams: Beams, places: list[Place]) -> _Eyes:
-    facts = [
-        (x, y, math.cos(theta), math.sin(theta), (theta + beams.start) / beams.increment) for x, y, theta in places
-    ]
+def _eyes(beams: Beams, places: Sequence[Place]) -> _Eyes:
+    facts = [(x, y, math.cos(theta), math.sin(theta), (theta + beams.start) / math.tau) for x, y, theta in places]
     if len(places) == 1:
         return _Eyes(1, 0, *facts[0])
     first = beams.stride * np.arange(len(places))
@@ -247,18 +255,16 @@ def _eyes(beams: Beams, places: list[Place]) -> _Eyes:
 
 def _see_segments(beams: Beams, eyes: _Eyes, columns: Array, lit: bool) -> _Hits:
     x, y, normal = columns[X] - eyes.x, columns[Y] - eyes.y, columns[NORMAL]
-    ends = _in_beams(beams, eyes, x, y)
+    ends = _in_turns(eyes, x, y)
     width = ends[1] - ends[0]
-    width -= beams.period * np.rint(width / beams.period)
+    width -= np.rint(width)
     spans = _spans(beams, eyes, ends[0] + np.minimum(width, 0.0), np.abs(width))
     distance, limit = normal[0] * x[0] + normal[1] * y[0], None
     away = np.abs(distance)
     if np.count_nonzero(away < _GRAZING):
         normal, distance, limit = _mended(normal, x, y, distance, width)
     turned = (eyes.cos * normal[:2] + eyes.sin * normal[1:]) / distance
-    cos, sin = beams.table(eyes.number)
-    inverse = cos.take(spans.beams) * spans.spread(turned[0])
-    inverse += sin.take(spans.beams) * spans.spread(turned[1])
+    inverse = spans.along(beams.directions(eyes.number), turned)
     if limit is not None:
         np.minimum(inverse, spans.spread(limit), out=inverse)
     return _Hits(spans.beams, inverse, spans.spread(away * columns[REFLECTANCE]) * inverse if lit else inverse)
@@ -297,13 +303,13 @@ def _see_circles(beams: Beams, eyes: _Eyes, circles: Circles, lit: bool) -> _Hit
     square[inside] = np.inf
     power = square - radius * radius
     share = 1.0 / power
-    x, y = (eyes.cos * dx + eyes.sin * dy) * share, (eyes.cos * dy - eyes.sin * dx) * share
-    half = np.arcsin(radius / np.sqrt(square)) / beams.increment
-    low, width = _in_beams(beams, eyes, dx, dy) - half, 2.0 * half
-    low[inside], width[inside], share[inside] = 0.0, beams.count - 1.0, -1.0 / _TOUCHING**2  # all beams touch
-    spans, (cos, sin) = _spans(beams, eyes, low, width), beams.table(eyes.number)
-    inverse = cos.take(spans.beams) * spans.spread(x)
-    inverse += sin.take(spans.beams) * spans.spread(y)
+    centre = np.array((eyes.cos * dx + eyes.sin * dy, eyes.cos * dy - eyes.sin * dx)) * share
+    half = np.arcsin(radius / np.sqrt(square)) / math.tau
+    low, width = _in_turns(eyes, dx, dy) - half, 2.0 * half
+    low[inside], width[inside] = 0.0, (beams.count - 1.0) / beams.period  # all beams touch
+    share[inside] = -1.0 / _TOUCHING**2
+    spans = _spans(beams, eyes, low, width)
+    inverse = spans.along(beams.directions(eyes.number), centre)
     root = inverse * inverse
     root -= spans.spread(share)
     np.sqrt(np.maximum(root, 0.0, out=root), out=root)
@@ -312,18 +318,18 @@ def _see_circles(beams: Beams, eyes: _Eyes, circles: Circles, lit: bool) -> _Hit
     return _Hits(spans.beams, inverse, light)
 
 
-def _in_beams(beams: Beams, eyes: _Eyes, x: Array, y: Array) -> Array:
-    """Give the directions of points as seen by the sensors, in beams from their first one."""
-    angles: Array = np.arctan2(y, x)
-    angles /= beams.increment
-    angles -= eyes.turn
-    return angles
+def _in_turns(eyes: _Eyes, x: Array, y: Array) -> Array:
+    """Give the directions of points as seen by the sensors, in turns from their first beam."""
+    turns: Array = np.arctan2(y, x)
+    turns /= math.tau
+    turns -= eyes.turn
+    return turns
 
 
 def _spans(beams: Beams, eyes: _Eyes, low: Array, width: Array) -> _Spans:
-    """Give the beams that lie in intervals (from `low`, `width` wide, in beams)."""
-    low = low - beams.period * np.floor(low / beams.period)
-    high, who, first = low + width, None, eyes.first
+    """Give the beams that lie in intervals (from `low`, `width` wide, in turns)."""
+    low = (low - np.floor(low)) * beams.period
+    high, who, first = low + width * beams.period, None, eyes.first
     if not beams.full:  # some reach round to the first beams again
         again = np.flatnonzero(high >= beams.period - _EDGE)
         who = np.concatenate((np.arange(len(low)), again))
@@ -337,7 +343,8 @@ def _spans(beams: Beams, eyes: _Eyes, low: Array, width: Array) -> _Spans:
         np.maximum(counts, 0, out=counts)
     begin += counts
     begin -= counts.cumsum()
-    begin += first
+    if eyes.number > 1:  # else 0
+        begin += first
     found = begin.repeat(counts)
     found += np.arange(len(found))
     return _Spans(who, counts, found)

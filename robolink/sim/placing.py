@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import pymunk
 
 from robolink.exceptions import RobolinkError
-from robolink.sim.description import Pose
+from robolink.sim.description import MapWalls, Pose, Wall
 
 FARTHEST = 100_000.0
 """Metres from the origin, as in world files."""
@@ -26,11 +26,19 @@ def check_pose(name: str, pose: Pose) -> None:
         raise WorldError(f"robot '{name}' can't stand at {at}: expected numbers within {FARTHEST:g}")
 
 
-def check_place(space: pymunk.Space, shapes: Iterable[pymunk.Shape], name: str, pose: Pose) -> None:
-    """Raise `WorldError` when the shapes of a robot at a pose overlap something by more than a touch."""
-    if (other := overlap(space, shapes)) is not None:
+def check_place(
+    space: pymunk.Space, shapes: Iterable[pymunk.Shape], name: str, pose: Pose, walls: Iterable[Wall] = ()
+) -> None:
+    """Raise `WorldError` when the shapes of a robot at a pose overlap something by more than a touch.
+
+    Those among `walls` that are a map's have an inside too.
+    """
+    what = "" if (other := overlap(space, shapes)) is None else _called(other)
+    if not what and any(isinstance(each, MapWalls) and each.enclose(pose.x, pose.y) for each in walls):
+        what = "the map's walls"
+    if what:
         at = f"[{pose.x:g}, {pose.y:g}, {pose.theta:g}]"
-        raise WorldError(f"robot '{name}' can't stand at {at}: inside of {_called(other)}")
+        raise WorldError(f"robot '{name}' can't stand at {at}: inside of {what}")
 
 
 def overlap(space: pymunk.Space, shapes: Iterable[pymunk.Shape]) -> pymunk.Shape | None:

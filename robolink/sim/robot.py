@@ -11,7 +11,7 @@ import pymunk
 from robolink.sim.arithmetic import sinc
 from robolink.sim.bodies import body_at, placed, solids
 from robolink.sim.contacts import Contacts, Touches
-from robolink.sim.description import Pose, RobotDescription
+from robolink.sim.description import Pose, RobotDescription, Wall
 from robolink.sim.drive import Driver
 from robolink.sim.fleet import Fleet, Member
 from robolink.sim.lidar import Scan
@@ -33,6 +33,7 @@ class Parts(NamedTuple):
     contacts: Contacts
     dt: float
     seed: int
+    walls: tuple[Wall, ...]
 
 
 class Robot:
@@ -92,7 +93,7 @@ class Robot:
         before = self.pose
         try:
             self._put(pose)
-            check_place(self._parts.space, self.shapes, self.name, pose)
+            check_place(self._parts.space, self.shapes, self.name, pose, self._parts.walls)
         except WorldError:
             self._put(before)
             raise
@@ -123,16 +124,20 @@ class Robot:
     @property
     def twist(self) -> Velocity:
         """The robot's true speeds along, about and across its heading."""
-        (vx, vy), w = self.body.velocity, self.body.angular_velocity
+        return Velocity(*self._speeds())
+
+    def _speeds(self) -> tuple[float, float, float]:
+        body = self.body
+        (vx, vy), w = body.velocity, body.angular_velocity
         half = w * self.dt / 2
-        middle = self.body.angle + half
+        middle = body.angle + half
         cos, sin, chord = math.cos(middle), math.sin(middle), sinc(half)
-        return Velocity((vx * cos + vy * sin) / chord, w, (vy * cos - vx * sin) / chord)
+        return (vx * cos + vy * sin) / chord, w, (vy * cos - vx * sin) / chord
 
     @property
     def odometry_twist(self) -> Velocity:
         """The robot's speeds as odometry believes them: with its noise, and without slipping."""
-        v, w, sideways = self.twist
+        v, w, sideways = self._speeds()
         if self.description.drive.type != "omni":
             sideways = 0.0
         if self._noise is None:

@@ -133,7 +133,7 @@ def _motion(wheel: Wheel) -> tuple[float, float, float]:
 def _sensor_problems(sensor: Sensor, robot: RobotDescription, dt: float) -> Iterator[Problem]:
     if not _NAME.fullmatch(sensor.topic):
         yield Problem(f".{sensor.kind}", _bad_name(sensor.topic))
-    elif sensor.topic in TAKEN:
+    elif sensor.topic in TAKEN or (sensor.topic == "joint_states" and tells_joints(robot)):
         yield Problem(f".{sensor.kind}", f"the simulation itself has a topic '{sensor.topic}': take another name")
     yield from under(".rate", rate_problems(sensor.rate, dt))
     if isinstance(sensor, Lidar | RangeFinder) and sensor.range[0] >= sensor.range[1]:
@@ -141,6 +141,11 @@ def _sensor_problems(sensor: Sensor, robot: RobotDescription, dt: float) -> Iter
         yield Problem(".range", f"the nearest, {near:g} m, must be less than the farthest, {far:g} m")
     if isinstance(sensor, Encoders) and not robot.wheels:
         yield Problem("", "encoders count the turns of wheels, and this robot has no 'wheels'")
+
+
+def tells_joints(robot: RobotDescription) -> bool:
+    """Say whether the simulation itself publishes joint_states: of wheels that no encoders count."""
+    return bool(robot.wheels) and not any(isinstance(each, Encoders) for each in robot.sensors)
 
 
 def _repeated_topics(sensors: Sequence[Sensor]) -> Iterator[Problem]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +11,7 @@ import pymunk
 
 from robolink.sim.description import Shape, WorldDescription
 from robolink.sim.geometry import fixed_circles, fixed_reflectances, fixed_segments
-from robolink.sim.surroundings import FIXED, Circles, Edges, Surroundings, circles_of
+from robolink.sim.surroundings import FIXED, Circles, Edges, Place, Surroundings, circles_of
 from robolink.sim.tiles import Tiles, columns
 
 
@@ -23,10 +23,11 @@ class Scene:
         of_segments, of_circles = fixed_reflectances(description)
         self._walls = Tiles(self.fixed_segments, of_segments)
         self._standing = circles_of(self.fixed_circles, of_circles, np.full(len(of_circles), FIXED))
-        self._discs, self._polygons = _Discs(), _Polygons()
+        self._discs, self._polygons = _Discs(self._standing), _Polygons()
         self._moving: dict[pymunk.Body, _Moving] = {}
         self._next_number = 0
         self.step, self._seen = 0, -1
+        self._places: dict[pymunk.Body, Place] = {}
         self._surroundings = Surroundings(self._walls, self._standing)
 
     def add(self, body: pymunk.Body, shape: Shape, reflectance: float = 1.0) -> None:
@@ -51,13 +52,23 @@ class Scene:
     def surroundings(self) -> Surroundings:
         """Give all that can be seen now."""
         if self._seen != self.step:
-            self._surroundings = Surroundings(self._walls, self._discs.beside(self._standing), self._polygons.edges())
-            self._seen = self.step
+            self._look()
         return self._surroundings
+
+    def places(self) -> Mapping[pymunk.Body, Place]:
+        """Give where everything is now that moves."""
+        if self._seen != self.step:
+            self._look()
+        return self._places
+
+    def _look(self) -> None:
+        self._places = places = {body: (*body.position, body.angle) for body in self._moving}
+        self._surroundings = Surroundings(self._walls, self._discs.at(places), self._polygons.at(places))
+        self._seen = self.step
 
     def _sort(self) -> None:
         moving = list(self._moving.values())
-        self._discs = _Discs([each for each in moving if each.shape.circle is not None])
+        self._discs = _Discs(self._standing, [each for each in moving if each.shape.circle is not None])
         self._polygons = _Polygons([each for each in moving if each.shape.circle is None])
         self.moved()
 
@@ -70,21 +81,27 @@ class _Moving(NamedTuple):
 
 
 class _Discs:
-    """Circles that move: all but their places is known beforehand."""
+    """Fixed circles and those that move: all but where these are is known beforehand."""
 
-    def __init__(self, moving: Sequence[_Moving] = ()) -> None:
-        self._bodies = [each.body for each in moving]
-        self._radius = np.array([each.shape.circle for each in moving], dtype=np.float64)
-        self._reflectance = np.array([each.reflectance for each in moving], dtype=np.float64)
-        self._number = np.array([each.number for each in moving], dtype=np.intp)
+    def __init__(self, fixed: Circles, moving: Sequence[_Moving] = ()) -> None:
+        self._bodies, self._first = [each.body for each in moving], len(fixed.x)
+        own = Circles(
+            np.zeros(len(moving)),
+            np.zeros(len(moving)),
+            np.array([each.shape.circle for each in moving], dtype=np.float64),
+            np.array([each.reflectance for each in moving], dtype=np.float64),
+            np.array([each.number for each in moving], dtype=np.intp),
+        )
+        self._all = Circles(*(np.concatenate(both) for both in zip(fixed, own, strict=True)))
+        self._centres = np.stack(self._all[:2])
 
-    def beside(self, fixed: Circles) -> Circles:
-        """Give fixed circles, and these as they are now."""
+    def at(self, places: Mapping[pymunk.Body, Place]) -> Circles:
+        """Give all circles, with these places of those that move."""
         if not self._bodies:
-            return fixed
-        x, y = zip(*(body.position for body in self._bodies), strict=True)
-        own = (np.array(x), np.array(y), self._radius, self._reflectance, self._number)
-        return Circles(*(np.concatenate(both) for both in zip(fixed, own, strict=True)))
+            return self._all
+        centres = self._centres.copy()
+        centres[:, self._first :] = np.array([places[body] for body in self._bodies])[:, :2].T
+        return Circles(centres[0], centres[1], *self._all[2:])
 
 
 class _Polygons:
@@ -101,11 +118,11 @@ class _Polygons:
         self._reflectance = np.repeat([each.reflectance for each in moving], counts)
         self._number = np.repeat(np.array([each.number for each in moving], dtype=np.intp), counts)
 
-    def edges(self) -> Edges | None:
-        """Give all edges as they are now, if there are any."""
+    def at(self, places: Mapping[pymunk.Body, Place]) -> Edges | None:
+        """Give all edges, if there are any, with the bodies at these places."""
         if not self._bodies:
             return None
-        poses = [(*body.position, math.cos(body.angle), math.sin(body.angle)) for body in self._bodies]
+        poses = [(x, y, math.cos(angle), math.sin(angle)) for x, y, angle in map(places.__getitem__, self._bodies)]
         x, y, cos, sin = np.array(poses).T.take(self._which, axis=1)
         first, second = ((x + cos * a - sin * b, y + sin * a + cos * b) for a, b in (self._first, self._second))
         return Edges(columns(np.stack((*first, *second), axis=1), self._reflectance), x, y, self._radius, self._number)

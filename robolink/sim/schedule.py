@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -22,10 +23,13 @@ class Schedule:
             for device in robot.devices.values()
         ]
         self._periods = sorted({period for period, _, _ in self._all if period})
+        self._common = math.gcd(*self._periods) or 1
         self._rounds: dict[tuple[int, ...], _Round] = {}
 
     def readings(self, step: int) -> list[Reading]:
         """Measure with all sensors that are due at a step, robot by robot."""
+        if step % self._common:
+            return []
         periods = tuple([period for period in self._periods if step % period == 0])
         if not periods:
             return []

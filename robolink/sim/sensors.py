@@ -7,15 +7,15 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-import pymunk
 
 from robolink.sim.contacts import Sector
 from robolink.sim.description import Bumper, Encoders, Imu, Lidar, Pose, RangeFinder, Sensor
-from robolink.sim.lidar import Beams, Scan, distances_batch, limited, returns_batch
+from robolink.sim.lidar import Beams, Scan, limited, measured
 from robolink.sim.noise import LidarNoise, stream
 from robolink.sim.odometry import wrapped
 from robolink.sim.range_finder import nearest_in_cone
 from robolink.sim.readings import Inertia, Value, WheelState
+from robolink.sim.surroundings import Place
 
 if TYPE_CHECKING:
     from robolink.sim.robot import Robot
@@ -64,22 +64,19 @@ class LidarBank:
         self._lit, self._limits = first.intensities, first.range
         self._scene = lidars[0].robot.scene
         self._mounts = [(each.robot.body, each.description.offset) for each in lidars]
-        self._own = np.array([self._scene.number(each.robot.body) for each in lidars], dtype=np.intp)
+        self._own = [self._scene.number(each.robot.body) for each in lidars]
         disturbed = any(each.description.noise or each.description.dropout for each in lidars)
         self._noises = [each.noise for each in lidars] if disturbed else None
 
     def measure(self) -> list[Scan]:
         """Measure once with each."""
-        poses = np.array([pose_on(body, offset) for body, offset in self._mounts])
-        surroundings, lights = self._scene.surroundings(), None
-        if self._lit:
-            ranges, lights = returns_batch(self._beams, poses, surroundings, self._own)
-        else:
-            ranges = distances_batch(self._beams, poses, surroundings, self._own)
+        places, surroundings = self._scene.places(), self._scene.surroundings()
+        mounted = [mounted_on(places[body], offset) for body, offset in self._mounts]
+        ranges, lights = measured(self._beams, mounted, self._own, surroundings, self._lit)
         if self._noises is not None:
             ranges = np.array([noise.disturbed(row) for noise, row in zip(self._noises, ranges, strict=True)])
         ranges = limited(ranges, *self._limits)
-        if lights is None:
+        if not self._lit:
             return [Scan(*self._span, row) for row in ranges]
         lights = np.where(np.isposinf(ranges), 0.0, lights)
         return [Scan(*self._span, row, light) for row, light in zip(ranges, lights, strict=True)]
@@ -129,8 +126,8 @@ class RangeFinderSensor:
     def measure(self) -> float:
         """Give the distance in metres, inf for nothing within range and -inf for what is too near (REP 117)."""
         sensor, scene = self.description, self._robot.scene
-        pose, own = Pose(*pose_on(self._robot.body, sensor.offset)), scene.number(self._robot.body)
-        surroundings = scene.surroundings()
+        body, surroundings = self._robot.body, scene.surroundings()
+        pose, own = Pose(*mounted_on(scene.places()[body], sensor.offset)), scene.number(body)
         segments = surroundings.segments_near(pose.x, pose.y, sensor.range[1] + 8 * sensor.noise, own)
         circles = surroundings.circles
         others = np.stack((circles.x, circles.y, circles.radius))[:, circles.owner != own]
@@ -180,8 +177,8 @@ def device(sensor: Sensor, robot: Robot, seed: int) -> Device:
     raise TypeError(f"no device for {sensor!r}")
 
 
-def pose_on(body: pymunk.Body, offset: Pose) -> tuple[float, float, float]:
-    """Give the pose in the world of what is mounted on a robot's body: x, y, theta."""
-    (x, y), theta = body.position, body.angle
+def mounted_on(place: Place, offset: Pose) -> Place:
+    """Give the place in the world of what is mounted on a robot that is at a place."""
+    x, y, theta = place
     cos, sin = math.cos(theta), math.sin(theta)
     return x + cos * offset.x - sin * offset.y, y + sin * offset.x + cos * offset.y, theta + offset.theta

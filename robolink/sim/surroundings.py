@@ -13,6 +13,9 @@ from robolink.sim.tiles import Tiles
 
 Indices: TypeAlias = npt.NDArray[np.intp]
 
+Place: TypeAlias = "tuple[float, float, float]"
+"""x, y and heading in the world."""
+
 FIXED = -1
 """The owner of what never moves; what moves is numbered from 0."""
 
@@ -61,9 +64,12 @@ class Surroundings(NamedTuple):
         seen = (dx * dx + dy * dy <= farthest * farthest) & (self.edges.owner != own)
         return np.concatenate((walls, self.edges.columns.compress(seen, axis=1)), axis=1)
 
-    def circles_near(
-        self, places: Sequence[tuple[float, float, float]], reach: float, own: Sequence[int]
-    ) -> tuple[Indices, Indices]:
+    def has_circles_but(self, own: Sequence[int]) -> bool:
+        """Say whether there is any circle but the only sensor's own."""
+        owner = self.circles.owner
+        return len(owner) > 1 or (len(owner) == 1 and (len(own) > 1 or own[0] != owner[0]))
+
+    def circles_near(self, places: Sequence[Place], reach: float, own: Sequence[int]) -> tuple[Indices, Indices]:
         """Give all pairs (sensor, circle) of which the one may see the other; `own` is for each sensor."""
         column = np.array(places)[:, :2, None]
         dx, dy = self.circles.x - column[:, 0], self.circles.y - column[:, 1]

@@ -50,7 +50,7 @@ class World:
         for obstacle in description.obstacles:
             self._add_obstacle(obstacle)
         seed = description.world.seed if seed is None else seed
-        self._parts = Parts(self._space, self._scene, self._fleet, self._contacts, dt, seed)
+        self._parts = Parts(self._space, self._scene, self._fleet, self._contacts, dt, seed, description.walls)
         self._robots: dict[str, Robot] = {}
         self.robots: Mapping[str, Robot] = MappingProxyType(self._robots)
         for robot in description.robots:
@@ -61,6 +61,11 @@ class World:
     def time_ns(self) -> int:
         """Simulated nanoseconds since the start."""
         return self.steps * self.dt_ns
+
+    @property
+    def contacts(self) -> int:
+        """How often robots have run into something since the start, those that have left counted too."""
+        return self._contacts.begun
 
     def step(self) -> None:
         """Move the world on by one step of `dt`."""
@@ -87,7 +92,7 @@ class World:
         check_pose(description.name, description.pose)
         robot = self._add_robot(description)
         try:
-            check_place(self._space, robot.shapes, robot.name, description.pose)
+            check_place(self._space, robot.shapes, robot.name, description.pose, self.description.walls)
         except WorldError:
             self.delete(robot.name)
             raise

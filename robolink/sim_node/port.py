@@ -15,6 +15,7 @@ from robolink.node import Node
 from robolink.publisher import Publisher
 from robolink.sim import Pose, Robot
 from robolink.sim.description import Encoders, Lidar, OdomNoise, RangeFinder, Sensor
+from robolink.sim.robot_problems import tells_joints
 from robolink.sim.worldfile import steps_between
 from robolink.sim_node.commands import Commands
 from robolink.sim_node.messages import (
@@ -48,8 +49,7 @@ class Port:
             each.topic: (self._publisher(SENSOR_MESSAGES[type(each)], each.topic), self._frame_of(each))
             for each in description.sensors
         }
-        uncounted = description.wheels and not any(isinstance(each, Encoders) for each in description.sensors)
-        self._joints = self._publisher(JointState, "joint_states") if uncounted else None
+        self._joints = self._publisher(JointState, "joint_states") if tells_joints(description) else None
         self._odom_steps = steps_between(description.odom.rate, robot.dt)
         self._truth_steps = steps_between(description.ground_truth.rate, robot.dt)
         self.follow(robot)
@@ -75,6 +75,11 @@ class Port:
         """Publish what a sensor has measured."""
         publisher, frame = self._sensors[sensor.topic]
         publisher.publish(sensor_message(sensor, value, Header(stamp=stamp, frame_id=frame)))
+
+    @property
+    def state_steps(self) -> int:
+        """Only at multiples of so many steps is anything due of odometry and ground truth."""
+        return math.gcd(self._truth_steps, self._odom_steps)
 
     def publish_state(self, step: int, stamp: Time) -> TransformStamped | None:
         """Publish what is due at a step of odometry and ground truth; give the transform that the odometry tells."""

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from robolink.callback_groups import MutuallyExclusiveCallbackGroup
-from robolink.exceptions import NotFoundError, RobolinkError
+from robolink.exceptions import RobolinkError
 from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.node import Node
 from robolink.parameter import Parameter
@@ -107,8 +107,5 @@ class Services:
 
 
 def own_type(name: str) -> type[Any]:
-    """Give one of the service types that robolink's own workspace defines. Raises NotFoundError, DefinitionError."""
-    found = WORKSPACE_TYPES.get(PACKAGE, "srv", name)
-    if found is None:
-        raise NotFoundError("service type", name, where=PACKAGE)
-    return found
+    """Give one of the service types that robolink itself defines, also where a user's has its name."""
+    return WORKSPACE_TYPES.built_in(PACKAGE, "srv", name)

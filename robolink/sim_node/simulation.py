@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from robolink.exceptions import NotFoundError
 from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.interfaces.tf2_msgs.msg import TFMessage
@@ -9,6 +11,7 @@ from robolink.node import Node
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.sim import Pose, Robot, World, WorldDescription
 from robolink.sim.description import RobotDescription
+from robolink.sim_node.commands import Commands
 from robolink.sim_node.messages import time_message
 from robolink.sim_node.port import Port
 
@@ -33,6 +36,8 @@ class Simulation:
     ) -> None:
         self.description, self.world = description, World(description)
         self.ports: dict[str, Port] = {}
+        self._wheeled: list[Commands] = []
+        self._contacts, self._state_steps = 0, 1
         self._node, self._epoch, self._publish_map = node, epoch, publish_map
         self._clock = node.create_publisher(Clock, "/clock", 10) if publish_clock else None
         self._tf = node.create_publisher(TFMessage, "/tf", 100)
@@ -56,16 +61,17 @@ class Simulation:
             self._clock.publish(Clock(clock=stamp))
         for robot, sensor, value in world.readings():
             ports[robot.name].publish_reading(sensor, value, stamp)
-        moved = [port.publish_state(step, stamp) for port in ports.values()]
-        if transforms := [each for each in moved if each is not None]:
-            self._tf.publish(TFMessage(transforms=transforms))
-        for port in ports.values():
-            if port.touched():
-                self._warn_of_contact(port.robot)
+        if step % self._state_steps == 0:
+            moved = [port.publish_state(step, stamp) for port in ports.values()]
+            if transforms := [each for each in moved if each is not None]:
+                self._tf.publish(TFMessage(transforms=transforms))
+        if world.contacts != self._contacts:
+            self._contacts = world.contacts
+            self._warn_of_contacts()
 
     def reset(self) -> None:
         """Begin anew: every robot of the world file is where it started, others are gone, and time goes on."""
-        self._epoch, self.world = self.now, World(self.description)
+        self._epoch, self.world, self._contacts = self.now, World(self.description), 0
         self._open_ports()
 
     def spawn(self, robot: RobotDescription) -> None:
@@ -115,17 +121,20 @@ class Simulation:
             elif port.robot is not robots[name]:
                 port.follow(robots[name])
         self.ports = {name: kept.get(name) or self._port(robot) for name, robot in robots.items()}
+        self._state_steps = math.gcd(*(port.state_steps for port in self.ports.values())) or 1
         self._wheeled = [port.commands for port in self.ports.values() if port.commands.motors]
         self._publish_static()
 
     def _port(self, robot: Robot) -> Port:
         return Port(self._node, robot, "" if robot.name == self._only else f"{robot.name}/")
 
-    def _warn_of_contact(self, robot: Robot) -> None:
-        pose = robot.pose
-        self._node.get_logger().warning(
-            f"{robot.name} ran into something at ({pose.x:.2f}, {pose.y:.2f})", throttle_duration_sec=1.0
-        )
+    def _warn_of_contacts(self) -> None:
+        for port in self.ports.values():
+            if port.touched():
+                name, pose = port.robot.name, port.robot.pose
+                self._node.get_logger().warning(
+                    f"{name} ran into something at ({pose.x:.2f}, {pose.y:.2f})", throttle_duration_sec=1.0
+                )
 
     def _publish_static(self) -> None:
         stamp = time_message(self.now)

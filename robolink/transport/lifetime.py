@@ -26,8 +26,11 @@ class Mortal(Protocol):
 
 AFTER_FORK = "Zenoh does not survive a fork: start processes by 'spawn', or before the first session is opened"
 
-LAST_WAIT = 0.5
-"""Seconds that the exit waits for sessions that are still closing; one with 30 peers takes 0.3 s."""
+LAST_WAIT = 3.0
+"""Seconds that the exit waits for sessions that are still closing.
+
+One with 30 peers takes 0.3 s; four that leave a busy machine at once take 0.7 s and more.
+"""
 
 _open: weakref.WeakSet[Mortal] = weakref.WeakSet()
 _unfinished: weakref.WeakSet[threading.Thread] = weakref.WeakSet()

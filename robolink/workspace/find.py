@@ -9,6 +9,7 @@ same.
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -206,7 +207,15 @@ def _find_file(kind: str, name: str, inside: str, workspace: Folder, suffixes: t
     for each in _files_in(inside, workspace, suffixes):
         if canonical(each.stem) == asked:
             return each
-    raise _not_found(kind, name, workspace, (each.stem for each in _files_in(inside, workspace, suffixes)))
+    known = [*(each.stem for each in _files_in(inside, workspace, suffixes)), *_file_names(workspace, suffixes)]
+    raise _not_found(kind, name, workspace, known)
+
+
+def _file_names(workspace: Folder, suffixes: tuple[str, ...]) -> Iterator[str]:
+    """Yield the names that `_as_path` would have found."""
+    for folder in (Path(), *_workspaces(workspace)):
+        with contextlib.suppress(OSError):  # the working directory has been deleted, or may not be read
+            yield from sorted(each.name for each in folder.iterdir() if each.suffix in suffixes)
 
 
 def _list_files(inside: str, workspace: Folder, suffixes: tuple[str, ...]) -> list[Path]:

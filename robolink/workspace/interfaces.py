@@ -82,6 +82,14 @@ class WorkspaceTypes:
                 return self._class_of(folder / file, f"{package}/{kind}/{short}")
         return None
 
+    def built_in(self, package: str, kind: str, short: str) -> type[Any]:
+        """Give the class of a type of the built-in workspace, whatever others define by its name.
+
+        Raises DefinitionError.
+        """
+        path = built_in_workspace() / INTERFACES / package / kind / f"{short}.{kind}"
+        return self._class_of(path, f"{package}/{kind}/{short}")
+
     def _class_of(self, path: Path, type_name: str) -> type[Any]:
         with self._lock:
             if path in self._making:

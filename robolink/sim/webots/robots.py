@@ -17,7 +17,7 @@ from robolink.sim.webots.geometry import ORIGIN, Part, Placement, turned
 from robolink.sim.webots.sensors import lacking, measured, rate_near, sensors
 from robolink.sim.webots.things import GROUPS, JOINTS, SOLIDS, Found, inside, mass
 from robolink.sim.webots.vrml import Node
-from robolink.sim.webots.wheels import SPEEDS, heading, listed, motors, resolutions, wheels
+from robolink.sim.webots.wheels import SPEEDS, heading, listed, motors, resolutions, strangers, wheels
 
 NO_SHAPE = 0.1
 """Metres: radius of a robot without any shape."""
@@ -94,6 +94,8 @@ def _descend(node: Node, outer: Placement) -> Iterator[tuple[Node, Placement]]:
 
 
 def _described(found: Found, node: Node, pieces: Pieces, pose: Pose, dt: float) -> tuple[RobotDescription, list[str]]:
+    for device in strangers(pieces.nodes):
+        found.note_unknown(device)
     shape = _shape(pieces.outline)
     turning, notes = wheels(motors(found, pieces.nodes), pieces.outline)
     description = RobotDescription(

@@ -22,6 +22,9 @@ RIGHT = ("right", "dir", "der", "droit", "rechts", "dest")
 MOTOR_SPEED = 10.0
 """rad/s: Webots' default `maxVelocity` of a motor."""
 
+HELD = frozenset({"Brake", "LinearMotor", "PositionSensor", "RotationalMotor"})
+"""What a joint has as its device."""
+
 RADII = (0.01, 0.25)
 """Metres: a wheel that a world says nothing about has at least and at most this radius."""
 
@@ -53,6 +56,12 @@ def motors(found: Found, pieces: Iterable[tuple[Node, Placement]]) -> list[Motor
 def devices(joint: Node) -> list[Node]:
     """Give the motors and sensors of a joint."""
     return [each for field in ("device", "device2") if field in joint.fields for each in joint.nodes(field)]
+
+
+def strangers(pieces: Iterable[tuple[Node, Placement]]) -> list[Node]:
+    """Give the devices of joints that are nothing that a joint can have: most are misspelt."""
+    held = [device for node, _ in pieces if node.type in JOINTS for device in devices(node)]
+    return [each for each in held if each.type not in HELD]
 
 
 def resolutions(pieces: Iterable[tuple[Node, Placement]]) -> list[float]:
