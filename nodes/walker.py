@@ -151,7 +151,7 @@ class Walker(Node):
         self.steps = self.create_publisher(Int32, "steps", latched)
         self.walk_path = self.create_publisher(Path, "walk_path", latched)
         self.tf = TransformBroadcaster(self)
-        self.create_service(Trigger, "start_walk", self.on_start)
+        start = self.create_service(Trigger, "start_walk", self.on_start)
         self.create_service(Trigger, "stop_walk", self.on_stop)
         self.create_subscription(Twist, "cmd_vel", self.on_cmd_vel, 10)
         self.timer = self.create_timer(duration.value, self.on_timer)
@@ -160,7 +160,7 @@ class Walker(Node):
         if autostart.value:
             self.start()
         else:
-            self.get_logger().info("standing; robolink service call /start_walk has it walk")
+            self.get_logger().info(f"standing; robolink service call {start.service_name} has it walk")
 
     def on_start(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Begin the route, unless it is being walked."""

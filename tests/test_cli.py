@@ -267,6 +267,17 @@ def test_a_script_gets_its_own_arguments_and_gives_its_exit_code(write: Write) -
     assert out == "['one', '--two', '-p', '--ros-args', '-r', 'a:=b']\n"
 
 
+@posix_only
+def test_words_that_do_nothing_are_told_of(write: Write) -> None:
+    write("nodes/talker.py", TALKER)
+    with started("run", "talker", "word:=ho", "my_world.wbt") as process:
+        assert wait_for(process, "up") == "up /talker hi"
+        process.send_signal(signal.SIGINT)
+        first, second = process.communicate(timeout=PATIENCE)[1].splitlines()
+    assert first == "robolink: 'word:=ho' does nothing without an option: -p word:=ho sets a parameter, -r renames"
+    assert second.startswith("robolink: nobody reads 'my_world.wbt': ")
+
+
 @pytest.mark.parametrize(
     ("end", "code", "said"), [("sys.exit(3)", 3, ""), ("sys.exit('sorry')", 1, "sorry\n"), ("sys.exit()", 0, "")]
 )

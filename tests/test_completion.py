@@ -136,6 +136,9 @@ def test_what_is_no_command_is_met_with_silence(line: str, tab: Tab) -> None:
         ("robolink service call /reset ", ["std_srvs/srv/Trigger"]),
         ("robolink service call /reset std_srvs/srv/Set", ["std_srvs/srv/SetBool"]),
         ("robolink service find std_srvs/srv/T", ["std_srvs/srv/Trigger"]),
+        ("robolink plot odom /ch", ["/chatter"]),
+        ("robolink plot topic /chatter lab/", ["lab/chat"]),
+        ("robolink plot path --world cor", ["corners"]),
     ],
 )
 @pytest.mark.usefixtures("node")

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,6 +17,7 @@ from hypothesis import strategies as st
 from robolink import Node
 from robolink.cli import main
 from robolink.cli.plot import record, values, ways
+from robolink.interfaces.diagnostic_msgs.msg import DiagnosticStatus
 from robolink.interfaces.geometry_msgs.msg import Point, PointStamped, PoseStamped, TransformStamped, Twist, Vector3
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.nav_msgs.msg import Path as PathMessage
@@ -154,6 +158,17 @@ def test_the_simulated_world_is_drawn_below(node: Node, tmp_path: Path, drawn: l
     assert drawn[0].get_xlim()[1] > 6.9  # the corners' room is 7 m wide
 
 
+def test_what_is_left_out_of_a_world_of_webots_is_told_in_a_line(
+    node: Node, tmp_path: Path, drawn: list[Any], capsys: Captured
+) -> None:
+    latch(node, "odom", odometry(3.0, 1.0), odometry(4.0, 1.0))
+    path = tmp_path / "w.wbt"
+    path.write_text("#VRML_SIM R2023b utf8\nFridge { }\n")
+    with spinning(node):
+        assert plot("odom", "/lab/odom", "--out", tmp_path / "a.png", "--world", path) == 0
+    assert capsys.readouterr().err.startswith(f"robolink: {path}: not known here, so it is not there: Fridge\n")
+
+
 def test_a_world_that_cannot_be_found_is_told_of_and_the_way_is_drawn(
     node: Node, tmp_path: Path, drawn: list[Any], capsys: Captured
 ) -> None:
@@ -189,12 +204,36 @@ def test_elements_of_sequences_and_booleans_are_values(node: Node, tmp_path: Pat
     assert [line.get_ydata().tolist() for line in drawn[0].lines] == [[2.0], [1.0]]
 
 
+def test_a_byte_is_a_value_and_messages_that_lack_the_element_are_left_out(
+    node: Node, tmp_path: Path, drawn: list[Any]
+) -> None:
+    latch(node, "level", DiagnosticStatus(level=DiagnosticStatus.WARN))
+    latch(node, "scan", LaserScan(ranges=[1.0]), LaserScan(ranges=[1.0, 2.0]), LaserScan())
+    with spinning(node):
+        assert plot("topic", "lab/level.level", "lab/scan.ranges[1]", "--out", tmp_path / "values.png") == 0
+    assert [line.get_ydata().tolist() for line in drawn[0].lines] == [[1.0], [2.0]]
+
+
+@pytest.mark.parametrize("backend", ["tkagg", "module://of_a_notebook"])
+def test_a_file_needs_no_screen_whatever_the_shell_says(tmp_path: Path, backend: str) -> None:
+    program = """
+import sys; from pathlib import Path; from robolink.cli.plot.record import Wish, check
+check(Wish(Path(sys.argv[1])))
+import matplotlib.pyplot as plt; plt.subplots()
+"""
+    environment = {**os.environ, "MPLBACKEND": backend, "DISPLAY": "", "WAYLAND_DISPLAY": ""}
+    command = [sys.executable, "-c", program, str(tmp_path / "x.png")]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 # What goes wrong
 
 
 def test_what_cannot_be_drawn_is_said_in_a_line(node: Node, tmp_path: Path, capsys: Captured) -> None:
     latch(node, "name", String(data="r2"))
     latch(node, "cmd_vel", Twist())
+    latch(node, "scan", LaserScan(ranges=[1.0, 2.0]))
     node.create_publisher(Odometry, "silent", 10)
     node.create_publisher(Float64, "value", 10)
     out = tmp_path / "x.png"
@@ -205,7 +244,9 @@ def test_what_cannot_be_drawn_is_said_in_a_line(node: Node, tmp_path: Path, caps
         ("topic", "/lab/value.data"): "nothing was heard on /lab/value",
         ("topic", "/lab/name.data"): "/lab/name.data is no number but string",
         ("topic", "/lab/cmd_vel.linear"): "is no number but geometry_msgs/msg/Vector3: name a field of it",
-        ("topic", "/lab/cmd_vel.linear.w"): "no field 'w'; there is x, y, z",
+        ("topic", "/lab/cmd_vel.linear.w"): "robolink: linear.w: no field 'w'; there is x, y, z",
+        ("topic", "/lab/scan.ranges"): "is a sequence of float32: say which, as in /lab/scan.ranges[0]",
+        ("topic", "/lab/scan.ranges[9]"): "ranges[9]: there are 2 elements, no [9]",
     }
     with spinning(node):
         for arguments, expected in wrong.items():
@@ -221,6 +262,10 @@ def test_a_topic_that_nobody_publishes_is_waited_for_and_given_up(
 ) -> None:
     monkeypatch.setattr(ways, "LEAST_WAIT", 0.1)
     monkeypatch.setattr(values, "LEAST_WAIT", 0.1)
+    node.create_publisher(Odometry, "odom", 10)
+    with spinning(node):
+        assert plot("odom", "/odom", "--out", tmp_path / "x.png") == 1
+    assert "nobody publishes /odom (did you mean '/lab/odom'?): see" in capsys.readouterr().err
     for arguments in (["odom", "/nothing"], ["topic", "/nothing.x"], ["topic", "nothing/x"]):
         assert plot(*arguments, "--out", tmp_path / "x.png") == 1
         assert "nothing" in capsys.readouterr().err

@@ -121,6 +121,11 @@ def test_it_walks_its_route_when_it_is_asked_to(system: Drive) -> None:
     assert "walked the route: 20 steps so far, at (4.50, 1.50), 4.74 m from the start" in system.log
 
 
+def test_it_says_where_it_waits_to_be_asked(system: Drive) -> None:
+    system.add(walker.Walker, namespace="bumi")
+    assert "standing; robolink service call /bumi/start_walk has it walk" in system.log
+
+
 def test_it_takes_a_step_each_half_second_from_the_start_on(system: Drive) -> None:
     steps = system.hear(Int32, "steps")
     node = system.add(walker.Walker, {"autostart": True})

@@ -163,6 +163,14 @@ def test_a_robot_without_shape_or_motor_only_looks_on() -> None:
     assert world('Robot { name "judge" supervisor TRUE }') == (WorldDescription(world=world("")[0].world), ())
 
 
+def test_devices_of_joints_that_are_not_known_are_told_of() -> None:
+    _, told = world(f"Robot {{ children [ {BODY} {WHEELS.replace('RotationalMotor', 'RotacionalMotor')} ] }}")
+    assert told == (
+        "not known here, so it is not there: RotacionalMotor (2 times)",
+        "robot: no motor turns its wheels, only cmd_vel drives it",
+    )
+
+
 def test_names_as_ros_has_them() -> None:
     text = f'Robot {{ name "my robot" children [ {BODY} {WHEELS} ] }}'
     moved = text.replace("{ name", "{ translation 2 0 0 name", 1)
@@ -173,6 +181,8 @@ def test_names_as_ros_has_them() -> None:
         "my_robot_2: this is how the robot 'my robot' is called here",
         "robot_2nd: this is how the robot '2nd' is called here",
     )
+    (accented,) = world(text.replace("my robot", "meu_robô"))[0].robots
+    assert accented.name == "meu_robo"
     twice = robot(BODY + WHEELS.replace("right wheel", "left wheel"))
     assert [each.motor for each in twice.wheels] == ["left wheel", "left wheel_2"]
 

@@ -183,7 +183,10 @@ def test_the_schema_says_what_every_key_means() -> None:
 
 
 @pytest.mark.parametrize(("suffix", "begins"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("PDF", b"%PDF")])
-def test_a_picture_is_drawn(workspace: Path, suffix: str, begins: bytes, capsys: Captured) -> None:
+def test_a_picture_is_drawn(
+    workspace: Path, suffix: str, begins: bytes, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delitem(sys.modules, "matplotlib.pyplot", raising=False)  # another test's
     assert main(["world", "draw", "lab", f"lab.{suffix}"]) == 0
     assert Path(f"lab.{suffix}").read_bytes().startswith(begins)
     assert capsys.readouterr() == ("", "")

@@ -72,7 +72,7 @@ def run(asked: Asked, ros_args: list[str], workspace: str | None) -> int:
     settle(source, workspace)
     take_names()
     sys.argv = [str(source.path or source.name), *args, *ros_args]
-    return outcome(lambda: _start(source), terminated)
+    return outcome(lambda: _start(source, args), terminated)
 
 
 def prepare() -> list[int]:
@@ -196,12 +196,22 @@ def _note_termination() -> list[int]:
     return noted
 
 
-def _start(source: NodeSource) -> Any:
+def _start(source: NodeSource, args: list[str]) -> Any:
     found = load_node(source)
+    _tell_of_unread(args, nobody_reads=isinstance(found, type))
     if isinstance(found, type):
         return spin(found)
     _check_needs_nothing(found)
     return found()
+
+
+def _tell_of_unread(args: list[str], *, nobody_reads: bool) -> None:
+    """Tell of words that do nothing: parameters without `-p`, and any for a Node class, which is no program."""
+    for each in args:
+        if ":=" in each:
+            complain(f"'{each}' does nothing without an option: -p {each} sets a parameter, -r renames")
+        elif nobody_reads:
+            complain(f"nobody reads '{each}': what a node shall know is a parameter, as in -p NAME:=VALUE")
 
 
 def _exit_code(act: Callable[[], Any]) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -63,6 +64,7 @@ def draw_world(
     from robolink.drawing import check_picture, save_world
     from robolink.sim.worldfile import load_world
 
+    os.environ["MPLBACKEND"] = "agg"  # the shell's may want a screen, or a notebook's module, and a file needs none
     check_picture(out)
     with _told_warnings():
         description = load_world(_found(file, workspace))

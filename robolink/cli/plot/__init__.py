@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from robolink.cli import complete
 from robolink.cli.options import seconds
 
 app = typer.Typer(no_args_is_help=True, help="Draw where robots go, and values over time (needs matplotlib).")
@@ -21,14 +22,20 @@ Duration = Annotated[
 World = Annotated[
     str,
     typer.Option(
-        "--world", metavar="NAME", help="Draw over this world; by default the one that is simulated; 'none' for none."
+        "--world",
+        metavar="NAME",
+        help="Draw over this world; by default the one that is simulated; 'none' for none.",
+        autocompletion=complete.world_files,
     ),
 ]
 
 
 @app.command("odom")
 def plot_odometry(
-    topics: Annotated[list[str], typer.Argument(metavar="TOPIC...", help="Such as /odom /ground_truth.")],
+    topics: Annotated[
+        list[str],
+        typer.Argument(metavar="TOPIC...", help="Such as /odom /ground_truth.", autocompletion=complete.topic_names),
+    ],
     out: Out = None,
     duration: Duration = None,
     world: World = "",
@@ -41,7 +48,12 @@ def plot_odometry(
 
 @app.command("path")
 def plot_path(
-    topics: Annotated[list[str], typer.Argument(metavar="TOPIC...", help="Of nav_msgs/msg/Path, such as /plan.")],
+    topics: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="TOPIC...", help="Of nav_msgs/msg/Path, such as /plan.", autocompletion=complete.topic_names
+        ),
+    ],
     out: Out = None,
     duration: Duration = None,
     world: World = "",
@@ -56,7 +68,11 @@ def plot_path(
 def plot_topic(
     fields: Annotated[
         list[str],
-        typer.Argument(metavar="TOPIC.FIELD...", help="Such as /odom.twist.twist.linear.x or /cmd_vel/linear/x."),
+        typer.Argument(
+            metavar="TOPIC.FIELD...",
+            help="Such as /odom.twist.twist.linear.x or /cmd_vel/linear/x.",
+            autocompletion=complete.topic_names,
+        ),
     ],
     out: Out = None,
     duration: Duration = None,

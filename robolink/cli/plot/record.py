@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from robolink.cli.session import tell
 from robolink.cli.topic.echo import matching_qos
 from robolink.cli.types import message_type
-from robolink.exceptions import RobolinkError
+from robolink.exceptions import RobolinkError, nearest
 from robolink.executors import SingleThreadedExecutor
 from robolink.task import Future
 from robolink.wire import EndpointKind
@@ -46,10 +47,13 @@ def check(wish: Wish) -> None:
             raise PlotError(f"'{wish.out}' is no picture: its name must end in {', '.join(FORMATS)}")
         if not wish.out.absolute().parent.is_dir():
             raise PlotError(f"no folder '{wish.out.absolute().parent}' to write '{wish.out.name}' to")
+        os.environ["MPLBACKEND"] = "agg"  # the shell's may want a screen, or a notebook's module, and a file needs none
     try:
         import matplotlib.pyplot as plt
     except ImportError:
         raise PlotError("plots need matplotlib: pip install 'robolink[plot]'") from None
+    except ValueError as error:
+        raise PlotError(f"matplotlib does not start, see MPLBACKEND: {error}") from None
     if wish.out is None and plt.get_backend().lower() == "agg":
         raise PlotError(WINDOW_NEEDED)
 
@@ -67,7 +71,8 @@ def wait_for(context: Context, topic: str, deadline: float | None) -> type[Any]:
     while not published():
         left = None if deadline is None else deadline - time.monotonic()
         if left is not None and left <= 0:
-            raise PlotError(f"nobody publishes {topic}: see `robolink topic list`")
+            near = nearest(topic, {each.name for each in graph.endpoints(EndpointKind.PUBLISHER)})
+            raise PlotError(f"nobody publishes {topic}{near}: see `robolink topic list`")
         graph.wait_for(published, min(0.5, left) if left is not None else 0.5)
         if not told and time.monotonic() - begin > TOLD_AFTER:
             tell(f"waiting for somebody to publish {topic}")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from robolink.cli import show as fields
 from robolink.cli.plot.record import PlotError, Wish, check, listen, show, wait_for
 from robolink.cli.session import node_of, opened
+from robolink.exceptions import EncodeError
 from robolink.wire import EndpointKind
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ class Curve:
     def __init__(self, topic: str, field: str) -> None:
         self.topic, self.field = topic, field
         self.values: list[float] = []
+        self.lacked = ""
+        """What the last message without such a value had instead."""
         self.arrived: list[float] = []
         self.stamped: list[float] = []
 
@@ -36,8 +39,13 @@ class Curve:
         return f"{self.topic}.{self.field}"
 
     def take(self, message: Any) -> None:
-        """Add a message's value."""
-        self.values.append(float(fields.field_of(message, self.field)))
+        """Add a message's value; one that lacks it, as a shorter sequence does, is left out."""
+        try:
+            value = fields.field_of(message, self.field)
+        except EncodeError as error:
+            self.lacked = _without_option(error)
+            return
+        self.values.append(float(value[0] if isinstance(value, bytes) else value))  # ROS's byte is bytes
         self.arrived.append(time.monotonic())
         stamp = getattr(getattr(message, "header", None), "stamp", None)
         if stamp is not None and (stamp.sec or stamp.nanosec):
@@ -56,7 +64,8 @@ def run(asked: list[str], wish: Wish) -> None:
             _check_number(types[curve.topic], curve)
         listen(node, {topic: (types[topic], _all_of(topic, curves)) for topic in types}, wish.duration)
     if not any(curve.values for curve in curves):
-        raise PlotError(f"nothing was heard on {', '.join(types)}")
+        lacked = next((curve.lacked for curve in curves if curve.lacked), "")
+        raise PlotError(lacked or f"nothing was heard on {', '.join(types)}")
     _draw([curve for curve in curves if curve.values], wish)
 
 
@@ -97,10 +106,20 @@ def _is_published(context: Context, topic: str) -> bool:
 
 
 def _check_number(msg_type: type[Any], curve: Curve) -> None:
-    kind = fields.check_path(msg_type, curve.field)
+    try:
+        kind = fields.check_path(msg_type, curve.field)
+    except EncodeError as error:
+        raise PlotError(_without_option(error)) from None
+    if kind.shape != "one":
+        raise PlotError(f"{curve.name} is a sequence of {kind.base}: say which, as in {curve.name}[0]")
     if kind.message is not None or not kind.base.startswith(NUMBERS):
         what = kind.message.__ros_type__ if kind.message is not None else kind.base
         raise PlotError(f"{curve.name} is no number but {what}: name a field of it")
+
+
+def _without_option(error: EncodeError) -> str:
+    """Say what is wrong with a field; here it is none of `--field`, as in `topic echo`."""
+    return str(error).removeprefix("--field ")
 
 
 def _times(curves: list[Curve]) -> list[list[float]]:

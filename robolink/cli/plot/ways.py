@@ -105,10 +105,12 @@ def _world(node: Node, asked: str) -> WorldDescription | None:
     if not name:
         return None
     from robolink.sim import load_world
+    from robolink.sim.webots import told_by
     from robolink.workspace import find_world
 
     try:
-        return load_world(find_world(name))
+        with told_by(lambda line: tell(f"robolink: {line}")):
+            return load_world(find_world(name))
     except RobolinkError as error:
         if asked:
             raise
