@@ -38,6 +38,7 @@ bench: $(READY)  ## Speed beside peers, in one run each
 	$(BIN)/python benchmarks/commands.py
 	$(BIN)/python benchmarks/executors.py
 	$(BIN)/python benchmarks/simulation.py
+	$(BIN)/python benchmarks/simulator.py
 	$(BIN)/python benchmarks/fleet.py
 	$(BIN)/python benchmarks/tf2.py
 

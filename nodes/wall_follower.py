@@ -1,138 +1,329 @@
-"""Follow a wall: keep it at one side and at a set distance, round inner and outer corners."""
+"""Follow a wall: keep it at one side and at a set distance, round inner and outer corners.
 
+The law, for a wall on the right (the left is its mirror image): the wall's nearest point lies d metres away, `off`
+radians ahead of straight right, and the robot drives at v. Along a straight wall d falls by v sin(off) a second, and
+`off` by the turning speed. So the robot turns by
+
+    turn = GAIN (off - wanted),    wanted = GAIN/5 (d - distance) / v, within STEEP
+
+which makes the error e = d - distance swing as e'' + GAIN e' + GAIN²/5 e = 0: damped well, and the same at any speed.
+The nearest point's bearing is the derivative of this controller, free of noise that differences would have. (The mean
+of the beams on one side, which one often sees, tells less: the same wall farther away, and turned towards the robot,
+may have the same mean.) The nearest point is looked for from where the robot will be in 1/GAIN seconds: round an
+outer corner that gives just the turn v/d that keeps the distance, with no error to drive it.
+
+What has left the view of a lidar that does not see all round is remembered for a short way, and moved as the robot
+was told to move: so it comes round outer corners that it no longer sees.
+"""
+
+import contextlib
 import math
 from typing import Any, NamedTuple
 
-from robolink import Node
-from robolink.exceptions import InvalidParameterValueException
+import numpy as np
+
+from robolink import Node, Parameter
+from robolink.exceptions import RobolinkError
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
+from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.laser import Array, returns
+from robolink.laser import Array, in_view, lane_ahead, returns
+from robolink.parameter_descriptors import described
 
 SIDE = (math.radians(-135), math.radians(30))
 """Where the followed wall is looked for: from the right rear to just across the heading."""
 
-AHEAD = math.radians(30)
-TURN_SPEED = 1.5
+GAIN = 3.0
+"""1/s. With fewer than five scans a second it is less, or the robot would swing."""
 
-K_BEARING = 3.0
-"""1/s. The nearest point's bearing tells how fast the wall comes nearer: it is the D of the controller."""
+STEEP = 1.0
+"""Radians: the most by which the robot drives towards the wall or away from it."""
 
-K_DISTANCE = 1.8
-"""1/s², over the speed: driving along a wall at v, distance and bearing swing at sqrt(K_DISTANCE) rad/s."""
+CLEARANCE = 0.05
+"""Metres that are to be free round the robot."""
 
-K_INTEGRAL = 0.5
-INTEGRAL_LIMIT = 0.1
+NEAREST = 0.04
+"""Metres: what lies farther than the nearest point by this has a weight of 1/e in the mean that smooths noise."""
+
+ACCELERATION = 1.0
+"""m/s²: so fast it gains speed, that the robot does what it is told, and what is remembered is where it should be."""
+
+BRAKING = 1.0
+"""Seconds: at full speed it begins so early to slow down before what is ahead."""
+
+BLIND_WAY = 2.5
+"""How far the robot drives by what it remembers, as a multiple of the distance."""
+
+DOUBT = 0.1
+"""And by this share of that way what is remembered counts as nearer: behind a round thing's edge it bulges."""
+
+LONGEST = 2.0
+"""Seconds between two scans that still belong together."""
 
 
-class Nearest(NamedTuple):
-    """The nearest return of a sector: metres (inf for none) and radians."""
+class Goal(NamedTuple):
+    """What to do; the parameters of the node have the same names. Metres, m/s, rad/s."""
+
+    distance: float = 0.5
+    speed: float = 0.3
+    side: str = "right"
+    robot_radius: float = 0.17
+    turn_speed: float = 1.5
+
+
+PARAMETERS = {
+    "distance": described("metres from the lidar to the wall; 5 cm more than robot_radius at least", 0.05, 10.0),
+    "speed": described("m/s along a straight wall", 0.01, 5.0),
+    "side": described("on which side the wall is kept"),
+    "robot_radius": described("metres from the lidar to the robot's outermost point", 0.01, 5.0),
+    "turn_speed": described("rad/s at most", 0.05, 10.0),
+    "timeout": described("seconds without a scan after which the robot stops", 0.05, 60.0),
+}
+PARAMETERS["side"].additional_constraints = "left or right"
+
+
+class Points(NamedTuple):
+    """What is near, seen by the robot: metres ahead, metres to the left, and metres driven since it was in view."""
+
+    x: Array = np.empty(0)
+    y: Array = np.empty(0)
+    ago: Array = np.empty(0)
+
+    def those(self, chosen: Any) -> "Points":
+        """Give some of them."""
+        return Points(self.x[chosen], self.y[chosen], self.ago[chosen])
+
+
+class Memory(NamedTuple):
+    """What one scan leaves to the next: its stamp in seconds, what the robot was told, and what was near."""
+
+    side: str = ""
+    stamp: float = math.nan
+    speed: float = 0.0
+    turn: float = 0.0
+    near: Points = Points()
+
+
+class Pace(NamedTuple):
+    """What a goal comes to: the distance and speed to hold, in m and m/s, and the gain in 1/s."""
+
+    distance: float
+    speed: float
+    gain: float
+
+
+class Target(NamedTuple):
+    """A point to deal with: metres (inf for none) and radians."""
 
     distance: float
     bearing: float
 
 
-class Goal(NamedTuple):
-    """What to hold: the distance in metres, the speed in m/s, and the side on which the wall should be."""
-
-    distance: float = 0.5
-    speed: float = 0.3
-    side: str = "right"
-
-
 class Decision(NamedTuple):
-    """What to do, the integral of the distance error (m s) to remember, and why, in words."""
+    """What to do, what to remember, and why, in words."""
 
     twist: Twist
-    integral: float
+    memory: Memory
     words: str
 
 
 class WallFollower(Node):
-    """Turns each scan into a velocity command."""
+    """Turns each scan into a velocity command; stops the robot when there are no scans, and at its own end."""
+
+    is_driving = False
 
     def __init__(self, **options: Any) -> None:
         super().__init__("wall_follower", **options)
-        self.declare_parameter("distance", Goal().distance)
-        self.declare_parameter("speed", Goal().speed)
-        self.declare_parameter("side", Goal().side)
-        side = self.get_parameter("side").value
-        if side not in ("left", "right"):
-            raise InvalidParameterValueException("side", side, "expected 'left' or 'right'")
-        self.integral = 0.0
+        self.add_on_set_parameters_callback(self.check_side)
+        for name, value in Goal()._asdict().items():
+            self.declare_parameter(name, value, PARAMETERS[name])
+        timeout = self.declare_parameter("timeout", 0.5, PARAMETERS["timeout"]).value
+        self.memory = Memory()
         self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
         self.create_subscription(LaserScan, "scan", self.on_scan, 10)
+        self.watchdog = self.create_timer(timeout, self.on_silence)
+
+    def check_side(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
+        """Refuse a side that is none."""
+        for each in parameters:
+            if each.name == "side" and each.value not in ("left", "right"):
+                reason = f"side: expected 'left' or 'right', got {each.value!r}"
+                return SetParametersResult(successful=False, reason=reason)
+        return SetParametersResult(successful=True)
 
     def on_scan(self, scan: LaserScan) -> None:
         """Decide and act."""
         goal = Goal(*(self.get_parameter(name).value for name in Goal._fields))
-        decision = follow(scan, goal, self.integral)
-        self.integral = decision.integral
+        decision = follow(scan, goal, self.memory)
+        self.memory = decision.memory
+        self.is_driving = True
         self.cmd_vel.publish(decision.twist)
         self.get_logger().info(decision.words, throttle_duration_sec=2.0)
+        self.watchdog.timer_period_ns = int(self.get_parameter("timeout").value * 1e9)
+        self.watchdog.reset()
+
+    def on_silence(self) -> None:
+        """Stop, and say why, once: the next scan winds the watchdog up again."""
+        self.watchdog.cancel()
+        self.memory = Memory()
+        self.stop()
+        seconds, topic = self.get_parameter("timeout").value, self.resolve_topic_name("scan")
+        self.get_logger().warning(f"no scan on {topic} for {seconds:g} s: the robot stands until one comes")
+
+    def stop(self) -> None:
+        """Leave the robot standing, if it was driving."""
+        if self.is_driving:
+            self.is_driving = False
+            self.cmd_vel.publish(Twist())
+
+    def destroy_node(self) -> None:
+        """Stop the robot, as long as somebody can be told."""
+        with contextlib.suppress(RobolinkError):
+            self.stop()
+        super().destroy_node()
 
 
-def follow(scan: LaserScan, goal: Goal, integral: float = 0.0) -> Decision:
-    """Hold the nearest return of the wall's side abeam and at the goal's distance; go to a wall if none is near.
+def follow(scan: LaserScan, goal: Goal, memory: Memory) -> Decision:
+    """Hold the wall's nearest point abeam and at the goal's distance; drive to a wall if none is near.
 
-    The left side is the right one in a mirror. inf, NaN, an empty scan, any field of view are fine: with nothing
-    in reach the robot drives ahead.
+    inf, NaN, any number of beams, any field of view and start angle are fine; with nothing in reach the robot drives
+    ahead. A scan that does not look ahead, or has measured nothing, makes it stand still.
     """
-    mirror = -1.0 if goal.side == "left" else 1.0
+    if not in_view(scan, np.zeros(1))[0]:
+        return Decision(Twist(), Memory(), "no beam looks ahead: standing still")
+    if memory.side != goal.side:
+        memory = Memory(goal.side)
+    dt = seconds_since(memory.stamp, scan)
+    pace = pace_for(goal, dt)
+    mirror = -1.0 if goal.side == "left" else 1.0  # what follows knows walls on the right alone
     angles, ranges = returns(scan)
     angles = angles * mirror
-    wall = nearest(angles, ranges, *SIDE)
-    ahead = nearest(angles, ranges, -AHEAD, AHEAD)
-    if wall.distance < 2 * goal.distance:
-        speed, turn, integral = keep(wall, goal, integral, scan.scan_time or 0.1)
+    near = joined(points(angles, ranges), unseen(remembered(memory, dt), scan, mirror), pace)
+
+    wall = nearest(near, memory.speed / pace.gain, pace)
+    if wall.distance < 2 * pace.distance:
+        off = keep(wall, room_on_the_left(near), goal, pace)
         words = f"following the wall on the {goal.side} at {wall.distance:.2f} m"
     else:
         target = easiest(angles, ranges)
-        speed, turn, integral = approach(target, goal.speed), 1.5 * target.bearing, 0.0
+        off = target.bearing
         words = f"driving to a wall {target.distance:.1f} m away" if len(ranges) else "no wall in reach: driving ahead"
-    speed *= min(1.0, max(0.0, ahead.distance / max(goal.distance, 0.1) - 0.8))
-    turn = mirror * min(TURN_SPEED, max(-TURN_SPEED, turn))
-    if speed < 0.3 * goal.speed and math.isfinite(ahead.distance):
-        words = f"turning {'left' if turn > 0 else 'right'}, {ahead.distance:.1f} m free ahead"
-    return Decision(Twist(linear=Vector3(x=speed), angular=Vector3(z=turn)), integral, words)
+    free = lane_ahead(angles, ranges, goal.robot_radius + CLEARANCE / 2)
+    speed, turn = drive(off, free, goal, pace)
+    if speed < 0.3 * pace.speed and math.isfinite(free):
+        words = f"turning {'left' if mirror * turn > 0 else 'right'}, {free:.1f} m free ahead"
+    speed = min(speed, memory.speed + ACCELERATION * dt) if dt else speed
+    twist = Twist(linear=Vector3(x=speed), angular=Vector3(z=mirror * turn))
+    return Decision(twist, Memory(goal.side, stamp_of(scan), speed, turn, near), words)
 
 
-def keep(wall: Nearest, goal: Goal, integral: float, dt: float) -> tuple[float, float, float]:
-    """Give speed, turning speed and integral that hold a wall at -90 degrees and the goal's distance.
+def keep(wall: Target, left: float, goal: Goal, pace: Pace) -> float:
+    """Give by how much to turn to hold the wall, in radians to the left.
 
-    The integral only grows near the goal, so that corners do not wind it up.
+    Where things on the `left` leave no room for the distance it holds the middle.
     """
-    off_beam, error = wall.bearing + math.pi / 2, wall.distance - goal.distance
-    if abs(off_beam) < 0.3 and abs(error) < 0.2:
-        integral = min(INTEGRAL_LIMIT, max(-INTEGRAL_LIMIT, integral + error * dt))
-    pull = K_DISTANCE / max(goal.speed, 0.1) * error
-    return (
-        approach(Nearest(wall.distance, off_beam), goal.speed),
-        K_BEARING * off_beam - pull - K_INTEGRAL * integral,
-        integral,
-    )
+    hold = max(goal.robot_radius + CLEARANCE, min(pace.distance, (wall.distance + left) / 2))
+    wanted = pace.gain / 5 * (wall.distance - hold) / max(pace.speed, 0.1)
+    return wall.bearing + math.pi / 2 - clipped(wanted, STEEP)
 
 
-def approach(target: Nearest, speed: float) -> float:
-    """Give the speed for a target that should lie at bearing 0: none while it is 75 degrees off or more."""
-    return speed * max(0.0, math.cos(min(1.2 * abs(target.bearing), math.pi / 2)))
+def drive(off: float, free: float, goal: Goal, pace: Pace) -> tuple[float, float]:
+    """Give speed and turning speed to turn by `off` radians with `free` metres ahead.
+
+    It slows down to turn, and for what is ahead; where it must stop it turns away from the wall.
+    """
+    stop = max(goal.robot_radius + CLEARANCE, 0.8 * pace.distance)
+    share = min(1.0, max(0.0, (free - stop) / max(goal.speed * BRAKING, 0.2 * pace.distance)))
+    blocked = max(0.0, 1.0 - 2.0 * share)
+    turn = (1.0 - blocked) * pace.gain * off + blocked * goal.turn_speed
+    speed = pace.speed * share * math.cos(min(1.2 * abs(off), math.pi / 2))
+    return speed, clipped(turn, goal.turn_speed)
 
 
-def easiest(angles: Array, ranges: Array) -> Nearest:
+def pace_for(goal: Goal, dt: float) -> Pace:
+    """Give what a goal comes to with a scan every `dt` seconds (0: not known)."""
+    distance = max(goal.distance, goal.robot_radius + CLEARANCE)
+    if dt == 0.0:
+        return Pace(distance, goal.speed, GAIN)
+    return Pace(distance, min(goal.speed, distance / 4 / dt), min(GAIN, 0.6 / dt))
+
+
+def nearest(near: Points, ahead: float, pace: Pace) -> Target:
+    """Find the wall's nearest point as it will be seen `ahead` metres from here.
+
+    It is the mean of the points around the nearest one, which smooths noise: the nearer the more they weigh, and
+    those far from the lidar more than those close by, since they stand for more of the wall.
+    """
+    x, y = near.x - ahead, near.y
+    distances, bearings = np.hypot(x, y), np.arctan2(y, x)
+    inside = (bearings >= SIDE[0]) & (bearings <= SIDE[1])
+    if not inside.any():
+        return Target(math.inf, 0.0)
+    at = np.where(inside, distances, math.inf).argmin()
+    chosen = inside & (np.hypot(x - x[at], y - y[at]) < pace.distance / 2)
+    weights = np.exp((distances[at] - distances) / NEAREST) * (near.x**2 + near.y**2 + 1e-9)
+    mean_x, mean_y, ago = np.average((x[chosen], y[chosen], near.ago[chosen]), axis=1, weights=weights[chosen])
+    return Target(math.hypot(mean_x, mean_y) - DOUBT * ago, math.atan2(mean_y, mean_x))
+
+
+def room_on_the_left(near: Points) -> float:
+    """Give the distance of the nearest point to the left, within 45 degrees; inf for none."""
+    return float(np.hypot(near.x, near.y)[near.y > np.abs(near.x)].min(initial=math.inf))
+
+
+def easiest(angles: Array, ranges: Array) -> Target:
     """Find the return to drive to, near and not far from the heading; straight ahead when there is none.
 
     The heading counts so that between two walls equally far the robot makes up its mind.
     """
     if not len(ranges):
-        return Nearest(math.inf, 0.0)
+        return Target(math.inf, 0.0)
     at = (ranges + 0.05 * abs(angles)).argmin()
-    return Nearest(float(ranges[at]), float(angles[at]))
+    return Target(float(ranges[at]), float(angles[at]))
 
 
-def nearest(angles: Array, ranges: Array, low: float, high: float) -> Nearest:
-    """Find the nearest return between two angles."""
-    inside = (angles >= low) & (angles <= high)
-    if not inside.any():
-        return Nearest(math.inf, 0.0)
-    at = ranges[inside].argmin()
-    return Nearest(float(ranges[inside][at]), float(angles[inside][at]))
+# What is around
+
+
+def points(angles: Array, ranges: Array) -> Points:
+    """Give a scan's returns as points."""
+    return Points(ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges)))
+
+
+def remembered(memory: Memory, dt: float) -> Points:
+    """Give what was near, as seen from where the robot must be now: `dt` seconds on, as it was told to drive."""
+    if dt == 0.0:
+        return Points()
+    way, half = memory.speed * dt, memory.turn * dt / 2  # on an arc one drives along its chord, turned by half
+    near, cos, sin = memory.near, math.cos(half), math.sin(half)
+    x, y = cos * near.x + sin * near.y - way, cos * near.y - sin * near.x
+    return Points(cos * x + sin * y, cos * y - sin * x, near.ago + way)
+
+
+def unseen(old: Points, scan: LaserScan, mirror: float) -> Points:
+    """Give the points that the scan does not see."""
+    return old.those(~in_view(scan, mirror * np.arctan2(old.y, old.x)))
+
+
+def joined(new: Points, old: Points, pace: Pace) -> Points:
+    """Put together what is seen and what is remembered of the surroundings, and forget what is far or long ago."""
+    both = Points(*(np.concatenate(each) for each in zip(new, old, strict=True)))
+    return both.those((np.hypot(both.x, both.y) < 3 * pace.distance) & (both.ago < BLIND_WAY * pace.distance))
+
+
+def stamp_of(scan: LaserScan) -> float:
+    """Give a scan's stamp in seconds."""
+    return scan.header.stamp.sec + scan.header.stamp.nanosec * 1e-9
+
+
+def seconds_since(stamp: float, scan: LaserScan) -> float:
+    """Give the seconds from a stamp to a scan, by its `scan_time` where stamps do not tell; 0 if nothing does."""
+    dt = stamp_of(scan) - stamp
+    if math.isnan(dt) or dt == 0.0:
+        dt = scan.scan_time
+    return dt if 0.0 < dt <= LONGEST else 0.0
+
+
+def clipped(value: float, most: float) -> float:
+    """Bring a value into [-most, most]."""
+    return min(most, max(-most, value))

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from robolink.message import Message
     from robolink.node import Node
     from robolink.parameter import Parameter
+    from robolink.pid import Pid
     from robolink.qos import QoSProfile
     from robolink.signals import SignalHandlerOptions, install_signal_handlers, uninstall_signal_handlers
     from robolink.spinning import (
@@ -47,6 +48,7 @@ _HOMES = {
     "Message": "message",
     "Node": "node",
     "Parameter": "parameter",
+    "Pid": "pid",
     "QoSProfile": "qos",
     "RobolinkError": "exceptions",
     "SignalHandlerOptions": "signals",
@@ -129,6 +131,7 @@ __all__ = [
     "Message",
     "Node",
     "Parameter",
+    "Pid",
     "QoSProfile",
     "RobolinkError",
     "SignalHandlerOptions",
