@@ -4,7 +4,8 @@
 
 Peers take part where they are installed (`pip install ir-sim mujoco pyrobosim`); pymunk always is. All see the same
 worlds from the same places, by turns, on one thread. Figures of one machine at one moment mean little; the ratios of
-one run carry over.
+one run carry over. At the end comes how exact it is (`exactness.py`); a hundred robots over the network are
+measured by `fleet.py`.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import math
 import statistics
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
+from benchmarks import exactness
 from benchmarks.peers import PEERS, Place, Scan, installed, irsim_world
 from benchmarks.worlds import maze, room
 from robolink import Context, Node, VirtualTime, logging
@@ -32,9 +34,9 @@ from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.sim import Pose, World, WorldDescription
 from robolink.sim.description import Lidar
-from robolink.sim.geometry import fixed_circles, fixed_segments
-from robolink.sim.lidar import Beams, distances, distances_batch
-from robolink.sim.surroundings import standing
+from robolink.sim.sensing.fixed import fixed_circles, fixed_segments
+from robolink.sim.sensing.lidar import Beams, distances, distances_batch
+from robolink.sim.sensing.surroundings import standing
 from robolink.sim_node import Runner, Simulation
 from robolink.task import Future
 
@@ -42,10 +44,12 @@ WORLDS = {"room": room, "maze": maze}
 BEAMS = (360, 1080)
 ROBOTS = (1, 10, 100)
 REACH = 12.0
-PLACES = 20
+PLACES = 100
 """Places from which each scanner looks in a round; slow ones look from the first only."""
 
-SLOW = ("pyrobosim",)
+SLOW = ("pyrobosim", "at once")
+WARM_UP = 1.0
+"""Simulated seconds that run before the clock is looked at: codecs are made at the first message."""
 LIDAR_GOALS = {"pymunk": {360: 15.0, 1080: 30.0}, "MuJoCo": {360: 2.0, 1080: 2.0}}
 GOALS = {"alone": {1: 500.0, 10: 100.0, 100: 12.0}, "with messages": {1: 150.0, 10: 20.0, 100: 2.0}}
 SHOWN = ("room", "maze")
@@ -62,23 +66,21 @@ def lidars(rounds: int) -> None:
         segments = fixed_segments(description)
         places = free_places(description, PLACES)
         scanners = {"robolink": own_scanner(description, beams)}
+        scanners |= {"at once": batch(description, beams, places)}
         scanners |= {peer.name: peer.make(segments, beams, REACH) for peer in PEERS if installed(peer.module)}
         took = {each: 1e6 * statistics.median(times) for each, times in by_turns(scanners, places, rounds).items()}
-        own = took.pop("robolink")
-        together = 1e6 * statistics.median(batches(description, beams, places) for _ in range(rounds))
+        own, together = took.pop("robolink"), took.pop("at once") / PLACES
         print(f"  {name}, {len(segments)} segments, {beams} beams: {own:.0f}, of {PLACES} at once {together:.0f} each")
         for peer, microseconds in took.items():
             goal = LIDAR_GOALS.get(peer, {}).get(beams) if name == "room" or peer == "pymunk" else None
             print(f"    {peer:10} {microseconds:9.0f}   {said(microseconds / own, goal)}")
 
 
-def batches(description: WorldDescription, beams: int, places: Sequence[Place]) -> float:
-    """Give the seconds a scan when all places are looked from at once."""
+def batch(description: WorldDescription, beams: int, places: Sequence[Place]) -> Scan:
+    """Look from all places at once, whatever place is asked for."""
     table, poses = Beams(Lidar("scan", beams=beams)), np.array(places)
     around = standing(fixed_segments(description), fixed_circles(description))
-    begin = time.perf_counter()
-    distances_batch(table, poses, around)
-    return (time.perf_counter() - begin) / len(places)
+    return lambda _: distances_batch(table, poses, around)
 
 
 def own_scanner(description: WorldDescription, beams: int) -> Scan:
@@ -89,11 +91,12 @@ def own_scanner(description: WorldDescription, beams: int) -> Scan:
 
 
 def by_turns(scanners: dict[str, Scan], places: Sequence[Place], rounds: int) -> dict[str, list[float]]:
-    """Give the seconds a scan of each scanner in each round."""
+    """Give the seconds a scan of each scanner in each round; its first scan of a round does not count."""
     took: dict[str, list[float]] = {name: [] for name in scanners}
     for _ in range(rounds):
         for name, scan in scanners.items():
             seen = places[:1] if name in SLOW else places
+            scan(places[0])
             begin = time.perf_counter()
             for place in seen:
                 scan(place)
@@ -122,28 +125,26 @@ def worlds(seconds: float) -> None:
     for name, count in itertools.product(SHOWN, ROBOTS):
         description = WORLDS[name](robots=count)
         goals = {kind: goal[count] for kind, goal in GOALS.items()} if name == "room" else {}
-        alone = times_as_fast(lambda: simulate(description, seconds), seconds)  # noqa: B023 - called at once
+        alone = max(simulate(description, seconds) for _ in range(3))
         print(f"  {name}, {count:3} robots: alone {said(alone, goals.get('alone'))}")
-        with_messages = simulate_with_messages(description, seconds)
+        with_messages = max(simulate_with_messages(description, seconds) for _ in range(3))
         print(f"{'':21} with messages {said(with_messages, goals.get('with messages'))}")
         if installed("irsim") and (name == "room" or count < 100):
             theirs = irsim_factor(description, count)
             print(f"{'':21} ir-sim {theirs:.3g}; robolink alone is {said(alone / theirs, 10.0)} times as fast")
 
 
-def times_as_fast(run: Callable[[], None], seconds: float) -> float:
-    """Give the real-time factor of what simulates so many seconds, the best of three runs."""
-    took = []
-    for _ in range(3):
-        begin = time.perf_counter()
-        run()
-        took.append(time.perf_counter() - begin)
-    return seconds / min(took)
-
-
-def simulate(description: WorldDescription, seconds: float) -> None:
-    """Let all robots drive in circles; read odometry and what sensors have measured, and send nothing."""
+def simulate(description: WorldDescription, seconds: float) -> float:
+    """Let all robots drive in circles, read odometry and what sensors have measured, and send nothing; the factor."""
     world = World(description)
+    live(world, WARM_UP)
+    begin = time.perf_counter()
+    live(world, seconds)
+    return seconds / (time.perf_counter() - begin)
+
+
+def live(world: World, seconds: float) -> None:
+    """Let a world go on for some simulated seconds."""
     robots = list(world.robots.values())
     for step in range(round(seconds * 1e9) // world.dt_ns):
         if step % 20 == 0:
@@ -166,6 +167,7 @@ def simulate_with_messages(description: WorldDescription, seconds: float) -> flo
         for topic, message_class in topics(description):
             listener.create_subscription(message_class, topic, lambda message: None, 10)
         executor.add_node(listener)
+        executor.spin_until_future_complete(Future[None](), timeout_sec=WARM_UP)
         begin = time.perf_counter()
         executor.spin_until_future_complete(Future[None](), timeout_sec=seconds)
         return seconds / (time.perf_counter() - begin)
@@ -218,6 +220,7 @@ def main() -> None:
         print(f"not installed, so not compared: {', '.join(absent)}\n")
     lidars(asked.rounds)
     worlds(asked.seconds)
+    exactness.report()
 
 
 if __name__ == "__main__":
