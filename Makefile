@@ -37,7 +37,7 @@ bench: $(READY)  ## Speed beside peers, in one run each
 	$(BIN)/python benchmarks/messaging.py
 	$(BIN)/python benchmarks/commands.py
 	$(BIN)/python benchmarks/executors.py
-	$(BIN)/python benchmarks/simulation.py
+	$(BIN)/python benchmarks/virtual_time.py
 	$(BIN)/python benchmarks/simulator.py
 	$(BIN)/python benchmarks/fleet.py
 	$(BIN)/python benchmarks/tf2.py

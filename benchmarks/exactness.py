@@ -24,7 +24,7 @@ from robolink.sim import Pose, World, WorldDescription  # noqa: E402
 from robolink.sim.description import Drive, Lidar, RobotDescription, Wall  # noqa: E402
 from robolink.sim.sensing.lidar import Beams, distances  # noqa: E402
 from robolink.sim.sensing.surroundings import standing  # noqa: E402
-from tests import test_closed_loops as loops  # noqa: E402
+from tests import closed_loops as loops  # noqa: E402
 
 NOTHING_ROUND = np.empty((0, 3))
 MINUTE = 6000

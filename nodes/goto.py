@@ -6,13 +6,14 @@ robolink action send_goal /navigate_to_pose nav2_msgs/action/NavigateToPose \
 
 import contextlib
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import robolink
 from robolink import Duration, Future, Node, Time
 from robolink.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from robolink.action.server import ServerGoalHandle
-from robolink.exceptions import ExternalShutdownException
+from robolink.approach import SETTLED, TURN_FIRST, Left, Limits, decide, has_arrived, is_reached, left_to
+from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.interfaces.builtin_interfaces.msg import Time as TimeMessage
 from robolink.interfaces.geometry_msgs.msg import Pose as PoseMessage
 from robolink.interfaces.geometry_msgs.msg import PoseStamped, Twist, Vector3
@@ -21,6 +22,7 @@ from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.laser import lane_ahead, returns
 from robolink.parameter_descriptors import described
+from robolink.plane import Pose, Speeds, pose_of, wrapped
 from robolink.tf2 import Buffer, TransformException, TransformListener
 from robolink.tf2.geometry import do_transform_pose
 
@@ -29,54 +31,11 @@ ACTION = "navigate_to_pose"
 Codes = FollowPath.Result
 """Nav2's numbers for why a goal was not reached."""
 
-K_TURN = 2.5
-"""1/s: how fast it turns for each radian that it is off."""
-
-K_SLOW = 1.5
-"""1/s: near the goal it drives so fast for each metre that is left."""
-
-K_SWING = 1.5
-"""How far it swings out for each radian that the goal's heading differs from the direction to it (more than 1)."""
-
-TURN_FIRST = math.radians(60)
-"""Off its direction by this or more it turns on the spot."""
-
-SETTLED = 0.3
-"""It drives on until it is within this share of the tolerances."""
-
 FEEDBACK_PERIOD, STALE_SCAN, LONGEST_STEP = 0.2, 1.0, 0.2
 """Seconds: from feedback to feedback, after which a scan is too old, and by which speeds change at once at most."""
 
 FARTHEST = 1e6
-
-
-class Pose(NamedTuple):
-    """A place in metres and a heading in radians."""
-
-    x: float
-    y: float
-    theta: float
-
-
-class Left(NamedTuple):
-    """What is left to a goal: metres, the direction to it as seen by the robot, and the turn at the end, in radians."""
-
-    distance: float
-    bearing: float
-    turn: float
-
-
-class Limits(NamedTuple):
-    """How the robot may drive; the parameters of the node have the same names."""
-
-    speed: float = 0.4
-    acceleration: float = 0.8
-    turn_speed: float = 1.2
-    turn_acceleration: float = 4.0
-    swing: float = 0.4
-    position_tolerance: float = 0.05
-    heading_tolerance: float = 0.1
-
+"""Metres: a place that is farther is a mistake."""
 
 PARAMETERS = {
     "speed": ("m/s at most", 0.01, 10.0),
@@ -87,13 +46,6 @@ PARAMETERS = {
     "position_tolerance": ("metres from the goal that are near enough", 0.005, 10.0),
     "heading_tolerance": ("radians off the goal's heading that are near enough", 0.01, 3.15),
 }
-
-
-class Speeds(NamedTuple):
-    """The speed ahead in m/s, and the turning speed in rad/s."""
-
-    v: float = 0.0
-    w: float = 0.0
 
 
 class Trip:
@@ -121,6 +73,8 @@ class Goto(Node):
     scanner it waits before what is in its lane.
     """
 
+    trip: Trip | None = None
+
     def __init__(self, **options: Any) -> None:
         super().__init__("goto", **options)
         for name, (words, low, high) in PARAMETERS.items():
@@ -130,7 +84,6 @@ class Goto(Node):
         self.declare_parameter("half_width", 0.22, described("metres, of the lane", 0.01, 10.0))
         self.declare_parameter("progress_timeout", 10.0, described("seconds to give up after", 0.5, 3600.0))
         self.declare_parameter("odom_timeout", 1.0, described("seconds without odometry to give up after", 0.1, 60.0))
-        self.trip: Trip | None = None
         self.here = PoseStamped()
         self.odom_at = self.get_clock().now()
         self.speeds, self.free = Speeds(), math.inf
@@ -192,11 +145,13 @@ class Goto(Node):
         self.get_logger().error(f"gave up: {words}")
         self.end(words, code)
 
-    def stop(self) -> None:
-        """Leave the robot standing, and its goal unreached."""
+    def destroy_node(self) -> None:
+        """Leave the robot standing, and its goal unreached, as long as somebody can be told."""
         if self.trip is not None:
-            self.command(Speeds())
-            self.end("the node has ended", Codes.UNKNOWN)
+            with contextlib.suppress(RobolinkError):
+                self.command(Speeds())
+                self.end("the node has ended", Codes.UNKNOWN)
+        super().destroy_node()
 
     def in_odom(self, goal: PoseStamped) -> Pose:
         """Give where a goal is in the frame of odometry, as far as is known now. Raises TransformException."""
@@ -294,76 +249,6 @@ class Goto(Node):
             self.give_up(f"no odometry on {self.resolve_topic_name('odom')} for {silent:.1f} s", Codes.TF_ERROR)
 
 
-# The law
-
-
-def left_to(goal: Pose, pose: Pose) -> Left:
-    """Tell how far it is from a pose to a goal."""
-    dx, dy = goal.x - pose.x, goal.y - pose.y
-    return Left(math.hypot(dx, dy), wrapped(math.atan2(dy, dx) - pose.theta), wrapped(goal.theta - pose.theta))
-
-
-def has_arrived(left: Left, limits: Limits, already: bool) -> bool:
-    """Say whether the robot is at the place and has only to turn; once it was, a little drift does not count."""
-    near = left.distance <= limits.position_tolerance
-    is_passing = abs(left.bearing) > math.pi / 2
-    return near and (already or is_passing or left.distance <= SETTLED * limits.position_tolerance)
-
-
-def is_reached(left: Left, limits: Limits, share: float = 1.0) -> bool:
-    """Say whether the goal is reached within the tolerances, that of the heading taken by a share of it."""
-    return left.distance <= limits.position_tolerance and abs(left.turn) <= share * limits.heading_tolerance
-
-
-def decide(left: Left, speeds: Speeds, limits: Limits, room: float, arrived: bool, dt: float) -> Speeds:
-    """Give the next speeds, `dt` seconds after `speeds`; `room` is what is free ahead, in metres.
-
-    On the way it aims beside the goal, so that it comes round to the goal's heading, but never off the straight line
-    by much more than `swing` metres. At the place it turns on the spot.
-    """
-    if arrived:
-        return Speeds(slowed(0.0, speeds.v, limits, dt), turning(left.turn, speeds.w, limits, dt))
-    off = wrapped(left.bearing - swing(left, limits))
-    most = min(limits.speed, K_SLOW * left.distance, braking(left.distance, limits))
-    v = slowed(most * max(0.0, 1.0 - abs(off) / TURN_FIRST), speeds.v, limits, dt)
-    return Speeds(min(v, braking(room, limits)), turning(off, speeds.w, limits, dt))
-
-
-def swing(left: Left, limits: Limits) -> float:
-    """Give the angle by which to aim beside the goal: it fades out near the goal, which would be circled otherwise."""
-    most = math.atan2(limits.swing, left.distance) * min(1.0, left.distance / (4.0 * limits.position_tolerance))
-    return clipped(K_SWING * wrapped(left.turn - left.bearing), most)
-
-
-def braking(distance: float, limits: Limits) -> float:
-    """Give the greatest speed from which the robot can stop within a distance."""
-    return math.sqrt(1.6 * limits.acceleration * distance) if distance > 0.0 else 0.0
-
-
-def slowed(wanted: float, speed: float, limits: Limits, dt: float) -> float:
-    """Give the speed ahead after `dt` seconds, which cannot change faster than the limit allows."""
-    return speed + clipped(wanted - speed, limits.acceleration * dt)
-
-
-def turning(off: float, speed: float, limits: Limits, dt: float) -> float:
-    """Give the turning speed after `dt` seconds: it falls in time not to turn too far."""
-    most = min(limits.turn_speed, math.sqrt(1.6 * limits.turn_acceleration * abs(off)))
-    return speed + clipped(clipped(K_TURN * off, most) - speed, limits.turn_acceleration * dt)
-
-
-def wrapped(angle: float) -> float:
-    """Bring an angle into [-pi, pi]."""
-    return math.remainder(angle, math.tau)
-
-
-def clipped(value: float, most: float) -> float:
-    """Bring a value into [-most, most]."""
-    return min(most, max(-most, value))
-
-
-# Messages
-
-
 def fault(pose: PoseMessage) -> str:
     """Say what is wrong with a pose; nothing if a robot can be there."""
     place, turn = pose.position, pose.orientation
@@ -380,12 +265,6 @@ def seconds(stamp: TimeMessage) -> float:
     return float(stamp.sec + stamp.nanosec * 1e-9)
 
 
-def pose_of(pose: PoseMessage) -> Pose:
-    """Read a pose in the plane; a quaternion of any length will do."""
-    place, q = pose.position, pose.orientation
-    return Pose(place.x, place.y, math.atan2(2 * (q.w * q.z + q.x * q.y), q.w**2 + q.x**2 - q.y**2 - q.z**2))
-
-
 def main(args: list[str] | None = None) -> None:
     """Run the node until Ctrl-C, then stop the robot."""
     with robolink.init(args=args), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
@@ -393,7 +272,7 @@ def main(args: list[str] | None = None) -> None:
         try:
             robolink.spin(node)
         finally:
-            node.stop()
+            node.destroy_node()
 
 
 if __name__ == "__main__":

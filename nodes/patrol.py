@@ -88,6 +88,9 @@ class Patrol(Node):
     A server that is not there, or ends on the way, is waited for; then the same waypoint is the goal again.
     """
 
+    trip: ClientGoalHandle | None = None
+    """The goal that the robot is on its way to."""
+
     def __init__(self, **options: Any) -> None:
         super().__init__("patrol", **options)
         self.add_on_set_parameters_callback(check_waypoints)
@@ -99,8 +102,6 @@ class Patrol(Node):
         self.group = ReentrantCallbackGroup()
         """Lets the patrol, which is one long callback, wait for others."""
         self.client = ActionClient(self, NavigateToPose, "navigate_to_pose", callback_group=self.group)
-        self.trip: ClientGoalHandle | None = None
-        """The goal that the robot is on its way to."""
         self.done: Future[None] = Future()
         self.begin = self.create_timer(0.0, self.patrol, callback_group=self.group)
 
@@ -184,10 +185,13 @@ class Patrol(Node):
         turn.z, turn.w = math.sin(waypoint.theta / 2), math.cos(waypoint.theta / 2)
         return goal
 
-    def stop(self) -> None:
-        """Have the robot stop where it is."""
-        if self.trip is not None:
-            self.trip.cancel_goal_async()
+    def destroy_node(self) -> None:
+        """Have the robot stop where it is, as long as somebody can be told."""
+        trip, self.trip = self.trip, None
+        if trip is not None:
+            with contextlib.suppress(RobolinkError):
+                trip.cancel_goal_async()
+        super().destroy_node()
 
 
 def check_waypoints(changed: list[Parameter[Any]]) -> SetParametersResult:
@@ -208,7 +212,7 @@ def main(args: list[str] | None = None) -> None:
         try:
             robolink.spin_until_future_complete(node, node.done)
         finally:
-            node.stop()
+            node.destroy_node()
 
 
 if __name__ == "__main__":

@@ -10,11 +10,13 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import robolink
-from robolink import Future, Node
-from robolink.exceptions import ExternalShutdownException, InvalidParameterValueException
+from robolink import Future, Node, Parameter
+from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.nav_msgs.msg import Odometry
+from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
 from robolink.parameter_descriptors import described
+from robolink.plane import Pose, Speeds, clipped, placed_on, pose_of, seen_from
 
 SETTLING = 4.0
 """1/s: at the very end of a way what is left shrinks by this rate, since no command takes effect at once."""
@@ -30,14 +32,6 @@ ENOUGH = 0.001
 
 STUCK = 10.0
 """Seconds without coming nearer after which it gives up."""
-
-
-class Pose(NamedTuple):
-    """A place in metres and a heading in radians."""
-
-    x: float
-    y: float
-    theta: float
 
 
 class Way(NamedTuple):
@@ -64,34 +58,32 @@ class Limits(NamedTuple):
     turn_acceleration: float = 2.0
 
 
-class Speeds(NamedTuple):
-    """The speed ahead in m/s, and the turning speed in rad/s."""
-
-    v: float = 0.0
-    w: float = 0.0
-
-
 class Square(Node):
-    """Drives one way after the other, a command for each message of odometry; `done` gets an exit code at the end."""
+    """Drives one way after the other, a command for each message of odometry; `done` gets an exit code at the end.
+
+    `side` and `direction` are those of the next square, when they change on the way; all else counts at once.
+    """
+
+    speeds = Speeds()
 
     def __init__(self, **options: Any) -> None:
         super().__init__("square", **options)
-        fixed: dict[str, Any] = {"read_only": True}
-        side = self.declare_parameter("side", 1.0, described("metres", 0.05, 1000.0, **fixed)).value
-        turns = self.declare_parameter("turns", 1, described("how often it goes round", 1, 1000, **fixed)).value
-        direction = self.declare_parameter("direction", "left", described("to which side it turns", **fixed)).value
-        if direction not in ("left", "right"):
-            raise InvalidParameterValueException("direction", direction, "expected 'left' or 'right'")
+        self.add_on_set_parameters_callback(check_direction)
+        self.declare_parameter("side", 1.0, described("metres; of the next square, where it drives several", 0.05, 1e3))
+        self.declare_parameter("turns", 1, described("how often it goes round before it ends", 1, 1000))
+        direction = described("to which side it turns: left or right, from the next square on")
+        direction.additional_constraints = "left or right"
+        self.declare_parameter("direction", "left", direction)
         usual = Limits()
         self.declare_parameter("speed", usual.speed, described("m/s along a side", 0.01, 10.0))
         self.declare_parameter("acceleration", usual.acceleration, described("m/s², and to brake", 0.01, 10.0))
         self.declare_parameter("turn_speed", usual.turn_speed, described("rad/s at a corner", 0.05, 20.0))
         self.declare_parameter("turn_acceleration", usual.turn_acceleration, described("rad/s²", 0.05, 100.0))
-        self.shape = (side, turns, 1 if direction == "left" else -1)
         self.done: Future[int] = Future()
         self.start: Pose | None = None
-        self.ways = list[Way]()
-        self.speeds, self.stamp = Speeds(), 0
+        self.ways, self.squares = list[Way](), 0
+        """The ways that are left of this square, and how many squares were done before."""
+        self.stamp = 0
         self.least_left, self.nearer_at = math.inf, 0
         self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
         self.create_subscription(Odometry, "odom", self.on_odom, 10)
@@ -99,16 +91,13 @@ class Square(Node):
 
     def on_odom(self, odometry: Odometry) -> None:
         """Drive on."""
-        pose, stamp = pose_of(odometry), odometry.header.stamp
+        pose, stamp = pose_of(odometry.pose.pose), odometry.header.stamp
         now = stamp.sec * 10**9 + stamp.nanosec
         if self.done.done() or not all(map(math.isfinite, pose)):
             return
         if self.start is None:
             self.start, self.stamp, self.nearer_at = pose, now, now
-            self.ways = list(square(pose, *self.shape))
-            side, turns, _ = self.shape
-            often = "once" if turns == 1 else f"{turns} times"
-            self.get_logger().info(f"driving {often} round a square with sides of {side:g} m")
+            self.begin_square(pose)
         dt, self.stamp = min(max((now - self.stamp) / 1e9, 0.0), 0.2), now
         left = left_to(self.ways[0].goal, pose)
         if has_ended(self.ways[0], left, self.speeds):
@@ -118,6 +107,14 @@ class Square(Node):
         if not self.done.done():
             limits = Limits(*(self.get_parameter(name).value for name in Limits._fields))
             self.drive(decide(self.ways[0], left, self.speeds, limits, dt))
+
+    def begin_square(self, start: Pose) -> None:
+        """Plan the ways of a square, as it is wanted now."""
+        side, to_left = self.get_parameter("side").value, self.get_parameter("direction").value == "left"
+        self.ways = list(square(start, side, 1 if to_left else -1))
+        turns = self.get_parameter("turns").value
+        number = f", {self.squares + 1} of {turns}" if turns > 1 else ""
+        self.get_logger().info(f"driving a square with sides of {side:g} m{number}")
 
     def drive(self, speeds: Speeds) -> None:
         """Send a command."""
@@ -132,9 +129,17 @@ class Square(Node):
         if not ended.is_turn:
             self.get_logger().info(f"at a corner: ({pose.x:.3f}, {pose.y:.3f})")
         if not self.ways:
-            assert self.start is not None
-            off = math.dist(pose[:2], self.start[:2])
-            self.get_logger().info(f"square done, {100 * off:.1f} cm from the start")
+            self.end_square(pose)
+
+    def end_square(self, pose: Pose) -> None:
+        """Drive the next square from where the first one began, or be done."""
+        assert self.start is not None
+        self.squares += 1
+        off = math.dist(pose[:2], self.start[:2])
+        self.get_logger().info(f"square done, {100 * off:.1f} cm from the start")
+        if self.squares < self.get_parameter("turns").value:
+            self.begin_square(self.start)
+        else:
             self.done.set_result(0)
 
     def give_up_if_stuck(self, pose: Pose, left: Left, now: int) -> None:
@@ -154,31 +159,40 @@ class Square(Node):
             topic = self.resolve_topic_name("odom")
             self.get_logger().warning(f"no odometry so far on {topic}: is a robot, or robolink run world, there?")
 
-    def stop(self) -> None:
-        """Leave the robot standing."""
-        self.drive(Speeds())
+    def destroy_node(self) -> None:
+        """Leave the robot standing, as long as somebody can be told."""
+        if self.speeds != Speeds():
+            with contextlib.suppress(RobolinkError):
+                self.drive(Speeds())
+        super().destroy_node()
 
 
-def square(start: Pose, side: float, turns: int, to_left: int) -> Iterator[Way]:
+def check_direction(changed: list[Parameter[Any]]) -> SetParametersResult:
+    """Refuse a direction that is none."""
+    for each in changed:
+        if each.name == "direction" and each.value not in ("left", "right"):
+            reason = f"direction: expected 'left' or 'right', got {each.value!r}"
+            return SetParametersResult(successful=False, reason=reason)
+    return SetParametersResult(successful=True)
+
+
+def square(start: Pose, side: float, to_left: int) -> Iterator[Way]:
     """Give the sides and turns of a square that begins and ends at `start`; `to_left` is 1, or -1 to the right.
 
     All goals are reckoned from the start and not from where the robot came to, so that errors do not add up.
     """
-    x, y, quarter = start.x, start.y, to_left * math.pi / 2
-    for corner in range(4 * turns):
-        theta = start.theta + corner % 4 * quarter
-        x, y = x + side * math.cos(theta), y + side * math.sin(theta)
-        if corner % 4 == 3:
-            x, y = start.x, start.y
-        yield Way(Pose(x, y, theta), is_turn=False)
-        yield Way(Pose(x, y, theta + quarter), is_turn=True)
+    here, quarter = start, to_left * math.pi / 2
+    for _ in range(4):
+        here = placed_on(here, Pose(x=side))
+        yield Way(here, is_turn=False)
+        here = placed_on(here, Pose(theta=quarter))
+        yield Way(here, is_turn=True)
 
 
 def left_to(goal: Pose, pose: Pose) -> Left:
     """Tell how far it is from a pose to a goal."""
-    dx, dy = goal.x - pose.x, goal.y - pose.y
-    cos, sin = math.cos(goal.theta), math.sin(goal.theta)
-    return Left(dx * cos + dy * sin, dy * cos - dx * sin, math.remainder(goal.theta - pose.theta, math.tau))
+    beyond = seen_from(goal, pose)
+    return Left(-beyond.x, -beyond.y, -beyond.theta)
 
 
 def has_ended(way: Way, left: Left, speeds: Speeds) -> bool:
@@ -192,9 +206,9 @@ def decide(way: Way, left: Left, speeds: Speeds, limits: Limits, dt: float) -> S
     if way.is_turn:
         return Speeds(0.0, eased(left.turn, speeds.w, limits.turn_speed, limits.turn_acceleration, dt))
     v = eased(left.ahead, speeds.v, limits.speed, limits.acceleration, dt)
-    to_line = min(MOST_ASIDE, max(-MOST_ASIDE, K_ASIDE * left.aside))
+    to_line = clipped(K_ASIDE * left.aside, MOST_ASIDE)
     w = K_HEADING * (left.turn + (to_line if v >= 0.0 else -to_line))
-    return Speeds(v, min(limits.turn_speed, max(-limits.turn_speed, w)))
+    return Speeds(v, clipped(w, limits.turn_speed))
 
 
 def eased(left: float, speed: float, most: float, acceleration: float, dt: float) -> float:
@@ -208,13 +222,6 @@ def eased(left: float, speed: float, most: float, acceleration: float, dt: float
     return math.copysign(max(0.0, min(most, braking, rising)), left)
 
 
-def pose_of(odometry: Odometry) -> Pose:
-    """Read where odometry has the robot, in the plane."""
-    place, turn = odometry.pose.pose.position, odometry.pose.pose.orientation
-    theta = math.atan2(2.0 * (turn.w * turn.z + turn.x * turn.y), 1.0 - 2.0 * (turn.y**2 + turn.z**2))
-    return Pose(place.x, place.y, theta)
-
-
 def main(args: list[str] | None = None) -> int:
     """Drive the square; give the exit code: 0 when it is done, or Ctrl-C has ended it, and 1 if it gave up."""
     with robolink.init(args=args), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
@@ -222,7 +229,7 @@ def main(args: list[str] | None = None) -> int:
         try:
             robolink.spin_until_future_complete(node, node.done)
         finally:
-            node.stop()
+            node.destroy_node()
         return node.done.result() or 0
     return 0
 

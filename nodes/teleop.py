@@ -20,6 +20,7 @@ HELP = (
     "q and z change the speed, r and f that ahead, e and c that of turning - space stops, Ctrl-C ends"
 )
 RATE = 20.0
+"""Messages a second."""
 
 
 class Shares(NamedTuple):
@@ -113,9 +114,11 @@ class Teleop(Node):
         self.declare_parameter("speed", defaults.v, described("m/s; keys change it too", 0.0, 10.0))
         self.declare_parameter("turn_speed", defaults.w, described("rad/s; keys change it too", 0.0, 20.0))
         self.declare_parameter("timeout", 0.5, described("seconds after the last key until the robot stops", 0.1, 5.0))
+        rate = self.declare_parameter("rate", RATE, described("messages a second while a key is held", 5.0, 100.0))
         self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
         steady = Clock(clock_type=ClockType.STEADY_TIME, time_base=self.context.time)
-        self.create_timer(1.0 / RATE, self.on_timer, clock=steady)
+        self.timer = self.create_timer(1.0 / rate.value, self.on_timer, clock=steady)
+        self.add_post_set_parameters_callback(self.on_parameters)
         if not isinstance(self.keyboard, NoKeyboard):
             self.get_logger().info(HELP)
 
@@ -126,10 +129,20 @@ class Teleop(Node):
             if key in SPEED_STEPS:
                 self.set_speeds(changed(speeds, key))
             elif (twist := wanted(key, speeds)) is not None:
-                self.twist, self.ticks_left = twist, max(2, round(self.get_parameter("timeout").value * RATE))
+                lasts = self.get_parameter("timeout").value * self.get_parameter("rate").value
+                self.twist, self.ticks_left = twist, max(2, round(lasts))
         if self.ticks_left > 0:
             self.ticks_left -= 1
             self.cmd_vel.publish(self.twist if self.ticks_left else Twist())
+
+    def on_parameters(self, changed: list[Parameter[Any]]) -> None:
+        """Publish at another rate from now on; a key that is held lasts as long as it would have."""
+        for each in changed:
+            if each.name == "rate":
+                if self.ticks_left > 0:
+                    self.ticks_left = max(1, round(self.ticks_left * each.value * self.timer.timer_period_ns / 1e9))
+                self.timer.timer_period_ns = round(1e9 / each.value)
+                self.timer.reset()
 
     def set_speeds(self, speeds: Speeds) -> None:
         """Drive at other speeds from the next key on: they are this node's parameters."""

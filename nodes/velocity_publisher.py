@@ -4,8 +4,8 @@ import contextlib
 from typing import Any
 
 import robolink
-from robolink import Node
-from robolink.exceptions import ExternalShutdownException
+from robolink import Node, Parameter
+from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.parameter_descriptors import described
 
@@ -16,14 +16,18 @@ PERIOD = 0.4
 class VelocityPublisher(Node):
     """Publishes a Twist on `cmd_vel` at each tick of its timer, each a little faster than the one before."""
 
+    is_driving = False
+
     def __init__(self, **options: Any) -> None:
         super().__init__("velocity_publisher", **options)
         self.declare_parameter("step", 0.1, described("m/s by which each message is faster", 0.0, 2.0))
         self.declare_parameter("top_speed", 1.0, described("m/s, the greatest speed ahead", 0.0, 10.0))
         self.declare_parameter("turn_speed", 0.0, described("rad/s, to the left if positive", -10.0, 10.0))
+        period = self.declare_parameter("period", PERIOD, described("seconds from message to message", 0.01, 60.0))
         self.speed = 0.0
         self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
-        self.create_timer(PERIOD, self.on_timer)
+        self.timer = self.create_timer(period.value, self.on_timer)
+        self.add_post_set_parameters_callback(self.on_parameters)
 
     def on_timer(self) -> None:
         """Publish the speed, and think of the next."""
@@ -31,12 +35,24 @@ class VelocityPublisher(Node):
         twist.linear.x = self.speed
         twist.angular.z = self.get_parameter("turn_speed").value
         self.cmd_vel.publish(twist)
+        self.is_driving = True
         self.get_logger().info(f"{twist.linear.x:.2f} m/s ahead, turning at {twist.angular.z:.2f} rad/s")
         self.speed = next_speed(self.speed, self.get_parameter("step").value, self.get_parameter("top_speed").value)
 
-    def stop(self) -> None:
+    def on_parameters(self, changed: list[Parameter[Any]]) -> None:
+        """Publish at another pace from now on."""
+        for each in changed:
+            if each.name == "period":
+                self.timer.timer_period_ns = round(each.value * 1e9)
+                self.timer.reset()
+
+    def destroy_node(self) -> None:
         """Leave the robot standing: who has driven it must not end with it driving on."""
-        self.cmd_vel.publish(Twist())
+        if self.is_driving:
+            self.is_driving = False
+            with contextlib.suppress(RobolinkError):  # nobody may be there any more who could be told
+                self.cmd_vel.publish(Twist())
+        super().destroy_node()
 
 
 def next_speed(speed: float, step: float, top_speed: float) -> float:
@@ -55,7 +71,7 @@ def main(args: list[str] | None = None) -> None:
         try:
             robolink.spin(node)
         finally:
-            node.stop()
+            node.destroy_node()
 
 
 if __name__ == "__main__":

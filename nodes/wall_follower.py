@@ -16,19 +16,19 @@ What has left the view of a lidar that does not see all round is remembered for 
 was told to move: so it comes round outer corners that it no longer sees.
 """
 
-import contextlib
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from robolink import Node, Parameter
-from robolink.exceptions import RobolinkError
+from robolink import Parameter
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.laser import Array, in_view, lane_ahead, returns
 from robolink.parameter_descriptors import described
+from robolink.plane import clipped
+from robolink.scan_controller import ScanController
 
 SIDE = (math.radians(-135), math.radians(30))
 """Where the followed wall is looked for: from the right rear to just across the heading."""
@@ -57,9 +57,6 @@ BLIND_WAY = 2.5
 DOUBT = 0.1
 """And by this share of that way what is remembered counts as nearer: behind a round thing's edge it bulges."""
 
-LONGEST = 2.0
-"""Seconds between two scans that still belong together."""
-
 
 class Goal(NamedTuple):
     """What to do; the parameters of the node have the same names. Metres, m/s, rad/s."""
@@ -77,7 +74,6 @@ PARAMETERS = {
     "side": described("on which side the wall is kept"),
     "robot_radius": described("metres from the lidar to the robot's outermost point", 0.01, 5.0),
     "turn_speed": described("rad/s at most", 0.05, 10.0),
-    "timeout": described("seconds without a scan after which the robot stops", 0.05, 60.0),
 }
 PARAMETERS["side"].additional_constraints = "left or right"
 
@@ -95,10 +91,9 @@ class Points(NamedTuple):
 
 
 class Memory(NamedTuple):
-    """What one scan leaves to the next: its stamp in seconds, what the robot was told, and what was near."""
+    """What one scan leaves to the next: the wall's side, what the robot was told, and what was near."""
 
     side: str = ""
-    stamp: float = math.nan
     speed: float = 0.0
     turn: float = 0.0
     near: Points = Points()
@@ -127,21 +122,16 @@ class Decision(NamedTuple):
     words: str
 
 
-class WallFollower(Node):
+class WallFollower(ScanController):
     """Turns each scan into a velocity command; stops the robot when there are no scans, and at its own end."""
 
-    is_driving = False
+    memory = Memory()
 
     def __init__(self, **options: Any) -> None:
         super().__init__("wall_follower", **options)
         self.add_on_set_parameters_callback(self.check_side)
         for name, value in Goal()._asdict().items():
             self.declare_parameter(name, value, PARAMETERS[name])
-        timeout = self.declare_parameter("timeout", 0.5, PARAMETERS["timeout"]).value
-        self.memory = Memory()
-        self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
-        self.create_subscription(LaserScan, "scan", self.on_scan, 10)
-        self.watchdog = self.create_timer(timeout, self.on_silence)
 
     def check_side(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
         """Refuse a side that is none."""
@@ -151,54 +141,34 @@ class WallFollower(Node):
                 return SetParametersResult(successful=False, reason=reason)
         return SetParametersResult(successful=True)
 
-    def on_scan(self, scan: LaserScan) -> None:
-        """Decide and act."""
+    def decide(self, scan: LaserScan, seconds: float) -> tuple[Twist, str]:
+        """Follow the wall by a scan, and remember what is near."""
         goal = Goal(*(self.get_parameter(name).value for name in Goal._fields))
-        decision = follow(scan, goal, self.memory)
-        self.memory = decision.memory
-        self.is_driving = True
-        self.cmd_vel.publish(decision.twist)
-        self.get_logger().info(decision.words, throttle_duration_sec=2.0)
-        self.watchdog.timer_period_ns = int(self.get_parameter("timeout").value * 1e9)
-        self.watchdog.reset()
+        twist, self.memory, words = follow(scan, goal, self.memory, seconds)
+        return twist, words
 
-    def on_silence(self) -> None:
-        """Stop, and say why, once: the next scan winds the watchdog up again."""
-        self.watchdog.cancel()
+    def forget(self) -> None:
+        """Forget what was near: the robot may be elsewhere."""
+        super().forget()
         self.memory = Memory()
-        self.stop()
-        seconds, topic = self.get_parameter("timeout").value, self.resolve_topic_name("scan")
-        self.get_logger().warning(f"no scan on {topic} for {seconds:g} s: the robot stands until one comes")
-
-    def stop(self) -> None:
-        """Leave the robot standing, if it was driving."""
-        if self.is_driving:
-            self.is_driving = False
-            self.cmd_vel.publish(Twist())
-
-    def destroy_node(self) -> None:
-        """Stop the robot, as long as somebody can be told."""
-        with contextlib.suppress(RobolinkError):
-            self.stop()
-        super().destroy_node()
 
 
-def follow(scan: LaserScan, goal: Goal, memory: Memory) -> Decision:
+def follow(scan: LaserScan, goal: Goal, memory: Memory, seconds: float) -> Decision:
     """Hold the wall's nearest point abeam and at the goal's distance; drive to a wall if none is near.
 
-    inf, NaN, any number of beams, any field of view and start angle are fine; with nothing in reach the robot drives
-    ahead. A scan that does not look ahead, or has measured nothing, makes it stand still.
+    `seconds` have passed since the last scan, which has left the memory (0: not known). inf, NaN, any number of
+    beams, any field of view and start angle are fine; with nothing in reach the robot drives ahead. A scan that does
+    not look ahead, or has measured nothing, makes it stand still.
     """
     if not in_view(scan, np.zeros(1))[0]:
         return Decision(Twist(), Memory(), "no beam looks ahead: standing still")
     if memory.side != goal.side:
         memory = Memory(goal.side)
-    dt = seconds_since(memory.stamp, scan)
-    pace = pace_for(goal, dt)
+    pace = pace_for(goal, seconds)
     mirror = -1.0 if goal.side == "left" else 1.0  # what follows knows walls on the right alone
     angles, ranges = returns(scan)
     angles = angles * mirror
-    near = joined(points(angles, ranges), unseen(remembered(memory, dt), scan, mirror), pace)
+    near = joined(points(angles, ranges), unseen(remembered(memory, seconds), scan, mirror), pace)
 
     wall = nearest(near, memory.speed / pace.gain, pace)
     if wall.distance < 2 * pace.distance:
@@ -212,9 +182,9 @@ def follow(scan: LaserScan, goal: Goal, memory: Memory) -> Decision:
     speed, turn = drive(off, free, goal, pace)
     if speed < 0.3 * pace.speed and math.isfinite(free):
         words = f"turning {'left' if mirror * turn > 0 else 'right'}, {free:.1f} m free ahead"
-    speed = min(speed, memory.speed + ACCELERATION * dt) if dt else speed
+    speed = min(speed, memory.speed + ACCELERATION * seconds) if seconds else speed
     twist = Twist(linear=Vector3(x=speed), angular=Vector3(z=mirror * turn))
-    return Decision(twist, Memory(goal.side, stamp_of(scan), speed, turn, near), words)
+    return Decision(twist, Memory(goal.side, speed, turn, near), words)
 
 
 def keep(wall: Target, left: float, goal: Goal, pace: Pace) -> float:
@@ -309,21 +279,3 @@ def joined(new: Points, old: Points, pace: Pace) -> Points:
     """Put together what is seen and what is remembered of the surroundings, and forget what is far or long ago."""
     both = Points(*(np.concatenate(each) for each in zip(new, old, strict=True)))
     return both.those((np.hypot(both.x, both.y) < 3 * pace.distance) & (both.ago < BLIND_WAY * pace.distance))
-
-
-def stamp_of(scan: LaserScan) -> float:
-    """Give a scan's stamp in seconds."""
-    return scan.header.stamp.sec + scan.header.stamp.nanosec * 1e-9
-
-
-def seconds_since(stamp: float, scan: LaserScan) -> float:
-    """Give the seconds from a stamp to a scan, by its `scan_time` where stamps do not tell; 0 if nothing does."""
-    dt = stamp_of(scan) - stamp
-    if math.isnan(dt) or dt == 0.0:
-        dt = scan.scan_time
-    return dt if 0.0 < dt <= LONGEST else 0.0
-
-
-def clipped(value: float, most: float) -> float:
-    """Bring a value into [-most, most]."""
-    return min(most, max(-most, value))

@@ -19,7 +19,7 @@ from robolink.interfaces.rcl_interfaces.msg import (
 )
 from robolink.parameter_descriptors import described
 from robolink.sim import load_world
-from robolink.sim.webots import told_by
+from robolink.sim.webots import warnings_to
 from robolink.sim_node import Runner, Services, Simulation, diagnostics, listed, report
 from robolink.workspace import find_world
 
@@ -45,7 +45,7 @@ class SimulatedWorld(Node):
         super().__init__("world", **options)
         self.add_on_set_parameters_callback(self.check_rtf)
         wanted = self.declare_parameter("world", "obstacles", WORLD).value
-        with told_by(self.get_logger().warning):  # what is left out of a world of Webots
+        with warnings_to(self.get_logger().warning):  # what is left out of a world of Webots
             description = load_world(find_world(wanted))
         rtf = self.declare_parameter("rtf", description.world.rtf, RTF).value
         publish_clock = self.declare_parameter("publish_clock", False, PUBLISH_CLOCK).value

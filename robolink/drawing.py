@@ -13,14 +13,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import RobolinkError
+from robolink.plane import Pose, placed_on
 from robolink.sim.description import (
     Bumper,
-    Lidar,
+    Looking,
     MapWalls,
     Obstacle,
     Point,
-    Pose,
-    RangeFinder,
     RobotDescription,
     Shape,
     WorldDescription,
@@ -124,21 +123,21 @@ def _draw_obstacle(axes: Axes, obstacle: Obstacle) -> None:
             *zip(*points, strict=True), linestyle=(0, (5, 4)), color=KINDS[_kind(obstacle)], linewidth=1.2, zorder=2
         )
     style = {"facecolor": KINDS[_kind(obstacle)], "edgecolor": WALL, "linewidth": 0.8, "zorder": 4}
-    axes.add_patch(_outline(obstacle, obstacle.start, style))
+    axes.add_patch(_outline(obstacle, obstacle.start.place, style))
 
 
 def _draw_robot(axes: Axes, robot: RobotDescription, *, named: bool) -> None:
     for sensor in robot.sensors:
-        if isinstance(sensor, Lidar | RangeFinder | Bumper):
+        if isinstance(sensor, Looking):
             _draw_view(axes, robot, sensor)
     style = {"facecolor": ROBOT, "edgecolor": WALL, "linewidth": 0.8, "zorder": 6}
-    outline = _outline(robot.shape, robot.pose, style)
+    outline = _outline(robot.shape, robot.pose.place, style)
     axes.add_patch(outline)
     for wheel in robot.wheels:
         tyre = Shape(box=(2 * wheel.radius, max(wheel.radius / 2, 0.005)))
-        axes.add_patch(_outline(tyre, placed_on(robot.pose, wheel.at), {"facecolor": WALL, "zorder": 7}))
+        axes.add_patch(_outline(tyre, placed_on(robot.pose.place, wheel.at.place), {"facecolor": WALL, "zorder": 7}))
     front = robot.shape.circle or max(x for x, _ in robot.shape.corners())
-    nose = placed_on(robot.pose, Pose(front, 0.0))
+    nose = placed_on(robot.pose.place, Pose(front))
     axes.plot([robot.pose.x, nose.x], [robot.pose.y, nose.y], color="white", linewidth=1.6, zorder=8)
     if named:
         box = outline.get_path().transformed(outline.get_patch_transform()).get_extents()
@@ -146,19 +145,15 @@ def _draw_robot(axes: Axes, robot: RobotDescription, *, named: bool) -> None:
         axes.annotate(robot.name, place, (0, -3), textcoords="offset points", ha="center", va="top", zorder=9, size=8)
 
 
-def _draw_view(axes: Axes, robot: RobotDescription, sensor: Lidar | RangeFinder | Bumper) -> None:
+def _draw_view(axes: Axes, robot: RobotDescription, sensor: Looking) -> None:
     """Draw the sector into which a sensor looks, not as far as it sees: that would be the whole picture."""
     from matplotlib.patches import Wedge
 
-    reach = robot.shape.outer_radius()
-    start = -sensor.fov / 2 if isinstance(sensor, RangeFinder) or sensor.start is None else sensor.start
-    at = robot.pose if isinstance(sensor, Bumper) else placed_on(robot.pose, sensor.offset)
-    radius = 1.15 * reach if isinstance(sensor, Bumper) else min(sensor.range[1], 1.5 * reach + 0.4)
-    first = math.degrees(at.theta) + start
-    color = TOUCH if isinstance(sensor, Bumper) else ROBOT
-    axes.add_patch(
-        Wedge((at.x, at.y), radius, first, first + sensor.fov, color=color, alpha=0.15, linewidth=0, zorder=1)
-    )
+    reach, feels = robot.shape.outer_radius(), isinstance(sensor, Bumper)
+    x, y, theta = placed_on(robot.pose.place, Pose() if sensor.mount is None else sensor.mount.place)
+    radius = 1.15 * reach if feels else min(getattr(sensor, "range", (0.0, math.inf))[1], 1.5 * reach + 0.4)
+    first, color = math.degrees(theta) + sensor.right, TOUCH if feels else ROBOT
+    axes.add_patch(Wedge((x, y), radius, first, first + sensor.fov, color=color, alpha=0.15, linewidth=0, zorder=1))
 
 
 def _outline(shape: Shape, pose: Pose, style: dict[str, Any]) -> Patch:
@@ -167,18 +162,7 @@ def _outline(shape: Shape, pose: Pose, style: dict[str, Any]) -> Patch:
 
     if shape.circle is not None:
         return Circle((pose.x, pose.y), shape.circle, **style)
-    return Polygon([_point(placed_on(pose, Pose(x, y))) for x, y in shape.corners()], closed=True, **style)
-
-
-def _point(pose: Pose) -> Point:
-    return pose.x, pose.y
-
-
-def placed_on(base: Pose, pose: Pose) -> Pose:
-    """Give where something is that is at `pose` on what is at `base`."""
-    cos, sin = math.cos(base.theta), math.sin(base.theta)
-    x, y = base.x + cos * pose.x - sin * pose.y, base.y + sin * pose.x + cos * pose.y
-    return Pose(x, y, base.theta + pose.theta)
+    return Polygon([placed_on(pose, Pose(x, y))[:2] for x, y in shape.corners()], closed=True, **style)
 
 
 def _figure_size(description: WorldDescription, longer: float) -> Point:

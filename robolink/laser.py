@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
+LONGEST_GAP = 2.0
+"""Seconds between two scans that still belong together."""
+
 
 def returns(scan: LaserScan) -> tuple[Array, Array]:
     """Give the angles (radians, 0 ahead, in [-pi, pi]) and ranges (metres) of the beams that met something.
@@ -46,6 +49,22 @@ def in_view(scan: LaserScan, angles: Array) -> npt.NDArray[np.bool_]:
 
 def _has_angles(scan: LaserScan) -> bool:
     return len(scan.ranges) > 0 and math.isfinite(scan.angle_min) and math.isfinite(scan.angle_increment)
+
+
+def seconds_between(earlier: LaserScan | None, later: LaserScan) -> float:
+    """Give the seconds from one scan to a later one, by `scan_time` where their stamps do not tell; 0 if nothing does.
+
+    What lies more than two seconds apart does not belong together: that is 0, too, and so is a step back.
+    """
+    dt = 0.0 if earlier is None else _stamp(later) - _stamp(earlier)
+    if dt == 0.0:
+        dt = later.scan_time
+    return dt if 0.0 < dt <= LONGEST_GAP else 0.0
+
+
+def _stamp(scan: LaserScan) -> float:
+    stamp = scan.header.stamp
+    return float(stamp.sec + stamp.nanosec * 1e-9)
 
 
 def lane_ahead(angles: Array, ranges: Array, half_width: float) -> float:

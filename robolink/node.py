@@ -29,6 +29,7 @@ from robolink.node_entities import NodeEntities
 from robolink.node_graph import NodeGraph
 from robolink.node_parameters import NodeParameters
 from robolink.parameter import Parameter
+from robolink.parameter_rules import WrittenParameter
 from robolink.parameter_service import ParameterService
 from robolink.publisher import Publisher
 from robolink.qos import (
@@ -153,7 +154,9 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
 
     def _overrides_(self, given: list[Parameter[Any]] | None) -> dict[str, Parameter[Any]]:
         values = self._arguments_.overrides_for(self.get_fully_qualified_name())
-        overrides: dict[str, Parameter[Any]] = {name: Parameter(name, value=value) for name, value in values.items()}
+        overrides: dict[str, Parameter[Any]] = {
+            name: WrittenParameter(name, value=value) for name, value in values.items()
+        }
         overrides.update({each.name: each for each in given or ()})
         return overrides
 

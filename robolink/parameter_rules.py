@@ -35,6 +35,21 @@ class Declaration(NamedTuple):
     descriptor: ParameterDescriptor
 
 
+class WrittenParameter(Parameter[Any]):
+    """A value that somebody has written, on a command line or in a file: `1` there may be meant as 1.0.
+
+    A program that gives a `Parameter` has said which of the two it is.
+    """
+
+    def as_type(self, type_: Parameter.Type) -> Parameter[Any]:
+        """Give the parameter as it was meant, where it is declared with a type: integers for doubles are doubles."""
+        if type_ is Parameter.Type.DOUBLE and self.type_ is Parameter.Type.INTEGER:
+            return Parameter(self.name, type_, float(self.value))
+        if type_ is Parameter.Type.DOUBLE_ARRAY and self.type_ is Parameter.Type.INTEGER_ARRAY:
+            return Parameter(self.name, type_, [float(each) for each in self.value])
+        return Parameter(self.name, self.type_, self.value)
+
+
 def read_declaration(
     entry: Sequence[Any], index: int, namespace: str, overrides: Mapping[str, Parameter[Any]]
 ) -> Declaration:
@@ -92,7 +107,9 @@ def _first_value(
 
 
 def _as_declared(override: Parameter[Any], descriptor: ParameterDescriptor) -> Parameter[Any]:
-    """An empty list on a command line or in a file does not say of what."""
+    """Read an override as its declaration has it: an empty list does not say of what, nor 1 whether it is a double."""
+    if isinstance(override, WrittenParameter):
+        override = override.as_type(Type.NOT_SET if descriptor.dynamic_typing else Type(descriptor.type))
     is_empty = isinstance(override.value, list) and not override.value
     if is_empty and not descriptor.dynamic_typing and Type(descriptor.type).check(override.value):
         return Parameter(override.name, Type(descriptor.type), override.value)

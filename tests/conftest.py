@@ -9,7 +9,7 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -23,6 +23,9 @@ from robolink.transport.zenoh import ZenohTransport
 from tests.domains import free_domain
 from tests.long_runs import LongRun
 from tests.transports import Network
+
+if TYPE_CHECKING:
+    from tests.driving import Drive
 
 # However slow a machine is, that is no fault of what is tested.
 settings.register_profile(
@@ -160,6 +163,15 @@ def executor(virtual: Context) -> Iterator[SingleThreadedExecutor]:
 def two(context: Context) -> Iterator[MultiThreadedExecutor]:
     """An executor with two threads, in real time."""
     with MultiThreadedExecutor(num_threads=2, context=context) as made:
+        yield made
+
+
+@pytest.fixture
+def system() -> Iterator[Drive]:
+    """Nodes on a bus of their own in virtual time, and a simulated world if the test adds one."""
+    from tests.driving import drive  # late: few tests need a world
+
+    with drive() as made:
         yield made
 
 

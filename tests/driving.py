@@ -47,6 +47,20 @@ class Drive(System):
         return sum(line.startswith(words) for line in self.log)
 
 
+class Typed:
+    """A keyboard that types what it is told."""
+
+    def __init__(self) -> None:
+        self.text, self.closed = "", False
+
+    def read(self) -> str:
+        text, self.text = self.text, ""
+        return text
+
+    def close(self) -> None:
+        self.closed = True
+
+
 @contextmanager
 def drive() -> Iterator[Drive]:
     """Make a system whose nodes say nothing on the console."""

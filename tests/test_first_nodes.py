@@ -1,33 +1,32 @@
-"""The nodes that a student opens first, and teleop: what they do in memory, and that they run as plain programs."""
+"""The nodes that a student opens first: what they do in memory, and that they run as plain programs."""
 
 from __future__ import annotations
 
 import math
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink import Parameter
-from robolink.exceptions import InvalidParameterValueException
-from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
+from robolink import Context, Node, Parameter, VirtualTime
+from robolink.exceptions import ExternalShutdownException
+from robolink.executors import SingleThreadedExecutor
+from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import LaserScan
+from robolink.transport.memory import Bus, MemoryTransport
+from robolink.transport.zenoh import ZenohTransport
 from tests.commands import Command
 from tests.domains import free_domain
-from tests.driving import Drive, drive
+from tests.driving import Drive, Typed
 from tests.nodefiles import ROOT, load_node_file
+from tests.spins import spin_for, spin_until
 
-first, velocity, scans, teleop = map(load_node_file, ("first_node", "velocity_publisher", "scan_subscriber", "teleop"))
+first, velocity, scans = map(load_node_file, ("first_node", "velocity_publisher", "scan_subscriber"))
 COURSE = ["first_node", "velocity_publisher", "scan_subscriber"]
-
-
-@pytest.fixture
-def system() -> Iterator[Drive]:
-    with drive() as made:
-        yield made
 
 
 # first_node
@@ -62,7 +61,7 @@ def test_the_speed_rises_by_steps_to_the_top_and_begins_anew(system: Drive) -> N
     assert [each.linear.x for each in heard] == pytest.approx([*(each / 10 for each in range(11)), 0.0, 0.1])
     assert {each.angular.z for each in heard} == {0.5}
     assert system.said("0.30 m/s ahead, turning at 0.50 rad/s") == 1
-    node.stop()
+    system.remove(node)
     system.run(0.01)
     assert heard[-1] == Twist()
 
@@ -79,6 +78,36 @@ def test_it_can_be_slowed_down_while_it_runs(system: Drive) -> None:
     node.set_parameters([Parameter("top_speed", value=0.2)])
     system.run(10 * velocity.PERIOD)
     assert max(each.linear.x for each in heard[11:]) == pytest.approx(0.2)
+
+
+def test_its_pace_can_be_changed_while_it_runs(system: Drive) -> None:
+    heard = system.hear(Twist, "cmd_vel")
+    node = system.add(velocity.VelocityPublisher, {"period": 1.0})
+    system.run(2.5)
+    assert len(heard) == 2
+    assert not node.set_parameters([Parameter("period", value=0.0)])[0].successful
+    node.set_parameters([Parameter("period", value=0.1)])
+    system.run(1.05)
+    assert len(heard) == 12
+
+
+def test_it_stops_the_robot_when_ctrl_c_ends_its_context(bus: Bus, virtual: Context) -> None:
+    listener, heard = Node("listener", context=virtual), list[Twist]()
+    listener.create_subscription(Twist, "cmd_vel", heard.append, 10)
+    other = Context(transport=MemoryTransport(bus=bus), time=VirtualTime())
+    with other, SingleThreadedExecutor(context=other) as theirs:
+        theirs.add_node(velocity.VelocityPublisher(context=other))
+        for _ in range(3):
+            theirs.spin_once()
+        other.interrupt()
+        with pytest.raises(ExternalShutdownException):
+            theirs.spin()
+    with SingleThreadedExecutor(context=virtual) as executor:
+        executor.add_node(listener)
+        spin_for(executor, 0.1)
+    assert len(heard) >= 3
+    assert heard[-2].linear.x > 0.0
+    assert heard[-1] == Twist()
 
 
 # scan_subscriber
@@ -130,80 +159,6 @@ def test_it_warns_of_what_is_near_and_once_a_second_at_most(system: Drive) -> No
     assert system.said("obstacle near") == 0
 
 
-# teleop
-
-
-class Typed:
-    """A keyboard that types what it is told."""
-
-    def __init__(self) -> None:
-        self.text, self.closed = "", False
-
-    def read(self) -> str:
-        text, self.text = self.text, ""
-        return text
-
-    def close(self) -> None:
-        self.closed = True
-
-
-SIDEWAYS = {
-    "J": (0.0, 0.3),
-    "L": (0.0, -0.3),
-    "A": (0.0, 0.3),
-    "D": (0.0, -0.3),
-    "U": (0.3, 0.3),
-    "O": (0.3, -0.3),
-    "M": (-0.3, 0.3),
-    ">": (-0.3, -0.3),
-    "<": (-0.3, 0.0),
-    "I": (0.3, 0.0),
-}
-"""As teleop_twist_keyboard has them for robots that go sideways: shift, and the key for the direction."""
-
-
-@pytest.mark.parametrize(("key", "expected"), SIDEWAYS.items())
-def test_with_shift_a_key_asks_for_a_way_to_the_side(key: str, expected: tuple[float, float]) -> None:
-    (read,) = teleop.keys(key)
-    assert teleop.wanted(read, teleop.Speeds()) == Twist(linear=Vector3(x=expected[0], y=expected[1]))
-
-
-def test_the_keys_of_the_speeds_set_parameters_within_their_ranges(system: Drive) -> None:
-    keyboard = Typed()
-    node = system.add(teleop.Teleop, {"speed": 1.0, "turn_speed": 1.0}, keyboard=keyboard)
-    for text, v, w in (("q", 1.1, 1.1), ("r", 1.21, 1.1), ("f", 1.1, 1.1), ("E", 1.1, 1.21), ("cz", 1.0, 1.0)):
-        keyboard.text = text
-        system.run(0.1)
-        assert (node.get_parameter("speed").value, node.get_parameter("turn_speed").value) == pytest.approx((v, w))
-    keyboard.text = "r" * 100
-    system.run(0.1)
-    assert 9.0 < node.get_parameter("speed").value <= 10.0
-    assert any("out of range" in line for line in system.log)
-
-
-def test_speeds_set_from_elsewhere_count_from_the_next_key_on(system: Drive) -> None:
-    heard, keyboard = system.hear(Twist, "cmd_vel"), Typed()
-    node = system.add(teleop.Teleop, keyboard=keyboard)
-    node.set_parameters([Parameter("speed", value=0.7), Parameter("timeout", value=0.2)])
-    keyboard.text = "w"
-    system.run(1.0)
-    assert [each.linear.x for each in heard] == [0.7] * 3 + [0.0]
-    with pytest.raises(InvalidParameterValueException, match="not within"):
-        system.add(teleop.Teleop, {"timeout": 60.0}, keyboard=Typed())
-
-
-def test_who_ends_it_on_the_way_stops_the_robot(system: Drive) -> None:
-    heard, keyboard = system.hear(Twist, "cmd_vel"), Typed()
-    node = system.add(teleop.Teleop, keyboard=keyboard)
-    keyboard.text = "w"
-    system.run(0.2)
-    assert heard[-1] != Twist()
-    system.remove(node)
-    system.run(0.1)
-    assert heard[-1] == Twist()
-    assert keyboard.closed
-
-
 # All of them
 
 
@@ -224,20 +179,31 @@ def test_each_file_says_what_it_is_for_and_each_parameter_too(system: Drive, nam
 
 
 def _is_own_node(found: object, module: Any) -> bool:
-    from robolink import Node
-
     return isinstance(found, type) and issubclass(found, Node) and found.__module__ == module.__name__
 
 
 @pytest.mark.processes
-def test_they_run_as_plain_programs_until_ctrl_c() -> None:
-    with free_domain() as domain:
+def test_they_run_as_plain_programs_until_ctrl_c_and_leave_the_robot_standing() -> None:
+    with free_domain() as domain, a_listener(domain) as (executor, heard):
         python = [
             Command(domain, str(ROOT / "nodes" / f"{each}.py"), program=(sys.executable,), merged=True)
             for each in ("first_node", "velocity_publisher")
         ]
-        for node, words in zip(python, ("hello, for the 1st time", "0.00 m/s ahead"), strict=True):
+        for node, words in zip(python, ("hello, for the 1st time", "0.20 m/s ahead"), strict=True):
             with node:
                 node.wait_for(words)
                 node.interrupt()
                 assert node.end() == 0
+        spin_until(executor, lambda: len(heard) >= 4 and heard[-1] == Twist())
+
+
+@contextmanager
+def a_listener(domain: int) -> Iterator[tuple[SingleThreadedExecutor, list[Twist]]]:
+    """Somebody in this process who hears what is said on cmd_vel there."""
+    context, heard = Context(transport=ZenohTransport(domain, environ={})), list[Twist]()
+    context.init([], domain_id=domain)
+    with context, SingleThreadedExecutor(context=context) as executor:
+        node = Node("listener", context=context)
+        node.create_subscription(Twist, "cmd_vel", heard.append, 100)
+        executor.add_node(node)
+        yield executor, heard

@@ -1,20 +1,18 @@
-"""The node goto: the law that it drives by, and its action from the first goal to the last, in a simulated room."""
+"""The node goto: its action from the first goal to the last, in a simulated room."""
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from robolink import Parameter
 from robolink.action import ActionClient
 from robolink.action.client import GoalStatus
+from robolink.approach import Limits
 from robolink.interfaces.geometry_msgs.msg import PoseStamped, TransformStamped, Twist
 from robolink.interfaces.nav2_msgs.action import FollowPath, NavigateToPose
 from robolink.interfaces.nav_msgs.msg import Odometry
@@ -25,66 +23,6 @@ from tests.nodefiles import load_node_file
 
 goto = load_node_file("goto")
 Codes = FollowPath.Result
-
-DT = 0.02
-
-
-# The law
-
-
-def driven(start: Any, goal: Any, limits: Any, seconds: float = 120.0) -> tuple[Any, list[Any], list[Any]]:
-    """Drive by the law, each command a step late: what is left in the end, the poses and the commands."""
-    poses, commands, arrived = [start], [goto.Speeds(), goto.Speeds()], False
-    while len(poses) < seconds / DT:
-        left = goto.left_to(goal, poses[-1])
-        arrived = goto.has_arrived(left, limits, arrived)
-        if arrived and goto.is_reached(left, limits, goto.SETTLED):
-            break
-        commands.append(goto.decide(left, commands[-1], limits, math.inf, arrived, DT))
-        v, w = commands[-2]
-        x, y, theta = poses[-1]
-        middle = theta + w * DT / 2
-        poses.append(goto.Pose(x + v * DT * math.cos(middle), y + v * DT * math.sin(middle), theta + w * DT))
-    return left, poses, commands
-
-
-angles = st.floats(-math.pi, math.pi)
-
-
-@given(st.floats(0.0, 5.0), angles, angles, angles, st.sampled_from([0.0, 0.4, 1.0]))
-def test_it_comes_to_any_pose_within_the_tolerances_and_the_limits(
-    distance: float, bearing: float, start: float, end: float, swing: float
-) -> None:
-    limits = goto.Limits(swing=swing)
-    goal = goto.Pose(distance * math.cos(bearing), distance * math.sin(bearing), end)
-    left, poses, commands = driven(goto.Pose(0.0, 0.0, start), goal, limits)
-    assert left.distance <= limits.position_tolerance
-    assert abs(left.turn) <= limits.heading_tolerance
-    assert all(0.0 <= v <= limits.speed and abs(w) <= limits.turn_speed for v, w in commands)
-    changes = [(b.v - a.v, b.w - a.w) for a, b in itertools.pairwise(commands)]
-    assert max((abs(v) for v, _ in changes), default=0.0) <= limits.acceleration * DT + 1e-9
-    assert max((abs(w) for _, w in changes), default=0.0) <= limits.turn_acceleration * DT + 1e-9
-    aside = (math.cos(bearing) * pose.y - math.sin(bearing) * pose.x for pose in poses)
-    assert max(map(abs, aside)) <= swing + 0.15  # the arcs on which it turns to its direction are beside the line too
-
-
-def test_it_turns_on_the_spot_first_where_the_goal_is_behind() -> None:
-    _, poses, _ = driven(goto.Pose(0.0, 0.0, 0.0), goto.Pose(-2.0, 0.0, math.pi), goto.Limits())
-    before = [pose for pose in poses if abs(pose.theta) < 2.0]
-    assert max(math.hypot(*pose[:2]) for pose in before) == 0.0
-
-
-def test_it_swings_out_to_arrive_with_the_goals_heading() -> None:
-    _, poses, _ = driven(goto.Pose(0.0, 0.0, 0.0), goto.Pose(3.0, 0.0, math.pi / 2), goto.Limits())
-    assert min(pose.y for pose in poses) < -0.1
-    near = [pose for pose in poses if math.dist(pose[:2], (3.0, 0.0)) < 0.1]
-    assert near[0].theta > 0.5, "it comes with most of the turn behind it"
-
-
-@pytest.mark.parametrize(("room", "speed"), [(0.0, 0.0), (0.01, 0.11), (0.2, 0.4), (math.inf, 0.4)])
-def test_it_drives_so_slowly_that_it_can_stop_before_what_is_ahead(room: float, speed: float) -> None:
-    decided = goto.decide(goto.Left(3.0, 0.0, 0.0), goto.Speeds(0.4, 0.0), goto.Limits(), room, False, DT)
-    assert decided == pytest.approx((speed, 0.0), abs=0.005)
 
 
 def message(**fields: float) -> Any:
@@ -104,12 +42,6 @@ FAULTS = {
 @pytest.mark.parametrize(("words", "fields"), [(words, each) for words, some in FAULTS.items() for each in some])
 def test_nonsense_is_no_goal(words: str, fields: dict[str, float]) -> None:
     assert words in goto.fault(message(**fields).pose)
-
-
-@given(angles, st.floats(0.1, 10.0))
-def test_a_quaternion_of_any_length_is_a_heading(theta: float, length: float) -> None:
-    pose = message(qz=length * math.sin(theta / 2), qw=length * math.cos(theta / 2)).pose
-    assert math.remainder(goto.pose_of(pose).theta - theta, math.tau) == pytest.approx(0.0, abs=1e-9)
 
 
 # The node
@@ -177,6 +109,22 @@ def test_a_cancelled_goal_stops_the_robot(room: Drive) -> None:
     room.run(1.0)
     assert room.robot.twist.v == pytest.approx(0.0, abs=1e-6)
     assert room.robot.pose.x < 4.5
+
+
+def test_who_ends_it_on_the_way_stops_the_robot_and_its_goal(room: Drive) -> None:
+    node = room.add(goto.Goto)
+    client = Client(room)
+    handle = client.send(message(x=5.0, y=3.0))
+    room.run(3.0)
+    assert room.robot.twist.v > 0.3
+    heard = room.hear(Twist, "cmd_vel")
+    room.remove(node)
+    node.destroy_node()
+    room.run(0.2)
+    assert heard == [Twist()]
+    ended = handle.get_result_async()
+    room.executor.spin_until_future_complete(ended, timeout_sec=5.0)
+    assert "the server went away" in str(ended.exception())
 
 
 def test_a_new_goal_replaces_the_one_before_without_a_stop(room: Drive) -> None:
@@ -265,7 +213,7 @@ def test_odometry_may_bear_any_stamp(room: Drive) -> None:
         odometry.pose.pose.position.x = -1e6
         odom.publish(odometry)
         room.run(0.02)
-        assert 0.0 <= node.speeds.v <= goto.Limits().speed
+        assert 0.0 <= node.speeds.v <= Limits().speed
 
 
 WALL = """

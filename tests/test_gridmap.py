@@ -17,9 +17,10 @@ from hypothesis.extra import numpy as arrays
 
 from robolink.exceptions import DocumentError
 from robolink.sim import Pose, World, load_world
-from robolink.sim import gridmap as room
-from robolink.sim.gridmap import GridMap, MapFile, cell_edges, load_map, map_walls, occupancy
-from robolink.sim.images import Image, ImageError, read_image
+from robolink.sim.maps import gridmap as room
+from robolink.sim.maps.formats import read_image
+from robolink.sim.maps.gridmap import GridMap, MapFile, cell_edges, load_map, map_walls, occupancy
+from robolink.sim.maps.image import Image, ImageError
 from robolink.sim.worldfile import check_world
 
 OFFICE = Path(__file__).parent.parent / "configs" / "worlds" / "maps" / "office.yaml"

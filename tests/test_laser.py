@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.laser import in_view, lane_ahead, returns
-from tests.scans import ring, sector
+from robolink.laser import in_view, lane_ahead, returns, seconds_between
+from tests.scans import at, ring, sector
 
 
 def test_returns_are_what_a_beam_has_met() -> None:
@@ -69,3 +69,23 @@ def test_no_scan_is_too_odd_to_be_read(start: float, step: float, ranges: list[f
     assert np.isfinite(angles).all()
     assert (np.isfinite(found) & (found > 0.0)).all()
     assert in_view(scan, np.zeros(1)).shape == (1,)
+
+
+@pytest.mark.parametrize(
+    ("before", "scan_time", "dt"),
+    [
+        (9.9, 0.5, 0.1),
+        (10.0, 0.5, 0.5),
+        (None, 0.5, 0.5),
+        (11.0, 0.5, 0.0),
+        (2.0, 0.5, 0.0),
+        (10.0, 0.0, 0.0),
+        (10.0, math.nan, 0.0),
+        (10.0, -1.0, 0.0),
+        (None, math.inf, 0.0),
+    ],
+)
+def test_time_goes_by_the_stamps_or_else_by_the_scan_time(before: float | None, scan_time: float, dt: float) -> None:
+    later = at(ring(1.0), 10.0)
+    later.scan_time = scan_time
+    assert seconds_between(None if before is None else at(ring(1.0), before), later) == pytest.approx(dt)

@@ -23,7 +23,7 @@ from robolink.yamlfile import DocumentNotFoundError, spell
 FILES = {
     "mine": "from robolink import Node\nclass Mine(Node): pass\n",
     "script": "import rclpy\nrclpy.init()\n",
-    "program": "class One: pass\nclass Two: pass\ndef start(): pass\ndef main(): pass\n",
+    "program": "class Other: pass\nclass One(Node): pass\nclass Two(Node): pass\ndef start(): pass\ndef main(): pass\n",
     "broken": "class",
 }
 
@@ -205,6 +205,7 @@ def test_a_launch_file_alone_finds_its_neighbours(tmp_path: Path, monkeypatch: p
     assert process.env == {}
 
 
+INSTEAD = "which needs a process of its own: name its class,"
 BAD = [
     ("", "1:1: expected mapping, got nothing"),
     ("nodes:", "1:7: nodes: expected list, got nothing"),
@@ -327,7 +328,7 @@ BAD = [
     ),
     (
         "nodes:\n- {node: program, process: p}",
-        "2:10: nodes[0].node: program.py is run by a main(), which needs a process of its own: name its class, program",
+        f"2:10: nodes[0].node: program.py is run by a main(), {INSTEAD} program.py:One or program.py:Two, or leave",
     ),
     (
         "nodes:\n- {node: 'program:start', process: p}",

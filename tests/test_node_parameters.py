@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -20,6 +21,7 @@ from robolink.exceptions import (
 )
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.rcl_interfaces.msg import (
+    FloatingPointRange,
     ParameterDescriptor,
     ParameterEvent,
     ParameterType,
@@ -287,6 +289,43 @@ def test_a_command_line_overrides_what_a_node_declares(context: Context) -> None
     assert node.declare_parameter("mode", "slow").value == "fast"
     assert node.declare_parameter("gain", 1.0).value == 1.0
     node.destroy_node()
+
+
+WRITTEN = {"speed": "1", "gains": "[1, 2]", "count": "1", "any": "1", "name": "1", "is_on": "1"}
+LINES = [word for name, value in WRITTEN.items() for word in ("-p", f"{name}:={value}")]
+FILE = f"/driver: {{ros__parameters: {{{', '.join(f'{name}: {value}' for name, value in WRITTEN.items())}}}}}"
+
+
+@pytest.mark.parametrize("is_file", [False, True])
+def test_an_integer_that_is_written_serves_as_a_double_and_as_nothing_else(
+    context: Context, tmp_path: Path, is_file: bool
+) -> None:
+    (tmp_path / "driver.yaml").write_text(FILE)
+    args = ["--params-file", str(tmp_path / "driver.yaml")] if is_file else LINES
+    with Node("driver", context=context, cli_args=["--ros-args", *args]) as node:
+        limits = FloatingPointRange(from_value=0.0, to_value=2.0)
+        declared = [
+            node.declare_parameter("speed", 0.5, ParameterDescriptor(floating_point_range=[limits])),
+            node.declare_parameter("gains", Type.DOUBLE_ARRAY),
+            node.declare_parameter("count", 5),
+            node.declare_parameter("any", 0.5, ParameterDescriptor(dynamic_typing=True)),
+        ]
+        expected = [(Type.DOUBLE, "1.0"), (Type.DOUBLE_ARRAY, "[1.0, 2.0]"), (Type.INTEGER, "1"), (Type.INTEGER, "1")]
+        assert [(each.type_, repr(each.value)) for each in declared] == expected
+        for name, default in (("name", "x"), ("is_on", True)):
+            with pytest.raises(InvalidParameterTypeException, match="of type 'INTEGER'"):
+                node.declare_parameter(name, default)
+        assert not node.set_parameters([made("speed", 2)])[0].successful
+
+
+def test_an_integer_that_a_program_gives_is_one(context: Context) -> None:
+    written = ["--ros-args", "-p", "speed:=2"]
+    given = [made("speed", 1)]
+    with (
+        Node("driver", context=context, cli_args=written, parameter_overrides=given) as node,
+        pytest.raises(InvalidParameterTypeException, match="expecting type 'DOUBLE'"),
+    ):
+        node.declare_parameter("speed", 0.5)
 
 
 def test_changes_are_published_on_parameter_events(context: Context) -> None:

@@ -161,7 +161,6 @@ def test_who_ends_a_patrol_stops_the_robot() -> None:
         driver, node = system.add(goto.Goto), system.add(patrol.Patrol, {"waypoints": "5,3"})
         system.run(3.0)
         assert system.robot.twist.v > 0.2
-        node.stop()
         system.remove(node)
         system.run(2.0)
         assert driver.trip is None

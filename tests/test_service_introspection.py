@@ -124,7 +124,7 @@ def test_a_blocking_call_is_told_too(context: Context) -> None:
         executor.shutdown()
         thread.join()
     rest = SingleThreadedExecutor(context=context)
-    for node in list(context._nodes):
+    for node in list(context._nodes.values()):
         rest.add_node(node)
     spin_for(rest, 0.1)
     assert kinds(arm.events) == [SENT, GOT]

@@ -101,12 +101,17 @@ def test_what_the_others_live_does_not_depend_on_who_comes_and_goes() -> None:
         ({"pose": Pose(8.0, 3.0)}, "inside of a wall"),
         ({"pose": Pose(6.1, 3.1)}, "inside of an obstacle"),
         ({"pose": Pose(6.0, 1.0)}, "inside of another robot or an obstacle"),
-        ({"pose": Pose(math.nan, 1.0)}, r"can't stand at \[nan, 1, 0\]: expected numbers within 100000"),
-        ({"pose": Pose(1e9, 1.0)}, "expected numbers within"),
+        ({"pose": Pose(math.nan, 1.0)}, r"can't stand at \[nan, 1, 0\]: expected finite numbers, at most 100000 m"),
+        ({"pose": Pose(1e9, 1.0)}, "expected finite numbers"),
         ({"name": "not a name"}, "is no name"),
         ({"shape": Shape()}, "expected"),
         ({"drive": Drive(v_max=50.0)}, "v_max.*could pass through walls"),
         ({"sensors": (Lidar("scan", rate=7.0),)}, "7 Hz"),
+        ({"mass": 1e5}, r"robot 'c': obstacles\[1\].mass: 2 kg, which robot 'c' of 100000 kg would push through walls"),
+        (
+            {"mass": 0.02},
+            r"robot 'c': mass: 0.02 kg, which robot '[ab]' of 3 kg would push through walls: at least 0.03",
+        ),
     ],
 )
 def test_a_robot_that_cannot_be_there_is_refused_and_nothing_changes(change: dict[str, object], message: str) -> None:

@@ -6,9 +6,9 @@ import math
 
 import pytest
 
+from robolink.plane import wrapped
 from robolink.sim import Pose, Robot, World, load_world
-from robolink.sim.arithmetic import sinc
-from robolink.sim.odometry import wrapped
+from robolink.sim.driving.arithmetic import sinc
 
 SHARP = "a_max: 500, alpha_max: 1000"
 CAR = "type: ackermann, wheelbase: 0.3, steer_max: 0.5, v_max: 2, w_max: 6"

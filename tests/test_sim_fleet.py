@@ -13,8 +13,10 @@ import pymunk
 import pytest
 from pymunk.batch import BodyFields
 
-from robolink.sim import Pose, Scan, World, bulk, fleet, load_world
-from robolink.sim.bulk import Bulk
+from robolink.sim import Pose, Scan, World, load_world
+from robolink.sim.driving import fleet
+from robolink.sim.physics import body_columns
+from robolink.sim.physics.body_columns import BodyColumns
 
 DRIVES = ("type: diff", "type: omni", "type: ackermann, wheelbase: 0.15, w_max: 4")
 WHEELS = "{motor: a, at: [0, 0.05, 0]}, {motor: b, at: [0, -0.05, 0]}"
@@ -86,7 +88,7 @@ def test_many_robots_live_as_few_do_to_the_last_bit(monkeypatch: pytest.MonkeyPa
 def test_without_batch_calls_life_is_the_same(many: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fleet, "MANY", many)
     batched = live(lively(), 4.0)
-    monkeypatch.setattr(bulk, "_AVAILABLE", False)
+    monkeypatch.setattr(body_columns, "_AVAILABLE", False)
     assert live(lively(), 4.0) == batched
 
 
@@ -97,11 +99,11 @@ def test_batch_calls_that_give_something_else_are_not_used(monkeypatch: pytest.M
         body.velocity, body.angle = (index, 0.5), 0.1 * index
     space.add(*bodies)
     expected = [[body.angle, *body.velocity, body.angular_velocity] for body in bodies]
-    assert Bulk(space, bodies).batched
-    for name, flags in (("_READ", BodyFields.ANGLE), ("_READ", bulk._WRITE), ("_WRITE", BodyFields.TORQUE)):
+    assert BodyColumns(space, bodies).batched
+    for name, flags in (("_READ", BodyFields.ANGLE), ("_READ", body_columns._WRITE), ("_WRITE", BodyFields.TORQUE)):
         with monkeypatch.context() as patched:
-            patched.setattr(bulk, name, flags)
-            other = Bulk(space, bodies)
+            patched.setattr(body_columns, name, flags)
+            other = BodyColumns(space, bodies)
             assert not other.batched
             assert other.read_rows() == expected
             other.write([(float(index), 2.0, 3.0) for index in range(8)])
@@ -113,7 +115,7 @@ def test_bodies_that_come_and_go_get_their_own_forces() -> None:
     bodies = [pymunk.Body(1, 1) for _ in range(10)]
     space.add(*bodies, pymunk.Body(2, 2))
     space.remove(bodies.pop(2), bodies.pop(5))
-    made = Bulk(space, bodies)
+    made = BodyColumns(space, bodies)
     made.write([(float(index), -float(index), 0.5 * index) for index in range(8)])
     assert made.batched
     assert [(*body.force, body.torque) for body in bodies] == [(index, -index, 0.5 * index) for index in range(8)]

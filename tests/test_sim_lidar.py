@@ -11,13 +11,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robolink.sim.arrays import Array, Indices
 from robolink.sim.description import Lidar, Pose, Shape, WorldDescription
-from robolink.sim.geometry import Array, edges
-from robolink.sim.lidar import Beams, distances, distances_batch, limited, returns_batch
-from robolink.sim.scene import Scene
-from robolink.sim.surroundings import FIXED, NOBODY, Edges, Indices, Surroundings, circles_of, standing
-from robolink.sim.tiles import Tiles, columns
-from robolink.sim.trigonometry import cos_and_sin
+from robolink.sim.sensing.fixed import edges
+from robolink.sim.sensing.lidar import Beams, distances, distances_batch, limited, returns_batch
+from robolink.sim.sensing.scene import Scene
+from robolink.sim.sensing.surroundings import FIXED, NOBODY, Edges, Surroundings, circles_of, standing
+from robolink.sim.sensing.tiles import Tiles, columns
+from robolink.sim.sensing.trigonometry import cos_and_sin
 
 NO_CIRCLES = np.zeros((0, 3))
 NO_SEGMENTS = np.zeros((0, 4))
@@ -248,7 +249,7 @@ def test_how_many_are_measured_together_changes_no_bit(lidar: Lidar, monkeypatch
     (around, poses, own), beams = crowd(np.random.default_rng(8)), Beams(lidar)
     alone = np.array([distances(beams, Pose(*pose), around, each) for pose, each in zip(poses, own, strict=True)])
     for at_once in (1, 5_000, 10**6):
-        monkeypatch.setattr("robolink.sim.lidar._AT_ONCE", at_once)
+        monkeypatch.setattr("robolink.sim.sensing.lidar._AT_ONCE", at_once)
         assert distances_batch(beams, poses, around, own).tobytes() == alone.tobytes()
         ranges, light = returns_batch(beams, poses, around, own)
         assert ranges.tobytes() == alone.tobytes()
@@ -295,7 +296,7 @@ def city(random: np.random.Generator, count: int) -> Array:
 
 @pytest.mark.parametrize("kept", [10**6, 100])
 def test_a_large_map_is_seen_exactly(kept: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robolink.sim.tiles._KEPT", kept)
+    monkeypatch.setattr("robolink.sim.sensing.tiles._KEPT", kept)
     random = np.random.default_rng(10)
     segments, beams = city(random, 2000), Beams(Lidar("scan", beams=60, range=(0.1, 60.0)))
     around, poses = standing(segments, NO_CIRCLES), random.uniform(-500, 500, (20, 3))

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robolink.sim import Robot, World, load_world
-from robolink.sim.bodies import centroid
-from robolink.sim.convex import convex_parts
 from robolink.sim.description import MapWalls, Obstacle, Point, Pose, RobotDescription, WorldDescription, signed_area
-from robolink.sim.mover import Mover
+from robolink.sim.physics.bodies import centroid
+from robolink.sim.physics.convex import convex_parts
+from robolink.sim.physics.mover import Mover
 
 ROOM = "walls: [{polyline: [[0, 0], [8, 0], [8, 5], [0, 5]], closed: true}]\n"
 
@@ -60,7 +60,7 @@ def test_a_robot_is_pushed_along_and_never_passed_through(speed: float) -> None:
     made = world(f"{{box: [0.6, 0.6], path: [[1, 2.5], [6, 2.5]], speed: {speed}}}", "pose: [3, 2.5, 0]")
     robot = run(made, 5.0 / speed)
     assert robot.pose.x == pytest.approx(6.0 + 0.3 + 0.17, abs=0.02)
-    assert math.hypot(*robot.body.velocity) < 1.2 * speed
+    assert math.hypot(robot.twist.v, robot.twist.sideways) < 1.2 * speed
 
 
 @pytest.mark.parametrize("speed", [0.2, 0.5, 1.0, 2.0, 5.0, 10.0])
@@ -72,7 +72,7 @@ def test_a_robot_squeezed_against_a_wall_is_passed_over_and_stays_calm(speed: fl
     fastest, squeezed = 0.0, made.robots["r"]
     for _ in range(round(max(10.0, 8.0 / speed) / 0.01)):
         made.step()
-        fastest = max(fastest, math.hypot(*squeezed.body.velocity))
+        fastest = max(fastest, math.hypot(squeezed.twist.v, squeezed.twist.sideways))
         assert 0.0 < squeezed.pose.x < 8.0
         assert 0.0 < squeezed.pose.y < 5.0
     assert squeezed.contacts >= 2

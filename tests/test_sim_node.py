@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,13 +22,6 @@ from tests.simulated import START, System
 simulation, follower, reactive, teleop = map(
     load_node_file, ("world", "wall_follower", "reactive_controller", "teleop")
 )
-
-
-@pytest.fixture
-def system() -> Iterator[System]:
-    system = System()
-    yield system
-    system.close()
 
 
 def stamps(messages: list[Any]) -> list[float]:
@@ -196,43 +188,3 @@ def test_a_controller_says_what_it_does(system: System, controller: type[Node], 
 def test_a_follower_knows_two_sides(system: System) -> None:
     with pytest.raises(InvalidParameterValueException, match="expected 'left' or 'right'"):
         system.add(follower.WallFollower, {"side": "top"})
-
-
-class Typed:
-    """A keyboard that types what it is told."""
-
-    def __init__(self) -> None:
-        self.text, self.closed = "", False
-
-    def read(self) -> str:
-        text, self.text = self.text, ""
-        return text
-
-    def close(self) -> None:
-        self.closed = True
-
-
-def test_teleop_drives_while_a_key_is_held_then_stops_once_and_is_silent(system: System) -> None:
-    heard, keyboard = system.hear(Twist, "/cmd_vel"), Typed()
-    node = system.add(teleop.Teleop, {"speed": 0.2}, keyboard=keyboard)
-    system.run(1.0)
-    assert heard == []
-    for _ in range(3):
-        keyboard.text = "x\x1b[A"
-        system.run(0.2)
-    driving = len(heard)
-    assert set(map(str, heard)) == {str(Twist(linear=Vector3(x=0.2)))}
-    system.run(2.0)
-    assert heard[driving:-1] == [Twist(linear=Vector3(x=0.2))] * (len(heard) - driving - 1)
-    assert heard[-1] == Twist()
-    assert 0.25 <= (len(heard) - driving) / teleop.RATE <= 0.35  # 0.2 s after the last key it was counted
-    node.destroy_node()
-    assert keyboard.closed
-
-
-def test_teleop_tells_of_another_speed(system: System) -> None:
-    keyboard = Typed()
-    system.add(teleop.Teleop, keyboard=keyboard)
-    keyboard.text = "q"
-    system.run(0.1)
-    assert "speed 0.33 m/s, 1.10 rad/s" in system.log

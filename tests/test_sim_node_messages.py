@@ -27,8 +27,8 @@ from robolink.sim.description import (
     RobotDescription,
     Settings,
 )
-from robolink.sim_node.commands import ABSURD, ABSURD_WHEEL, joint_refusal, sane
 from robolink.sim_node.messages import facing, odometry_message, sensor_message, time_message
+from robolink.sim_node.robot_commands import ABSURD, ABSURD_WHEEL, joint_refusal, sane
 from robolink.sim_node.uncertainty import Uncertainty
 
 HEADER = Header(stamp=time_message(3_000_000_004), frame_id="base_scan")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -41,13 +40,6 @@ LAB = {
     "/bob/odom": Odometry,
     "/tf": TFMessage,
 }
-
-
-@pytest.fixture
-def system() -> Iterator[System]:
-    system = System()
-    yield system
-    system.close()
 
 
 def world_of(text: str, folder: Path) -> str:
@@ -222,7 +214,7 @@ def values(message: DiagnosticArray) -> dict[str, str]:
 
 def test_diagnostics_tell_of_pace_commands_and_contacts(system: System) -> None:
     heard = system.hear(DiagnosticArray, "/diagnostics")
-    system.add(simulation.SimulatedWorld, {"world": "empty_room", "rtf": 2.0})
+    node = system.add(simulation.SimulatedWorld, {"world": "empty_room", "rtf": 2.0})
     drive(system, "/cmd_vel", 0.5)
     system.probe.create_publisher(Twist, "/cmd_vel", 10).publish(Twist(linear=Vector3(x=math.nan)))
     system.run(5.005)
@@ -242,6 +234,9 @@ def test_diagnostics_tell_of_pace_commands_and_contacts(system: System) -> None:
     system.ask(Trigger, "/world/pause")
     system.run(1.0)
     assert heard[-1].status[0].message == "paused"
+    node.simulation.delete("robot")
+    system.run(1.0)
+    assert (values(heard[-1])["robots"], values(heard[-1])["contacts"]) == ("0", told["contacts"])
 
 
 def test_falling_behind_is_a_warning_and_seen_in_diagnostics(system: System, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from robolink.sim.convex import convex_parts
+from robolink.sim.checks.outlines import has_area, in_line, meeting, repeated
 from robolink.sim.description import Point, signed_area
-from robolink.sim.outlines import has_area, in_line, meeting, repeated
+from robolink.sim.physics.convex import convex_parts
 
 GRID = st.tuples(st.integers(0, 5), st.integers(0, 5)).map(lambda each: (float(each[0]), float(each[1])))
 POLYGONS = st.lists(GRID, min_size=3, max_size=8, unique=True)

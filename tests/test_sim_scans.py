@@ -9,8 +9,8 @@ import pytest
 
 from robolink.sim import World, load_world
 from robolink.sim.description import Lidar
-from robolink.sim.lidar import Beams, distances
-from robolink.sim.surroundings import standing
+from robolink.sim.sensing.lidar import Beams, distances
+from robolink.sim.sensing.surroundings import standing
 
 NO_CIRCLES = np.zeros((0, 3))
 ROOM = np.array([[0, 0, 8, 0], [8, 0, 8, 5], [8, 5, 0, 5], [0, 5, 0, 0]], dtype=np.float64)

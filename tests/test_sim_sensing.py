@@ -11,13 +11,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robolink.exceptions import NotFoundError
+from robolink.plane import wrapped
 from robolink.sim import Inertia, Pose, Robot, Scan, World, load_world
-from robolink.sim.arithmetic import sinc
 from robolink.sim.description import Lidar
-from robolink.sim.lidar import Beams, distances
-from robolink.sim.odometry import wrapped
-from robolink.sim.range_finder import nearest_in_cone
-from robolink.sim.surroundings import standing
+from robolink.sim.driving.arithmetic import sinc
+from robolink.sim.sensing.lidar import Beams, distances
+from robolink.sim.sensing.range_finder import nearest_in_cone
+from robolink.sim.sensing.surroundings import standing
 
 SHARP = "a_max: 500, alpha_max: 1000"
 ROOM = "walls: [{polyline: [[0, 0], [8, 0], [8, 5], [0, 5]], closed: true}]\n"
@@ -216,3 +217,14 @@ def test_odometry_goes_where_its_own_twist_says() -> None:
         assert wrapped(after.theta - before.theta) == pytest.approx(said.w * 0.01)
         assert math.dist((after.x, after.y), (before.x, before.y)) == pytest.approx(said.v * 0.01, rel=1e-4)
         assert said != true
+
+
+def test_a_lidar_that_is_not_there_is_named() -> None:
+    blind = World(load_world("w.yaml", text="robots: [{name: r, pose: [1, 1], sensors: [{imu: imu}]}]")).robots["r"]
+    with pytest.raises(NotFoundError, match="no lidar named 'scan' in robot 'r'"):
+        blind.scan()
+    seeing = World(load_world("w.yaml", text="robots: [{name: r, pose: [1, 1], sensors: [{lidar: front}]}]")).robots[
+        "r"
+    ]
+    with pytest.raises(NotFoundError, match=r"no lidar named 'frnt' in robot 'r' \(did you mean 'front'\?\)"):
+        seeing.scan("frnt")

@@ -7,9 +7,9 @@ import math
 import pytest
 
 from robolink.exceptions import NotFoundError
-from robolink.sim import CommandError, Robot, World, load_world
+from robolink.sim import CommandError, Robot, Velocity, World, load_world
 from robolink.sim.description import Pose, Wheel
-from robolink.sim.wheels import Wheels
+from robolink.sim.driving.wheels import Wheels
 
 PAIR = """
   wheels:
@@ -106,18 +106,17 @@ def test_three_omni_wheels_go_everywhere() -> None:
     third = math.tau / 3
     poses = [Pose(0.2 * math.cos(k * third), 0.2 * math.sin(k * third), k * third + math.pi / 2) for k in range(3)]
     wheels = Wheels([Wheel(f"m{k}", pose, 0.04) for k, pose in enumerate(poses)], "r", sideways=True)
-    for wanted in ((0.5, 0.0, 0.0), (0.0, 0.5, 0.0), (0.0, 0.0, 2.0), (0.3, -0.2, 1.0)):
-        told = dict(zip(("m0", "m1", "m2"), wheels.speeds(*wanted), strict=True))
+    for wanted in (Velocity(0.5, 0.0), Velocity(0.0, 0.0, 0.5), Velocity(0.0, 2.0), Velocity(0.3, 1.0, -0.2)):
+        told = dict(zip(("m0", "m1", "m2"), wheels.speeds(wanted), strict=True))
         assert wheels.turn(told) == pytest.approx(wanted, abs=1e-12)
 
 
 def test_wheels_that_contradict_each_other_go_the_middle_way() -> None:
     places = {"fl": 0.1, "fr": -0.1, "rl": 0.1, "rr": -0.1}
     wheels = Wheels([Wheel(name, Pose(0.0, y), 0.1) for name, y in places.items()], "r", sideways=False)
-    v, s, w = wheels.turn({"fl": 3.0, "rl": 5.0, "fr": 6.0, "rr": 6.0})
-    assert (v, s, w) == pytest.approx((0.5, 0.0, 1.0))
+    assert wheels.turn({"fl": 3.0, "rl": 5.0, "fr": 6.0, "rr": 6.0}) == pytest.approx(Velocity(0.5, 1.0))
 
 
 def test_one_wheel_drives_as_far_as_it_can() -> None:
     wheels = Wheels([Wheel("only", Pose(0.0, 0.0), 0.1)], "r", sideways=False)
-    assert wheels.turn({"only": 5.0}) == pytest.approx((0.5, 0.0, 0.0))
+    assert wheels.turn({"only": 5.0}) == pytest.approx(Velocity(0.5, 0.0))

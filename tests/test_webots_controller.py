@@ -6,7 +6,6 @@ import itertools
 import math
 import os
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +17,8 @@ from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import JointState
 from robolink.interfaces.std_msgs.msg import Header
-from robolink.webots.robot import StepError
-from robolink.webots.webots_controller import WebotsController, robot_name
+from robolink.webots_controller.robot import StepError
+from robolink.webots_controller.webots_controller import WebotsController, robot_name
 from tests.nodefiles import load_node_file
 from tests.simulated import System
 
@@ -70,13 +69,6 @@ class Driver(WebotsController):
     def on_cmd_vel(self, twist: Twist) -> None:
         self.left.setVelocity(twist.linear.x - twist.angular.z)
         self.right.setVelocity(twist.linear.x + twist.angular.z)
-
-
-@pytest.fixture
-def system() -> Iterator[System]:
-    system = System()
-    yield system
-    system.close()
 
 
 @pytest.fixture

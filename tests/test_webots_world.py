@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from robolink.exceptions import DocumentError
 from robolink.sim import World, WorldDescription, load_world
 from robolink.sim.description import Obstacle, Pose
-from robolink.sim.webots import WebotsWorld, WorldWarning, load, read, told_by
+from robolink.sim.webots import WebotsWorld, WorldWarning, load, read, warnings_to
 from robolink.workspace import find_world, list_worlds
 
 HEADER = "#VRML_SIM R2023b utf8\n"
@@ -182,7 +182,7 @@ def test_what_is_not_known_is_told_in_one_warning(tmp_path: Path) -> None:
         f"{path}: not known here, so it is not there: Fridge, Mesh, Sofa (2 times)"
     ]
     lines: list[str] = []
-    with told_by(lines.append):
+    with warnings_to(lines.append):
         load(path)
     assert lines == [str(caught[0].message)]
 
@@ -194,6 +194,13 @@ def test_worlds_of_webots_are_found_by_name_too(tmp_path: Path) -> None:
     assert find_world("my-lab", workspace=tmp_path) == folder / "my_lab.wbt"
     assert find_world(str(folder / "my_lab.wbt")) == folder / "my_lab.wbt"
     assert "my_lab" in [each.stem for each in list_worlds(workspace=tmp_path)]
+
+
+def test_what_is_too_light_for_walls_to_hold_is_told() -> None:
+    light = box("0.1 0.1 0.3", 'name "feather" translation 2 0 0.15 physics Physics { mass 0.001 }')
+    notes = world(f"{CART % '0 0 0.1'} {light}").notes
+    assert "so light that a robot may push it through a wall: Solid 'feather'" in notes
+    assert not any("so light" in each for each in world(f"{CART % '0 0 0.1'} {light.replace('0.001', '1')}").notes)
 
 
 def test_nothing_is_told_of_a_world_that_is_all_understood() -> None:

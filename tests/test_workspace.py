@@ -27,6 +27,7 @@ from robolink.workspace import (
     list_worlds,
     load_module,
     load_node,
+    own_process_needed,
     user_workspace,
     workspace_of,
 )
@@ -294,3 +295,25 @@ def test_an_error_in_the_users_file_stays_as_it_is(write: Write) -> None:
         with pytest.raises(KeyError, match="mine"):
             loaded(path)
     assert str(path) not in sys.modules
+
+
+def test_who_runs_itself_is_named_by_its_node_classes(write: Callable[[str, str], Path]) -> None:
+    path = write(
+        "nodes/robot.py",
+        """
+import rclpy.node
+from robolink.lifecycle import LifecycleNode
+
+class Pose(tuple): ...
+class Limits: ...
+class Base(rclpy.node.Node): ...
+class Robot(Base): ...
+class Arm(LifecycleNode): ...
+
+def main(): ...
+""",
+    )
+    reason = own_process_needed(find_node(str(path)))
+    assert reason.endswith("name its class, robot.py:Robot or robot.py:Arm, or leave `process` out")
+    path.write_text("class Pose: ...\n\ndef main(): ...\n")
+    assert own_process_needed(find_node(str(path))).endswith("a process of its own: leave `process` out")

@@ -18,7 +18,7 @@ from matplotlib.patches import Polygon
 
 from robolink import drawing
 from robolink.cli import complete, main
-from robolink.sim import Pose, load_world, webots
+from robolink.sim import load_world, webots
 from robolink.sim.description import SENSORS, MapWalls, WorldDescription
 from robolink.sim.schema import world_schema
 from robolink.workspace import VARIABLE
@@ -88,7 +88,7 @@ def test_a_webots_world_is_checked_and_what_it_lacks_is_told(
     workspace: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def load(path: str, text: str | None) -> WorldDescription:
-        warnings.warn("left out: Pedestrian", UserWarning, stacklevel=2)
+        warnings.warn("left out: Pedestrian", webots.WorldWarning, stacklevel=2)
         return load_world("x.yaml", text=HALL)
 
     monkeypatch.setattr(webots, "load", load)
@@ -274,10 +274,6 @@ def test_an_outline_is_turned_with_its_pose() -> None:
 def test_any_world_can_be_drawn(world: WorldDescription, tmp_path: Path) -> None:
     drawing.save_world(world, tmp_path / "w.png", 300)
     assert (tmp_path / "w.png").stat().st_size > 0
-
-
-def test_a_place_on_what_is_turned() -> None:
-    assert drawing.placed_on(Pose(1.0, 2.0, 0.0), Pose(0.5, 0.0, 1.0)) == Pose(1.5, 2.0, 1.0)
 
 
 # --- completion -----------------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import sys
 from collections import Counter
+from typing import Any
 
 from robolink import Context, Parameter, VirtualTime, logging
 from robolink.executors import SingleThreadedExecutor
@@ -72,7 +73,7 @@ def laboratory(seconds: float) -> Trace:
     return _live(seconds, "lab", follower, ("reactive_controller", "ReactiveController", "/bob", []))
 
 
-def _live(seconds: float, world: str, *controllers: tuple[str, str, str, list[Parameter[object]]]) -> Trace:
+def _live(seconds: float, world: str, *controllers: tuple[str, str, str, list[Parameter[Any]]]) -> Trace:
     trace = Trace()
     context = Context(transport=TappedTransport(trace), time=VirtualTime())
     context.init([])

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
-import warnings
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -61,12 +57,13 @@ def draw_world(
     workspace: Workspace = "",
 ) -> None:
     """Draw a world as it begins, into a picture (needs matplotlib: pip install 'robolink[plot]')."""
-    from robolink.drawing import check_picture, save_world
+    from robolink.cli.pictures import check_picture
+    from robolink.drawing import save_world
+    from robolink.sim.webots import warnings_to
     from robolink.sim.worldfile import load_world
 
-    os.environ["MPLBACKEND"] = "agg"  # the shell's may want a screen, or a notebook's module, and a file needs none
     check_picture(out)
-    with _told_warnings():
+    with warnings_to(_warn):
         description = load_world(_found(file, workspace))
     save_world(description, out, size)
 
@@ -119,13 +116,14 @@ def _found(name: str, workspace: str) -> str:
 def _checked(name: str, workspace: str) -> tuple[str, Checked]:
     """Check a world; one that is not found is one of the problems."""
     from robolink.exceptions import NotFoundError
+    from robolink.sim.webots import warnings_to
     from robolink.sim.worldfile import Checked, check_world
 
     try:
         path = _found(name, workspace)
     except NotFoundError as error:
         return name, Checked(None, [error])
-    with _told_warnings():
+    with warnings_to(_warn):
         return path, check_world(path)
 
 
@@ -160,11 +158,6 @@ def _counted(count: int, word: str) -> str:
     return f"{count} {word}" + ("" if count == 1 else "s")
 
 
-@contextlib.contextmanager
-def _told_warnings() -> Iterator[None]:
-    """Write what a world warns of to standard error, a line each."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        yield
-    for each in caught:
-        typer.echo(f"robolink: {_one_line(str(each.message))}", err=True)
+def _warn(text: str) -> None:
+    """Write what a world warns of to standard error, as one line."""
+    typer.echo(f"robolink: {_one_line(text)}", err=True)

@@ -19,7 +19,7 @@ ROOMS = {
     "rosidl_parser": "",
     "rosidl_parser.definition": "robolink.message.slot_types",
     "rosidl_runtime_py": "robolink.rosidl_runtime",
-    "webots_ros2_driver": "robolink.webots",
+    "webots_ros2_driver": "robolink.webots_controller",
     "ament_index_python": "robolink.ament_index",
 }
 """Name to module; '' is a package with nothing in it. What is below a name is below its module."""

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 from robolink.lacking import lazily
 
 if TYPE_CHECKING:
-    from robolink.sim.description import Pose, WorldDescription
-    from robolink.sim.drive import CommandError
-    from robolink.sim.lidar import Scan
-    from robolink.sim.placing import WorldError
-    from robolink.sim.readings import Inertia, Reading, Velocity, WheelState
+    from robolink.sim.description import Pose, RobotDescription, WorldDescription
+    from robolink.sim.driving.drive import CommandError
+    from robolink.sim.physics.placing import WorldError
+    from robolink.sim.readings import Inertia, Reading, Scan, Velocity, WheelState
     from robolink.sim.robot import Robot
     from robolink.sim.world import World
-    from robolink.sim.worldfile import load_world
+    from robolink.sim.worldfile import check_world, load_world
 
 __all__ = [
     "CommandError",
@@ -22,27 +21,31 @@ __all__ = [
     "Pose",
     "Reading",
     "Robot",
+    "RobotDescription",
     "Scan",
     "Velocity",
     "WheelState",
     "World",
     "WorldDescription",
     "WorldError",
+    "check_world",
     "load_world",
 ]
 
 _HOMES = {
-    "CommandError": "drive",
+    "CommandError": "driving.drive",
     "Inertia": "readings",
     "Pose": "description",
     "Reading": "readings",
     "Robot": "robot",
-    "Scan": "lidar",
+    "RobotDescription": "description",
+    "Scan": "readings",
     "Velocity": "readings",
     "WheelState": "readings",
     "World": "world",
     "WorldDescription": "description",
-    "WorldError": "placing",
+    "WorldError": "physics.placing",
+    "check_world": "worldfile",
     "load_world": "worldfile",
 }
 

@@ -11,7 +11,15 @@ from typing import Annotated, Literal, TypeAlias
 
 from msgspec import Meta, Struct
 
-Coordinate: TypeAlias = Annotated[float, Meta(ge=-100_000.0, le=100_000.0)]
+from robolink import plane
+
+FARTHEST = 100_000.0
+"""Metres from the origin at most."""
+
+GRAVITY = 9.81
+"""m/s²."""
+
+Coordinate: TypeAlias = Annotated[float, Meta(ge=-FARTHEST, le=FARTHEST)]
 Angle: TypeAlias = Annotated[float, Meta(ge=-6.2832, le=6.2832)]  # one turn: who writes 90 meant degrees
 Length: TypeAlias = Annotated[float, Meta(ge=0.001, le=100_000.0)]
 Mass: TypeAlias = Annotated[float, Meta(ge=0.001, le=100_000.0)]
@@ -27,6 +35,11 @@ class Pose(Struct, frozen=True, array_like=True, forbid_unknown_fields=True):
     x: Coordinate
     y: Coordinate
     theta: Angle = 0.0
+
+    @property
+    def place(self) -> plane.Pose:
+        """The same as `robolink.plane` computes with."""
+        return plane.Pose(self.x, self.y, self.theta)
 
 
 class Settings(Struct, frozen=True, forbid_unknown_fields=True):
@@ -108,6 +121,11 @@ class Shape(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 def signed_area(polygon: Sequence[Point]) -> float:
     """Give the area of a polygon in m², negative if it goes round clockwise."""
     return math.fsum(x1 * y2 - x2 * y1 for (x1, y1), (x2, y2) in _pairs(polygon)) / 2
+
+
+def turn(a: Point, b: Point, c: Point) -> float:
+    """Give twice the area of a triangle in m²: positive if c lies to the left of the way from a to b."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def _pairs(polygon: Sequence[Point]) -> Iterator[tuple[Point, Point]]:
@@ -220,8 +238,26 @@ class Sensor:
         """The topic that the sensor publishes on."""
         return str(getattr(self, self.kind))
 
+    @property
+    def mount(self) -> Pose | None:
+        """Where it is on the robot; None for a sensor that has no place of its own."""
+        return getattr(self, "offset", None)
 
-class Bumper(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
+
+class Looking(Sensor):
+    """A sensor that looks or feels into a sector, `fov` degrees wide."""
+
+    __slots__ = ()
+    fov: float
+
+    @property
+    def right(self) -> float:
+        """The right end of its sector, in degrees from ahead: `start`, by default half of `fov` to the right."""
+        start: float | None = getattr(self, "start", None)
+        return -self.fov / 2 if start is None else start
+
+
+class Bumper(Looking, Struct, frozen=True, forbid_unknown_fields=True):
     """Tells, on the topic `bumper`, whether the robot touches something within `fov` degrees about `start`'s middle.
 
     `fov` and `start` (the sector's right end; by default half of `fov` to the right) are in degrees.
@@ -248,7 +284,7 @@ class Imu(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
     noise: ImuNoise = ImuNoise()
 
 
-class RangeFinder(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
+class RangeFinder(Looking, Struct, frozen=True, forbid_unknown_fields=True):
     """A sonar or infrared sensor on the topic `range_finder`: the distance to the nearest thing within its cone.
 
     `fov` is in degrees, `range` is [nearest, farthest] in metres, `noise` a standard deviation in metres, `offset`
@@ -272,7 +308,7 @@ class Encoders(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
     ticks: Annotated[int, Meta(ge=0, le=10_000_000)] = 0
 
 
-class Lidar(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
+class Lidar(Looking, Struct, frozen=True, forbid_unknown_fields=True):
     """A planar laser scanner that publishes on the topic `lidar`.
 
     `fov` and `start` (the first beam; by default half of `fov` to the right) are in degrees, `range` is
@@ -329,3 +365,10 @@ SENSORS: dict[str, type[Sensor]] = {
     "encoders": Encoders,
 }
 """The kinds of sensors, by the key that says which."""
+
+
+def steps_between(rate: float, dt: float) -> int:
+    """Give the whole number of steps of `dt` seconds from one reading to the next at `rate` Hz; 0 if there is none."""
+    steps = 1.0 / (rate * dt)
+    whole = round(steps)
+    return whole if whole >= 1 and abs(steps - whole) < 1e-6 * steps else 0

@@ -4,11 +4,26 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
+from robolink.sim.arrays import Array
 from robolink.sim.description import Sensor
-from robolink.sim.lidar import Scan
 
 if TYPE_CHECKING:
     from robolink.sim.robot import Robot
+
+
+class Scan(NamedTuple):
+    """One scan: angles in radians, ranges in metres as float64; +inf no return, -inf nearer than `range_min`.
+
+    `intensities` are the shares of light that came back, 0 to 1, if the lidar has them.
+    """
+
+    angle_min: float
+    angle_max: float
+    angle_increment: float
+    range_min: float
+    range_max: float
+    ranges: Array
+    intensities: Array | None = None
 
 
 class Velocity(NamedTuple):

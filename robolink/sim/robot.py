@@ -8,62 +8,68 @@ from typing import NamedTuple
 
 import pymunk
 
-from robolink.sim.arithmetic import sinc
-from robolink.sim.bodies import body_at, placed, solids
-from robolink.sim.contacts import Contacts, Touches
+from robolink.exceptions import NotFoundError
+from robolink.plane import wrapped
 from robolink.sim.description import Pose, RobotDescription, Wall
-from robolink.sim.drive import Driver
-from robolink.sim.fleet import Fleet, Member
-from robolink.sim.lidar import Scan
-from robolink.sim.motion import Motion
-from robolink.sim.noise import stream
-from robolink.sim.odometry import OdometryNoise, wrapped
-from robolink.sim.placing import WorldError, check_place, check_pose
-from robolink.sim.readings import Velocity, WheelState
-from robolink.sim.scene import Scene
-from robolink.sim.sensors import LidarSensor, device
-
-
-class Parts(NamedTuple):
-    """The parts of a world that each robot has to do with."""
-
-    space: pymunk.Space
-    scene: Scene
-    fleet: Fleet
-    contacts: Contacts
-    dt: float
-    seed: int
-    walls: tuple[Wall, ...]
+from robolink.sim.driving.arithmetic import sinc
+from robolink.sim.driving.drive import Driver
+from robolink.sim.driving.fleet import Fleet, Member
+from robolink.sim.driving.motion import Motion
+from robolink.sim.driving.odometry_noise import OdometryNoise
+from robolink.sim.physics.bodies import body_at, placed, solids
+from robolink.sim.physics.contacts import Contacts, Touches
+from robolink.sim.physics.placing import WorldError, check_place, check_pose
+from robolink.sim.readings import Scan, Velocity, WheelState
+from robolink.sim.sensing.random_streams import stream
+from robolink.sim.sensing.scene import Scene
+from robolink.sim.sensing.sensors import Carrier, LidarSensor, device
 
 
 class Robot:
-    """One robot of a `World`, which makes it and moves it. Its pose is that of its shape's origin, base_link."""
+    """One robot of a `World`, which makes it and moves it. Its pose is that of its shape's origin, base_link.
 
-    def __init__(self, description: RobotDescription, parts: Parts) -> None:
-        self.description, self.name = description, description.name
-        self.dt, self.scene, self._parts = parts.dt, parts.scene, parts
-        self.body = body_at(description.pose, description.mass, description.shape)
-        self.shapes = solids(description.shape, self.body)
-        self.touches = Touches(self.body)
-        self._driver = Driver(description, self.body, parts.dt)
+    `dt` is the seconds of the world's steps.
+    """
+
+    def __init__(self, description: RobotDescription, parts: WorldParts) -> None:
+        self.description, self.name, self.dt = description, description.name, parts.dt
+        self._parts, self._scene = parts, parts.scene
+        self._body = body_at(description.pose, description.mass, description.shape)
+        self._shapes = solids(description.shape, self._body)
+        self._touches = Touches(self._body)
+        self._driver = Driver(description, self._body, parts.dt)
         noise = description.odom.noise
         random = stream(parts.seed, self.name, "odom")
         self._noise = OdometryNoise(noise, random) if noise.v or noise.w else None
-        self._member = Member(self.body, self._driver.motion, self._noise)
-        self.devices = {each.topic: device(each, self, parts.seed) for each in description.sensors}
+        self._member = Member(self._body, self._driver.motion, self._noise)
+        carrier = self._carrier()
+        self._devices = {each.topic: device(each, carrier) for each in description.sensors}
 
-    def enter(self) -> None:
+    def _carrier(self) -> Carrier:
+        """Give what sensors need of this robot."""
+        return Carrier(
+            self.description,
+            self._parts.seed,
+            self.dt,
+            self._body,
+            self._scene,
+            self._touches.sectors,
+            lambda: self._motion,
+            lambda: self.wheels,
+        )
+
+    def _enter(self) -> None:
         """Come into the world."""
-        self._parts.space.add(self.body, *self.shapes)
-        self._parts.contacts.add(self.touches, self.shapes)
-        self._parts.scene.add(self.body, self.description.shape)
+        self._parts.space.add(self._body, *self._shapes)
+        self._parts.contacts.add(self._touches, self._shapes)
+        self._scene.add(self._body, self.description.shape)
         self._parts.fleet.add(self._member)
 
-    def leave(self) -> None:
+    def _leave(self) -> None:
         """Go out of the world."""
-        self._parts.space.remove(self.body, *self.shapes)
-        self._parts.contacts.remove(self.touches, self.shapes)
-        self._parts.scene.remove(self.body)
+        self._parts.space.remove(self._body, *self._shapes)
+        self._parts.contacts.remove(self._touches, self._shapes)
+        self._scene.remove(self._body)
         self._parts.fleet.remove(self._member)
 
     def command(self, v: float, w: float, sideways: float = 0.0) -> None:
@@ -72,7 +78,7 @@ class Robot:
         That is cut to the drive's limits, and only `omni` goes sideways. `ackermann` steers so that it goes on the
         circle that v and w make; it doesn't turn on the spot. Raises `CommandError` when it is not finite.
         """
-        self._driver.command(v, w, sideways, self.scene.step)
+        self._driver.command(Velocity(v, w, sideways), self._scene.step)
         self._parts.fleet.told(self._member)
 
     def turn_wheels(self, speeds: Mapping[str, float]) -> None:
@@ -93,27 +99,31 @@ class Robot:
         before = self.pose
         try:
             self._put(pose)
-            check_place(self._parts.space, self.shapes, self.name, pose, self._parts.walls)
+            self._check_place(pose)
         except WorldError:
             self._put(before)
             raise
-        self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
+        self._body.velocity, self._body.angular_velocity = (0.0, 0.0), 0.0
         self._parts.fleet.rest(self._member)
 
+    def _check_place(self, pose: Pose) -> None:
+        """Raise `WorldError` when the robot, which is at this pose, is inside of something."""
+        check_place(self._parts.space, self._shapes, self.name, pose, self._parts.walls)
+
     def _put(self, pose: Pose) -> None:
-        placed(self.body, pose)
-        self._parts.space.reindex_shapes_for_body(self.body)
-        self.scene.moved()
+        placed(self._body, pose)
+        self._parts.space.reindex_shapes_for_body(self._body)
+        self._scene.moved()
 
     @property
-    def motion(self) -> Motion[float]:
+    def _motion(self) -> Motion[float]:
         """What drives the robot, as it is now."""
         return self._parts.fleet.motion(self._member)
 
     @property
     def pose(self) -> Pose:
         """Where the robot truly is, theta in [-pi, pi]."""
-        return Pose(*self.body.position, wrapped(self.body.angle))
+        return Pose(*self._body.position, wrapped(self._body.angle))
 
     @property
     def odometry(self) -> Pose:
@@ -124,53 +134,63 @@ class Robot:
     @property
     def twist(self) -> Velocity:
         """The robot's true speeds along, about and across its heading."""
-        return Velocity(*self._speeds())
-
-    def _speeds(self) -> tuple[float, float, float]:
-        body = self.body
+        body = self._body
         (vx, vy), w = body.velocity, body.angular_velocity
         half = w * self.dt / 2
         middle = body.angle + half
         cos, sin, chord = math.cos(middle), math.sin(middle), sinc(half)
-        return (vx * cos + vy * sin) / chord, w, (vy * cos - vx * sin) / chord
+        return Velocity((vx * cos + vy * sin) / chord, w, (vy * cos - vx * sin) / chord)
 
     @property
     def odometry_twist(self) -> Velocity:
         """The robot's speeds as odometry believes them: with its noise, and without slipping."""
-        v, w, sideways = self._speeds()
+        v, w, sideways = self.twist
         if self.description.drive.type != "omni":
             sideways = 0.0
         if self._noise is None:
             return Velocity(v, w, sideways)
-        of_v, of_s, of_w = self._noise.at(self.scene.step)
+        of_v, of_s, of_w = self._noise.at(self._scene.step)
         return Velocity(v * of_v, w * of_w, sideways * of_s)
 
     @property
     def wheels(self) -> tuple[WheelState, ...]:
         """How far each wheel has turned since the start, and how fast it turns, as the robot truly goes."""
-        v, w, sideways = self.twist
-        return self._driver.wheels(self.motion, v, sideways, w)
+        return self._driver.wheels(self._motion, self.twist)
 
     @property
     def contacts(self) -> int:
         """How many things the robot has run into since the start."""
-        return self.touches.contacts
+        return self._touches.contacts
 
     @property
     def touching(self) -> int:
         """How many things the robot touches now."""
-        return self.touches.touching
+        return self._touches.touching
 
     @property
     def penetration(self) -> float:
         """The deepest that the robot has ever been inside something, in metres."""
-        return self.touches.penetration
+        return self._touches.penetration
 
     def scan(self, sensor: str | None = None) -> Scan:
         """Measure with a lidar (the first one by default); each call is a new measurement.
 
-        Raises `KeyError` when the robot has no such lidar.
+        Raises `NotFoundError` when the robot has no such lidar, or none at all.
         """
-        lidars = {topic: each for topic, each in self.devices.items() if isinstance(each, LidarSensor)}
-        name = sensor if sensor is not None else next(iter(lidars), "")
+        lidars = {topic: each for topic, each in self._devices.items() if isinstance(each, LidarSensor)}
+        name = sensor if sensor is not None else next(iter(lidars), "scan")
+        if name not in lidars:
+            raise NotFoundError("lidar", name, lidars, f"robot '{self.name}'")
         return lidars[name].measure()
+
+
+class WorldParts(NamedTuple):
+    """The parts of a world that each robot has to do with."""
+
+    space: pymunk.Space
+    scene: Scene
+    fleet: Fleet
+    contacts: Contacts
+    dt: float
+    seed: int
+    walls: tuple[Wall, ...]

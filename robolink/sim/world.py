@@ -9,24 +9,26 @@ print(robot.pose, robot.scan().ranges.min())
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 
 import pymunk
 
-from robolink.exceptions import NotFoundError
-from robolink.sim.bodies import body_at, floor_friction, pushable_body, solids, wall_shapes
-from robolink.sim.contacts import Contacts
+from robolink.exceptions import NotFoundError, shown
+from robolink.sim.checks.problem import Problem
+from robolink.sim.checks.robots import robot_problems
+from robolink.sim.checks.worlds import mass_problems
 from robolink.sim.description import Obstacle, RobotDescription, WorldDescription
-from robolink.sim.fleet import Fleet
-from robolink.sim.geometry import nearest_wall_distance
-from robolink.sim.mover import Mover
-from robolink.sim.placing import WorldError, check_place, check_pose
+from robolink.sim.driving.fleet import Fleet
+from robolink.sim.physics.bodies import body_at, floor_friction, pushable_body, solids, wall_shapes
+from robolink.sim.physics.contacts import Contacts
+from robolink.sim.physics.mover import Mover
+from robolink.sim.physics.placing import WorldError, check_pose
 from robolink.sim.readings import Reading
-from robolink.sim.robot import Parts, Robot
-from robolink.sim.robot_problems import robot_problems
-from robolink.sim.scene import Scene
-from robolink.sim.schedule import Schedule
+from robolink.sim.robot import Robot, WorldParts
+from robolink.sim.sensing.fixed import nearest_wall_distance
+from robolink.sim.sensing.scene import Scene
+from robolink.sim.sensing.schedule import Schedule
 
 _ITERATIONS = 20
 
@@ -50,12 +52,12 @@ class World:
         for obstacle in description.obstacles:
             self._add_obstacle(obstacle)
         seed = description.world.seed if seed is None else seed
-        self._parts = Parts(self._space, self._scene, self._fleet, self._contacts, dt, seed, description.walls)
+        self._parts = WorldParts(self._space, self._scene, self._fleet, self._contacts, dt, seed, description.walls)
         self._robots: dict[str, Robot] = {}
         self.robots: Mapping[str, Robot] = MappingProxyType(self._robots)
         for robot in description.robots:
             self._add_robot(robot)
-        self._schedule = Schedule(self._robots.values())
+        self._plan()
 
     @property
     def time_ns(self) -> int:
@@ -87,34 +89,48 @@ class World:
         Raises `WorldError` when its name is taken, when it would start inside of something, or for what
         `load_world` would refuse in a world file.
         """
-        for problem in robot_problems(description, self._dt):
-            raise WorldError(f"robot '{description.name}': {problem.path[1:]}: {problem.message}")
+        for problem in self._problems(description):
+            raise WorldError(f"robot '{shown(description.name)}': {problem.path}: {problem.message}")
         check_pose(description.name, description.pose)
         robot = self._add_robot(description)
         try:
-            check_place(self._space, robot.shapes, robot.name, description.pose, self.description.walls)
+            robot._check_place(description.pose)
         except WorldError:
             self.delete(robot.name)
             raise
-        self._schedule = Schedule(self._robots.values())
+        self._plan()
         return robot
+
+    def _problems(self, robot: RobotDescription) -> Iterator[Problem]:
+        """Yield what is wrong with a robot that is to come into this world."""
+        for each in robot_problems(robot, self._dt):
+            yield each._replace(path=each.path.removeprefix("."))
+        for each in mass_problems([robot], self.description.obstacles):
+            yield each._replace(path=each.path.removeprefix("$."))
+        for other in self._robots.values():
+            yield from (each._replace(path="mass") for each in mass_problems([robot, other.description], ()))
 
     def delete(self, name: str) -> None:
         """Take a robot out of the world. Raises `NotFoundError` when there is none of that name."""
         if name not in self._robots:
-            raise NotFoundError("robot", name, self._robots)
-        self._robots.pop(name).leave()
-        self._schedule = Schedule(self._robots.values())
+            raise NotFoundError("robot", shown(name), self._robots)
+        self._robots.pop(name)._leave()
+        self._plan()
 
     def nearest_wall_distance(self, x: float, y: float) -> float:
         """Give the distance in metres from a point to the nearest wall or fixed obstacle; inf if there is none."""
         return nearest_wall_distance(self._scene.fixed_segments, self._scene.fixed_circles, x, y)
 
+    def _plan(self) -> None:
+        """Find out anew which sensors there are."""
+        sensors = [(robot, each) for robot in self._robots.values() for each in robot._devices.values()]
+        self._schedule = Schedule(sensors, self._dt)
+
     def _add_robot(self, description: RobotDescription) -> Robot:
         if description.name in self._robots:
             raise WorldError(f"there is a robot named '{description.name}' already")
         robot = self._robots[description.name] = Robot(description, self._parts)
-        robot.enter()
+        robot._enter()
         return robot
 
     def _add_obstacle(self, obstacle: Obstacle) -> None:

@@ -15,25 +15,12 @@ import msgspec
 
 from robolink import yamlfile
 from robolink.exceptions import DocumentError, RobolinkError, nearest
-from robolink.sim.description import SENSORS, MapWalls, Sensor, WorldDescription
-from robolink.sim.overlaps import overlaps
-from robolink.sim.problems import (
-    Problem,
-    misfits,
-    obstacle_problems,
-    repeated_names,
-    size_problems,
-    steps_between,
-    under,
-    wall_problems,
-)
-from robolink.sim.robot_problems import robot_problems
+from robolink.sim.checks.worlds import mass_problems, misfits, problems
+from robolink.sim.description import SENSORS, Sensor, WorldDescription
 from robolink.yamlfile import Document
 
 if TYPE_CHECKING:
-    from robolink.sim.gridmap import GridMap
-
-__all__ = ["check_world", "load_world", "problems", "steps_between"]
+    from robolink.sim.maps.gridmap import GridMap
 
 
 def load_world(path: str | os.PathLike[str], *, text: str | None = None) -> WorldDescription:
@@ -45,7 +32,7 @@ def load_world(path: str | os.PathLike[str], *, text: str | None = None) -> Worl
     """
     if _is_webots(path):
         return _load_webots(path, text)
-    document = yamlfile.read(path, WorldDescription, text=text, hook=_kind_of_sensor)
+    document = yamlfile.read(path, WorldDescription, text=text, hook=sensor_class)
     grid = _map_of(document)
     description = _with_map(document, grid)
     for error in _mistakes(document, description, grid):
@@ -67,10 +54,10 @@ def check_world(path: str | os.PathLike[str], *, text: str | None = None) -> Che
             return Checked(_load_webots(path, text), [])
         except RobolinkError as error:
             return Checked(None, [error])
-    errors: list[RobolinkError] = [*yamlfile.mistakes(path, WorldDescription, text=text, hook=_kind_of_sensor)]
+    errors: list[RobolinkError] = [*yamlfile.mistakes(path, WorldDescription, text=text, hook=sensor_class)]
     if errors:
         return Checked(None, errors)
-    document = yamlfile.read(path, WorldDescription, text=text, hook=_kind_of_sensor)
+    document = yamlfile.read(path, WorldDescription, text=text, hook=sensor_class)
     description, grid = document.value, None
     try:
         grid = _map_of(document)
@@ -85,7 +72,7 @@ def _is_webots(path: str | os.PathLike[str]) -> bool:
     return Path(path).suffix.lower() == ".wbt"
 
 
-def _kind_of_sensor(kind: type, data: Any) -> type[Sensor]:
+def sensor_class(kind: type, data: Any) -> type[Sensor]:
     """Give the class of a sensor, which one of its keys tells. Raises ValueError when none does, or several."""
     if not isinstance(data, dict):
         raise ValueError("expected a mapping such as {lidar: scan}")
@@ -98,35 +85,13 @@ def _kind_of_sensor(kind: type, data: Any) -> type[Sensor]:
     return SENSORS[kinds[0]]
 
 
-def problems(description: WorldDescription, grid: GridMap | None = None) -> Iterator[Problem]:
-    """Yield all that is wrong with a description, such as ``$.robots[0].pose``; overlaps once all else is right."""
-    found = False
-    for problem in _local_problems(description):
-        found = True
-        yield problem
-    if not found:
-        yield from overlaps(description, grid)
-
-
-def _local_problems(description: WorldDescription) -> Iterator[Problem]:
-    dt = description.world.dt
-    for index, wall in enumerate(description.walls):
-        if not isinstance(wall, MapWalls):
-            yield from under(f"$.walls[{index}]", wall_problems(wall))
-    for index, obstacle in enumerate(description.obstacles):
-        yield from under(f"$.obstacles[{index}]", obstacle_problems(obstacle, dt))
-    for index, robot in enumerate(description.robots):
-        yield from under(f"$.robots[{index}]", robot_problems(robot, dt))
-    yield from repeated_names([each.name for each in description.robots], "$.robots[{}].name", "two robots are called")
-    yield from size_problems(description)
-
-
 def _mistakes(
     document: Document[WorldDescription], description: WorldDescription, grid: GridMap | None
 ) -> Iterator[DocumentError]:
     """Yield what is wrong with a world file whose every value is of the right type and in its range."""
     data: Any = document.data
-    for each in itertools.chain(misfits(data), problems(description, grid)):
+    masses = mass_problems(description.robots, description.obstacles)
+    for each in itertools.chain(misfits(data), problems(description, grid), masses):
         yield document.error(each.path, each.message, key=each.key)
 
 
@@ -134,7 +99,7 @@ def _map_of(document: Document[WorldDescription]) -> GridMap | None:
     """Read the map that a world file names, from its own folder."""
     if document.value.map is None:
         return None
-    from robolink.sim.gridmap import load_map
+    from robolink.sim.maps.gridmap import load_map
 
     path = Path(document.name).parent / document.value.map.yaml
     try:
@@ -146,7 +111,7 @@ def _map_of(document: Document[WorldDescription]) -> GridMap | None:
 def _with_map(document: Document[WorldDescription], grid: GridMap | None) -> WorldDescription:
     if grid is None:
         return document.value
-    from robolink.sim.gridmap import map_walls
+    from robolink.sim.maps.gridmap import map_walls
 
     try:
         walls = map_walls(grid)

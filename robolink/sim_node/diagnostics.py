@@ -38,7 +38,7 @@ def diagnostics(node_name: str, simulation: Simulation, rate: Rate) -> Diagnosti
         "simulation time": f"{world.time_ns / 1e9:.3f}",
         "robots": str(len(world.robots)),
         "refused commands": str(simulation.refused),
-        "contacts": str(simulation.contacts),
+        "contacts": str(world.contacts),
     }
     status = DiagnosticStatus(
         level=level,
@@ -78,15 +78,15 @@ def report(world: World) -> list[str]:
 
 
 def said(robot: Robot, wall: float) -> str:
-    """Say where a robot is and what it does; `wall` is the distance to the nearest wall in metres."""
+    """Say where a robot is and what it does; `wall` is the distance to the nearest wall in metres, inf without one."""
     pose, twist = robot.pose, robot.twist
     turning = round(math.degrees(twist.w))
     parts = [
         f"{robot.name} at ({pose.x:.2f}, {pose.y:.2f}) heading {round(math.degrees(pose.theta))} deg",
-        f"{twist.v:.2f} m/s",
+        f"{round(twist.v, 2) + 0.0:.2f} m/s",  # never -0.00
         f"{twist.sideways:.2f} m/s to the left" if abs(twist.sideways) >= 0.005 else "",
         f"turning {'left' if turning > 0 else 'right'} at {abs(turning)} deg/s" if turning else "",
-        f"nearest wall {wall:.2f} m",
+        f"nearest wall {wall:.2f} m" if math.isfinite(wall) else "",
         "in contact" if robot.touching else "",
     ]
     return ", ".join(filter(None, parts))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -27,35 +27,22 @@ from robolink.interfaces.sensor_msgs.msg import JointState, LaserScan, Range
 from robolink.interfaces.std_msgs.msg import Bool, Header
 from robolink.message import Message
 from robolink.sim import Inertia, Pose, Scan, Velocity, WheelState
-from robolink.sim.bodies import GRAVITY
-from robolink.sim.description import Bumper, Encoders, Imu, ImuNoise, Lidar, RangeFinder, Sensor
+from robolink.sim.description import GRAVITY, Bumper, Encoders, Imu, Lidar, RangeFinder, Sensor
 from robolink.sim_node.uncertainty import Covariance
 
 NANOSECONDS = 1_000_000_000
 NOTHING_SAID: Covariance = np.zeros(36)
 """A covariance that says nothing, as ROS reads zeros."""
 
-SENSOR_MESSAGES: dict[type[Sensor], type[Message]] = {
-    Lidar: LaserScan,
-    Bumper: Bool,
-    Imu: ImuMessage,
-    RangeFinder: Range,
-    Encoders: JointState,
-}
-"""What each kind of sensor publishes."""
+
+def sensor_type(sensor: Sensor) -> type[Message]:
+    """Give the type of message that a sensor publishes."""
+    return _SENSORS[type(sensor)][0]
 
 
 def sensor_message(sensor: Sensor, value: Any, header: Header) -> Message:
-    """Make the message of what a sensor has measured, of the type that `SENSOR_MESSAGES` has for its kind."""
-    if isinstance(sensor, Lidar):
-        return scan_message(value, header, 1.0 / sensor.rate)
-    if isinstance(sensor, Imu):
-        return imu_message(value, header, sensor.noise)
-    if isinstance(sensor, RangeFinder):
-        return range_message(value, header, sensor)
-    if isinstance(sensor, Encoders):
-        return joint_state_message(value, header)
-    return Bool(data=value)
+    """Make the message of what a sensor has measured, of its `sensor_type`."""
+    return _SENSORS[type(sensor)][1](value, header, sensor)
 
 
 def time_message(nanoseconds: int) -> Time:
@@ -63,14 +50,14 @@ def time_message(nanoseconds: int) -> Time:
     return Time(sec=nanoseconds // NANOSECONDS, nanosec=nanoseconds % NANOSECONDS)
 
 
-def scan_message(scan: Scan, header: Header, seconds: float) -> LaserScan:
-    """Make the message of a scan; all its beams are of one instant, and the next comes in `seconds`."""
+def scan_message(scan: Scan, header: Header, sensor: Lidar) -> LaserScan:
+    """Make the message of a scan; all its beams are of one instant, and the next comes after the lidar's period."""
     return LaserScan(
         header=header,
         angle_min=scan.angle_min,
         angle_max=scan.angle_max,
         angle_increment=scan.angle_increment,
-        scan_time=seconds,
+        scan_time=1.0 / sensor.rate,
         range_min=scan.range_min,
         range_max=scan.range_max,
         ranges=_floats(scan.ranges),
@@ -105,8 +92,9 @@ def odometry_message(
     )
 
 
-def imu_message(inertia: Inertia, header: Header, noise: ImuNoise) -> ImuMessage:
+def imu_message(inertia: Inertia, header: Header, sensor: Imu) -> ImuMessage:
     """Make the message of an inertial unit that lies flat: like a real one it feels the floor carry it, along z."""
+    noise = sensor.noise
     return ImuMessage(
         header=header,
         orientation=facing(inertia.heading),
@@ -131,7 +119,7 @@ def range_message(distance: float, header: Header, sensor: RangeFinder) -> Range
     )
 
 
-def joint_state_message(wheels: Sequence[WheelState], header: Header) -> JointState:
+def joint_state_message(wheels: Sequence[WheelState], header: Header, sensor: Encoders | None = None) -> JointState:
     """Make the message of how far wheels have turned, in radians, and how fast they do, in rad/s."""
     return JointState(
         header=header,
@@ -139,6 +127,11 @@ def joint_state_message(wheels: Sequence[WheelState], header: Header) -> JointSt
         position=[each.position for each in wheels],
         velocity=[each.speed for each in wheels],
     )
+
+
+def bumper_message(touched: bool, header: Header, sensor: Bumper) -> Bool:
+    """Make the message of whether a bumper was touched; it has no header."""
+    return Bool(data=touched)
 
 
 def transform_message(header: Header, child: str, pose: Pose) -> TransformStamped:
@@ -150,3 +143,13 @@ def transform_message(header: Header, child: str, pose: Pose) -> TransformStampe
 def facing(theta: float) -> Quaternion:
     """Give the rotation by `theta` radians about z."""
     return Quaternion(z=math.sin(theta / 2), w=math.cos(theta / 2))
+
+
+_SENSORS: dict[type[Sensor], tuple[type[Message], Callable[[Any, Header, Any], Message]]] = {
+    Lidar: (LaserScan, scan_message),
+    Bumper: (Bool, bumper_message),
+    Imu: (ImuMessage, imu_message),
+    RangeFinder: (Range, range_message),
+    Encoders: (JointState, joint_state_message),
+}
+"""What each kind of sensor publishes, and what makes it."""

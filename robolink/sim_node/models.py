@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
-import json
-import math
+import itertools
 from collections.abc import Mapping
 from typing import Any
 
 import msgspec
 
-from robolink import yamltext
-from robolink.exceptions import NotFoundError
-from robolink.sim import Pose, WorldDescription, WorldError, load_world
-from robolink.sim.description import RobotDescription
-from robolink.sim.odometry import wrapped
+from robolink import yamlfile
+from robolink.exceptions import NotFoundError, shown
+from robolink.plane import wrapped
+from robolink.sim import Pose, RobotDescription, WorldDescription, WorldError
+from robolink.sim.checks.robots import robot_misfits, robot_problems
+from robolink.sim.physics.placing import check_pose
+from robolink.sim.worldfile import sensor_class
 
-FARTHEST = 100_000.0
-"""Metres from the origin, as in world files."""
 
-
-def pose_at(x: float, y: float, theta: float, world: WorldDescription) -> Pose:
-    """Give a pose in a world, theta within half a turn. Raises WorldError for what is no number, or outside."""
-    if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST and math.isfinite(theta)):
-        raise WorldError(
-            f"expected finite numbers, at most {FARTHEST:g} m from the origin, got [{x:g}, {y:g}, {theta:g}]"
-        )
+def pose_in(world: WorldDescription, name: str, x: float, y: float, theta: float) -> Pose:
+    """Give a pose of a robot, theta within half a turn. Raises WorldError for what is no number, or outside."""
+    check_pose(name, Pose(x, y, theta))
     if world.world.size is not None:
         width, height = world.world.size
         if not (0.0 <= x <= width and 0.0 <= y <= height):
@@ -37,15 +32,15 @@ def robot_like(
 ) -> RobotDescription:
     """Describe a robot that is like `model`: the name of one that is `known`, '' for the first, or YAML.
 
-    Raises NotFoundError for an unknown name, DocumentError and WorldError for a text that describes no robot. What
-    the robot is called, and whether it fits into the world, the world itself looks at.
+    Raises NotFoundError for an unknown name, DocumentError with `model:line:column` for a text that describes no
+    robot. What the robot is called, and whether there is room for it, the world itself looks at.
     """
     text = model.strip()
     if not text or text in known:
         return msgspec.structs.replace(known[text] if text else _first(known), name=name, pose=pose)
     if text.replace("_", "").replace("-", "").isalnum():
-        raise NotFoundError("robot", text, known)
-    return _read(text, name, pose, world)
+        raise NotFoundError("robot", shown(text), known)
+    return _read(model, name, pose, world.world.dt)
 
 
 def _first(known: Mapping[str, RobotDescription]) -> RobotDescription:
@@ -54,11 +49,18 @@ def _first(known: Mapping[str, RobotDescription]) -> RobotDescription:
     return next(iter(known.values()))
 
 
-def _read(text: str, name: str, pose: Pose, world: WorldDescription) -> RobotDescription:
-    """Read a robot as a world file has it; a name and pose in the text give way."""
-    said: Any = yamltext.plain(yamltext.compose(text, "model"), "model")
-    if not isinstance(said, dict):
-        raise WorldError(f"model: expected a mapping as of a robot in a world file, got {said!r:.60}")
-    robot = {**said, "name": name, "pose": [pose.x, pose.y, pose.theta]}
-    document = {"world": {"dt": world.world.dt}, "robots": [robot]}
-    return load_world("model", text=json.dumps(document)).robots[0]
+class Model(RobotDescription, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A robot as a world file has it, but that a name and a pose may be left out: they give way."""
+
+    name: Any = ""
+    pose: Any = None
+
+
+def _read(text: str, name: str, pose: Pose, dt: float) -> RobotDescription:
+    """Read a robot for a world with steps of `dt` seconds."""
+    document = yamlfile.read("model", Model, text=text, hook=sensor_class)
+    robot = RobotDescription(**{**msgspec.structs.asdict(document.value), "name": "robot", "pose": pose})
+    data: Any = document.data
+    for problem in itertools.chain(robot_misfits(data), robot_problems(robot, dt)):
+        raise document.error(f"${problem.path}", problem.message, key=problem.key)
+    return msgspec.structs.replace(robot, name=name)

@@ -15,7 +15,7 @@ from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.node import Node
 from robolink.parameter import Parameter
 from robolink.sim import WorldError
-from robolink.sim_node.models import pose_at, robot_like
+from robolink.sim_node.models import pose_in, robot_like
 from robolink.sim_node.runner import Runner
 from robolink.sim_node.simulation import Simulation
 from robolink.workspace.interfaces import WORKSPACE_TYPES
@@ -83,13 +83,13 @@ class Services:
         return "running"
 
     def _teleport(self, request: Any) -> str:
-        pose = pose_at(request.x, request.y, request.theta, self._simulation.description)
+        pose = pose_in(self._simulation.description, request.robot, request.x, request.y, request.theta)
         self._simulation.teleport(request.robot, pose)
         return f"{request.robot} is at ({pose.x:g}, {pose.y:g})"
 
     def _spawn(self, request: Any) -> str:
         simulation = self._simulation
-        pose = pose_at(request.x, request.y, request.theta, simulation.description)
+        pose = pose_in(simulation.description, request.name, request.x, request.y, request.theta)
         known = {name: robot.description for name, robot in simulation.world.robots.items()}
         simulation.spawn(robot_like(request.model, request.name, pose, simulation.description, known))
         return f"spawned {request.name} at ({pose.x:g}, {pose.y:g})"

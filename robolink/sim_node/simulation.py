@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 
-from robolink.exceptions import NotFoundError
+from robolink.exceptions import NotFoundError, shown
 from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.node import Node
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.sim import Pose, Robot, World, WorldDescription
 from robolink.sim.description import RobotDescription
-from robolink.sim_node.commands import Commands
 from robolink.sim_node.messages import time_message
-from robolink.sim_node.port import Port
+from robolink.sim_node.robot_commands import RobotCommands
+from robolink.sim_node.robot_topics import RobotTopics
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -35,15 +35,15 @@ class Simulation:
         publish_map: bool = True,
     ) -> None:
         self.description, self.world = description, World(description)
-        self.ports: dict[str, Port] = {}
-        self._wheeled: list[Commands] = []
+        self.robots: dict[str, RobotTopics] = {}
+        self._wheeled: list[RobotCommands] = []
         self._contacts, self._state_steps = 0, 1
         self._node, self._epoch, self._publish_map = node, epoch, publish_map
         self._clock = node.create_publisher(Clock, "/clock", 10) if publish_clock else None
         self._tf = node.create_publisher(TFMessage, "/tf", 100)
         self._tf_static = node.create_publisher(TFMessage, "/tf_static", LATCHED)
         self._only = description.robots[0].name if len(description.robots) == 1 else None
-        self._open_ports()
+        self._open_topics()
 
     @property
     def now(self) -> int:
@@ -52,7 +52,7 @@ class Simulation:
 
     def step(self) -> None:
         """Make one step, and publish what is new after it."""
-        world, ports = self.world, self.ports
+        world, robots = self.world, self.robots
         for each in self._wheeled:
             each.step()
         world.step()
@@ -60,10 +60,10 @@ class Simulation:
         if self._clock is not None:
             self._clock.publish(Clock(clock=stamp))
         for robot, sensor, value in world.readings():
-            ports[robot.name].publish_reading(sensor, value, stamp)
+            robots[robot.name].publish_reading(sensor, value, stamp)
         if step % self._state_steps == 0:
-            moved = [port.publish_state(step, stamp) for port in ports.values()]
-            if transforms := [each for each in moved if each is not None]:
+            moved = [each.publish_state(step, stamp) for each in robots.values()]
+            if transforms := [found for found in moved if found is not None]:
                 self._tf.publish(TFMessage(transforms=transforms))
         if world.contacts != self._contacts:
             self._contacts = world.contacts
@@ -72,66 +72,61 @@ class Simulation:
     def reset(self) -> None:
         """Begin anew: every robot of the world file is where it started, others are gone, and time goes on."""
         self._epoch, self.world, self._contacts = self.now, World(self.description), 0
-        self._open_ports()
+        self._open_topics()
 
     def spawn(self, robot: RobotDescription) -> None:
         """Put one more robot into the world. Raises WorldError when it would be inside something."""
         self.world.spawn(robot)
-        self._open_ports()
+        self._open_topics()
 
     def delete(self, name: str) -> None:
         """Take a robot out of the world. Raises NotFoundError."""
         self.robot(name)
         self.world.delete(name)
-        self._open_ports()
+        self._open_topics()
 
     def teleport(self, name: str, pose: Pose) -> None:
         """Put a robot elsewhere. Raises NotFoundError, and WorldError when it would be inside something."""
         self.robot(name).robot.teleport(pose)
-        self.ports[name].place_odometry()
+        self.robots[name].place_odometry()
         self._publish_static()
 
-    def robot(self, name: str) -> Port:
-        """Give the port of a robot. Raises NotFoundError with the nearest name."""
-        if name not in self.ports:
-            raise NotFoundError("robot", name, self.ports)
-        return self.ports[name]
+    def robot(self, name: str) -> RobotTopics:
+        """Give the topics of a robot. Raises NotFoundError with the nearest name."""
+        if name not in self.robots:
+            raise NotFoundError("robot", shown(name), self.robots)
+        return self.robots[name]
 
     @property
     def refused(self) -> int:
         """How many commands made no sense."""
-        return sum(port.commands.refused for port in self.ports.values())
+        return sum(topics.commands.refused for topics in self.robots.values())
 
-    @property
-    def contacts(self) -> int:
-        """How often robots have run into something since the world began."""
-        return sum(port.robot.contacts for port in self.ports.values())
-
-    def _open_ports(self) -> None:
-        """Have a port for each robot of the world, and for no other."""
+    def _open_topics(self) -> None:
+        """Have the topics of each robot of the world, and of no other."""
         robots = self.world.robots
         kept = {
-            name: port
-            for name, port in self.ports.items()
-            if name in robots and robots[name].description == port.robot.description
+            name: topics
+            for name, topics in self.robots.items()
+            if name in robots and robots[name].description == topics.robot.description
         }
-        for name, port in self.ports.items():
+        for name, topics in self.robots.items():
             if name not in kept:
-                port.close()
-            elif port.robot is not robots[name]:
-                port.follow(robots[name])
-        self.ports = {name: kept.get(name) or self._port(robot) for name, robot in robots.items()}
-        self._state_steps = math.gcd(*(port.state_steps for port in self.ports.values())) or 1
-        self._wheeled = [port.commands for port in self.ports.values() if port.commands.motors]
+                topics.close()
+            elif topics.robot is not robots[name]:
+                topics.follow(robots[name])
+        self.robots = {name: kept.get(name) or self._topics(robot) for name, robot in robots.items()}
+        self._state_steps = math.gcd(*(topics.state_steps for topics in self.robots.values())) or 1
+        self._wheeled = [topics.commands for topics in self.robots.values() if topics.commands.motors]
         self._publish_static()
 
-    def _port(self, robot: Robot) -> Port:
-        return Port(self._node, robot, "" if robot.name == self._only else f"{robot.name}/")
+    def _topics(self, robot: Robot) -> RobotTopics:
+        return RobotTopics(self._node, robot, "" if robot.name == self._only else f"{robot.name}/")
 
     def _warn_of_contacts(self) -> None:
-        for port in self.ports.values():
-            if port.touched():
-                name, pose = port.robot.name, port.robot.pose
+        for topics in self.robots.values():
+            if topics.touched():
+                name, pose = topics.robot.name, topics.robot.pose
                 self._node.get_logger().warning(
                     f"{name} ran into something at ({pose.x:.2f}, {pose.y:.2f})", throttle_duration_sec=1.0
                 )
@@ -139,6 +134,8 @@ class Simulation:
     def _publish_static(self) -> None:
         stamp = time_message(self.now)
         found = [
-            each for port in self.ports.values() for each in port.static_transforms(stamp, on_map=self._publish_map)
+            each
+            for topics in self.robots.values()
+            for each in topics.static_transforms(stamp, on_map=self._publish_map)
         ]
         self._tf_static.publish(TFMessage(transforms=found))

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 RUNNING = frozenset(["init", "spin", "spin_once", "spin_until_future_complete", "create_node"])
 """What is called by a file that runs nodes as it is read."""
 
+NODE_BASES = ("Node", "ScanController")
+"""How the names of classes end that nodes extend: Node, LifecycleNode, and what the library makes of them."""
+
 
 class NodeLoadError(RobolinkError, ImportError):
     """A file holds no node, or none that can be chosen, or is no Python."""
@@ -71,9 +74,8 @@ def own_process_needed(source: NodeSource) -> str:
         is_program, what = has_main or _is_script(tree), "a main()" if has_main else "a script"
     if not is_program:
         return ""
-    classes = [each.name for each in tree.body if type(each).__name__ == "ClassDef"]  # type: ignore[attr-defined]
-    instead = " or ".join(f"{source.path.name}:{each}" for each in classes)
-    advice = f"name its class, {instead}, or " if classes else ""
+    instead = " or ".join(f"{source.path.name}:{each}" for each in _node_classes(tree))
+    advice = f"name its class, {instead}, or " if instead else ""
     return f"{source.path.name} is run by {what}, which needs a process of its own: {advice}leave `process` out"
 
 
@@ -145,18 +147,33 @@ def _acts(tree: ast.Module) -> bool:
     for statement in tree.body:
         if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
             continue
-        called = {_called(each) for each in ast.walk(statement) if isinstance(each, ast.Call)}
+        called = {_last_name(each.func) for each in ast.walk(statement) if isinstance(each, ast.Call)}
         if called & RUNNING or (isinstance(statement, ast.Expr) and called & own):
             return True
     return False
 
 
-def _called(call: ast.Call) -> str:
-    return str(getattr(call.func, "id", getattr(call.func, "attr", "")))
-
-
 def _defines(tree: ast.Module, kind: str, name: str | None = None) -> bool:
     return any(type(each).__name__ == kind and name in (None, getattr(each, "name", "")) for each in tree.body)
+
+
+def _node_classes(tree: ast.Module) -> list[str]:
+    """Name the classes of a file that are nodes by their bases, without those that others of them extend."""
+    import ast
+
+    found: dict[str, set[str]] = {}
+    for each in tree.body:
+        if isinstance(each, ast.ClassDef):
+            bases = {_last_name(base) for base in each.bases}
+            if bases & found.keys() or any(base.endswith(NODE_BASES) for base in bases):
+                found[each.name] = bases
+    extended = set().union(*found.values())
+    return [name for name in found if name not in extended]
+
+
+def _last_name(named: ast.expr) -> str:
+    """Give what a base or a function is called: `rclpy.node.Node` is `Node`."""
+    return str(getattr(named, "id", getattr(named, "attr", "")))
 
 
 def _script(source: NodeSource, path: Path) -> Callable[[], Any]:

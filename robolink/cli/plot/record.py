@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from robolink.cli.pictures import check_picture
 from robolink.cli.session import tell
 from robolink.cli.topic.echo import matching_qos
 from robolink.cli.types import message_type
@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from robolink.node import Node
 
 WINDOW_NEEDED = "there is no screen to open a window on: give --out FILE.png"
-FORMATS = (".png", ".svg", ".pdf")
 DOTS_PER_INCH = 150
+LEAST_WAIT = 5.0
+"""Seconds that somebody has at least to begin to publish."""
 TOLD_AFTER = 2.0
 """Seconds until it is said that a topic is waited for."""
 
@@ -41,21 +42,32 @@ class Wish(NamedTuple):
 
 
 def check(wish: Wish) -> None:
-    """Raise `PlotError` before any listening when the picture could not be made in the end."""
-    if wish.out is not None:
-        if wish.out.suffix.lower() not in FORMATS:
-            raise PlotError(f"'{wish.out}' is no picture: its name must end in {', '.join(FORMATS)}")
-        if not wish.out.absolute().parent.is_dir():
-            raise PlotError(f"no folder '{wish.out.absolute().parent}' to write '{wish.out.name}' to")
-        os.environ["MPLBACKEND"] = "agg"  # the shell's may want a screen, or a notebook's module, and a file needs none
+    """Raise `PlotError` or `DrawingError` before any listening when the picture could not be made in the end."""
+    if wish.out is None:
+        _check_window()
+        return
+    if not wish.out.absolute().parent.is_dir():
+        raise PlotError(f"no folder '{wish.out.absolute().parent}' to write '{wish.out.name}' to")
+    check_picture(wish.out)
+
+
+def _check_window() -> None:
+    from robolink import drawing
+
     try:
+        drawing.check_picture(Path("window.png"))  # needs what such a file would
         import matplotlib.pyplot as plt
-    except ImportError:
-        raise PlotError("plots need matplotlib: pip install 'robolink[plot]'") from None
+    except drawing.DrawingError:
+        raise
     except ValueError as error:
         raise PlotError(f"matplotlib does not start, see MPLBACKEND: {error}") from None
-    if wish.out is None and plt.get_backend().lower() == "agg":
+    if plt.get_backend().lower() == "agg":
         raise PlotError(WINDOW_NEEDED)
+
+
+def deadline(wish: Wish) -> float | None:
+    """Give the moment (of `time.monotonic`) until which somebody must publish; None while there is no hurry."""
+    return None if wish.duration is None else time.monotonic() + max(wish.duration, LEAST_WAIT)
 
 
 def wait_for(context: Context, topic: str, deadline: float | None) -> type[Any]:

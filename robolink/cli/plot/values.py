@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from robolink.cli import show as fields
-from robolink.cli.plot.record import PlotError, Wish, check, listen, show, wait_for
+from robolink.cli.plot.record import PlotError, Wish, check, deadline, listen, show, wait_for
 from robolink.cli.session import node_of, opened
 from robolink.exceptions import EncodeError
 from robolink.wire import EndpointKind
@@ -15,9 +15,6 @@ from robolink.wire import EndpointKind
 if TYPE_CHECKING:
     from robolink.context import Context
     from robolink.node import Node
-
-LEAST_WAIT = 5.0
-"""Seconds that somebody has at least to begin to publish."""
 
 NUMBERS = ("float", "int", "uint", "double", "bool", "byte", "char", "octet")
 
@@ -57,9 +54,9 @@ def run(asked: list[str], wish: Wish) -> None:
     check(wish)
     with opened() as context:
         node = node_of(context)
-        deadline = None if wish.duration is None else time.monotonic() + max(wish.duration, LEAST_WAIT)
-        curves = [Curve(*_parted(node, each, deadline)) for each in dict.fromkeys(asked)]
-        types = {curve.topic: wait_for(context, curve.topic, deadline) for curve in curves}
+        until = deadline(wish)
+        curves = [Curve(*_parted(node, each, until)) for each in dict.fromkeys(asked)]
+        types = {curve.topic: wait_for(context, curve.topic, until) for curve in curves}
         for curve in curves:
             _check_number(types[curve.topic], curve)
         listen(node, {topic: (types[topic], _all_of(topic, curves)) for topic in types}, wish.duration)
@@ -79,7 +76,7 @@ def _all_of(topic: str, curves: Iterable[Curve]) -> Callable[[Any], None]:
     return take
 
 
-def _parted(node: Node, asked: str, deadline: float | None) -> tuple[str, str]:
+def _parted(node: Node, asked: str, until: float | None) -> tuple[str, str]:
     """Part `/odom.pose.x` or `/odom/pose/x` into topic and field: the topic is the longest name that is published."""
     if "." in asked:
         topic, _, field = asked.partition(".")
@@ -94,7 +91,7 @@ def _parted(node: Node, asked: str, deadline: float | None) -> tuple[str, str]:
     while not published():
         if not node.context.ok():
             raise KeyboardInterrupt
-        if deadline is not None and time.monotonic() > deadline:
+        if until is not None and time.monotonic() > until:
             raise PlotError(f"'{asked}' names no field of a topic that is published: write TOPIC.FIELD, as in /odom.x")
         node.context.graph.wait_for(lambda: bool(published()) or not node.context.ok(), 0.5)
     topic = published()
@@ -137,7 +134,7 @@ def _draw(curves: list[Curve], wish: Wish) -> None:
     figure, axes = plt.subplots(figsize=(9, 4.5))
     for curve, moments in zip(curves, times, strict=True):
         axes.plot([each - start for each in moments], curve.values, linewidth=1.4, label=curve.name)
-    axes.set_xlabel("time (s)")
+    axes.set_xlabel("time [s]")
     axes.grid(alpha=0.3)
     if len(curves) > 1:
         axes.legend(frameon=False)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from robolink.cli.plot.record import PlotError, Wish, check, listen, show, wait_for
+from robolink.cli.plot.record import PlotError, Wish, check, deadline, listen, show, wait_for
 from robolink.cli.session import node_of, nodes, opened, tell
 from robolink.exceptions import RobolinkError
 
@@ -22,8 +21,6 @@ Point: TypeAlias = "tuple[float, float]"
 WORLD_NODE = "world"
 ANSWER_WITHIN = 2.0
 NO_WORLD = "none"
-LEAST_WAIT = 5.0
-"""Seconds that somebody has at least to begin to publish."""
 
 
 class Kind(NamedTuple):
@@ -78,9 +75,9 @@ def run(topics: list[str], kind: Kind, world: str, wish: Wish) -> None:
     check(wish)
     with opened() as context:
         node = node_of(context)
-        deadline = None if wish.duration is None else time.monotonic() + max(wish.duration, LEAST_WAIT)
+        until = deadline(wish)
         ways = {name: Way(name, kind) for name in map(node.resolve_topic_name, dict.fromkeys(topics))}
-        heard = {name: (_fitting(wait_for(context, name, deadline), name, kind), ways[name].take) for name in ways}
+        heard = {name: (_fitting(wait_for(context, name, until), name, kind), ways[name].take) for name in ways}
         description = _world(node, world)
         listen(node, heard, wish.duration)
     if not any(way.points for way in ways.values()):
@@ -105,11 +102,11 @@ def _world(node: Node, asked: str) -> WorldDescription | None:
     if not name:
         return None
     from robolink.sim import load_world
-    from robolink.sim.webots import told_by
+    from robolink.sim.webots import warnings_to
     from robolink.workspace import find_world
 
     try:
-        with told_by(lambda line: tell(f"robolink: {line}")):
+        with warnings_to(lambda line: tell(f"robolink: {line}")):
             return load_world(find_world(name))
     except RobolinkError as error:
         if asked:
@@ -147,8 +144,8 @@ def _draw(ways: Iterable[Way], world: WorldDescription | None, wish: Wish) -> No
     for number, way in enumerate(each for each in ways if each.points):
         _draw_way(axes, way, f"C{number}")
     axes.set_aspect("equal")
-    axes.set_xlabel("x (m)")
-    axes.set_ylabel("y (m)")
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
     show(figure, wish)
     plt.close(figure)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from robolink import yamlfile
 from robolink.sim.description import WorldDescription
 
-__all__ = ["WebotsWorld", "WorldWarning", "load", "read", "told_by"]
+__all__ = ["WebotsWorld", "WorldWarning", "load", "read", "warnings_to"]
 
 
 class WorldWarning(UserWarning):
@@ -33,8 +33,8 @@ class WebotsWorld(NamedTuple):
 
 
 @contextlib.contextmanager
-def told_by(tell: Callable[[str], object]) -> Iterator[None]:
-    """Have this function tell what loading a world inside of the block warns of, line by line."""
+def warnings_to(tell: Callable[[str], object]) -> Iterator[None]:
+    """Send to this function what loading a world inside of the block warns of, a text each."""
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always", WorldWarning)
         yield

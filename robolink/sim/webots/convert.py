@@ -10,6 +10,7 @@ from typing import NamedTuple
 import msgspec
 
 from robolink.exceptions import DocumentError
+from robolink.sim.checks.worlds import mass_problems, problems
 from robolink.sim.description import Obstacle, Settings, Wall, WorldDescription
 from robolink.sim.webots.footprint import footprint, merged
 from robolink.sim.webots.geometry import ORIGIN, Placement
@@ -30,6 +31,10 @@ STEPS = (0.001, 0.1)
 """Seconds that a step may take."""
 
 ATTEMPTS = 3
+
+NAMED = 5
+"""So many things a note names."""
+
 _OBSTACLE = r"\$\.obstacles\[(\d+)\]\.pose"
 
 
@@ -118,8 +123,6 @@ def _settled(
     description: WorldDescription, things: list[Standing], robots: Sequence[Node], floor: float, name: str
 ) -> tuple[WorldDescription, list[str]]:
     """Leave out what stands on other things, and fix what could be pushed but starts inside of something."""
-    from robolink.sim.worldfile import problems
-
     notes: list[str] = []
     for _ in range(ATTEMPTS):
         found = [each for each in problems(description) if not _is_fixed(each.path, things)]
@@ -131,7 +134,16 @@ def _settled(
         description = msgspec.structs.replace(description, obstacles=tuple(each.obstacle for each in things))
     for problem in found:
         raise _placed(problem.path, problem.message, things, robots, name)
-    return description, notes
+    return description, [*notes, *_light(description, things, robots)]
+
+
+def _light(description: WorldDescription, things: list[Standing], robots: Sequence[Node]) -> Iterator[str]:
+    """Say what robots may push through walls, for it is so light; here that is no error."""
+    found = [_origin(each.path, things, robots) for each in mass_problems(description.robots, description.obstacles)]
+    names = [node.called for node in found if node is not None]
+    if names:
+        others = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+        yield f"so light that a robot may push it through a wall: {', '.join(names[:NAMED])}{others}"
 
 
 def _is_fixed(path: str, things: list[Standing]) -> bool:
@@ -158,12 +170,18 @@ def _placed(path: str, message: str, things: list[Standing], robots: Sequence[No
     message = re.sub(r"obstacles\[(\d+)\]", lambda match: things[int(match[1])].thing.node.called, message)
     message = re.sub(r"robots\[(\d+)\]", lambda match: robots[int(match[1])].called, message)
     message = re.sub(r"walls\[\d+\]", "the walls of the arena", message)
-    match = re.match(r"\$\.(robots|obstacles)\[(\d+)\](.*)", path)
-    if match is None:
+    node = _origin(path, things, robots)
+    if node is None:
         return DocumentError(f"{name}:1:1: {path.removeprefix('$.')}: {message}")
-    index = int(match[2])
-    node = robots[index] if match[1] == "robots" else things[index].thing.node
     return node.error(f"{node.called}: {message}")
+
+
+def _origin(path: str, things: list[Standing], robots: Sequence[Node]) -> Node | None:
+    """Give the node that a part of the description comes from."""
+    match = re.match(r"\$\.(robots|obstacles)\[(\d+)\]", path)
+    if match is None:
+        return None
+    return robots[int(match[2])] if match[1] == "robots" else things[int(match[2])].thing.node
 
 
 def _unknown(unknown: dict[str, int]) -> Iterator[str]:

@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from robolink.sim.description import Point, Pose, Shape, signed_area
-from robolink.sim.webots.geometry import FARTHEST, RIM, Array, Part, rounded
+from robolink.sim.arrays import Array
+from robolink.sim.description import FARTHEST, Point, Pose, Shape, signed_area
+from robolink.sim.webots.geometry import RIM, Part, rounded
 
 FINE = 1e-4
 """Metres by which an outline may be simplified."""

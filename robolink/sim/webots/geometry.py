@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from robolink.sim.description import Pose
+from robolink.sim.arrays import Array
+from robolink.sim.description import FARTHEST, Pose
 from robolink.sim.webots.vrml import Node
-
-Array: TypeAlias = npt.NDArray[np.float64]
 
 LEVEL = 0.01
 """Radians by which something may lean and still counts as upright: editors save angles with such errors."""
@@ -22,9 +20,6 @@ SIDES = 32
 
 MOST_POINTS = 500
 """So many corners a mesh may have; what has more is made for the eye, not for collisions."""
-
-FARTHEST = 100_000.0
-"""Metres from the origin at most."""
 
 _TURNS = np.linspace(0.0, math.tau, SIDES, endpoint=False)
 RIM = np.column_stack((np.cos(_TURNS), np.sin(_TURNS), np.zeros(SIDES)))

@@ -10,11 +10,11 @@ import msgspec
 import numpy as np
 
 from robolink.names import spelled, unlike
+from robolink.sim.checks.robots import robot_problems
 from robolink.sim.description import Drive, Encoders, GroundTruth, Odom, Pose, RobotDescription, Shape, Wheel
-from robolink.sim.robot_problems import robot_problems
 from robolink.sim.webots.footprint import Footprint, footprint, merged
 from robolink.sim.webots.geometry import ORIGIN, Part, Placement, turned
-from robolink.sim.webots.sensors import lacking, measured, rate_near, sensors
+from robolink.sim.webots.sensors import by_lookup_table, lacking, rate_near, sensors
 from robolink.sim.webots.things import GROUPS, JOINTS, SOLIDS, Found, inside, mass
 from robolink.sim.webots.vrml import Node
 from robolink.sim.webots.wheels import SPEEDS, heading, listed, motors, resolutions, strangers, wheels
@@ -130,12 +130,21 @@ def _drive(wheels: Sequence[Wheel], shape: Shape, dt: float) -> Drive:
     """Give the limits that the wheels set: the fastest of them, and turning on the spot."""
     reach = shape.inner_radius() / dt
     if not wheels:
-        return Drive(v_max=min(Drive().v_max, reach))
+        return _slow(Drive(v_max=min(Drive().v_max, reach)), shape, dt)
     v_max = max(each.radius * each.speed_max for each in wheels)
     arm = max(math.hypot(each.at.x, each.at.y) for each in wheels)
     parallel = len({round(abs(math.sin(each.at.theta)), 1) for each in wheels}) == 1 and heading(wheels) == 0.0
     kind: Literal["diff", "omni"] = "diff" if parallel else "omni"
-    return Drive(kind, v_max=_limited(min(v_max, reach)), w_max=_limited(min(v_max / max(arm, 0.01), 1.5 / dt)))
+    w_max = min(v_max / max(arm, 0.01), 1.5 / dt)
+    return _slow(Drive(kind, v_max=_limited(min(v_max, reach)), w_max=_limited(w_max)), shape, dt)
+
+
+def _slow(drive: Drive, shape: Shape, dt: float) -> Drive:
+    """Slow a robot down whose corners could pass through a wall in one step, in its driving and its turning alike."""
+    inner = shape.inner_radius()
+    farthest = (drive.v_max + drive.w_max * (shape.outer_radius() - inner)) * dt
+    share = min(1.0, (1.0 - 1e-9) * inner / farthest)
+    return msgspec.structs.replace(drive, v_max=drive.v_max * share, w_max=drive.w_max * share) if share < 1 else drive
 
 
 def _limited(value: float) -> float:
@@ -159,5 +168,5 @@ def _missing(description: RobotDescription, nodes: Sequence[Node]) -> Iterator[s
         yield "no motor turns its wheels, only cmd_vel drives it"
     if left_out := lacking(nodes):
         yield f"left out: {', '.join(left_out)}"
-    if others := measured(nodes):
+    if others := by_lookup_table(nodes):
         yield f"metres, not what the lookupTable says, come from {listed(others)}"

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from typing import Literal, NamedTuple
 
 from robolink.names import spelled, unlike
+from robolink.sim.checks.robots import TAKEN
 from robolink.sim.description import Bumper, Encoders, Imu, Lidar, RangeFinder, Sensor
-from robolink.sim.robot_problems import TAKEN
 from robolink.sim.webots.geometry import Placement
 from robolink.sim.webots.vrml import Node
 
@@ -170,7 +170,7 @@ def _bumper(node: Node, placement: Placement, names: _Names, dt: float) -> Bumpe
     return Bumper(topic, rate=rate, fov=180.0, start=middle - 90.0)
 
 
-def measured(nodes: Iterable[Node]) -> list[str]:
+def by_lookup_table(nodes: Iterable[Node]) -> list[str]:
     """Name the distance sensors whose `lookupTable` gives something else than metres."""
     found = []
     for node in nodes:

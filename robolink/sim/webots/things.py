@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from robolink.sim.webots.geometry import FARTHEST, Part, Placement, box, part
+from robolink.sim.description import FARTHEST
+from robolink.sim.webots.geometry import Part, Placement, box, part
 from robolink.sim.webots.sensors import LIDARS
 from robolink.sim.webots.vrml import Node
 

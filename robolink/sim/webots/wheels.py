@@ -9,9 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from robolink.names import unlike
+from robolink.sim.arrays import Array
 from robolink.sim.description import Pose, Wheel
 from robolink.sim.webots.footprint import Footprint
-from robolink.sim.webots.geometry import LEVEL, Array, Placement, rounded
+from robolink.sim.webots.geometry import LEVEL, Placement, rounded
 from robolink.sim.webots.things import JOINTS, Found
 from robolink.sim.webots.vrml import Node
 

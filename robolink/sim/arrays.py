@@ -1,0 +1,15 @@
+"""The types of what is computed for many at once."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+Array: TypeAlias = "npt.NDArray[np.float64]"
+Indices: TypeAlias = "npt.NDArray[np.intp]"
+
+Place: TypeAlias = "tuple[float, float, float]"
+"""x, y and heading in the world: a pose as a plain tuple, where many are made at each step."""

@@ -1,0 +1,1 @@
+"""What is wrong with a description that types cannot say, each problem with its place."""

@@ -1,0 +1,90 @@
+"""What is wrong with a whole world: each of its parts, and how they stand to each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from robolink.exceptions import shown
+from robolink.sim.checks.overlaps import overlaps
+from robolink.sim.checks.problem import Problem, repeated_names, under
+from robolink.sim.checks.robots import robot_misfits, robot_problems
+from robolink.sim.checks.shapes import obstacle_misfits, obstacle_problems, wall_problems
+from robolink.sim.description import MapWalls, Obstacle, Point, RobotDescription, WorldDescription
+
+if TYPE_CHECKING:
+    from robolink.sim.maps.gridmap import GridMap
+
+_MARGIN = 1e-9
+"""Metres."""
+
+_LIGHTEST = 0.01
+"""The least mass of what a robot pushes, as a share of its own: Chipmunk presses lighter things into walls."""
+
+
+def misfits(data: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield the keys of a world file's plain data, valid otherwise, that mean nothing where they stand."""
+    for index, obstacle in enumerate(data.get("obstacles", ())):
+        yield from under(f"$.obstacles[{index}]", obstacle_misfits(obstacle))
+    for index, robot in enumerate(data.get("robots", ())):
+        yield from under(f"$.robots[{index}]", robot_misfits(robot))
+
+
+def problems(description: WorldDescription, grid: GridMap | None = None) -> Iterator[Problem]:
+    """Yield all that is wrong with a description, such as ``$.robots[0].pose``; overlaps once all else is right."""
+    found = False
+    for problem in _local_problems(description):
+        found = True
+        yield problem
+    if not found:
+        yield from overlaps(description, grid)
+
+
+def _local_problems(description: WorldDescription) -> Iterator[Problem]:
+    dt = description.world.dt
+    for index, wall in enumerate(description.walls):
+        if not isinstance(wall, MapWalls):
+            yield from under(f"$.walls[{index}]", wall_problems(wall))
+    for index, obstacle in enumerate(description.obstacles):
+        yield from under(f"$.obstacles[{index}]", obstacle_problems(obstacle, dt))
+    for index, robot in enumerate(description.robots):
+        yield from under(f"$.robots[{index}]", robot_problems(robot, dt))
+    yield from repeated_names([each.name for each in description.robots], "$.robots[{}].name", "two robots are called")
+    yield from _size_problems(description)
+
+
+def mass_problems(robots: Sequence[RobotDescription], obstacles: Sequence[Obstacle]) -> Iterator[Problem]:
+    """Yield what is so light that the heaviest of the robots would push it through walls."""
+    if not robots:
+        return
+    heaviest = max(robots, key=lambda each: each.mass)
+    masses = [(f"$.obstacles[{index}].mass", each.mass) for index, each in enumerate(obstacles)]
+    masses += [(f"$.robots[{index}].mass", each.mass) for index, each in enumerate(robots)]
+    for path, mass in masses:
+        if mass is not None and mass < _LIGHTEST * heaviest.mass:
+            pushed = f"{mass:g} kg, which robot '{shown(heaviest.name)}' of {heaviest.mass:g} kg would push"
+            right = f"at least {_LIGHTEST * heaviest.mass:g}, or that robot at most {mass / _LIGHTEST:g}"
+            yield Problem(path, f"{pushed} through walls: {right}")
+
+
+def _size_problems(description: WorldDescription) -> Iterator[Problem]:
+    """Yield what lies outside of the size that the world says it has."""
+    if description.world.size is None:
+        return
+    width, height = description.world.size
+    for path, (x, y) in _places(description):
+        if not (-_MARGIN <= x <= width + _MARGIN and -_MARGIN <= y <= height + _MARGIN):
+            reason = f"[{x:g}, {y:g}] lies outside of the world's size: x is 0 to {width:g}, y is 0 to {height:g}"
+            yield Problem(path, reason)
+
+
+def _places(description: WorldDescription) -> Iterator[tuple[str, Point]]:
+    for index, wall in enumerate(description.walls):
+        if not isinstance(wall, MapWalls):
+            yield from ((f"$.walls[{index}].polyline[{at}]", point) for at, point in enumerate(wall.polyline))
+    for index, obstacle in enumerate(description.obstacles):
+        if obstacle.pose is not None:
+            yield f"$.obstacles[{index}].pose", (obstacle.pose.x, obstacle.pose.y)
+        yield from ((f"$.obstacles[{index}].path[{at}]", point) for at, point in enumerate(obstacle.path or ()))
+    for index, robot in enumerate(description.robots):
+        yield f"$.robots[{index}].pose", (robot.pose.x, robot.pose.y)

@@ -1,0 +1,135 @@
+"""Reads maps of ROS's map_server, a YAML file with an image, and finds the walls in them.
+
+What pixels mean is nav2_map_server's rule: a shade becomes an occupancy of 0 to 1 (black is 1, or white with
+`negate`); at `occupied_thresh` and above it is occupied, at `free_thresh` and below free, between them unknown. With
+the mode `scale` those between have a number, with `raw` the shade itself is the percentage.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated, Literal, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from msgspec import Meta, Struct
+
+from robolink import yamlfile
+from robolink.exceptions import nearest, shown
+from robolink.sim.description import Angle, Coordinate, MapWalls, Pose, Share
+from robolink.sim.maps.formats import read_image
+from robolink.sim.maps.image import Image, ImageError
+
+MOST_WALLS = 200_000
+"""Pieces of wall that a map may have: a building has about ten thousand, and noise has millions."""
+
+FREE, OCCUPIED, UNKNOWN = 0, 100, -1
+"""Values of cells, as in nav_msgs/OccupancyGrid."""
+
+
+class MapFile(Struct, frozen=True, forbid_unknown_fields=True):
+    """What a map's YAML file says: metres a pixel, and the pose of the image's lower left corner."""
+
+    image: str
+    resolution: Annotated[float, Meta(ge=0.0001, le=1000.0)]
+    origin: tuple[Coordinate, Coordinate, Angle]
+    occupied_thresh: Share
+    free_thresh: Share
+    negate: Literal[0, 1] | bool
+    mode: Literal["trinary", "scale", "raw"] = "trinary"
+
+
+class GridMap(NamedTuple):
+    """A map: `cells` by row from the bottom and column from the left, 0 free to 100 occupied, -1 unknown."""
+
+    cells: npt.NDArray[np.int8]
+    occupied: npt.NDArray[np.bool_]
+    resolution: float
+    origin: Pose
+
+    def is_occupied(self, x: float, y: float) -> bool:
+        """Say whether a point of the world, in metres, lies in an occupied cell."""
+        dx, dy, cos, sin = (
+            x - self.origin.x,
+            y - self.origin.y,
+            math.cos(self.origin.theta),
+            math.sin(self.origin.theta),
+        )
+        column = math.floor((cos * dx + sin * dy) / self.resolution)
+        row = math.floor((cos * dy - sin * dx) / self.resolution)
+        height, width = self.occupied.shape
+        return 0 <= row < height and 0 <= column < width and bool(self.occupied[row, column])
+
+    def walls(self) -> npt.NDArray[np.float64]:
+        """Give the edges of the occupied cells, joined where they go on, as rows x1, y1, x2, y2 in metres."""
+        x, y = (cell_edges(self.occupied) * self.resolution).reshape(-1, 2).T
+        cos, sin = math.cos(self.origin.theta), math.sin(self.origin.theta)
+        # Not as a product of matrices, whose last bits are those of the machine's library.
+        turned = np.column_stack((x * cos - y * sin + self.origin.x, x * sin + y * cos + self.origin.y))
+        return turned.reshape(-1, 4)
+
+
+def load_map(path: Path) -> GridMap:
+    """Read a map's YAML file and its image. Raises `DocumentError` with file:line:column for what is wrong."""
+    document = yamlfile.read(path, MapFile)
+    file = document.value
+    if file.free_thresh >= file.occupied_thresh:
+        reason = f"{file.free_thresh:g} must be less than occupied_thresh, {file.occupied_thresh:g}"
+        raise document.error("$.free_thresh", reason)
+    try:
+        image = read_image(path.parent / file.image)
+    except FileNotFoundError:
+        near = nearest(Path(file.image).name, yamlfile.siblings(path.parent / file.image))
+        raise document.error("$.image", f"no file '{shown(str(path.parent / file.image))}'{near}") from None
+    except (ImageError, OSError, ValueError) as error:
+        reason = str(error.strerror if isinstance(error, OSError) else error)
+        raise document.error("$.image", f"'{shown(file.image)}' cannot be read: {reason}") from None
+    cells = occupancy(image, file)
+    occupied = cells >= (100 * file.occupied_thresh if file.mode == "raw" else OCCUPIED)
+    return GridMap(cells, occupied, file.resolution, Pose(*file.origin))
+
+
+def map_walls(grid: GridMap) -> MapWalls:
+    """Give a map's walls as a part of a world. Raises ValueError if they are too many."""
+    segments = grid.walls()
+    if len(segments) > MOST_WALLS:
+        raise ValueError(f"{len(segments)} pieces of wall, at most {MOST_WALLS}: is the map all noise?")
+    return MapWalls(tuple((x, y) for x, y in segments.reshape(-1, 2).tolist()))
+
+
+def occupancy(image: Image, file: MapFile) -> npt.NDArray[np.int8]:
+    """Give what the pixels of an image mean, the first row at the bottom."""
+    shade = np.arange(256)
+    if file.mode == "raw":
+        meaning = np.where(shade <= OCCUPIED, shade, UNKNOWN)
+        return meaning.astype(np.int8)[image.shades][::-1]
+    share = shade.astype(np.float32) / np.float32(255)
+    if not file.negate:
+        share = np.float32(1) - share
+    free, occupied = np.float32(file.free_thresh), np.float32(file.occupied_thresh)
+    between = np.round((share - free) / (occupied - free) * 100) if file.mode == "scale" else UNKNOWN
+    meaning = np.where(share >= occupied, OCCUPIED, np.where(share <= free, FREE, between))
+    cells = meaning.astype(np.int8)[image.shades]
+    if image.transparent is not None:
+        cells[image.transparent] = UNKNOWN
+    return cells[::-1]
+
+
+def cell_edges(occupied: npt.NDArray[np.bool_]) -> npt.NDArray[np.float64]:
+    """Give the edges between occupied cells and others as rows x1, y1, x2, y2 in cells, as long as they go straight."""
+    padded = np.pad(occupied, 1)
+    upright = _runs((padded[1:-1, 1:] != padded[1:-1, :-1]).T)
+    level = _runs(padded[1:, 1:-1] != padded[:-1, 1:-1])
+    x, bottom, top = upright.T
+    y, left, right = level.T
+    rows = np.concatenate((np.column_stack((x, bottom, x, top)), np.column_stack((left, y, right, y))))
+    return rows.astype(np.float64)
+
+
+def _runs(lines: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
+    """Find the runs of True along each line: rows of line, start, end."""
+    padded = np.pad(lines, ((0, 0), (1, 1)))
+    changes = np.flatnonzero(padded[:, 1:] != padded[:, :-1])
+    line, place = np.divmod(changes, lines.shape[1] + 1)
+    return np.column_stack((line[::2], place[::2], place[1::2]))

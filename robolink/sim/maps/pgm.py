@@ -1,0 +1,47 @@
+"""Reads PGM images as shades: plain (P2) and raw (P5), of any depth. The format is netpbm's pgm(5)."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from robolink.sim.maps.image import Image, ImageError, check_size, eight_bits
+
+BEGINNINGS = (b"P2", b"P5")
+
+_PGM = re.compile(rb"P([25])" + 3 * rb"(?:\s|#[^\n]*\n)+(\d{1,9})" + rb"(?:[ \t]*#[^\n]*)?\s")
+
+
+def read_pgm(raw: bytes) -> Image:
+    """Read a PGM file's bytes. Raises `ImageError`."""
+    header = _PGM.match(raw)
+    if header is None:
+        raise ImageError(f"after {raw[:2].decode()} a PGM has its width, height and largest value")
+    width, height, largest = (int(each) for each in header.groups()[1:])
+    check_size(width, height)
+    if not 1 <= largest <= 65535:
+        raise ImageError(f"the largest value is {largest}: expected 1 to 65535")
+    values = _plain(raw, header.end()) if header[1] == b"2" else _packed(raw, header.end(), largest)
+    if len(values) < width * height:
+        raise ImageError(f"it ends too early: {len(values)} of {width * height} pixels")
+    values = values[: width * height].reshape(height, width)
+    if int(values.max()) > largest:
+        raise ImageError(f"a value of {values.max()}, where the largest is {largest}")
+    return Image(eight_bits(values, largest))
+
+
+def _plain(raw: bytes, at: int) -> npt.NDArray[Any]:
+    """Read numbers as text; a comment goes from # to the end of its line."""
+    body = re.sub(rb"#[^\n]*", b"", raw[at:])
+    if strange := re.search(rb"[^0-9\s]", body):
+        raise ImageError(f"{strange[0]!r} among the numbers")
+    return np.fromstring(body.decode(), dtype=np.int64, sep=" ")
+
+
+def _packed(raw: bytes, at: int, largest: int) -> npt.NDArray[Any]:
+    if largest < 256:
+        return np.frombuffer(raw, np.uint8, offset=at)
+    return np.frombuffer(raw, ">u2", offset=at, count=(len(raw) - at) // 2)

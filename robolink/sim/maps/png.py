@@ -1,0 +1,163 @@
+"""Reads PNG images as shades: every colour type and depth, all five filters, no interlacing.
+
+The format is W3C's Portable Network Graphics (third edition).
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from robolink.sim.maps.image import Image, ImageError, Shades, check_size, eight_bits
+
+SIGNATURE = b"\x89PNG\r\n\x1a\n"
+LUMA = (77, 150, 29)
+"""How bright red, green and blue are, of 256 (ITU-R BT.601: 0.299, 0.587, 0.114), as map_server's library has it."""
+
+_GRAY, _RGB, _PALETTE, _GRAY_ALPHA, _RGBA = 0, 2, 3, 4, 6
+_CHANNELS = {_GRAY: 1, _RGB: 3, _PALETTE: 1, _GRAY_ALPHA: 2, _RGBA: 4}
+_DEPTHS = {_GRAY: (1, 2, 4, 8, 16), _PALETTE: (1, 2, 4, 8)}
+_SOME_DEPTHS = (8, 16)
+_PAETH = 4
+
+
+class _Header(NamedTuple):
+    width: int
+    height: int
+    depth: int
+    colour: int
+    compression: int
+    filtering: int
+    interlacing: int
+
+    @property
+    def line(self) -> int:
+        """Bytes of a line of pixels."""
+        return (self.width * _CHANNELS[self.colour] * self.depth + 7) // 8
+
+
+def read_png(raw: bytes) -> Image:
+    """Read a PNG file's bytes. Raises `ImageError`."""
+    chunks: dict[bytes, list[bytes]] = {}
+    for kind, body in _chunks(raw):
+        chunks.setdefault(kind, []).append(body)
+    header = _header(chunks.get(b"IHDR", [b""])[0])
+    samples = _samples(header, _lines(header, b"".join(chunks.get(b"IDAT", []))))
+    clear = np.frombuffer(chunks.get(b"tRNS", [b""])[0], np.uint8)
+    if header.colour == _PALETTE:
+        return _from_palette(samples[..., 0], chunks.get(b"PLTE", [b""])[0], clear)
+    transparent = None
+    if header.colour in (_GRAY_ALPHA, _RGBA):
+        transparent = samples[..., -1] < 2**header.depth - 1
+        samples = samples[..., :-1]
+    elif len(clear) == 2 * samples.shape[2]:  # one colour that stands for nothing
+        transparent = np.all(samples == clear.view(">u2"), axis=2)
+    return Image(_shades(eight_bits(samples, 2**header.depth - 1)), transparent)
+
+
+def _chunks(raw: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """Yield the parts of the file, each with its kind."""
+    at = len(SIGNATURE)
+    while raw[at + 4 : at + 8] != b"IEND":
+        if len(raw) < at + 12 or len(raw) < (end := at + 12 + int.from_bytes(raw[at : at + 4], "big")):
+            raise ImageError("it ends too early")
+        if zlib.crc32(raw[at + 4 : end - 4]) != int.from_bytes(raw[end - 4 : end], "big"):
+            raise ImageError(f"it is damaged: a wrong checksum at byte {at}")
+        yield raw[at + 4 : at + 8], raw[at + 8 : end - 4]
+        at = end
+
+
+def _header(body: bytes) -> _Header:
+    if len(body) != 13:
+        raise ImageError("a PNG without its header")
+    header = _Header(*struct.unpack(">IIBBBBB", body))
+    check_size(header.width, header.height)
+    known = header.colour in _CHANNELS and header.depth in _DEPTHS.get(header.colour, _SOME_DEPTHS)
+    if not known or header.compression or header.filtering:
+        raise ImageError(f"no kind of PNG that there is: {header.depth} bits of colour type {header.colour}")
+    if header.interlacing:
+        raise ImageError("an interlaced PNG: save it without interlacing")
+    return header
+
+
+def _lines(header: _Header, packed: bytes) -> npt.NDArray[np.uint8]:
+    """Unpack the lines of pixels, as bytes, and undo their filters."""
+    size = header.height * (header.line + 1)
+    try:
+        unpacked = zlib.decompressobj().decompress(packed, size)
+    except zlib.error as error:
+        raise ImageError(f"it is damaged: {error}") from None
+    if len(unpacked) < size:
+        raise ImageError(f"it ends too early: {len(unpacked) // (header.line + 1)} of {header.height} lines")
+    lines = np.frombuffer(unpacked, np.uint8).reshape(header.height, header.line + 1)
+    if lines[:, 0].max() > _PAETH:
+        raise ImageError(f"it is damaged: no filter has the number {lines[:, 0].max()}")
+    pixel = max(1, _CHANNELS[header.colour] * header.depth // 8)
+    return unfiltered(lines[:, 0], lines[:, 1:].reshape(header.height, -1, pixel)).reshape(header.height, -1)
+
+
+def unfiltered(kinds: npt.NDArray[np.uint8], lines: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+    """Add to each byte of each pixel (line, column, byte) what the line's filter had foretold from its neighbours.
+
+    A pixel needs those at its left, above and in the corner between. So each step does one pixel of each line, and
+    each line is one column behind the line above it.
+    """
+    if not kinds.any():
+        return lines
+    height, width, size = lines.shape
+    result = np.empty_like(lines)
+    last = np.zeros((height + 1, size), np.int16)  # the pixel of each line in the step before; above the first is 0
+    before = last.copy()  # and in the step before that
+    for step in range(width + height - 1):
+        first, end = max(0, step - width + 1), min(height, step + 1)
+        rows = np.arange(first, end)
+        foretold = _foretold(kinds[first:end, None], last[first + 1 : end + 1], last[first:end], before[first:end])
+        pixels = lines[rows, step - rows] + foretold & 255
+        result[rows, step - rows] = pixels
+        before, last = last, last.copy()
+        last[first + 1 : end + 1] = pixels
+    return result
+
+
+def _foretold(kinds: npt.NDArray[Any], left: npt.NDArray[Any], up: npt.NDArray[Any], corner: npt.NDArray[Any]) -> Any:
+    """Give what filters 0 to 4 foretell: nothing, the left, what is above, their mean, and Paeth's choice of three."""
+    to_left, to_up, to_corner = abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)
+    nearer = np.where(to_up <= to_corner, up, corner)
+    paeth = np.where((to_left <= to_up) & (to_left <= to_corner), left, nearer)
+    return np.choose(kinds, (np.zeros_like(left), left, up, (left + up) >> 1, paeth))
+
+
+def _samples(header: _Header, lines: npt.NDArray[np.uint8]) -> npt.NDArray[Any]:
+    """Part the lines' bytes into the samples of each pixel (line, column, channel)."""
+    shape = (header.height, header.width, _CHANNELS[header.colour])
+    if header.depth == 16:
+        return np.ascontiguousarray(lines).view(">u2").reshape(shape)
+    if header.depth == 8:
+        return lines.reshape(shape)
+    bits = np.unpackbits(lines, axis=1).reshape(header.height, -1, header.depth)[:, : header.width]
+    weights = 1 << np.arange(header.depth - 1, -1, -1)
+    values: npt.NDArray[Any] = (bits @ weights.astype(np.uint8)).reshape(shape)
+    return values
+
+
+def _from_palette(index: npt.NDArray[Any], palette: bytes, clear: npt.NDArray[np.uint8]) -> Image:
+    colours = np.frombuffer(palette, np.uint8, count=len(palette) // 3 * 3).reshape(-1, 3)
+    if int(index.max()) >= len(colours):
+        raise ImageError(f"it is damaged: colour {index.max()} of a palette of {len(colours)}")
+    opaque = np.full(256, 255, np.uint8)
+    opaque[: len(clear)] = clear[:256]
+    return Image(_shades(colours)[index], (opaque < 255)[index] if len(clear) else None)
+
+
+def _shades(colours: Shades) -> Shades:
+    """Make shades of gray of colours, whose channels come last."""
+    if colours.shape[-1] == 1:
+        return colours[..., 0]
+    red, green, blue = (colours[..., channel].astype(np.uint16) * weight for channel, weight in enumerate(LUMA))
+    shades: Shades = ((red + green + blue + 128) >> 8).astype(np.uint8)
+    return shades

@@ -1,0 +1,36 @@
+"""Cosine and sine out of plain arithmetic: the same bits on every machine, whatever its numpy and processor.
+
+For tables that are made once; libraries' own functions are quicker, and differ in the last bit from each other.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from robolink.sim.arrays import Array
+
+_QUARTER = math.pi / 2
+_QUARTER_REST = 6.123233995736766e-17  # what pi/2 has beyond a float
+_QUARTER_HEAD = float(np.float32(_QUARTER))
+_QUARTER_TAIL = _QUARTER - _QUARTER_HEAD  # both parts times a small integer are exact
+_SINE = [(-1.0) ** n / math.factorial(2 * n + 1) for n in range(9, -1, -1)]
+_COSINE = [(-1.0) ** n / math.factorial(2 * n) for n in range(9, -1, -1)]
+
+
+def cos_and_sin(angles: Array) -> tuple[Array, Array]:
+    """Give the cosines and sines of angles of up to some turns, within a unit or two of the last place."""
+    quarters = np.rint(angles / _QUARTER)
+    rest = (angles - quarters * _QUARTER_HEAD - quarters * _QUARTER_TAIL) - quarters * _QUARTER_REST
+    square = rest * rest
+    cos, sin = _polynomial(_COSINE, square), rest * _polynomial(_SINE, square)
+    turned = quarters.astype(np.intp) % 4
+    return np.choose(turned, (cos, -sin, -cos, sin)), np.choose(turned, (sin, cos, -sin, -cos))
+
+
+def _polynomial(coefficients: list[float], x: Array) -> Array:
+    value = np.full(len(x), coefficients[0])
+    for coefficient in coefficients[1:]:
+        value = value * x + coefficient
+    return value

@@ -1,0 +1,97 @@
+"""What others tell a simulated robot to do: obeyed if it can be meant, else refused, counted, and warned about once."""
+
+from __future__ import annotations
+
+from robolink.exceptions import nearest
+from robolink.interfaces.geometry_msgs.msg import Twist
+from robolink.interfaces.sensor_msgs.msg import JointState
+from robolink.node import Node
+from robolink.sim import Robot
+from robolink.subscription import Subscription
+
+ABSURD = 1000.0
+"""m/s or rad/s: a command beyond this is a mistake, not a wish."""
+
+ABSURD_WHEEL = 100_000.0
+"""rad/s: a wheel's speed beyond this is."""
+
+
+class RobotCommands:
+    """The subscriptions of one robot: cmd_vel, and joint_command if it has wheels; `refused` counts the nonsense.
+
+    A refused command changes nothing: the robot goes on with the last good one until its timeout. The world's motors
+    know none, so that wheels are stopped from here: a controller that has died must not drive on. While somebody
+    publishes joint_command, cmd_vel is for them to obey: both at once would be two drivers.
+    """
+
+    def __init__(self, node: Node, robot: Robot, prefix: str) -> None:
+        self.refused = 0
+        self.motors = [each.motor for each in robot.description.wheels]
+        self._node = node
+        self._warned: set[str] = set()
+        self._timeout = max(1, round(robot.description.drive.timeout / robot.dt))
+        self.follow(robot)
+        self._cmd_vel = node.create_subscription(Twist, f"{prefix}cmd_vel", self._on_cmd_vel, 10)
+        self._joint_command: Subscription[JointState] | None = None
+        if self.motors:
+            topic = f"{prefix}joint_command"
+            self._joint_command = node.create_subscription(JointState, topic, self._on_joint_command, 10)
+
+    def follow(self, robot: Robot) -> None:
+        """Command this robot from now on; it has been told nothing yet."""
+        self.robot, self._steps_left = robot, 0
+
+    def step(self) -> None:
+        """Before each step of the world: stop wheels whose last command is too old."""
+        if self._steps_left:
+            self._steps_left -= 1
+            if not self._steps_left:
+                self.robot.turn_wheels(dict.fromkeys(self.motors, 0.0))
+
+    def close(self) -> None:
+        """Listen no more."""
+        self._node.destroy_subscription(self._cmd_vel)
+        if self._joint_command is not None:
+            self._node.destroy_subscription(self._joint_command)
+
+    def _on_cmd_vel(self, twist: Twist) -> None:
+        if not sane(twist):
+            self._refuse("cmd_vel", f"ignored a cmd_vel that is not finite or absurd: {twist}")
+        elif self._joint_command is None or not self._joint_command.get_publisher_count():
+            self._steps_left = 0
+            self.robot.command(twist.linear.x, twist.angular.z, twist.linear.y)
+
+    def _on_joint_command(self, command: JointState) -> None:
+        if reason := joint_refusal(command):
+            self._refuse("joint_command", f"ignored a joint_command{reason}")
+            return
+        wanted = dict(zip(command.name, command.velocity, strict=True))
+        if unknown := [name for name in wanted if name not in self.motors]:
+            known = f"{nearest(unknown[0], self.motors)}; there is: {', '.join(self.motors)}"
+            self._refuse("motor", f"ignored a joint_command's motor '{unknown[0]}', which the robot has not{known}")
+        if known_ones := {name: speed for name, speed in wanted.items() if name in self.motors}:
+            self.robot.turn_wheels(known_ones)
+            self._steps_left = self._timeout + 1  # `step` is called once before the command's own first step
+
+    def _refuse(self, what: str, text: str) -> None:
+        self.refused += 1
+        if what not in self._warned:
+            self._warned.add(what)
+            self._node.get_logger().warning(f"{self.robot.name}: {text} (the next ones are only counted)")
+
+
+def sane(twist: Twist) -> bool:
+    """Say whether a command can be meant: every number finite and at most `ABSURD`."""
+    linear, angular = twist.linear, twist.angular
+    return all(abs(each) <= ABSURD for part in (linear, angular) for each in (part.x, part.y, part.z))
+
+
+def joint_refusal(command: JointState) -> str:
+    """Say what makes a command to wheels nonsense; '' if nothing does."""
+    names, speeds = len(command.name), len(command.velocity)
+    if names != speeds:
+        return f" that names {names} motors and {speeds} velocities"
+    if not names:
+        return " that names no motor"
+    bad = [name for name, speed in zip(command.name, command.velocity, strict=True) if not abs(speed) <= ABSURD_WHEEL]
+    return f" whose velocity of '{bad[0]}' is not finite or absurd" if bad else ""

@@ -1,0 +1,207 @@
+"""Webots' `Robot`: gives devices by name, tells motors when the world moves on, and steps where a program wants to."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from robolink.callback_groups import ReentrantCallbackGroup
+from robolink.clock import Clock
+from robolink.clock_type import ClockType
+from robolink.exceptions import NotFoundError, RobolinkError, nearest
+from robolink.executors import Executor
+from robolink.interfaces.sensor_msgs.msg import JointState
+from robolink.names import spelled
+from robolink.node import Node
+from robolink.spinning import spin_once
+from robolink.webots_controller.any_device import SENSORS, AnyDevice
+from robolink.webots_controller.motors import Motor, PositionSensor
+from robolink.webots_controller.robot_topics import RobotTopics, plain, quoted
+from robolink.webots_controller.sensors import Accelerometer, DistanceSensor, Gyro, InertialUnit, Lidar, TouchSensor
+
+AGAIN = 100_000_000
+"""Nanoseconds of simulated time after which motors are told again: a world stops those that it hears nothing for."""
+
+ALONE = 5.0
+"""Seconds without a world after which that is said."""
+
+WAIT = 0.5
+"""Seconds after which a step looks whether all is over."""
+
+BASIC_STEP = 32.0
+"""ms: Webots' default."""
+
+
+class StepError(RobolinkError, RuntimeError):
+    """`step` was called where a node is spinning already."""
+
+
+class Robot:
+    """The robot of a `WebotsController`, as Webots' Python API has it; `name` is its own where there are several.
+
+    Devices may be asked for before the world is there. Times are the world's own, as its messages are stamped.
+    """
+
+    def __init__(self, node: Node, name: str) -> None:
+        self._node, self._name = node, name
+        prefix = f"{spelled(name, 'robot')}/" if name else ""
+        self.topics = RobotTopics(node, prefix)
+        self._motors: dict[str, Motor] = {}
+        self.positions: dict[str, float] = {}
+        self._first = self._stamp = self._sent_at = 0
+        self._step_ns, self._sent = 0, dict[str, float]()
+        self._told: set[str] = set()
+        group = ReentrantCallbackGroup()
+        self._command = node.create_publisher(JointState, f"{prefix}joint_command", 10)
+        for topic in ("joint_states", "encoders"):
+            node.create_subscription(JointState, f"{prefix}{topic}", self._on_joint_states, 10, callback_group=group)
+        steady = Clock(clock_type=ClockType.STEADY_TIME, time_base=node.context.time)
+        self._alone = node.create_timer(ALONE, self._on_alone, callback_group=group, clock=steady)
+
+    # Devices
+
+    def getDevice(self, name: str) -> Any:
+        """Give a device by its name: what it is shows in what it is asked.
+
+        Raises `NotFoundError` with the nearest name when the world is there and has none of that name.
+        """
+        if self._stamp and name not in self.positions and not self._is_a_sensor(name):
+            raise NotFoundError("device", name, [*self.positions, *self._sensor_topics()], "this robot")
+        return AnyDevice(self, name)
+
+    def getMotor(self, name: str) -> Motor:
+        """Give a motor. Raises `NotFoundError` when the world is there and has none of that name."""
+        if self._stamp and name not in self.positions:
+            raise NotFoundError("motor", name, self.positions, "this robot")
+        return self._motors.setdefault(name, Motor(self, name))
+
+    def getPositionSensor(self, name: str) -> PositionSensor:
+        """Give the position sensor of a joint."""
+        return PositionSensor(self, name)
+
+    def getLidar(self, name: str) -> Lidar:
+        """Give a lidar."""
+        return Lidar(self.topics, name)
+
+    def getDistanceSensor(self, name: str) -> DistanceSensor:
+        """Give a distance sensor."""
+        return DistanceSensor(self.topics, name)
+
+    def getTouchSensor(self, name: str) -> TouchSensor:
+        """Give a bumper."""
+        return TouchSensor(self.topics, name)
+
+    def getInertialUnit(self, name: str) -> InertialUnit:
+        """Give an inertial unit."""
+        return InertialUnit(self.topics, name)
+
+    def getGyro(self, name: str) -> Gyro:
+        """Give a gyro."""
+        return Gyro(self.topics, name)
+
+    def getAccelerometer(self, name: str) -> Accelerometer:
+        """Give an accelerometer."""
+        return Accelerometer(self.topics, name)
+
+    def _is_a_sensor(self, name: str) -> bool:
+        return bool(self.joint_of(name)) or AnyDevice(self, name).is_there()
+
+    def _sensor_topics(self) -> list[str]:
+        return [topic for kind in SENSORS for topic in self.topics.of_type(kind.message)]
+
+    def joint_of(self, sensor: str) -> str:
+        """Give the joint that a position sensor belongs to: by its name, else by most words in common; '' for none."""
+        if sensor in self.positions:
+            return sensor
+        words = set(map(plain, sensor.replace("_", " ").split()))
+        common = {joint: len(words & set(map(plain, joint.replace("_", " ").split()))) for joint in self.positions}
+        best = [joint for joint, count in common.items() if count and count == max(common.values())]
+        return best[0] if len(best) == 1 else ""
+
+    # Time
+
+    def getName(self) -> str:
+        """Give the robot's name, if it was told."""
+        return self._name
+
+    def getTime(self) -> float:
+        """Give the seconds of simulated time since the world was heard first."""
+        return (self._stamp - self._first) / 1e9
+
+    def getBasicTimeStep(self) -> float:
+        """Give the ms between two states of the joints: a step shorter than that tells nothing new."""
+        return self._step_ns / 1e6 or BASIC_STEP
+
+    def step(self, duration: float = 0.0) -> int:
+        """Let the world go on for so many ms of its own time, and run callbacks meanwhile; -1 when all is over.
+
+        Waits for a world that is not there yet. Raises `StepError` within a callback: where a node is spun, the
+        world goes on by itself.
+        """
+        executor = self._node.executor
+        if executor is not None and executor.spinning:
+            raise StepError("robot.step() is for the loop of a program that does not spin: leave it out of callbacks")
+        wanted = int((duration or self.getBasicTimeStep()) * 1e6)
+        start = self._stamp
+        while self._node.context.ok():
+            if start and self._stamp - start >= wanted:
+                return 0
+            start = start or self._stamp
+            try:
+                self._spin_once(executor)
+            except KeyboardInterrupt:
+                return -1
+        return -1
+
+    def _spin_once(self, executor: Executor | None) -> None:
+        if executor is None:
+            spin_once(self._node, timeout_sec=WAIT)
+        else:
+            executor.spin_once(timeout_sec=WAIT)
+
+    # The world
+
+    def _on_joint_states(self, state: JointState) -> None:
+        stamp = state.header.stamp.sec * 1_000_000_000 + state.header.stamp.nanosec
+        if not self._stamp:
+            self._first = stamp
+            self._alone.cancel()
+        elif stamp > self._stamp:
+            passed = stamp - self._stamp
+            self._step_ns = min(self._step_ns or passed, passed)
+        self._first, self._stamp = min(self._first, stamp), stamp
+        self.positions.update(zip(state.name, state.position, strict=False))
+        self._look_for_motors()
+        self._tell_motors()
+
+    def _tell_motors(self) -> None:
+        """Send what the motors are to do, all at once, if that has changed or is long ago."""
+        speeds = {name: motor.speed() for name, motor in list(self._motors.items()) if motor.is_told}
+        speeds = {name: speed for name, speed in speeds.items() if name in self.positions}
+        passed = self._stamp - self._sent_at
+        if speeds and (speeds != self._sent or not 0 <= passed < AGAIN):
+            self._sent, self._sent_at = speeds, self._stamp
+            self._command.publish(JointState(name=list(speeds), velocity=list(speeds.values())))
+
+    def halt(self) -> None:
+        """Stop all motors that have been told anything."""
+        if self._sent:
+            self._command.publish(JointState(name=list(self._sent), velocity=[0.0] * len(self._sent)))
+
+    def _look_for_motors(self) -> None:
+        for name in self._motors.keys() - self.positions.keys():
+            known = quoted(self.positions)
+            self.warn(f"no motor is called '{name}'{nearest(name, self.positions)}; there is: {known}")
+
+    def _on_alone(self) -> None:
+        """Say that no world has been heard, and what there is instead."""
+        self._alone.cancel()
+        others = self.topics.elsewhere()
+        known = f"there is {', '.join(others)}: the parameter 'robot' says whose is meant" if others else ""
+        hint = known or "is 'robolink run world -p world:=FILE.wbt' running?"
+        self.warn(f"nothing is heard on {self.topics.joint_states}: {hint}")
+
+    def warn(self, text: str) -> None:
+        """Say something once."""
+        if text not in self._told:
+            self._told.add(text)
+            self._node.get_logger().warning(text)
