@@ -186,8 +186,8 @@ def test_two_words_are_a_package_and_its_executable_only_if_both_are_there(top: 
         (["pkg_c", "first"], "no node named 'pkg_c' in {top} or robolink itself"),
         (
             ["first"],
-            "no node named 'first' in {top} or robolink itself (did you mean 'first_node'?); "
-            "package pkg_a has one: robolink run pkg_a first",
+            "no node named 'first' in {top} or robolink itself (did you mean 'first_node'?);"
+            + " package pkg_a has one: robolink run pkg_a first",
         ),
     ],
 )
@@ -419,7 +419,7 @@ def test_unknown_options_reach_the_program(monkeypatch: pytest.MonkeyPatch) -> N
     from robolink.cli import runner
 
     seen: list[list[str]] = []
-    monkeypatch.setattr(runner, "_start", lambda source: seen.append(sys.argv[1:]))
+    monkeypatch.setattr(runner, "_start", lambda source, args: seen.append(sys.argv[1:]))
     monkeypatch.setattr(runner, "take_names", lambda: None)
     monkeypatch.setattr(runner, "_note_termination", list)
     monkeypatch.setattr(sys, "argv", [])
