@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import random
 import uuid
 import weakref
-from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +23,7 @@ from robolink.interfaces.action_msgs.srv import CancelGoal
 from robolink.interfaces.unique_identifier_msgs.msg import UUID
 from robolink.message import action_type as checked_action_type
 from robolink.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
-from robolink.subscription import Subscription
+from robolink.subscription import MessageInfo, Subscription
 from robolink.task import Future
 from robolink.waitable import Waitable
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from robolink.node import Node
 
 LATELY = 16
-"""Ended goals whose feedback callbacks are still there."""
+"""Ended goals whose feedback callbacks are still there, for what was sent before the end and comes late."""
 
 
 class ActionClient(Waitable):
@@ -61,7 +61,7 @@ class ActionClient(Waitable):
         self._logger = node.get_logger().get_child("action_client")
         self._goal_handles: weakref.WeakValueDictionary[bytes, ClientGoalHandle] = weakref.WeakValueDictionary()
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
-        self._lately_ended: deque[bytes] = deque()
+        self._lately_ended: dict[bytes, int] = {}  # and when they did, in nanoseconds
         self._statuses: dict[bytes, int] = {}
         self._parts: list[Client | Subscription[Any]] = []
         try:
@@ -87,7 +87,7 @@ class ActionClient(Waitable):
         self._goal_client = self._client(graph.SEND_GOAL, impl.SendGoalService, goal)
 
     def _subscription(
-        self, part: str, msg_type: type[Message], callback: Callable[[Any], Any], qos: QoSProfile
+        self, part: str, msg_type: type[Message], callback: Callable[..., Any], qos: QoSProfile
     ) -> Subscription[Any]:
         name = self._node.resolve_topic_name(graph.part_name(self._action_name, part))
         made = Subscription(self._node._owner_, msg_type, name, callback, self.callback_group, qos)
@@ -157,8 +157,7 @@ class ActionClient(Waitable):
         if feedback_callback is not None:
             key = key_of(goal_uuid)
             self._feedback_callbacks[key] = feedback_callback
-            if key in self._lately_ended:
-                self._lately_ended.remove(key)
+            self._lately_ended.pop(key, None)
         request: Any = self._action_type.Impl.SendGoalService.Request
         return request(goal_id=goal_uuid, goal=goal)
 
@@ -256,10 +255,13 @@ class ActionClient(Waitable):
 
     # What servers tell
 
-    def _on_feedback(self, message: Any) -> Any:
+    def _on_feedback(self, message: Any, info: MessageInfo) -> Any:
         """Call the callback of the goal that it is about; a coroutine, if that is one."""
-        callback = self._feedback_callbacks.get(key_of(message.goal_id))
-        return callback(message) if callback is not None else None
+        key = key_of(message.goal_id)
+        callback = self._feedback_callbacks.get(key)
+        if callback is None or info["source_timestamp"] > self._lately_ended.get(key, math.inf):
+            return None
+        return callback(message)
 
     def _on_status(self, message: GoalStatusArray) -> None:
         self._statuses = {key_of(each.goal_info.goal_id): each.status for each in message.status_list}
@@ -282,9 +284,11 @@ class ActionClient(Waitable):
         """Forget a feedback callback, though not at once: what was sent before the result may still wait its turn."""
         key = key_of(goal_id)
         if key in self._feedback_callbacks and key not in self._lately_ended:
-            self._lately_ended.append(key)
+            self._lately_ended[key] = self._node.context.time.now()
             if len(self._lately_ended) > LATELY:
-                self._feedback_callbacks.pop(self._lately_ended.popleft(), None)
+                oldest = next(iter(self._lately_ended))
+                for each in (self._lately_ended, self._feedback_callbacks):
+                    each.pop(oldest, None)
 
     # Whether anybody serves
 

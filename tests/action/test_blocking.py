@@ -213,3 +213,24 @@ def test_a_goal_handle_waits_too(context: Context, spun: SingleThreadedExecutor,
     assert len(arrived[0].cancel_goal().goals_canceling) == 1
     waiting.futures[0].set_result(ServerGoalHandle.canceled)
     assert arrived[0].get_result().status == CANCELED
+
+
+def test_what_is_sent_after_the_result_is_no_feedback(context: Context) -> None:
+    """As in rclpy; what was sent before and comes late is."""
+    server_node, node = Node("server", context=context), Node("node", context=context)
+    ActionServer(server_node, Fibonacci, "fibonacci", fibonacci)
+    client = ActionClient(node, Fibonacci, "fibonacci")
+    late = node.create_publisher(Fibonacci.Impl.FeedbackMessage, "fibonacci/_action/feedback", 10)
+    heard: list[int] = []
+    sent: list[Any] = []
+    node.create_subscription(Fibonacci.Impl.FeedbackMessage, "fibonacci/_action/feedback", sent.append, 10)
+    with SingleThreadedExecutor(context=context) as executor:
+        executor.add_node(server_node)
+        executor.add_node(node)
+        handle = accepted(executor, client, feedback_callback=lambda each: heard.append(len(each.feedback.sequence)))
+        assert done(executor, handle.get_result_async()).status == SUCCEEDED
+        spin_until(executor, lambda: len(heard) == len(sent), PATIENCE)
+        before = len(heard)
+        late.publish(Fibonacci.Impl.FeedbackMessage(goal_id=handle.goal_id))
+        spin_until(executor, lambda: len(sent) > before, PATIENCE)  # the client, who listened first, had it before
+    assert len(heard) == before
