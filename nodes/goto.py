@@ -69,8 +69,8 @@ class Trip:
 class Goto(Node):
     """Drives to one goal at a time, by odometry; a new goal replaces the one before. The robot must turn on the spot.
 
-    Goals are in the frame of odometry, or in one that /tf connects with it. It plans no way round obstacles: with a
-    scanner it waits before what is in its lane.
+    Goals are in the frame of odometry, or in one that /tf connects with it; one in a frame of the robot lies where that
+    is at the start. It plans no way round obstacles: with a scanner it waits before what is in its lane.
     """
 
     trip: Trip | None = None
@@ -84,7 +84,7 @@ class Goto(Node):
         self.declare_parameter("half_width", 0.22, described("metres, of the lane", 0.01, 10.0))
         self.declare_parameter("progress_timeout", 10.0, described("seconds to give up after", 0.5, 3600.0))
         self.declare_parameter("odom_timeout", 1.0, described("seconds without odometry to give up after", 0.1, 60.0))
-        self.here = PoseStamped()
+        self.here, self.base = PoseStamped(), "base_link"
         self.odom_at = self.get_clock().now()
         self.speeds, self.free = Speeds(), math.inf
         self.scan_at: Time | None = None
@@ -155,11 +155,22 @@ class Goto(Node):
 
     def in_odom(self, goal: PoseStamped) -> Pose:
         """Give where a goal is in the frame of odometry, as far as is known now. Raises TransformException."""
-        frame, odom = (each.removeprefix("/") for each in (goal.header.frame_id, self.here.header.frame_id))
+        frame, odom = self.frames(goal)
         if frame in ("", "odom", odom):
             return pose_of(goal.pose)
-        transform = self.buffer.lookup_transform(odom or "odom", frame, Time())
-        return pose_of(do_transform_pose(goal.pose, transform))
+        return pose_of(do_transform_pose(goal.pose, self.buffer.lookup_transform(odom, frame, Time())))
+
+    def at_rest(self, goal: PoseStamped) -> PoseStamped:
+        """Give a goal that the robot would push along, since it is in one of its frames, in that of odometry."""
+        frame, odom = self.frames(goal)
+        if frame in ("", "odom", odom) or self.base not in self.buffer._chain(odom, Time(), frame, Time(), odom):
+            return goal
+        pose = do_transform_pose(goal.pose, self.buffer.lookup_transform(odom, frame, Time()))
+        return PoseStamped(header=self.here.header, pose=pose)
+
+    def frames(self, goal: PoseStamped) -> tuple[str, str]:
+        """Give the names of a goal's frame and of odometry's."""
+        return goal.header.frame_id.removeprefix("/"), self.here.header.frame_id.removeprefix("/") or "odom"
 
     # Driving
 
@@ -175,10 +186,12 @@ class Goto(Node):
         pose = pose_of(odometry.pose.pose)
         dt = seconds(odometry.header.stamp) - seconds(self.here.header.stamp)
         self.here = PoseStamped(header=odometry.header, pose=odometry.pose.pose)
+        self.base = odometry.child_frame_id.removeprefix("/") or self.base
         self.odom_at = self.get_clock().now()
         if self.trip is None:
             return
         try:
+            self.trip.goal = self.at_rest(self.trip.goal)
             left = left_to(self.in_odom(self.trip.goal), pose)
         except TransformException as error:
             self.give_up(f"the goal's frame is lost: {error}", Codes.TF_ERROR)

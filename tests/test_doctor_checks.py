@@ -269,6 +269,17 @@ def test_a_subscription_without_publisher_is_a_warning_with_the_nearest_topic() 
     )
 
 
+def test_a_topic_or_service_of_another_type_is_none_that_could_have_been_meant() -> None:
+    found = seeing(
+        end(SUBSCRIPTION, "/ada/cmd_vel", "world", "geometry_msgs/msg/Twist"),
+        end(PUBLISHER, "/ada/bumper", "world", "std_msgs/msg/Bool"),
+        end(CLIENT, "/ada/start", "boss", "std_srvs/srv/Trigger"),
+        end(SERVICE, "/ada/start_at", "world", "std_srvs/srv/SetBool"),
+    )
+    assert only(graph_checks.topics(found).warnings) == "/ada/cmd_vel has no publisher; /world subscribed to it"
+    assert only(graph_checks.services(found).warnings) == "service /ada/start has no server; /boss waits for it"
+
+
 def test_a_client_without_server_and_a_service_with_two_are_warnings() -> None:
     found = seeing(
         end(CLIENT, "/reset", "boss"),

@@ -183,6 +183,19 @@ def test_a_goal_of_another_frame_needs_a_transform(room: Drive) -> None:
     assert is_at(room, 5.0, 5.0, math.pi / 2)
 
 
+@pytest.mark.parametrize("frame", ["base_link", "/base_link"])
+def test_a_goal_in_a_frame_of_the_robot_does_not_move_along_with_it(room: Drive, frame: str) -> None:
+    room.add(goto.Goto)
+    client = Client(room)
+    goal = message(x=1.0, y=1.0)
+    goal.header.frame_id = frame
+    room.run(0.1)
+    handle = client.send(goal)
+    assert handle.accepted
+    assert client.end(handle)[0] == GoalStatus.STATUS_SUCCEEDED
+    assert is_at(room, 4.0, 4.0, 0.0)
+
+
 def test_without_odometry_it_gives_up(room: Drive) -> None:
     node = room.add(goto.Goto, {"odom_timeout": 2.0})
     client = Client(room)

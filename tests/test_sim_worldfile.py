@@ -105,6 +105,8 @@ BAD = {
     DRIVE % "w_max: 400": "drive.w_max: more than a quarter turn in a step of 0.01 s: at most 157.1",
     ROBOT % "shape: {box: [1, 0.1]}, drive: {w_max: 20}": "1:73: robots[0].drive.w_max: at 0.5 m/s and 20 rad/s its "
     "corners go 0.0955 m in a step of 0.01 s, and a shape of 0.05 m could pass through walls: at most 9.9",
+    ROBOT % "shape: {box: [1, 0.2]}, drive: {v_max: 10}": "1:65: robots[0].drive.w_max: at 10 m/s and 2 rad/s its "
+    "corners go 0.108 m in a step of 0.01 s, and a shape of 0.1 m could pass through walls: it needs a lower v_max",
     DRIVE % "timeout: 0.001": "1:51: robots[0].drive.timeout: shorter than a step, so that no command would count",
     DRIVE % "type: dif": "1:48: robots[0].drive.type: expected one of diff, omni, ackermann, got 'dif' (did you",
     DRIVE

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robolink.exceptions import DocumentError
-from robolink.sim import World, WorldDescription, load_world
+from robolink.sim import World, WorldDescription, WorldError, load_world
 from robolink.sim.description import Obstacle, Pose
 from robolink.sim.webots import WebotsWorld, WorldWarning, load, read, warnings_to
 from robolink.workspace import find_world, list_worlds
@@ -201,6 +201,16 @@ def test_what_is_too_light_for_walls_to_hold_is_told() -> None:
     notes = world(f"{CART % '0 0 0.1'} {light}").notes
     assert "so light that a robot may push it through a wall: Solid 'feather'" in notes
     assert not any("so light" in each for each in world(f"{CART % '0 0 0.1'} {light.replace('0.001', '1')}").notes)
+
+
+def test_what_is_too_light_keeps_only_a_heavier_robot_from_coming() -> None:
+    light = box("0.1 0.1 0.3", 'name "feather" translation 2 0 0.15 physics Physics { mass 0.001 }')
+    made = World(world(f"{CART % '0 0 0.1'} {light}").description)
+    [cart] = made.description.robots
+    another = msgspec.structs.replace(cart, name="another", pose=Pose(-3.0, 0.0))
+    with pytest.raises(WorldError, match="would push through walls"):
+        made.spawn(msgspec.structs.replace(another, mass=cart.mass + 1.0))
+    assert made.spawn(another).name == "another"
 
 
 def test_nothing_is_told_of_a_world_that_is_all_understood() -> None:

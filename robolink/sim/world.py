@@ -105,8 +105,9 @@ class World:
         """Yield what is wrong with a robot that is to come into this world."""
         for each in robot_problems(robot, self._dt):
             yield each._replace(path=each.path.removeprefix("."))
-        for each in mass_problems([robot], self.description.obstacles):
-            yield each._replace(path=each.path.removeprefix("$."))
+        if all(robot.mass > each.mass for each in self.description.robots):  # else it makes nothing worse
+            for each in mass_problems([robot], self.description.obstacles):
+                yield each._replace(path=each.path.removeprefix("$."))
         for other in self._robots.values():
             yield from (each._replace(path="mass") for each in mass_problems([robot, other.description], ()))
 

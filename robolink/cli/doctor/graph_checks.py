@@ -108,7 +108,8 @@ def topics(facts: Facts) -> Verdict:
     for name, found in ends.items():
         waiting = [each.full_node_name for each in found if not _is_command(each)]
         if name not in published and waiting and not _hidden(name) and name not in SILENT_TOPICS:
-            warnings.append(f"{name} has no publisher; {listed(waiting)} subscribed to it{nearest(name, published)}")
+            meant = nearest(name, _alike(ends, name, PUBLISHER))
+            warnings.append(f"{name} has no publisher; {listed(waiting)} subscribed to it{meant}")
     return Verdict(f"{count(len(published), 'topic')} published, nobody waits in vain", warnings=tuple(warnings))
 
 
@@ -122,7 +123,8 @@ def services(facts: Facts) -> Verdict:
         shown = f"action {name.removesuffix(SEND_GOAL)}" if name.endswith(SEND_GOAL) else f"service {name}"
         clients = [each.full_node_name for each in found if each.kind is CLIENT and not _is_command(each)]
         if name not in served and clients and (not _hidden(name) or name.endswith(SEND_GOAL)):
-            warnings.append(f"{shown} has no server; {listed(clients)} waits for it{nearest(name, served)}")
+            meant = nearest(name, _alike(ends, name, SERVICE))
+            warnings.append(f"{shown} has no server; {listed(clients)} waits for it{meant}")
         servers = [each.full_node_name for each in found if each.kind is SERVICE]
         if len(set(servers)) > 1:
             warnings.append(f"{shown} has {len(servers)} servers, and each does every call: {listed(servers)}")
@@ -182,6 +184,12 @@ def _by_name(ends: Iterable[EndpointToken]) -> dict[str, list[EndpointToken]]:
     for each in ends:
         found.setdefault(each.name, []).append(each)
     return dict(sorted(found.items()))
+
+
+def _alike(ends: dict[str, list[EndpointToken]], name: str, kind: EndpointKind) -> list[str]:
+    """Give the names where somebody offers what is wanted of a name, by its types."""
+    types = {each.type_name for each in ends[name]}
+    return [other for other, found in ends.items() for each in found if each.kind is kind and each.type_name in types]
 
 
 def _latched(end: EndpointToken) -> bool:

@@ -94,7 +94,9 @@ def _corner_problems(robot: RobotDescription, dt: float) -> Iterator[Problem]:
     if v + w * beyond > inner / dt:
         way = f"at {v:g} m/s and {w:g} rad/s its corners go {(v + w * beyond) * dt:.3g} m in a step of {dt:g} s"
         through = f"and a shape of {inner:.3g} m could pass through walls"
-        yield Problem(".w_max", f"{way}, {through}: at most {(inner / dt - v) / beyond:.4g}, or a lower v_max")
+        most = (inner / dt - v) / beyond
+        right = f"at most {most:.4g}, or a lower v_max" if most > 0.01 else "it needs a lower v_max"
+        yield Problem(".w_max", f"{way}, {through}: {right}")
 
 
 def _steering_problems(robot: RobotDescription, dt: float) -> Iterator[Problem]:
