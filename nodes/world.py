@@ -11,12 +11,6 @@ from typing import Any
 
 from robolink import Node, Parameter
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticArray
-from robolink.interfaces.rcl_interfaces.msg import (
-    FloatingPointRange,
-    IntegerRange,
-    ParameterDescriptor,
-    SetParametersResult,
-)
 from robolink.parameter_descriptors import described
 from robolink.sim import load_world
 from robolink.sim.webots import warnings_to
@@ -30,12 +24,7 @@ PUBLISH_CLOCK = described(
 PUBLISH_MAP = described(
     "Whether the frame map is joined to odom; turn it off where a node localizes the robot.", read_only=True
 )
-RTF = ParameterDescriptor(
-    description="How many times as fast as real time the world runs; 0 is as fast as it goes.",
-    floating_point_range=[FloatingPointRange(from_value=0.0, to_value=1000.0)],
-    integer_range=[IntegerRange(from_value=0, to_value=1000)],
-    dynamic_typing=True,  # `rtf:=2` is as good as `rtf:=2.0`
-)
+RTF = described("How many times as fast as real time the world runs; 0 is as fast as it goes.", 0.0, 1000.0)
 
 
 class SimulatedWorld(Node):
@@ -43,7 +32,6 @@ class SimulatedWorld(Node):
 
     def __init__(self, **options: Any) -> None:
         super().__init__("world", **options)
-        self.add_on_set_parameters_callback(self.check_rtf)
         wanted = self.declare_parameter("world", "obstacles", WORLD).value
         with warnings_to(self.get_logger().warning):  # what is left out of a world of Webots
             description = load_world(find_world(wanted))
@@ -61,14 +49,6 @@ class SimulatedWorld(Node):
         self.add_post_set_parameters_callback(self.on_parameters)
         robots = listed(list(self.simulation.world.robots))
         self.get_logger().info(f"world '{description.world.name or wanted}' with {robots}")
-
-    def check_rtf(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
-        """Refuse a real-time factor that is no number; its range is checked already."""
-        if all(
-            each.type_ in (Parameter.Type.DOUBLE, Parameter.Type.INTEGER) for each in parameters if each.name == "rtf"
-        ):
-            return SetParametersResult(successful=True)
-        return SetParametersResult(successful=False, reason="rtf: expected a number, 0 for as fast as it goes")
 
     def on_parameters(self, parameters: list[Parameter[Any]]) -> None:
         """Run at another pace from now on."""

@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from robolink import Parameter
-from robolink.exceptions import InvalidParameterValueException
+from robolink.exceptions import InvalidParameterTypeException
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import LaserScan
@@ -330,15 +330,15 @@ def test_an_impossible_pace_is_refused(system: System, world: Any, rtf: float) -
 @pytest.mark.parametrize("rtf", ["fast", True, [1.0]])
 def test_a_pace_that_is_no_number_is_refused(system: System, world: Any, hall: str, rtf: Any) -> None:
     assert not world.set_parameters([Parameter("rtf", value=rtf)])[0].successful
-    with pytest.raises(InvalidParameterValueException, match="expected a number"):
+    with pytest.raises(InvalidParameterTypeException, match=r"'rtf' to .*, expecting type 'DOUBLE'"):
         system.add(simulation.SimulatedWorld, {"world": hall, "rtf": rtf})
-    assert world.set_parameters([Parameter("rtf", value=2)])[0].successful
+    assert world.set_parameters([Parameter("rtf", value=2.0)])[0].successful
     system.run(1.0)
     assert world.simulation.world.time_ns == pytest.approx(2e9, abs=5e7)
 
 
 def test_as_fast_as_it_goes_all_others_have_their_turn(system: System, hall: str) -> None:
-    world = system.add(simulation.SimulatedWorld, {"world": hall, "rtf": 0})
+    world = system.add(simulation.SimulatedWorld, {"world": hall, "rtf": 0.0})
     odometry = system.hear(Odometry, "/ada/odom", qos=1)
     for _ in range(500):
         system.executor.spin_once()

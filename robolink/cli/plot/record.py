@@ -94,20 +94,10 @@ def wait_for(context: Context, topic: str, deadline: float | None) -> type[Any]:
     return message_type(context, topic)
 
 
-def listen(node: Node, topics: Mapping[str, tuple[type[Any], Callable[[Any], object]]], duration: float | None) -> int:
-    """Call each topic's function with its messages until `duration` has passed or Ctrl-C; how many there were."""
-    heard = 0
-
-    def taking(take: Callable[[Any], object]) -> Callable[[Any], None]:
-        def on_message(message: Any) -> None:
-            nonlocal heard
-            heard += 1
-            take(message)
-
-        return on_message
-
+def listen(node: Node, topics: Mapping[str, tuple[type[Any], Callable[[Any], Any]]], duration: float | None) -> None:
+    """Call each topic's function with its messages until `duration` has passed or Ctrl-C."""
     for name, (msg_type, take) in topics.items():
-        node.create_subscription(msg_type, name, taking(take), matching_qos(node.context, name))
+        node.create_subscription(msg_type, name, take, matching_qos(node.context, name))
     tell(f"listening to {', '.join(topics)}" + ("; Ctrl-C draws" if duration is None else f" for {duration:g} s"))
     with SingleThreadedExecutor(context=node.context) as executor:
         executor.add_node(node)
@@ -115,7 +105,6 @@ def listen(node: Node, topics: Mapping[str, tuple[type[Any], Callable[[Any], obj
             executor.spin_until_future_complete(Future[None](), timeout_sec=duration)
         except KeyboardInterrupt:
             tell("")
-    return heard
 
 
 def show(figure: Figure, wish: Wish) -> None:
