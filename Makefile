@@ -36,6 +36,7 @@ format: $(READY)
 bench: $(READY)  ## Speed beside peers, in one run each
 	$(BIN)/python benchmarks/messaging.py
 	$(BIN)/python benchmarks/commands.py
+	$(BIN)/python benchmarks/launching.py
 	$(BIN)/python benchmarks/executors.py
 	$(BIN)/python benchmarks/virtual_time.py
 	$(BIN)/python benchmarks/simulator.py

@@ -24,6 +24,7 @@ PUBLISH_CLOCK = described(
 PUBLISH_MAP = described(
     "Whether the frame map is joined to odom; turn it off where a node localizes the robot.", read_only=True
 )
+SEED = described("The seed of all noise: of sensors and of odometry.", 0, 2**63 - 1, read_only=True)
 RTF = described("How many times as fast as real time the world runs; 0 is as fast as it goes.", 0.0, 1000.0)
 
 
@@ -36,11 +37,14 @@ class SimulatedWorld(Node):
         with warnings_to(self.get_logger().warning):  # what is left out of a world of Webots
             description = load_world(find_world(wanted))
         rtf = self.declare_parameter("rtf", description.world.rtf, RTF).value
+        seed = self.declare_parameter("seed", description.world.seed, SEED).value
         publish_clock = self.declare_parameter("publish_clock", False, PUBLISH_CLOCK).value
         publish_map = self.declare_parameter("publish_map", True, PUBLISH_MAP).value
 
         epoch = 0 if publish_clock else self.get_clock().now().nanoseconds
-        self.simulation = Simulation(self, description, epoch, publish_clock=publish_clock, publish_map=publish_map)
+        self.simulation = Simulation(
+            self, description, epoch, publish_clock=publish_clock, publish_map=publish_map, seed=seed
+        )
         self.runner = Runner(self, self.simulation, rtf)
         Services(self, self.simulation, self.runner)
         self.diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)

@@ -12,12 +12,12 @@ import threading
 import time
 from collections import deque
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup
 from robolink.entity import Entity
+from robolink.executor_queue import earlier
 from robolink.inbox import A_WHILE, Inbox
 from robolink.queues import get_within
 from robolink.task import Future
@@ -46,7 +46,7 @@ class CallbackThreads:
     """A pool of threads that run callbacks of one executor."""
 
     def __init__(self, size: int, executor: Executor) -> None:
-        self.pool = ThreadPoolExecutor(size, thread_name_prefix="robolink callbacks")
+        self.pool = executor.context.make_pool(size)
         self.free = size
         """How many more callbacks can be begun; below zero while some queue up."""
         self.failures: deque[BaseException] = deque()
@@ -142,16 +142,24 @@ class CallbackThreads:
         desk.jobs.put(None)
 
     def _wait_for_job(self, desk: Desk) -> None:
-        left = A_WHILE
-        if desk.deadline is not None and not self._time.virtual:
-            left = min(A_WHILE, max(0.0, (desk.deadline - self._time.steady()) / 1e9))
         try:
-            job = get_within(desk.jobs, left)
+            job = self._next_job(desk)
         except queue.Empty:
             job = None
         if job is not None:
             self._work_at(desk, job)
         self._executor.check_end()
+
+    def _next_job(self, desk: Desk) -> tuple[Entity, Any] | None:
+        steady = self._time.steady()
+        if self._time.hosted:
+            soon = steady + int(A_WHILE * 1e9)
+            job: tuple[Entity, Any] | None = self._time.take(desk.jobs, earlier(desk.deadline, soon))
+            return job
+        left = A_WHILE
+        if desk.deadline is not None and not self._time.virtual:
+            left = min(A_WHILE, max(0.0, (desk.deadline - steady) / 1e9))
+        return get_within(desk.jobs, left)
 
     def _work_at(self, desk: Desk, job: tuple[Entity, Any]) -> None:
         self._run(*job)
@@ -209,7 +217,7 @@ class CallbackThreads:
         For half a second of real time, that is: a callback that takes longer seems to wait for another one, and time
         goes on, slowly enough for it to see what it waits for.
         """
-        if not self._time.virtual:
+        if self._time.hosted or not self._time.virtual:
             return self._time.wait(inbox, until)
         if self._working > self._stuck:
             return self._let_work(inbox)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import queue
-import time
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup
@@ -24,7 +23,6 @@ from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, encoder, service_type
 from robolink.qos import QoSProfile
-from robolink.queues import get_within
 from robolink.service_introspection import Introspection, introspect
 from robolink.service_introspection import ServiceIntrospectionState as ServiceIntrospectionState
 from robolink.task import Future
@@ -160,12 +158,13 @@ class Client(Receiver):
 
     def _first_readable(self, answers: queue.SimpleQueue[Any], timeout_sec: float | None, patient: bool) -> Any:
         """Wait for an answer; one that cannot be read is passed over, since another server may do better."""
-        deadline = None if timeout_sec is None else time.monotonic() + timeout_sec
+        time = self._context.time
+        deadline = None if timeout_sec is None else time.steady() + int(timeout_sec * 1e9)
         bad: Exception | None = None
         reason: ServiceError | None = None
         while True:
             try:
-                answer = answers.get() if deadline is None else get_within(answers, deadline - time.monotonic())
+                answer = time.take(answers, deadline)
             except queue.Empty:
                 raise self._timeout(timeout_sec, reason) from None
             if answer is _RELEASED:

@@ -8,10 +8,11 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, Protocol
 
 from robolink.clock_type import ClockType
+from robolink.defaults import get_defaults
 from robolink.duration import Duration
 from robolink.exceptions import NotInitializedException
 from robolink.time import Time
-from robolink.timebase import SystemTime, TimeBase
+from robolink.timebase import TimeBase
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -115,7 +116,7 @@ class Clock:
 
     def __init__(self, *, clock_type: ClockType = ClockType.SYSTEM_TIME, time_base: TimeBase | None = None) -> None:
         self._clock_type = clock_type
-        self._base: TimeBase = time_base or SystemTime()
+        self._base: TimeBase = time_base or get_defaults().time
         self._jumps: list[JumpHandle] = []
 
     @property
@@ -183,8 +184,8 @@ class Clock:
 
     def _sleep(self, event: threading.Event, until: int) -> None:
         left = self.wait_ns(until)
-        if left is not None and self._base.virtual:
-            self._base.sleep(left)
+        if self._base.hosted or (left is not None and self._base.virtual):
+            self._base.wait_until(event.is_set, None if left is None else self._base.steady() + left)
         else:
             event.wait(None if left is None else left / 1e9)
 

@@ -17,12 +17,16 @@ from typing import TYPE_CHECKING, Any
 
 from robolink import humble, signals
 from robolink.arguments import Arguments, parse_arguments
+from robolink.defaults import get_defaults
 from robolink.exceptions import NotInitializedException, RobolinkError
 from robolink.given_parameters import GivenParameters
 from robolink.inbox import Inbox, Sweeper
 from robolink.timebase import SystemTime, TimeBase
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from robolink.executors import SingleThreadedExecutor
     from robolink.graph import Graph
     from robolink.transport.base import Transport
 
@@ -44,6 +48,11 @@ class Context:
     already; `time` is the system's time by default, or a VirtualTime.
     """
 
+    def __new__(cls, *_: object, **__: object) -> Context:
+        """Make one of the kind that the program has whose code this is: see `robolink.oneprocess`."""
+        own = get_defaults().context_type if cls is Context else None
+        return super().__new__(own or cls)
+
     def __init__(self, *, transport: str | Transport | None = None, time: TimeBase | None = None) -> None:
         self.time: TimeBase = time or SystemTime()
         self.arguments = Arguments()
@@ -52,7 +61,7 @@ class Context:
         """Whether a signal ended this context."""
         self.speaks_humble = False
         """Whether everything of this context is on the wire as Humble says it."""
-        self.inbox = Inbox()
+        self.inbox = self.make_inbox(parked=True)
         """Where arrivals wait for entities that no executor has."""
         self._wanted = transport
         self._transport: Transport | None = None
@@ -90,7 +99,7 @@ class Context:
         from robolink import logging
 
         logging.initialize()
-        if self.time.virtual:
+        if self.time.virtual and not self.time.hosted:
             logging.set_time_source(self.time.now)
         for name, level in self.arguments.log_levels:
             logging.set_logger_level(name, level)
@@ -125,14 +134,29 @@ class Context:
     def wait_until(self, is_there: Callable[[], bool], timeout_sec: float | None) -> bool:
         """Wait until `is_there()` is true of the graph, or the context ends; whether it is true then.
 
-        In virtual time nobody comes while this thread waits: the seconds are over at once.
+        In virtual time nobody comes while this thread waits, the seconds are over at once; unless a host runs others.
         """
-        if self.time.virtual and timeout_sec is not None:
-            if not is_there():
-                self.time.sleep(int(timeout_sec * 1e9))
+        if self.time.hosted or (self.time.virtual and timeout_sec is not None):
+            until = None if timeout_sec is None else self.time.steady() + int(timeout_sec * 1e9)
+            self.time.wait_until(lambda: is_there() or not self.ok(), until)
         else:
             self.graph.wait_for(lambda: is_there() or not self.ok(), timeout_sec)
         return is_there()
+
+    def make_inbox(self, *, parked: bool = False) -> Inbox:
+        """Make what an executor of this context waits at; `parked` for what waits while no executor has it."""
+        return Inbox()
+
+    @property
+    def executor_type(self) -> type[SingleThreadedExecutor] | None:
+        """What a `SingleThreadedExecutor` of this context is, if that is another class."""
+        return None
+
+    def make_pool(self, size: int) -> Executor:
+        """Make the threads in which callbacks of a multi-threaded executor run."""
+        from concurrent.futures import ThreadPoolExecutor  # late: it takes some milliseconds
+
+        return ThreadPoolExecutor(size, thread_name_prefix="robolink callbacks")
 
     def next_id(self) -> int:
         """Give a number for a node or endpoint; they share one counter on the wire."""
@@ -225,7 +249,7 @@ class Context:
             with self._lock:
                 transport, self._transport = self._transport, None
             self._sweeper.close()
-            if self.time.virtual:
+            if self.time.virtual and not self.time.hosted:
                 from robolink import logging
 
                 logging.set_time_source(time.time_ns)

@@ -9,7 +9,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
 
 from robolink.entity import NOTHING, Asked, Entity
-from robolink.inbox import Inbox
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -26,7 +25,7 @@ class ExecutorQueue:
 
     def __init__(self, context: Context) -> None:
         self._context = context
-        self.inbox = Inbox()
+        self.inbox = context.make_inbox()
         self.ready: deque[Entity] = deque()
         self.asked: list[Asked] = []
         """Those of its entities that must be asked whether they are ready."""

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from robolink.defaults import get_defaults
 from robolink.entity import Entity
 from robolink.exceptions import ExternalShutdownException as ExternalShutdownException
 from robolink.exceptions import InterruptedByUser
@@ -146,7 +147,7 @@ class Executor(ExecutorRunning):
     def _check_interrupt(self) -> None:
         """Raise after a signal; KeyboardInterrupt is for the main thread alone, as in every Python program."""
         if self._context.interrupted:
-            raise InterruptedByUser if _is_main_thread() else ExternalShutdownException
+            raise InterruptedByUser if get_defaults().in_main_thread() else ExternalShutdownException
 
     def wait_for_ready_callbacks(
         self,
@@ -229,6 +230,8 @@ class Executor(ExecutorRunning):
         seconds = timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
         if seconds is None or seconds < 0:
             return None
+        if seconds == 0:
+            self._context.time.pass_on()
         return self._context.time.steady() + int(seconds * 1e9)
 
     def _spin(self, deadline: int | None = None, stop: Callable[[], bool] | None = None, *, once: bool = False) -> None:
@@ -284,6 +287,11 @@ class Executor(ExecutorRunning):
 
 class SingleThreadedExecutor(Executor):
     """Runs one callback after the other, where `spin` was called, in the order in which they became ready."""
+
+    def __new__(cls, *, context: Context | None = None) -> SingleThreadedExecutor:
+        """Make one of the kind that the context has, if it has another one."""
+        own = (context or get_default_context()).executor_type if cls is SingleThreadedExecutor else None
+        return super().__new__(own or cls)
 
 
 class MultiThreadedExecutor(Executor):
@@ -380,10 +388,6 @@ class MultiThreadedExecutor(Executor):
         ended = self._wait_for(self._threads.ended, self._threads.have_ended, timeout_sec)
         self._threads.close(wait=wait_for_threads and ended)
         return ended
-
-
-def _is_main_thread() -> bool:
-    return threading.current_thread() is threading.main_thread()
 
 
 def _serves(entity: Entity) -> bool:

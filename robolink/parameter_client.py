@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -79,9 +78,10 @@ class AsyncParameterClient:
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
         """Wait until somebody serves all six; whether so within `timeout_sec` seconds, without end when None."""
-        deadline = None if timeout_sec is None else time.monotonic() + timeout_sec
+        steady = self._clients[0]._context.time.steady
+        deadline = None if timeout_sec is None else steady() + int(timeout_sec * 1e9)
         for each in self._clients:
-            left = None if deadline is None else max(0.0, deadline - time.monotonic())
+            left = None if deadline is None else max(0, deadline - steady()) / 1e9
             if not each.service_is_ready() and not each.wait_for_service(left):
                 return False
         return self.services_are_ready()

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from robolink.context import Context
+from robolink.defaults import get_defaults
 from robolink.executors import Executor, SingleThreadedExecutor
 from robolink.node import Node
 from robolink.parameter import Parameter
@@ -14,8 +15,6 @@ from robolink.task import Future
 from robolink.utilities import get_default_context
 from robolink.utilities import shutdown as shut_context_down
 from robolink.utilities import try_shutdown as try_to_shut_context_down
-
-_executor: Executor | None = None
 
 
 class InitContextManager:
@@ -60,18 +59,17 @@ def init(
 
 def get_global_executor() -> Executor:
     """Give the executor that `spin` uses when it is given none; it lasts as long as the default context."""
-    global _executor
-    if _executor is None or _executor.context is not get_default_context():
+    defaults = get_defaults()
+    if defaults.executor is None or defaults.executor.context is not get_default_context():
         _forget_executor()
-        _executor = SingleThreadedExecutor()
-    return _executor
+        defaults.executor = SingleThreadedExecutor()
+    return defaults.executor
 
 
 def _forget_executor() -> None:
-    global _executor
-    if _executor is not None:
-        _executor.shutdown(timeout_sec=0)  # a callback may be in the midst of something: rclpy does not wait either
-        _executor = None
+    executor, get_defaults().executor = get_defaults().executor, None
+    if executor is not None:
+        executor.shutdown(timeout_sec=0)  # a callback may be in the midst of something: rclpy does not wait either
 
 
 def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:

@@ -8,32 +8,32 @@ import threading
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from robolink.defaults import get_defaults
+
 if TYPE_CHECKING:
     from robolink.context import Context
 
 _lock = threading.Lock()
-_default: Context | None = None
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:
     """Give the context that is used where none is named; a new one once the last was shut down."""
-    global _default
     from robolink.context import Context
 
+    defaults = get_defaults()
     with _lock:
-        if _default is None:
-            _default = Context()
-        context = _default
+        if defaults.context is None:
+            defaults.context = Context()
+        context = defaults.context
         if shutting_down:
-            _default = None
+            defaults.context = None
         return context
 
 
 def set_default_context(context: Context | None) -> None:
     """Make `context` the default one: how tests run programs that know nothing of contexts."""
-    global _default
     with _lock:
-        _default = context
+        get_defaults().context = context
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
@@ -55,13 +55,11 @@ def shutdown(*, context: Context | None = None) -> None:
 
 def try_shutdown(*, context: Context | None = None) -> None:
     """Shut the context down if it is not yet."""
-    global _default
     if context is not None:
         context.try_shutdown()
         return
     get_default_context().try_shutdown()
-    with _lock:
-        _default = None
+    set_default_context(None)
 
 
 def get_rmw_implementation_identifier() -> str:

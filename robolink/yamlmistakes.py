@@ -68,6 +68,21 @@ class Reader:
         spelled = _spelled(steps)
         return DocumentError(f"{where}: " + shown(f"{spelled}: {message}" if spelled else message, 300))
 
+    def written(self, steps: Sequence[Step]) -> str | None:
+        """Give the text of the value at the end of these steps, before it is read as a number; None if it is none."""
+        import yaml
+
+        node = self._root
+        for step in steps:
+            entry = _child(node, step)
+            node = None if entry is None else entry[1]
+        return node.value if isinstance(node, yaml.ScalarNode) else None
+
+    def line(self, steps: Sequence[Step]) -> int:
+        """Give the line, from 1, of what stands at the end of these steps."""
+        node = self._node(steps)
+        return 1 if node is None else node.start_mark.line + 1
+
     def mistakes(self, data: Data, type_: object, above: Sequence[Step] = ()) -> Iterator[DocumentError]:
         """Yield an error for each part of the data that is wrong: the smallest parts, each on its own."""
         try:
@@ -107,8 +122,8 @@ class Reader:
         if text.startswith("Invalid enum value"):
             return self.error(steps, _none_of(_at(data, inner), _types_at(type_, inner)))
         if match["key"]:
-            return self.error(steps, f"a key: {_worded(text, None)}")
-        return self.error(steps, _worded(text, self._node(steps)))
+            return self.error(steps, f"a key: {_worded(text, None, None)}")
+        return self.error(steps, _worded(text, self._node(steps), _at(data, inner)))
 
     def _unknown_key(self, name: str, known: Sequence[str], above: Sequence[Step]) -> DocumentError:
         return self.error([*above, name], f"unknown key '{name}'{nearest(name, known)}", key=True)
@@ -276,16 +291,22 @@ def _none_of(data: Data, found: Sequence[object]) -> str:
 
 
 _PLAIN_WORDS = {"object": "mapping", "array": "list", "null": "nothing"}
+_ANY_SCALAR = "bool | int | float | str"
 
 
-def _worded(text: str, node: yaml.Node | None) -> str:
-    """Say "expected float, got 'fast'" for msgspec's "Expected `float`, got `str`"."""
+def _worded(text: str, node: yaml.Node | None, data: Data) -> str:
+    """Say "expected float, got 'fast'" for msgspec's "Expected `float`, got `str`".
+
+    What was found is shown as it is written, or, where the data was made of something else since, as that.
+    """
     import yaml
 
     text = re.sub(r"\b(object|array|null)\b", lambda match: _PLAIN_WORDS[match[1]], text).replace("`", "")
+    text = text.replace(_ANY_SCALAR, "a value")
     if text.startswith("Expected"):
         text = "e" + text[1:]
     if not isinstance(node, yaml.ScalarNode) or node.value == "":
         return text
-    found = f"'{shown(node.value)}'"
+    was_filled_in = isinstance(data, str | int | float) and "{" in node.value
+    found = f"'{shown(str(data) if was_filled_in else node.value)}'"
     return re.sub(r", got .*", "", text) + f", got {found}" if text.startswith("expected") else text

@@ -7,9 +7,11 @@ of its file.
 from __future__ import annotations
 
 import gc
+import os
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -24,9 +26,6 @@ from tests.domains import free_domain
 from tests.long_runs import LongRun
 from tests.transports import Network
 
-if TYPE_CHECKING:
-    from tests.driving import Drive
-
 # However slow a machine is, that is no fault of what is tested.
 settings.register_profile(
     "patient", settings(), deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow]
@@ -35,6 +34,13 @@ settings.load_profile("patient")
 
 LONG_RUNS = pytest.StashKey[dict[tuple[Any, ...], LongRun]]()
 THEIR_FILES = pytest.StashKey[set[Path]]()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Keep what launched systems print out of the user's home."""
+    folder = tempfile.TemporaryDirectory(prefix="robolink-logs-", ignore_cleanup_errors=True)
+    config.add_cleanup(folder.cleanup)
+    os.environ["ROBOLINK_LOG_DIR"] = folder.name
 
 
 def runs_long(item: pytest.Item) -> bool:
@@ -163,15 +169,6 @@ def executor(virtual: Context) -> Iterator[SingleThreadedExecutor]:
 def two(context: Context) -> Iterator[MultiThreadedExecutor]:
     """An executor with two threads, in real time."""
     with MultiThreadedExecutor(num_threads=2, context=context) as made:
-        yield made
-
-
-@pytest.fixture
-def system() -> Iterator[Drive]:
-    """Nodes on a bus of their own in virtual time, and a simulated world if the test adds one."""
-    from tests.driving import drive  # late: few tests need a world
-
-    with drive() as made:
         yield made
 
 

@@ -12,18 +12,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink import Context, Node, Parameter, VirtualTime
-from robolink.exceptions import ExternalShutdownException
+from robolink import Context, Node, Parameter
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.transport.memory import Bus, MemoryTransport
+from robolink.testing import System
 from robolink.transport.zenoh import ZenohTransport
 from tests.commands import Command
 from tests.domains import free_domain
-from tests.driving import Drive, Typed
 from tests.nodefiles import ROOT, load_node_file
-from tests.spins import spin_for, spin_until
+from tests.spins import spin_until
+from tests.systems import Typed, log, made_with, said
 
 first, velocity, scans = map(load_node_file, ("first_node", "velocity_publisher", "scan_subscriber"))
 COURSE = ["first_node", "velocity_publisher", "scan_subscriber"]
@@ -32,12 +31,12 @@ COURSE = ["first_node", "velocity_publisher", "scan_subscriber"]
 # first_node
 
 
-def test_the_first_node_greets_once_a_second_as_it_is_told(system: Drive) -> None:
-    node = system.add(first.FirstNode)
+def test_the_first_node_greets_once_a_second_as_it_is_told(system: System) -> None:
+    node = system.start(first.FirstNode)
     system.run(2.5)
     node.set_parameters([Parameter("greeting", value="good morning")])
     system.run(1.0)
-    assert system.log == [
+    assert log(system) == [
         "first_node is there",
         "hello, for the 1st time",
         "hello, for the 2nd time",
@@ -54,14 +53,14 @@ def test_numbers_are_counted_in_english() -> None:
 # velocity_publisher
 
 
-def test_the_speed_rises_by_steps_to_the_top_and_begins_anew(system: Drive) -> None:
-    heard = system.hear(Twist, "cmd_vel")
-    node = system.add(velocity.VelocityPublisher, {"turn_speed": 0.5})
+def test_the_speed_rises_by_steps_to_the_top_and_begins_anew(system: System) -> None:
+    heard = system.messages("cmd_vel")
+    node = system.start(velocity.VelocityPublisher, parameters={"turn_speed": 0.5})
     system.run(13 * velocity.PERIOD + 0.01)
     assert [each.linear.x for each in heard] == pytest.approx([*(each / 10 for each in range(11)), 0.0, 0.1])
     assert {each.angular.z for each in heard} == {0.5}
-    assert system.said("0.30 m/s ahead, turning at 0.50 rad/s") == 1
-    system.remove(node)
+    assert said(system, "0.30 m/s ahead, turning at 0.50 rad/s") == 1
+    system.stop(node)
     system.run(0.01)
     assert heard[-1] == Twist()
 
@@ -71,18 +70,18 @@ def test_no_speed_is_beyond_the_top(speed: float, step: float, top: float) -> No
     assert 0.0 <= velocity.next_speed(speed, step, top) <= top
 
 
-def test_it_can_be_slowed_down_while_it_runs(system: Drive) -> None:
-    heard = system.hear(Twist, "cmd_vel")
-    node = system.add(velocity.VelocityPublisher)
+def test_it_can_be_slowed_down_while_it_runs(system: System) -> None:
+    heard = system.messages("cmd_vel")
+    node = system.start(velocity.VelocityPublisher)
     system.run(10 * velocity.PERIOD + 0.01)
     node.set_parameters([Parameter("top_speed", value=0.2)])
     system.run(10 * velocity.PERIOD)
     assert max(each.linear.x for each in heard[11:]) == pytest.approx(0.2)
 
 
-def test_its_pace_can_be_changed_while_it_runs(system: Drive) -> None:
-    heard = system.hear(Twist, "cmd_vel")
-    node = system.add(velocity.VelocityPublisher, {"period": 1.0})
+def test_its_pace_can_be_changed_while_it_runs(system: System) -> None:
+    heard = system.messages("cmd_vel")
+    node = system.start(velocity.VelocityPublisher, parameters={"period": 1.0})
     system.run(2.5)
     assert len(heard) == 2
     assert not node.set_parameters([Parameter("period", value=0.0)])[0].successful
@@ -91,21 +90,13 @@ def test_its_pace_can_be_changed_while_it_runs(system: Drive) -> None:
     assert len(heard) == 12
 
 
-def test_it_stops_the_robot_when_ctrl_c_ends_its_context(bus: Bus, virtual: Context) -> None:
-    listener, heard = Node("listener", context=virtual), list[Twist]()
-    listener.create_subscription(Twist, "cmd_vel", heard.append, 10)
-    other = Context(transport=MemoryTransport(bus=bus), time=VirtualTime())
-    with other, SingleThreadedExecutor(context=other) as theirs:
-        theirs.add_node(velocity.VelocityPublisher(context=other))
-        for _ in range(3):
-            theirs.spin_once()
-        other.interrupt()
-        with pytest.raises(ExternalShutdownException):
-            theirs.spin()
-    with SingleThreadedExecutor(context=virtual) as executor:
-        executor.add_node(listener)
-        spin_for(executor, 0.1)
-    assert len(heard) >= 3
+def test_it_stops_the_robot_when_ctrl_c_ends_it(system: System) -> None:
+    heard = system.messages("cmd_vel")
+    system.start("velocity_publisher")
+    system.run(3 * velocity.PERIOD + 0.01)
+    system.stop("velocity_publisher")
+    system.run(0.0)
+    assert len(heard) == 4
     assert heard[-2].linear.x > 0.0
     assert heard[-1] == Twist()
 
@@ -143,32 +134,32 @@ def test_no_scan_is_too_odd(ranges: list[float], step: float) -> None:
     assert scans.said(found)
 
 
-def test_it_warns_of_what_is_near_and_once_a_second_at_most(system: Drive) -> None:
-    node = system.add(scans.ScanSubscriber)
-    publisher = system.probe.create_publisher(LaserScan, "scan", 10)
+def test_it_warns_of_what_is_near_and_once_a_second_at_most(system: System) -> None:
+    node = system.start(scans.ScanSubscriber)
+    publisher = system.node.create_publisher(LaserScan, "scan", 10)
     seen = [ring(2.0, 2.0, 1.0, 2.0)]
-    system.probe.create_timer(0.1, lambda: publisher.publish(seen[0]))
+    system.node.create_timer(0.1, lambda: publisher.publish(seen[0]))
     system.run(3.05)
-    assert (system.said("the way is free: 1.00 m, ahead"), system.said("obstacle near")) == (3, 0)
+    assert (said(system, "the way is free: 1.00 m, ahead"), said(system, "obstacle near")) == (3, 0)
     seen[0] = ring(2.0, 2.0, 0.4, 2.0)
     system.run(3.05)
-    assert system.said("obstacle near: 0.40 m, ahead") in (3, 4)
+    assert said(system, "obstacle near: 0.40 m, ahead") in (3, 4)
     node.set_parameters([Parameter("warn_distance", value=0.3)])
-    system.log.clear()
+    before = said(system, "obstacle near")
     system.run(2.0)
-    assert system.said("obstacle near") == 0
+    assert said(system, "obstacle near") == before
 
 
 # All of them
 
 
 @pytest.mark.parametrize("name", [*COURSE, "goto", "patrol", "square", "walker", "teleop"])
-def test_each_file_says_what_it_is_for_and_each_parameter_too(system: Drive, name: str) -> None:
+def test_each_file_says_what_it_is_for_and_each_parameter_too(system: System, name: str) -> None:
     module = load_node_file(name)
     assert (module.__doc__ or "").partition("\n")[0].endswith(".")
     (node_class,) = (each for each in vars(module).values() if _is_own_node(each, module))
     options: dict[str, Any] = {"keyboard": Typed()} if name == "teleop" else {}
-    node = system.add(node_class, **options)
+    node = system.start(made_with(node_class, **options))
     everybody_s = ("use_sim_time", "start_type_description_service")
     own = [each for each in node.list_parameters([], 0).names if each not in everybody_s]
     assert own

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +17,9 @@ from robolink.interfaces.nav2_msgs.action import FollowPath, NavigateToPose
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.qos import DurabilityPolicy, QoSProfile
-from tests.driving import Drive, drive
+from robolink.testing import System
 from tests.nodefiles import load_node_file
+from tests.systems import PATIENCE, add_world, said
 
 goto = load_node_file("goto")
 Codes = FollowPath.Result
@@ -40,7 +40,7 @@ FAULTS = {
 
 
 @pytest.mark.parametrize(("words", "fields"), [(words, each) for words, some in FAULTS.items() for each in some])
-def test_nonsense_is_no_goal(words: str, fields: dict[str, float]) -> None:
+def test_nonsense_is_no_goal(system: System, words: str, fields: dict[str, float]) -> None:
     assert words in goto.fault(message(**fields).pose)
 
 
@@ -50,89 +50,88 @@ def test_nonsense_is_no_goal(words: str, fields: dict[str, float]) -> None:
 class Client:
     """Somebody who sends goals, and keeps the feedback."""
 
-    def __init__(self, system: Drive) -> None:
+    def __init__(self, system: System) -> None:
         self.system, self.feedback = system, list[NavigateToPose.Feedback]()
-        self.client = ActionClient(system.probe, NavigateToPose, "navigate_to_pose")
+        self.client = ActionClient(system.node, NavigateToPose, "navigate_to_pose")
 
     def send(self, goal: PoseStamped) -> Any:
         """Give the goal's handle, accepted or not."""
         future = self.client.send_goal_async(
             NavigateToPose.Goal(pose=goal), lambda told: self.feedback.append(told.feedback)
         )
-        return self.system.result(future)
+        return self.system.result(future, PATIENCE)
 
     def end(self, handle: Any) -> tuple[int, NavigateToPose.Result]:
         """Wait for the end of a goal: its status and its result."""
-        ended = self.system.result(handle.get_result_async())
+        ended = self.system.result(handle.get_result_async(), PATIENCE)
         return ended.status, ended.result
 
 
 @pytest.fixture
-def room() -> Iterator[Drive]:
+def room(system: System) -> System:
     """An empty room of 6 by 6 metres, a robot in its middle."""
-    with drive() as system:
-        system.add_world("empty_room")
-        yield system
+    add_world(system, "empty_room")
+    return system
 
 
-def is_at(system: Drive, x: float, y: float, theta: float) -> bool:
-    pose = system.robot.pose
+def is_at(system: System, x: float, y: float, theta: float) -> bool:
+    pose = system.robot().pose
     return math.hypot(pose.x - x, pose.y - y) < 0.05 and abs(math.remainder(pose.theta - theta, math.tau)) < 0.1
 
 
-def test_goals_are_reached_one_after_the_other_with_feedback(room: Drive) -> None:
-    room.add(goto.Goto)
+def test_goals_are_reached_one_after_the_other_with_feedback(room: System) -> None:
+    room.start(goto.Goto)
     client = Client(room)
     for x, y, theta in ((4.5, 4.0, 1.5), (4.5, 4.0, -1.5), (2.0, 3.0, 3.1)):
         handle = client.send(message(x=x, y=y, qz=math.sin(theta / 2), qw=math.cos(theta / 2)))
         assert client.end(handle) == (GoalStatus.STATUS_SUCCEEDED, NavigateToPose.Result())
         room.run(0.5)
         assert is_at(room, x, y, theta)
-        assert abs(room.robot.twist.v) + abs(room.robot.twist.w) < 1e-6
+        assert abs(room.robot().twist.v) + abs(room.robot().twist.w) < 1e-6
     first, last = client.feedback[0], client.feedback[-1]
     assert first.distance_remaining == pytest.approx(math.hypot(1.5, 1.0), abs=0.05)
     assert first.current_pose.header.frame_id == "odom"
     assert last.distance_remaining < 0.1
     assert last.navigation_time.sec >= 5
     assert first.estimated_time_remaining.sec > last.estimated_time_remaining.sec
-    assert room.said("reached the goal") == 3
+    assert said(room, "reached the goal") == 3
 
 
-def test_a_cancelled_goal_stops_the_robot(room: Drive) -> None:
-    room.add(goto.Goto)
+def test_a_cancelled_goal_stops_the_robot(room: System) -> None:
+    room.start(goto.Goto)
     client = Client(room)
     handle = client.send(message(x=5.0, y=3.0))
     room.run(3.0)
-    assert room.robot.twist.v > 0.3
-    assert room.result(handle.cancel_goal_async()).goals_canceling
+    assert room.robot().twist.v > 0.3
+    assert room.result(handle.cancel_goal_async(), PATIENCE).goals_canceling
     assert client.end(handle)[0] == GoalStatus.STATUS_CANCELED
     room.run(1.0)
-    assert room.robot.twist.v == pytest.approx(0.0, abs=1e-6)
-    assert room.robot.pose.x < 4.5
+    assert room.robot().twist.v == pytest.approx(0.0, abs=1e-6)
+    assert room.robot().pose.x < 4.5
 
 
-def test_who_ends_it_on_the_way_stops_the_robot_and_its_goal(room: Drive) -> None:
-    node = room.add(goto.Goto)
+def test_who_ends_it_on_the_way_stops_the_robot_and_its_goal(room: System) -> None:
+    node = room.start(goto.Goto)
     client = Client(room)
     handle = client.send(message(x=5.0, y=3.0))
     room.run(3.0)
-    assert room.robot.twist.v > 0.3
-    heard = room.hear(Twist, "cmd_vel")
-    room.remove(node)
+    assert room.robot().twist.v > 0.3
+    heard = room.messages("cmd_vel")
+    room.stop(node)
     node.destroy_node()
     room.run(0.2)
     assert heard == [Twist()]
     ended = handle.get_result_async()
-    room.executor.spin_until_future_complete(ended, timeout_sec=5.0)
+    room.run(5.0)
     assert "the server went away" in str(ended.exception())
 
 
-def test_a_new_goal_replaces_the_one_before_without_a_stop(room: Drive) -> None:
-    room.add(goto.Goto)
+def test_a_new_goal_replaces_the_one_before_without_a_stop(room: System) -> None:
+    room.start(goto.Goto)
     client = Client(room)
     first = client.send(message(x=5.0, y=3.0))
     room.run(3.0)
-    commands = room.hear(Twist, "cmd_vel")
+    commands = room.messages("cmd_vel")
     second = client.send(message(x=5.4, y=3.1))
     status, result = client.end(first)
     assert (status, result.error_msg) == (GoalStatus.STATUS_ABORTED, "replaced by another goal")
@@ -143,39 +142,39 @@ def test_a_new_goal_replaces_the_one_before_without_a_stop(room: Drive) -> None:
 
 
 @pytest.mark.parametrize("fields", [{"x": math.nan}, {"qw": 0.0}])
-def test_a_refused_goal_says_why_and_leaves_the_present_one_alone(room: Drive, fields: dict[str, float]) -> None:
-    room.add(goto.Goto)
+def test_a_refused_goal_says_why_and_leaves_the_present_one_alone(room: System, fields: dict[str, float]) -> None:
+    room.start(goto.Goto)
     client = Client(room)
     handle = client.send(message(x=4.0, y=3.0))
     assert not client.send(message(**fields)).accepted
-    assert room.said("refused a goal: ") == 1
+    assert said(room, "refused a goal: ") == 1
     assert client.end(handle)[0] == GoalStatus.STATUS_SUCCEEDED
 
 
-def test_rviz_sends_goals_by_a_topic(room: Drive) -> None:
-    room.add(goto.Goto)
-    publisher = room.probe.create_publisher(PoseStamped, "goal_pose", 10)
+def test_rviz_sends_goals_by_a_topic(room: System) -> None:
+    room.start(goto.Goto)
+    publisher = room.node.create_publisher(PoseStamped, "goal_pose", 10)
     publisher.publish(message(x=math.inf))
     publisher.publish(message(x=4.0, y=3.0))
     room.run(10.0)
-    assert (room.said("refused a goal"), room.said("reached the goal")) == (1, 1)
+    assert (said(room, "refused a goal"), said(room, "reached the goal")) == (1, 1)
     assert is_at(room, 4.0, 3.0, 0.0)
 
 
-def test_a_goal_of_another_frame_needs_a_transform(room: Drive) -> None:
-    room.add(goto.Goto)
+def test_a_goal_of_another_frame_needs_a_transform(room: System) -> None:
+    room.start(goto.Goto)
     client = Client(room)
     goal = message(x=1.0, y=0.0)
     goal.header.frame_id = "site"
     room.run(0.1)
     assert not client.send(goal).accepted
-    assert room.said("refused a goal: its frame 'site' is not known here") == 1
+    assert said(room, "refused a goal: its frame 'site' is not known here") == 1
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     transform = TransformStamped(child_frame_id="site")  # it begins at (5, 4) in the room, turned by 90 degrees
     transform.header.frame_id = "odom"
     place, turn = transform.transform.translation, transform.transform.rotation
     place.x, place.y, turn.z, turn.w = 5.0, 4.0, math.sqrt(0.5), math.sqrt(0.5)
-    room.probe.create_publisher(TFMessage, "/tf_static", latched).publish(TFMessage(transforms=[transform]))
+    room.node.create_publisher(TFMessage, "/tf_static", latched).publish(TFMessage(transforms=[transform]))
     room.run(0.1)
     handle = client.send(goal)
     assert handle.accepted
@@ -184,8 +183,8 @@ def test_a_goal_of_another_frame_needs_a_transform(room: Drive) -> None:
 
 
 @pytest.mark.parametrize("frame", ["base_link", "/base_link"])
-def test_a_goal_in_a_frame_of_the_robot_does_not_move_along_with_it(room: Drive, frame: str) -> None:
-    room.add(goto.Goto)
+def test_a_goal_in_a_frame_of_the_robot_does_not_move_along_with_it(room: System, frame: str) -> None:
+    room.start(goto.Goto)
     client = Client(room)
     goal = message(x=1.0, y=1.0)
     goal.header.frame_id = frame
@@ -196,17 +195,17 @@ def test_a_goal_in_a_frame_of_the_robot_does_not_move_along_with_it(room: Drive,
     assert is_at(room, 4.0, 4.0, 0.0)
 
 
-def test_without_odometry_it_gives_up(room: Drive) -> None:
-    node = room.add(goto.Goto, {"odom_timeout": 2.0})
+def test_without_odometry_it_gives_up(room: System) -> None:
+    node = room.start(goto.Goto, parameters={"odom_timeout": 2.0})
     client = Client(room)
     handle = client.send(message(x=5.0, y=3.0))
     room.run(3.0)
-    room.remove(next(each for each in room.executor.get_nodes() if each.get_name() == "world"))
+    room.stop("world")
     status, result = client.end(handle)
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, Codes.TF_ERROR)
     assert result.error_msg.startswith("no odometry on /odom for 2.")
     handle = client.send(message(x=5.0, y=3.0))
-    lost = room.probe.create_publisher(Odometry, "odom", 10)
+    lost = room.node.create_publisher(Odometry, "odom", 10)
     for x in (math.nan, math.inf, 1e300):
         odometry = Odometry()
         odometry.pose.pose.position.x = x
@@ -215,11 +214,11 @@ def test_without_odometry_it_gives_up(room: Drive) -> None:
     assert node.trip is None
 
 
-def test_odometry_may_bear_any_stamp(room: Drive) -> None:
-    node = room.add(goto.Goto)
+def test_odometry_may_bear_any_stamp(room: System) -> None:
+    node = room.start(goto.Goto)
     client = Client(room)
     client.send(message(x=5.0, y=3.0))
-    odom = room.probe.create_publisher(Odometry, "odom", 10)
+    odom = room.node.create_publisher(Odometry, "odom", 10)
     for sec in (-5, 2**31 - 1, 0, -(2**31)):
         odometry = Odometry()
         odometry.header.stamp.sec = sec
@@ -236,38 +235,37 @@ robots: [{name: robot, pose: [3, 3, 0], sensors: [{lidar: scan}]}]
 """
 
 
-def test_it_waits_before_an_obstacle_then_gives_up(tmp_path: Path) -> None:
+def test_it_waits_before_an_obstacle_then_gives_up(system: System, tmp_path: Path) -> None:
     path = tmp_path / "wall.yaml"
     path.write_text(WALL)
-    with drive() as system:
-        system.add_world(path)
-        node = system.add(goto.Goto, {"progress_timeout": 3.0})
-        client = Client(system)
-        status, result = client.end(client.send(message(x=5.5, y=3.0)))
-        assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, Codes.FAILED_TO_MAKE_PROGRESS)
-        assert result.error_msg.endswith("from the goal: something is in the way")
-        assert system.robot.contacts == 0
-        assert 3.85 < system.robot.pose.x < 4.0
-        node.set_parameters([Parameter("obstacle_stop", value=False)])
-        status, result = client.end(client.send(message(x=5.5, y=3.0)))
-        assert result.error_msg.endswith("from the goal: the robot does not move")
-        assert system.robot.contacts > 0
+    add_world(system, path)
+    node = system.start(goto.Goto, parameters={"progress_timeout": 3.0})
+    client = Client(system)
+    status, result = client.end(client.send(message(x=5.5, y=3.0)))
+    assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, Codes.FAILED_TO_MAKE_PROGRESS)
+    assert result.error_msg.endswith("from the goal: something is in the way")
+    assert system.robot().contacts == 0
+    assert 3.85 < system.robot().pose.x < 4.0
+    node.set_parameters([Parameter("obstacle_stop", value=False)])
+    status, result = client.end(client.send(message(x=5.5, y=3.0)))
+    assert result.error_msg.endswith("from the goal: the robot does not move")
+    assert system.robot().contacts > 0
 
 
-def test_what_is_beyond_the_goal_is_not_in_the_way(room: Drive) -> None:
-    room.add(goto.Goto)
+def test_what_is_beyond_the_goal_is_not_in_the_way(room: System) -> None:
+    room.start(goto.Goto)
     client = Client(room)
     assert client.end(client.send(message(x=5.7, y=3.0)))[0] == GoalStatus.STATUS_SUCCEEDED
-    assert room.robot.contacts == 0
+    assert room.robot().contacts == 0
 
 
-def test_the_speed_can_be_changed_on_the_way_and_has_a_range(room: Drive) -> None:
-    node = room.add(goto.Goto)
+def test_the_speed_can_be_changed_on_the_way_and_has_a_range(room: System) -> None:
+    node = room.start(goto.Goto)
     client = Client(room)
     client.send(message(x=5.0, y=3.0))
     room.run(2.0)
     assert not node.set_parameters([Parameter("speed", value=-1.0)])[0].successful
     assert node.set_parameters([Parameter("speed", value=0.1)])[0].successful
     room.run(1.0)
-    assert room.robot.twist.v == pytest.approx(0.1)
+    assert room.robot().twist.v == pytest.approx(0.1)
     assert all(each.description for each in node.describe_parameters(list(goto.PARAMETERS)))

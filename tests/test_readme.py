@@ -12,6 +12,7 @@ from robolink import Context, VirtualTime
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import LaserScan
+from robolink.testing import System
 
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 PROGRAMS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
@@ -47,4 +48,5 @@ def test_a_type_of_ones_own_has_its_fields() -> None:
 
 
 def test_the_test_passes() -> None:
-    module(PROGRAMS[2]).test_the_robot_wanders()
+    with System(seed=1) as system:
+        module(PROGRAMS[2]).test_follows_the_wall_though_a_fifth_of_its_scans_is_lost(system)

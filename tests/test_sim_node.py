@@ -13,11 +13,11 @@ from robolink import Node, RobolinkError
 from robolink.exceptions import InvalidParameterValueException
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.nav_msgs.msg import Odometry
-from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.tf2_msgs.msg import TFMessage
+from robolink.testing import System
 from tests.nodefiles import load_node_file
-from tests.simulated import START, System
+from tests.systems import START, log
 
 simulation, follower, reactive, teleop = map(
     load_node_file, ("world", "wall_follower", "reactive_controller", "teleop")
@@ -34,11 +34,11 @@ def links(message: TFMessage) -> list[tuple[str, str]]:
 
 def test_a_world_publishes_scan_odom_and_tf_at_their_rates(system: System) -> None:
     scans, odometry, transforms = (
-        system.hear(LaserScan, "/scan"),
-        system.hear(Odometry, "/odom"),
-        system.hear(TFMessage, "/tf"),
+        system.messages("/scan"),
+        system.messages("/odom"),
+        system.messages("/tf"),
     )
-    system.add(simulation.SimulatedWorld, {"world": "corners"})
+    system.start(simulation.SimulatedWorld, parameters={"world": "corners"})
     system.run(1.005)
     assert stamps(scans) == pytest.approx([0.1 * (i + 1) for i in range(10)])
     assert stamps(odometry) == pytest.approx([0.02 * (i + 1) for i in range(50)])
@@ -53,9 +53,9 @@ def test_a_world_publishes_scan_odom_and_tf_at_their_rates(system: System) -> No
 
 
 def test_a_command_drives_and_half_a_second_without_one_stops(system: System) -> None:
-    odometry = system.hear(Odometry, "/odom")
-    system.add(simulation.SimulatedWorld, {"world": "empty_room"})
-    cmd_vel = system.probe.create_publisher(Twist, "/cmd_vel", 10)
+    odometry = system.messages("/odom")
+    system.start(simulation.SimulatedWorld, parameters={"world": "empty_room"})
+    cmd_vel = system.node.create_publisher(Twist, "/cmd_vel", 10)
     system.run(0.1)
     cmd_vel.publish(Twist(linear=Vector3(x=0.3), angular=Vector3(z=0.5)))
     system.run(0.45)
@@ -69,8 +69,8 @@ def test_a_command_drives_and_half_a_second_without_one_stops(system: System) ->
 
 
 def test_nonsense_on_cmd_vel_is_ignored_counted_and_warned_about_once(system: System) -> None:
-    world = system.add(simulation.SimulatedWorld, {"world": "empty_room"})
-    cmd_vel = system.probe.create_publisher(Twist, "/cmd_vel", 10)
+    world = system.start(simulation.SimulatedWorld, parameters={"world": "empty_room"})
+    cmd_vel = system.node.create_publisher(Twist, "/cmd_vel", 10)
     cmd_vel.publish(Twist(linear=Vector3(x=0.3)))
     for x, z in ((math.nan, 0.0), (0.0, math.inf), (1e9, 0.0), (0.0, -1e9)):
         cmd_vel.publish(Twist(linear=Vector3(x=x), angular=Vector3(z=z)))
@@ -78,23 +78,23 @@ def test_nonsense_on_cmd_vel_is_ignored_counted_and_warned_about_once(system: Sy
     system.run(0.3)
     assert world.simulation.refused == 5
     assert world.simulation.world.robots["robot"].twist.v == pytest.approx(0.3)
-    assert sum("ignored a cmd_vel" in line for line in system.log) == 1
+    assert sum("ignored a cmd_vel" in line for line in log(system)) == 1
 
 
 def test_the_log_tells_within_two_seconds_where_the_robot_is(system: System) -> None:
-    system.add(simulation.SimulatedWorld, {"world": "empty_room"})
+    system.start(simulation.SimulatedWorld, parameters={"world": "empty_room"})
     system.run(2.001)
-    assert "world 'empty_room' with robot" in system.log
-    assert "robot at (3.00, 3.00) heading 0 deg, 0.00 m/s, nearest wall 3.00 m" in system.log
+    assert "world 'empty_room' with robot" in log(system)
+    assert "robot at (3.00, 3.00) heading 0 deg, 0.00 m/s, nearest wall 3.00 m" in log(system)
 
 
 def test_running_into_a_wall_is_warned_about(system: System) -> None:
-    system.add(simulation.SimulatedWorld, {"world": "empty_room"})
-    cmd_vel = system.probe.create_publisher(Twist, "/cmd_vel", 10)
-    system.probe.create_timer(0.1, lambda: cmd_vel.publish(Twist(linear=Vector3(x=0.5))))
+    system.start(simulation.SimulatedWorld, parameters={"world": "empty_room"})
+    cmd_vel = system.node.create_publisher(Twist, "/cmd_vel", 10)
+    system.node.create_timer(0.1, lambda: cmd_vel.publish(Twist(linear=Vector3(x=0.5))))
     system.run(8.0)
-    assert any(line.startswith("robot ran into something at (5.8") for line in system.log)
-    assert any(line.endswith("in contact") for line in system.log)
+    assert any(line.startswith("robot ran into something at (5.8") for line in log(system))
+    assert any(line.endswith("in contact") for line in log(system))
 
 
 TWO = """
@@ -108,12 +108,12 @@ def test_each_of_several_robots_has_a_namespace(system: System, tmp_path: Path) 
     path = tmp_path / "two.yaml"
     path.write_text(TWO)
     scans, odometry, transforms = (
-        system.hear(LaserScan, "/lab/r1/scan"),
-        system.hear(Odometry, "/lab/r2/odom"),
-        system.hear(TFMessage, "/tf"),
+        system.messages("/lab/r1/scan"),
+        system.messages("/lab/r2/odom"),
+        system.messages("/tf"),
     )
-    system.add(simulation.SimulatedWorld, {"world": str(path)}, namespace="lab")
-    cmd_vel = system.probe.create_publisher(Twist, "/lab/r2/cmd_vel", 10)
+    system.start(simulation.SimulatedWorld, parameters={"world": str(path)}, namespace="lab")
+    cmd_vel = system.node.create_publisher(Twist, "/lab/r2/cmd_vel", 10)
     cmd_vel.publish(Twist(linear=Vector3(x=0.5)))
     system.run(2.0)
     assert scans[-1].header.frame_id == "r1/base_scan"
@@ -126,15 +126,15 @@ def test_each_of_several_robots_has_a_namespace(system: System, tmp_path: Path) 
 
 
 def test_with_its_clock_published_time_counts_from_zero(system: System) -> None:
-    clocks, scans = system.hear(Clock, "/clock"), system.hear(LaserScan, "/scan")
-    system.add(simulation.SimulatedWorld, {"world": "empty_room", "publish_clock": True})
+    clocks, scans = system.messages("/clock"), system.messages("/scan")
+    system.start(simulation.SimulatedWorld, parameters={"world": "empty_room", "publish_clock": True})
     system.run(0.105)
     assert [each.clock.nanosec for each in clocks] == [10_000_000 * (i + 1) for i in range(10)]
     assert scans[0].header.stamp == clocks[-1].clock
 
 
 def test_a_world_can_run_faster_than_time(system: System) -> None:
-    world = system.add(simulation.SimulatedWorld, {"world": "empty_room", "rtf": 4.0})
+    world = system.start(simulation.SimulatedWorld, parameters={"world": "empty_room", "rtf": 4.0})
     system.run(1.0)
     assert world.simulation.world.time_ns == pytest.approx(4e9, abs=5e7)
 
@@ -142,12 +142,12 @@ def test_a_world_can_run_faster_than_time(system: System) -> None:
 @pytest.mark.parametrize("rtf", [-1.0, math.nan, math.inf])
 def test_an_impossible_pace_is_refused(system: System, rtf: float) -> None:
     with pytest.raises(InvalidParameterValueException, match="rtf"):
-        system.add(simulation.SimulatedWorld, {"rtf": rtf})
+        system.start(simulation.SimulatedWorld, parameters={"rtf": rtf})
 
 
 def test_an_unknown_world_is_an_error_of_robolink(system: System) -> None:
     with pytest.raises(RobolinkError, match=r"cornrs.*did you mean 'corners'"):
-        system.add(simulation.SimulatedWorld, {"world": "cornrs"})
+        system.start(simulation.SimulatedWorld, parameters={"world": "cornrs"})
 
 
 LIFE = 20.0  # s
@@ -155,15 +155,14 @@ LIFE = 20.0  # s
 
 def life(controller: type[Node], world: str) -> str:
     """The beginning of a robot's life: a hash of all that was published."""
-    system = System()
     digest = hashlib.sha256()
-    for topic, kind in (("/scan", LaserScan), ("/odom", Odometry), ("/tf", TFMessage), ("/cmd_vel", Twist)):
-        system.probe.create_subscription(kind, topic, digest.update, 1000, raw=True)
-    node = system.add(simulation.SimulatedWorld, {"world": world})
-    system.add(controller)
-    system.run(LIFE)
-    assert node.simulation.world.robots["robot"].contacts == 0
-    system.close()
+    with System() as system:
+        for topic, kind in (("/scan", LaserScan), ("/odom", Odometry), ("/tf", TFMessage), ("/cmd_vel", Twist)):
+            system.node.create_subscription(kind, topic, digest.update, 1000, raw=True)
+        system.start(simulation.SimulatedWorld, parameters={"world": world})
+        system.start(controller)
+        system.run(LIFE)
+        assert system.robot().contacts == 0
     return digest.hexdigest()
 
 
@@ -179,12 +178,12 @@ def test_a_life_is_the_same_twice(controller: type[Node], world: str) -> None:
     [(follower.WallFollower, "following the wall on the right at"), (reactive.ReactiveController, "driving ahead, ")],
 )
 def test_a_controller_says_what_it_does(system: System, controller: type[Node], words: str) -> None:
-    system.add(simulation.SimulatedWorld, {"world": "corners"})
-    system.add(controller)
+    system.start(simulation.SimulatedWorld, parameters={"world": "corners"})
+    system.start(controller)
     system.run(1.0)
-    assert any(line.startswith(words) for line in system.log)
+    assert any(line.startswith(words) for line in log(system))
 
 
 def test_a_follower_knows_two_sides(system: System) -> None:
     with pytest.raises(InvalidParameterValueException, match="expected 'left' or 'right'"):
-        system.add(follower.WallFollower, {"side": "top"})
+        system.start(follower.WallFollower, parameters={"side": "top"})

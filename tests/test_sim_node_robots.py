@@ -11,19 +11,19 @@ import pytest
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.nav_msgs.msg import Odometry
-from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.interfaces.sensor_msgs.msg import Imu, JointState, LaserScan, Range
 from robolink.interfaces.std_msgs.msg import Bool
 from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.node import Node
 from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.testing import System
 from robolink.tf2.buffer import Buffer
 from robolink.tf2.transform_listener import TransformListener
 from robolink.time import Time
 from robolink.workspace import list_worlds
 from tests.nodefiles import ROOT, load_node_file
-from tests.simulated import System
+from tests.systems import ask, log, made_with
 
 simulation = load_node_file("world")
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -50,14 +50,14 @@ def world_of(text: str, folder: Path) -> str:
 
 def drive(system: System, topic: str, v: float, w: float = 0.0, sideways: float = 0.0) -> None:
     """Keep telling a robot to drive so."""
-    publisher = system.probe.create_publisher(Twist, topic, 10)
+    publisher = system.node.create_publisher(Twist, topic, 10)
     twist = Twist(linear=Vector3(x=v, y=sideways), angular=Vector3(z=w))
-    system.probe.create_timer(0.1, lambda: publisher.publish(twist))
+    system.node.create_timer(0.1, lambda: publisher.publish(twist))
 
 
 def test_every_sensor_of_the_lab_has_its_topic_rate_and_frame(system: System) -> None:
-    heard = {topic: system.hear(kind, topic) for topic, kind in LAB.items()}
-    system.add(simulation.SimulatedWorld, {"world": "lab"})
+    heard = {topic: system.messages(topic) for topic, kind in LAB.items()}
+    system.start(simulation.SimulatedWorld, parameters={"world": "lab"})
     system.run(1.005)
     counts = {topic: len(messages) for topic, messages in heard.items()}
     fast = dict.fromkeys(("/ada/imu", "/ada/joint_states", "/ada/odom", "/bob/odom", "/tf"), 50)
@@ -80,7 +80,7 @@ def test_every_sensor_of_the_lab_has_its_topic_rate_and_frame(system: System) ->
 
 
 def test_an_omni_robot_goes_sideways(system: System) -> None:
-    world, odometry = system.add(simulation.SimulatedWorld, {"world": "lab"}), system.hear(Odometry, "/bob/odom")
+    world, odometry = system.start(simulation.SimulatedWorld, parameters={"world": "lab"}), system.messages("/bob/odom")
     drive(system, "/bob/cmd_vel", 0.0, sideways=0.3)
     system.run(2.0)
     assert odometry[-1].twist.twist.linear.y == pytest.approx(0.3, abs=0.03)
@@ -89,8 +89,8 @@ def test_an_omni_robot_goes_sideways(system: System) -> None:
 
 
 def test_odometry_is_less_and_less_sure(system: System) -> None:
-    odometry = system.hear(Odometry, "/ada/odom")
-    system.add(simulation.SimulatedWorld, {"world": "lab"})
+    odometry = system.messages("/ada/odom")
+    system.start(simulation.SimulatedWorld, parameters={"world": "lab"})
     drive(system, "/ada/cmd_vel", 0.4, 0.4)
     system.run(3.0)
     variances = [each.pose.covariance[0] for each in odometry]
@@ -108,11 +108,11 @@ robots:
 
 
 def test_wheels_are_turned_by_name_and_told(system: System, tmp_path: Path) -> None:
-    world = system.add(simulation.SimulatedWorld, {"world": world_of(WHEELS, tmp_path)})
-    states, command = system.hear(JointState, "/joint_states"), JointState(name=["left_motor", "right_motor"])
+    world = system.start(simulation.SimulatedWorld, parameters={"world": world_of(WHEELS, tmp_path)})
+    states, command = system.messages("/joint_states"), JointState(name=["left_motor", "right_motor"])
     command.velocity = [2.0, 4.0]
-    publisher = system.probe.create_publisher(JointState, "/joint_command", 10)
-    system.probe.create_timer(0.1, lambda: publisher.publish(command))
+    publisher = system.node.create_publisher(JointState, "/joint_command", 10)
+    system.node.create_timer(0.1, lambda: publisher.publish(command))
     system.run(2.0)
     twist = world.simulation.world.robots["robot"].twist
     assert (twist.v, twist.w) == pytest.approx((0.15, 0.5), abs=0.01)
@@ -122,8 +122,8 @@ def test_wheels_are_turned_by_name_and_told(system: System, tmp_path: Path) -> N
 
 
 def test_nonsense_on_joint_command_is_ignored_counted_and_warned_about_once(system: System, tmp_path: Path) -> None:
-    world = system.add(simulation.SimulatedWorld, {"world": world_of(WHEELS, tmp_path)})
-    publisher = system.probe.create_publisher(JointState, "/joint_command", 10)
+    world = system.start(simulation.SimulatedWorld, parameters={"world": world_of(WHEELS, tmp_path)})
+    publisher = system.node.create_publisher(JointState, "/joint_command", 10)
     publisher.publish(JointState(name=["left_motor", "right_motor"], velocity=[2.0, 2.0]))
     system.run(0.1)
     for names, speeds in (
@@ -138,7 +138,7 @@ def test_nonsense_on_joint_command_is_ignored_counted_and_warned_about_once(syst
     system.run(0.2)
     assert world.simulation.refused == 6
     assert world.simulation.world.robots["robot"].twist.v == pytest.approx(0.1, abs=0.01)
-    warnings = [each for each in system.log if "ignored a joint_command" in each]
+    warnings = [each for each in log(system) if "ignored a joint_command" in each]
     assert len(warnings) == 2
     assert "did you mean 'left_motor'" in warnings[1]
     system.run(1.0)
@@ -146,9 +146,9 @@ def test_nonsense_on_joint_command_is_ignored_counted_and_warned_about_once(syst
 
 
 def test_wheels_stop_half_a_second_after_their_last_command(system: System, tmp_path: Path) -> None:
-    system.add(simulation.SimulatedWorld, {"world": world_of(WHEELS, tmp_path)})
-    states = system.hear(JointState, "/joint_states")
-    publisher = system.probe.create_publisher(JointState, "/joint_command", 10)
+    system.start(simulation.SimulatedWorld, parameters={"world": world_of(WHEELS, tmp_path)})
+    states = system.messages("/joint_states")
+    publisher = system.node.create_publisher(JointState, "/joint_command", 10)
     publisher.publish(JointState(name=["left_motor", "right_motor"], velocity=[2.0, 2.0]))
     system.run(1.5)
     turning = [each.header.stamp.nanosec for each in states if each.velocity[0] > 1.9]
@@ -157,20 +157,20 @@ def test_wheels_stop_half_a_second_after_their_last_command(system: System, tmp_
 
 
 def test_cmd_vel_is_left_to_whoever_turns_the_wheels(system: System, tmp_path: Path) -> None:
-    world = system.add(simulation.SimulatedWorld, {"world": world_of(WHEELS, tmp_path)})
-    publisher = system.probe.create_publisher(JointState, "/joint_command", 10)
+    world = system.start(simulation.SimulatedWorld, parameters={"world": world_of(WHEELS, tmp_path)})
+    publisher = system.node.create_publisher(JointState, "/joint_command", 10)
     drive(system, "/cmd_vel", 0.2)
     system.run(0.5)
     assert world.simulation.world.robots["robot"].twist.v == 0.0
-    system.probe.destroy_publisher(publisher)
+    system.node.destroy_publisher(publisher)
     system.run(0.5)
     assert world.simulation.world.robots["robot"].twist.v == pytest.approx(0.2, abs=0.01)
 
 
 def test_a_bumper_tells_of_a_touch(system: System, tmp_path: Path) -> None:
     text = "walls: [{polyline: [[1, -1], [1, 1]]}]\nrobots: [{name: r, pose: [0, 0], sensors: [{bumper: bumper}]}]\n"
-    bumps = system.hear(Bool, "/bumper")
-    system.add(simulation.SimulatedWorld, {"world": world_of(text, tmp_path)})
+    bumps = system.messages("/bumper")
+    system.start(simulation.SimulatedWorld, parameters={"world": world_of(text, tmp_path)})
     drive(system, "/cmd_vel", 0.5)
     system.run(4.0)
     told = [each.data for each in bumps]
@@ -182,9 +182,9 @@ def test_a_bumper_tells_of_a_touch(system: System, tmp_path: Path) -> None:
 
 
 def test_who_comes_late_knows_where_the_sensors_are_on_the_map(system: System) -> None:
-    system.add(simulation.SimulatedWorld, {"world": "lab"})
+    system.start(simulation.SimulatedWorld, parameters={"world": "lab"})
     system.run(1.0)
-    late = system.add(Node, node_name="late")
+    late = system.start(made_with(Node, node_name="late"))
     buffer = Buffer()
     listener = TransformListener(buffer, late)
     system.run(0.5)
@@ -198,8 +198,8 @@ def test_who_comes_late_knows_where_the_sensors_are_on_the_map(system: System) -
 
 
 def test_the_map_is_left_to_who_localizes(system: System) -> None:
-    static = system.hear(TFMessage, "/tf_static", LATCHED)
-    system.add(simulation.SimulatedWorld, {"world": "lab", "publish_map": False})
+    static = system.messages("/tf_static")
+    system.start(simulation.SimulatedWorld, parameters={"world": "lab", "publish_map": False})
     system.run(0.1)
     assert "map" not in [each.header.frame_id for each in static[0].transforms]
     assert len(static[0].transforms) == 5
@@ -213,10 +213,10 @@ def values(message: DiagnosticArray) -> dict[str, str]:
 
 
 def test_diagnostics_tell_of_pace_commands_and_contacts(system: System) -> None:
-    heard = system.hear(DiagnosticArray, "/diagnostics")
-    node = system.add(simulation.SimulatedWorld, {"world": "empty_room", "rtf": 2.0})
+    heard = system.messages("/diagnostics")
+    node = system.start(simulation.SimulatedWorld, parameters={"world": "empty_room", "rtf": 2.0})
     drive(system, "/cmd_vel", 0.5)
-    system.probe.create_publisher(Twist, "/cmd_vel", 10).publish(Twist(linear=Vector3(x=math.nan)))
+    system.node.create_publisher(Twist, "/cmd_vel", 10).publish(Twist(linear=Vector3(x=math.nan)))
     system.run(5.005)
     assert len(heard) == 5  # the fifth may come just before the thousandth step
     status = heard[-1].status[0]
@@ -231,7 +231,7 @@ def test_diagnostics_tell_of_pace_commands_and_contacts(system: System) -> None:
     assert (told["refused commands"], told["robots"]) == ("1", "1")
     assert int(told["contacts"]) > 0
     assert float(told["simulation time"]) == int(told["steps"]) / 100
-    system.ask(Trigger, "/world/pause")
+    ask(system, Trigger, "/world/pause")
     system.run(1.0)
     assert heard[-1].status[0].message == "paused"
     node.simulation.delete("robot")
@@ -240,28 +240,28 @@ def test_diagnostics_tell_of_pace_commands_and_contacts(system: System) -> None:
 
 
 def test_falling_behind_is_a_warning_and_seen_in_diagnostics(system: System, monkeypatch: pytest.MonkeyPatch) -> None:
-    heard = system.hear(DiagnosticArray, "/diagnostics")
-    world = system.add(simulation.SimulatedWorld, {"world": "empty_room"})
+    heard = system.messages("/diagnostics")
+    world = system.start(simulation.SimulatedWorld, parameters={"world": "empty_room"})
     step = world.simulation.step
 
     def slow_step() -> None:
         step()
-        system.context.time.sleep(20_000_000)  # twice what it simulates
+        world.context.time.sleep(20_000_000)  # twice what it simulates
 
     monkeypatch.setattr(world.simulation, "step", slow_step)
     system.run(10.0)
     status = heard[-1].status[0]
     assert status.level == DiagnosticStatus.WARN
     assert "falls behind: 0.5 times" in status.message
-    assert any(line.startswith("gave up") for line in system.log)
+    assert any(line.startswith("gave up") for line in log(system))
 
 
 def test_of_a_hundred_robots_the_log_stays_short(system: System) -> None:
-    system.add(simulation.SimulatedWorld, {"world": "fleet"})
+    system.start(simulation.SimulatedWorld, parameters={"world": "fleet"})
     system.run(2.005)
-    assert system.log[0] == "world 'fleet' with 100 robots: r0, r1, r2, r3, r4 ... r99"
-    assert len(system.log) == 7
-    assert system.log[-1] == "95 more robots, 0 of them in contact"
+    assert log(system)[0] == "world 'fleet' with 100 robots: r0, r1, r2, r3, r4 ... r99"
+    assert len(log(system)) == 7
+    assert log(system)[-1] == "95 more robots, 0 of them in contact"
 
 
 # Worlds
@@ -269,16 +269,16 @@ def test_of_a_hundred_robots_the_log_stays_short(system: System) -> None:
 
 def life(world: str) -> str:
     """Five seconds of a world whose robots all drive: a hash of all that was published."""
-    system, digest = System(), hashlib.sha256()
-    node = system.add(simulation.SimulatedWorld, {"world": world})
-    for publisher in list(node.publishers):
-        if publisher.topic != "/parameter_events":
-            system.probe.create_subscription(publisher.msg_type, publisher.topic, digest.update, 1000, raw=True)
-    for robot in node.simulation.world.robots:
-        prefix = f"/{robot}" if len(node.simulation.world.robots) > 1 else ""
-        drive(system, f"{prefix}/cmd_vel", 0.4, 0.3)
-    system.run(5.0)
-    system.close()
+    digest = hashlib.sha256()
+    with System() as system:
+        node = system.start(simulation.SimulatedWorld, parameters={"world": world})
+        for publisher in list(node.publishers):
+            if publisher.topic != "/parameter_events":
+                system.node.create_subscription(publisher.msg_type, publisher.topic, digest.update, 1000, raw=True)
+        for robot in node.simulation.world.robots:
+            prefix = f"/{robot}" if len(node.simulation.world.robots) > 1 else ""
+            drive(system, f"{prefix}/cmd_vel", 0.4, 0.3)
+        system.run(5.0)
     return digest.hexdigest()
 
 
@@ -288,7 +288,7 @@ def test_a_life_in_the_lab_is_the_same_twice() -> None:
 
 @pytest.mark.parametrize("world", [each.stem for each in list_worlds() if ROOT in each.parents])
 def test_every_world_that_comes_with_robolink_runs(system: System, world: str) -> None:
-    node = system.add(simulation.SimulatedWorld, {"world": world})
+    node = system.start(simulation.SimulatedWorld, parameters={"world": world})
     system.run(0.5)
     robots = node.simulation.world.robots.values()
     assert robots
@@ -298,16 +298,16 @@ def test_every_world_that_comes_with_robolink_runs(system: System, world: str) -
 def test_a_world_of_webots_tells_once_what_is_left_out(system: System, tmp_path: Path) -> None:
     path = tmp_path / "arena.wbt"
     path.write_text("#VRML_SIM R2023b utf8\nRectangleArena { floorSize 4 4 }\nTinyUnicorn { }\n")
-    system.add(simulation.SimulatedWorld, {"world": str(path)})
+    system.start(simulation.SimulatedWorld, parameters={"world": str(path)})
     system.run(0.5)
-    assert sum("TinyUnicorn" in line for line in system.log) == 1
+    assert sum("TinyUnicorn" in line for line in log(system)) == 1
 
 
 def test_time_goes_on_after_a_reset_with_a_clock_too(system: System) -> None:
-    clocks = system.hear(Clock, "/clock")
-    system.add(simulation.SimulatedWorld, {"world": "empty_room", "publish_clock": True})
+    clocks = system.messages("/clock")
+    system.start(simulation.SimulatedWorld, parameters={"world": "empty_room", "publish_clock": True})
     system.run(0.5)
-    system.ask(Trigger, "/world/reset")
+    ask(system, Trigger, "/world/reset")
     system.run(0.5)
     times = [each.clock.sec * 10**9 + each.clock.nanosec for each in clocks]
     assert times == [10_000_000 * (i + 1) for i in range(len(times))]

@@ -19,12 +19,12 @@ from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.std_srvs.srv import Trigger
-from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.sim_node.services import MOST_STEPS, own_type
+from robolink.testing import System
 from robolink.workspace.interfaces import WORKSPACE_TYPES
 from tests.nodefiles import load_node_file
-from tests.simulated import START, System
+from tests.systems import START, ask
 
 simulation = load_node_file("world")
 Step, Teleport, Spawn, Delete, SetRate = map(own_type, ("Step", "Teleport", "Spawn", "Delete", "SetRate"))
@@ -54,12 +54,12 @@ def hall(tmp_path: Path) -> str:
 
 @pytest.fixture
 def world(system: System, hall: str) -> Any:
-    return system.add(simulation.SimulatedWorld, {"world": hall})
+    return system.start(simulation.SimulatedWorld, parameters={"world": hall})
 
 
-def ask(system: System, name: str, /, **fields: Any) -> tuple[bool, str]:
+def asked(system: System, name: str, /, **fields: Any) -> tuple[bool, str]:
     kinds = {"step": Step, "teleport": Teleport, "spawn": Spawn, "delete": Delete, "set_rate": SetRate}
-    return system.ask(kinds.get(name, Trigger), f"/world/{name}", **fields)
+    return ask(system, kinds.get(name, Trigger), f"/world/{name}", **fields)
 
 
 def refused(answer: tuple[bool, str]) -> str:
@@ -77,13 +77,13 @@ def robots(world: Any) -> Any:
 
 
 def test_a_paused_world_stands_still_until_it_is_resumed(system: System, world: Any) -> None:
-    odometry = system.hear(Odometry, "/ada/odom")
+    odometry = system.messages("/ada/odom")
     system.run(0.1)
-    assert ask(system, "pause") == (True, "paused at 0.1 s")
+    assert asked(system, "pause") == (True, "paused at 0.1 s")
     heard = len(odometry)
     system.run(5.0)
     assert len(odometry) == heard == 5
-    assert ask(system, "resume")[0]
+    assert asked(system, "resume")[0]
     system.run(0.105)
     assert len(odometry) == 10
     stamps = [each.header.stamp.sec * 10**9 + each.header.stamp.nanosec - START for each in odometry]
@@ -91,35 +91,33 @@ def test_a_paused_world_stands_still_until_it_is_resumed(system: System, world: 
 
 
 def test_steps_are_made_one_by_one_while_it_is_paused(system: System, world: Any) -> None:
-    scans = system.hear(LaserScan, "/ada/scan", qos=10)
-    ask(system, "pause")
-    assert ask(system, "step") == (True, "1 steps, at 0.01 s")
-    assert ask(system, "step", steps=299) == (True, "299 steps, at 3 s")
+    scans = system.messages("/ada/scan")
+    asked(system, "pause")
+    assert asked(system, "step") == (True, "1 steps, at 0.01 s")
+    assert asked(system, "step", steps=299) == (True, "299 steps, at 3 s")
     assert len(scans) == 30  # none was lost: whoever listens has a turn between the steps
     system.run(1.0)
     assert world.simulation.world.steps == 300
 
 
 def test_a_step_of_a_running_world_or_of_an_absurd_number_is_refused(system: System, world: Any) -> None:
-    assert "pause it" in refused(ask(system, "step", steps=1))
-    ask(system, "pause")
+    assert "pause it" in refused(asked(system, "step", steps=1))
+    asked(system, "pause")
     for steps in (0, -1, -(2**31), MOST_STEPS + 1, 2**31 - 1):
-        assert f"got {steps}" in refused(ask(system, "step", steps=steps))
+        assert f"got {steps}" in refused(asked(system, "step", steps=steps))
     assert world.simulation.world.steps < 100
 
 
 @pytest.mark.parametrize("other", ["pause", "resume"])
 def test_who_waits_for_steps_is_told_when_something_else_comes_first(system: System, world: Any, other: str) -> None:
-    ask(system, "pause")
-    client = system.probe.create_client(Step, "/world/step")
+    asked(system, "pause")
+    client = system.node.create_client(Step, "/world/step")
     future = client.call_async(Step.Request(steps=MOST_STEPS))
-    for _ in range(20):
-        system.executor.spin_once()
+    system.wait_until(lambda: world.simulation.world.steps > 0)
     made = world.simulation.world.steps
     assert 0 < made < 100
-    assert ask(system, other)[0]
-    system.executor.spin_until_future_complete(future, timeout_sec=1.0)
-    answer = future.result()
+    assert asked(system, other)[0]
+    answer = system.result(future, within=1.0)
     assert answer is not None
     assert not answer.success
     assert "something else" in answer.message
@@ -137,43 +135,43 @@ def trace(world: Any, system: System) -> str:
         digest.update(repr(message).encode())
 
     kinds = {"/ada/scan": LaserScan, "/ada/odom": Odometry, "/bob/ground_truth": Odometry}
-    heard = [system.probe.create_subscription(kind, topic, note, 100) for topic, kind in kinds.items()]
-    cmd_vel = system.probe.create_publisher(Twist, "/ada/cmd_vel", 10)
+    heard = [system.node.create_subscription(kind, topic, note, 100) for topic, kind in kinds.items()]
+    cmd_vel = system.node.create_publisher(Twist, "/ada/cmd_vel", 10)
     cmd_vel.publish(Twist(linear=Vector3(x=0.4), angular=Vector3(z=0.3)))
-    ask(system, "step", steps=100)
+    asked(system, "step", steps=100)
     for each in heard:
-        system.probe.destroy_subscription(each)
-    system.probe.destroy_publisher(cmd_vel)
+        system.node.destroy_subscription(each)
+    system.node.destroy_publisher(cmd_vel)
     return digest.hexdigest()
 
 
 def test_after_a_reset_the_same_life_begins_again_and_time_goes_on(system: System, world: Any) -> None:
-    ask(system, "pause")
+    asked(system, "pause")
     first, again = trace(world, system), trace(world, system)
     assert first != again
-    assert ask(system, "spawn", name="eve", x=5.0, y=5.0)[0]
-    assert ask(system, "delete", name="bob")[0]
-    assert ask(system, "reset")[0]
+    assert asked(system, "spawn", name="eve", x=5.0, y=5.0)[0]
+    assert asked(system, "delete", name="bob")[0]
+    assert asked(system, "reset")[0]
     assert list(robots(world)) == ["ada", "bob"]
     assert robots(world)["ada"].pose.x == 2.0
-    odometry = system.hear(Odometry, "/bob/odom")
+    odometry = system.messages("/bob/odom")
     assert trace(world, system) == first
     assert odometry[0].header.stamp.sec * 10**9 + odometry[0].header.stamp.nanosec == START + 2_020_000_000
 
 
 def test_a_reset_while_it_runs_keeps_its_pace(system: System, world: Any) -> None:
     system.run(0.5)
-    assert ask(system, "reset")[0]
+    assert asked(system, "reset")[0]
     system.run(1.0)
     assert world.simulation.world.time_ns == pytest.approx(1e9, abs=2e7)
 
 
 def test_what_a_robot_was_told_before_a_reset_does_not_drive_it_afterwards(system: System, world: Any) -> None:
-    cmd_vel = system.probe.create_publisher(Twist, "/ada/cmd_vel", 10)
+    cmd_vel = system.node.create_publisher(Twist, "/ada/cmd_vel", 10)
     cmd_vel.publish(Twist(linear=Vector3(x=0.4)))
     system.run(0.2)
     assert robots(world)["ada"].pose.x > 2.0
-    ask(system, "reset")
+    asked(system, "reset")
     system.run(1.0)
     assert robots(world)["ada"].pose.x == 2.0
 
@@ -182,11 +180,11 @@ def test_what_a_robot_was_told_before_a_reset_does_not_drive_it_afterwards(syste
 
 
 def test_a_robot_is_put_elsewhere(system: System, world: Any) -> None:
-    static = system.hear(TFMessage, "/tf_static", LATCHED)
-    truth = system.hear(Odometry, "/ada/ground_truth")
-    ask(system, "pause")
-    assert ask(system, "teleport", robot="ada", x=5.0, y=4.0, theta=math.pi / 2)[0]
-    ask(system, "step", steps=10)
+    static = system.messages("/tf_static")
+    truth = system.messages("/ada/ground_truth")
+    asked(system, "pause")
+    assert asked(system, "teleport", robot="ada", x=5.0, y=4.0, theta=math.pi / 2)[0]
+    asked(system, "step", steps=10)
     pose, odometry = truth[-1].pose.pose, robots(world)["ada"].odometry
     assert (pose.position.x, pose.position.y, pose.orientation.z) == pytest.approx((5.0, 4.0, math.sqrt(0.5)))
     assert (odometry.x, odometry.y, odometry.theta) == pytest.approx((2.0, 2.0, 0.0))
@@ -212,7 +210,7 @@ def test_a_robot_is_put_elsewhere(system: System, world: Any) -> None:
     ],
 )
 def test_an_impossible_place_is_refused(system: System, world: Any, fields: dict[str, Any], reason: str) -> None:
-    assert reason in refused(ask(system, "teleport", **fields))
+    assert reason in refused(asked(system, "teleport", **fields))
     assert robots(world)["ada"].pose.x == 2.0
 
 
@@ -220,11 +218,11 @@ def test_an_impossible_place_is_refused(system: System, world: Any, fields: dict
 
 
 def test_a_robot_is_spawned_with_its_topics_and_frames_and_deleted_with_them(system: System, world: Any) -> None:
-    static, tf = system.hear(TFMessage, "/tf_static", LATCHED), system.hear(TFMessage, "/tf")
-    scans = system.hear(LaserScan, "/eve/scan")
+    static, tf = system.messages("/tf_static"), system.messages("/tf")
+    scans = system.messages("/eve/scan")
     system.run(0.1)
-    assert ask(system, "spawn", name="eve", x=5.0, y=5.0, theta=1.0)[0]
-    cmd_vel = system.probe.create_publisher(Twist, "/eve/cmd_vel", 10)
+    assert asked(system, "spawn", name="eve", x=5.0, y=5.0, theta=1.0)[0]
+    cmd_vel = system.node.create_publisher(Twist, "/eve/cmd_vel", 10)
     cmd_vel.publish(Twist(linear=Vector3(x=0.5)))
     system.run(0.5)
     assert scans[-1].header.frame_id == "eve/base_scan"
@@ -232,25 +230,25 @@ def test_a_robot_is_spawned_with_its_topics_and_frames_and_deleted_with_them(sys
     assert robots(world)["eve"].pose.y > 5.0
     assert "eve/base_link" in [each.child_frame_id for each in tf[-1].transforms]
     assert "eve/base_scan" in [each.child_frame_id for each in static[-1].transforms]
-    assert ask(system, "delete", name="eve")[0]
+    assert asked(system, "delete", name="eve")[0]
     heard = len(scans)
     system.run(0.5)
     assert len(scans) == heard
     assert list(robots(world)) == ["ada", "bob"]
     assert "eve/base_scan" not in [each.child_frame_id for each in static[-1].transforms]
-    assert system.probe.count_publishers("/eve/scan") == 0
-    assert ask(system, "spawn", name="eve", x=5.0, y=5.0)[0]
+    assert system.node.count_publishers("/eve/scan") == 0
+    assert asked(system, "spawn", name="eve", x=5.0, y=5.0)[0]
 
 
 def test_a_robot_is_like_the_one_that_is_named(system: System, world: Any) -> None:
-    assert ask(system, "spawn", name="bert", x=5.0, y=5.0, model="bob")[0]
+    assert asked(system, "spawn", name="bert", x=5.0, y=5.0, model="bob")[0]
     assert robots(world)["bert"].description.sensors == robots(world)["bob"].description.sensors
 
 
 def test_a_robot_is_as_a_text_says(system: System, world: Any) -> None:
     model = "shape: {box: [0.4, 0.2]}\ndrive: {v_max: 1.5}\nsensors:\n  - {lidar: eyes, beams: 4}\n"
-    eyes = system.hear(LaserScan, "/box/eyes")
-    assert ask(system, "spawn", name="box", x=5.0, y=5.0, model=model)[0]
+    eyes = system.messages("/box/eyes")
+    assert asked(system, "spawn", name="box", x=5.0, y=5.0, model=model)[0]
     system.run(0.2)
     assert robots(world)["box"].description.drive.v_max == 1.5
     assert len(eyes[-1].ranges) == 4
@@ -283,28 +281,28 @@ def test_a_robot_is_as_a_text_says(system: System, world: Any) -> None:
     ],
 )
 def test_an_impossible_robot_is_refused(system: System, world: Any, fields: dict[str, Any], reason: str) -> None:
-    assert reason in refused(ask(system, "spawn", **{"x": 5.0, "y": 5.0, **fields}))
+    assert reason in refused(asked(system, "spawn", **{"x": 5.0, "y": 5.0, **fields}))
     assert list(robots(world)) == ["ada", "bob"]
 
 
 def test_an_unknown_robot_cannot_be_deleted(system: System, world: Any) -> None:
-    assert "did you mean 'bob'" in refused(ask(system, "delete", name="bop"))
+    assert "did you mean 'bob'" in refused(asked(system, "delete", name="bop"))
 
 
 def test_all_robots_may_go_and_others_come(system: System, world: Any) -> None:
     for name in ("ada", "bob"):
-        assert ask(system, "delete", name=name)[0]
+        assert asked(system, "delete", name=name)[0]
     system.run(2.5)
-    assert "no robot" in refused(ask(system, "spawn", name="eve", x=5.0, y=5.0))
-    assert ask(system, "spawn", name="eve", x=5.0, y=5.0, model="sensors: [{lidar: scan}]")[0]
+    assert "no robot" in refused(asked(system, "spawn", name="eve", x=5.0, y=5.0))
+    assert asked(system, "spawn", name="eve", x=5.0, y=5.0, model="sensors: [{lidar: scan}]")[0]
 
 
 def test_the_only_robot_keeps_its_topics_when_others_come(system: System, hall: str) -> None:
-    system.add(simulation.SimulatedWorld, {"world": "empty_room"})
-    first, second = system.hear(LaserScan, "/scan"), system.hear(LaserScan, "/eve/scan")
-    assert ask(system, "spawn", name="eve", x=1.0, y=1.0)[0]
+    system.start(simulation.SimulatedWorld, parameters={"world": "empty_room"})
+    first, second = system.messages("/scan"), system.messages("/eve/scan")
+    assert asked(system, "spawn", name="eve", x=1.0, y=1.0)[0]
     system.run(1.005)
-    ask(system, "reset")
+    asked(system, "reset")
     system.run(1.005)
     assert (len(first), len(second)) == (20, 10)
 
@@ -314,16 +312,16 @@ def test_the_only_robot_keeps_its_topics_when_others_come(system: System, hall: 
 
 def test_the_pace_is_set_while_it_runs(system: System, world: Any) -> None:
     system.run(1.0)
-    assert ask(system, "set_rate", rtf=4.0) == (True, "4 times real time")
+    assert asked(system, "set_rate", rtf=4.0) == (True, "4 times real time")
     system.run(1.0)
     assert world.simulation.world.time_ns == pytest.approx(5e9, abs=5e7)
     assert world.get_parameter("rtf").value == 4.0
-    assert ask(system, "set_rate", rtf=0.0) == (True, "as fast as it goes")
+    assert asked(system, "set_rate", rtf=0.0) == (True, "as fast as it goes")
 
 
 @pytest.mark.parametrize("rtf", [-1.0, math.nan, math.inf, 1000.1])
 def test_an_impossible_pace_is_refused(system: System, world: Any, rtf: float) -> None:
-    assert "rtf" in refused(ask(system, "set_rate", rtf=rtf))
+    assert "rtf" in refused(asked(system, "set_rate", rtf=rtf))
     assert world.get_parameter("rtf").value == 1.0
 
 
@@ -331,20 +329,18 @@ def test_an_impossible_pace_is_refused(system: System, world: Any, rtf: float) -
 def test_a_pace_that_is_no_number_is_refused(system: System, world: Any, hall: str, rtf: Any) -> None:
     assert not world.set_parameters([Parameter("rtf", value=rtf)])[0].successful
     with pytest.raises(InvalidParameterTypeException, match=r"'rtf' to .*, expecting type 'DOUBLE'"):
-        system.add(simulation.SimulatedWorld, {"world": hall, "rtf": rtf})
+        system.start(simulation.SimulatedWorld, parameters={"world": hall, "rtf": rtf})
     assert world.set_parameters([Parameter("rtf", value=2.0)])[0].successful
     system.run(1.0)
     assert world.simulation.world.time_ns == pytest.approx(2e9, abs=5e7)
 
 
 def test_as_fast_as_it_goes_all_others_have_their_turn(system: System, hall: str) -> None:
-    world = system.add(simulation.SimulatedWorld, {"world": hall, "rtf": 0.0})
-    odometry = system.hear(Odometry, "/ada/odom", qos=1)
-    for _ in range(500):
-        system.executor.spin_once()
+    world = system.start(simulation.SimulatedWorld, parameters={"world": hall, "rtf": 0.0})
+    odometry = system.messages("/ada/odom")
+    system.wait_until(lambda: len(odometry) > 50)
     assert 0 <= world.simulation.world.steps // 2 - len(odometry) <= 1  # one may be under way
-    assert len(odometry) > 50
-    assert ask(system, "pause")[0]
+    assert asked(system, "pause")[0]
     paused_at = world.simulation.world.steps
     system.run(1.0)
     assert world.simulation.world.steps == paused_at
@@ -370,8 +366,8 @@ def test_a_users_types_of_the_same_names_change_nothing(
     monkeypatch.setenv("ROBOLINK_WORKSPACE", str(tmp_path))
     assert WORKSPACE_TYPES.get("robolink_interfaces", "srv", "Spawn") is not Spawn
     assert own_type("Spawn") is Spawn
-    world = system.add(simulation.SimulatedWorld, {"world": hall})
-    assert ask(system, "spawn", name="eve", x=5.0, y=5.0) == (True, "spawned eve at (5, 5)")
+    world = system.start(simulation.SimulatedWorld, parameters={"world": hall})
+    assert asked(system, "spawn", name="eve", x=5.0, y=5.0) == (True, "spawned eve at (5, 5)")
     assert set(robots(world)) == {"ada", "bob", "eve"}
 
 
@@ -397,17 +393,16 @@ REQUESTS = st.one_of(
 @given(st.lists(REQUESTS, max_size=12))
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_no_request_ends_the_node(hall: str, requests: list[dict[str, Any]]) -> None:
-    system = System()
-    world = system.add(simulation.SimulatedWorld, {"world": hall})
-    for request in requests:
-        name = request.pop("name")
-        if name in ("spawn", "delete"):
-            request["name"] = request.pop("robot")
-        kinds = {"step": Step, "teleport": Teleport, "spawn": Spawn, "delete": Delete, "set_rate": SetRate}
-        success, message = system.ask(kinds.get(name, Trigger), f"/world/{name}", **request)
-        assert success or message
-    system.run(0.02)
-    for robot in robots(world).values():
-        assert 0.0 <= robot.pose.x <= 10.0
-        assert 0.0 <= robot.pose.y <= 10.0
-    system.close()
+    with System() as system:
+        world = system.start(simulation.SimulatedWorld, parameters={"world": hall})
+        for request in requests:
+            name = request.pop("name")
+            if name in ("spawn", "delete"):
+                request["name"] = request.pop("robot")
+            kinds = {"step": Step, "teleport": Teleport, "spawn": Spawn, "delete": Delete, "set_rate": SetRate}
+            success, message = ask(system, kinds.get(name, Trigger), f"/world/{name}", **request)
+            assert success or message
+        system.run(0.02)
+        for robot in robots(world).values():
+            assert 0.0 <= robot.pose.x <= 10.0
+            assert 0.0 <= robot.pose.y <= 10.0

@@ -16,10 +16,11 @@ from robolink.exceptions import InvalidParameterValueException
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.plane import Pose, Speeds
+from robolink.testing import System
 from tests.commands import Command
 from tests.domains import free_domain
-from tests.driving import drive
 from tests.nodefiles import load_node_file
+from tests.systems import PATIENCE, add_world, log, said
 
 square = load_node_file("square")
 
@@ -88,102 +89,96 @@ SQUARES = {
 
 @pytest.mark.parametrize(("room", "parameters"), SQUARES.values(), ids=SQUARES)
 def test_it_ends_within_a_centimetre_of_its_start(
-    room: dict[str, Any], parameters: dict[str, Any], tmp_path: Path
+    system: System, room: dict[str, Any], parameters: dict[str, Any], tmp_path: Path
 ) -> None:
     path = tmp_path / "room.yaml"
     path.write_text(ROOM.format(**{"dt": 0.01, "rate": 50, "theta": 0.0} | room))
-    with drive() as system:
-        system.add_world(path)
-        start, heard = system.robot.pose, system.hear(Odometry, "odom", 100_000)
-        node = system.add(square.Square, parameters)
-        assert system.result(node.done) == 0
-        system.run(1.0)
-        assert math.hypot(system.robot.pose.x - start.x, system.robot.pose.y - start.y) < 0.01
-        assert abs(math.remainder(system.robot.pose.theta - start.theta, math.tau)) < 0.01
-        assert abs(system.robot.twist.v) + abs(system.robot.twist.w) < 1e-6
-        assert system.said("square done, 0.") == parameters.get("turns", 1)
-        side = parameters.get("side", 1.0)
-        farthest = max(math.dist((each.pose.pose.position.x, each.pose.pose.position.y), (3.0, 3.0)) for each in heard)
-        assert farthest == pytest.approx(side * math.sqrt(2.0), abs=0.01)
+    add_world(system, path)
+    start, heard = system.robot().pose, system.messages("odom")
+    node = system.start(square.Square, parameters=parameters)
+    assert system.result(node.done, PATIENCE) == 0
+    system.run(1.0)
+    assert math.hypot(system.robot().pose.x - start.x, system.robot().pose.y - start.y) < 0.01
+    assert abs(math.remainder(system.robot().pose.theta - start.theta, math.tau)) < 0.01
+    assert abs(system.robot().twist.v) + abs(system.robot().twist.w) < 1e-6
+    assert said(system, "square done, 0.") == parameters.get("turns", 1)
+    side = parameters.get("side", 1.0)
+    farthest = max(math.dist((each.pose.pose.position.x, each.pose.pose.position.y), (3.0, 3.0)) for each in heard)
+    assert farthest == pytest.approx(side * math.sqrt(2.0), abs=0.01)
 
 
-def test_it_gives_up_before_a_wall(tmp_path: Path) -> None:
+def test_it_gives_up_before_a_wall(system: System, tmp_path: Path) -> None:
     path = tmp_path / "room.yaml"
     path.write_text(ROOM.format(dt=0.01, rate=50, theta=0) + "walls: [{polyline: [[3.7, 2], [3.7, 4]]}]\n")
-    with drive() as system:
-        system.add_world(path)
-        node = system.add(square.Square)
-        assert system.result(node.done) == 1
-        assert system.now() < 30.0
-        assert system.said("gave up at (3.5") == 1
+    add_world(system, path)
+    node = system.start(square.Square)
+    assert system.result(node.done, PATIENCE) == 1
+    assert system.time < 30.0
+    assert said(system, "gave up at (3.5") == 1
 
 
-def test_it_waits_for_odometry_and_ignores_what_is_none() -> None:
-    with drive() as system:
-        node = system.add(square.Square)
-        nonsense = Odometry()
-        nonsense.pose.pose.position.x = math.nan
-        nonsense.header.stamp.sec = -1
-        system.probe.create_publisher(Odometry, "odom", 10).publish(nonsense)
-        system.run(11.0)
-        assert system.said("no odometry so far on /odom") == 2
-        assert node.start is None
-        system.add_world("empty_room")
-        assert system.result(node.done) == 0
+def test_it_waits_for_odometry_and_ignores_what_is_none(system: System) -> None:
+    node = system.start(square.Square)
+    nonsense = Odometry()
+    nonsense.pose.pose.position.x = math.nan
+    nonsense.header.stamp.sec = -1
+    system.node.create_publisher(Odometry, "odom", 10).publish(nonsense)
+    system.run(11.0)
+    assert said(system, "no odometry so far on /odom") == 2
+    assert node.start is None
+    add_world(system, "empty_room")
+    assert system.result(node.done, PATIENCE) == 0
 
 
-def test_another_shape_is_that_of_the_next_square(tmp_path: Path) -> None:
+def test_another_shape_is_that_of_the_next_square(system: System, tmp_path: Path) -> None:
     path = tmp_path / "room.yaml"
     path.write_text(ROOM.format(dt=0.01, rate=50, theta=0.0))
-    with drive() as system:
-        system.add_world(path)
-        heard = system.hear(Odometry, "odom", 100_000)
-        node = system.add(square.Square, {"side": 0.5, "speed": 0.5})
-        system.run(3.0)
-        asked = {"side": 0.3, "turns": 2, "direction": "right", "turn_speed": 2.0}
-        results = node.set_parameters([Parameter(name, value=value) for name, value in asked.items()])
-        assert all(each.successful for each in results)
-        assert system.result(node.done) == 0
-        said = [line for line in system.log if line.startswith("driving")]
-        assert said == [
-            "driving a square with sides of 0.5 m",
-            "driving a square with sides of 0.3 m, 2 of 2",
-        ]
-        places = [each.pose.pose.position for each in heard]
-        assert max(each.y for each in places) == pytest.approx(3.5, abs=0.01), "to the left as it was begun"
-        assert min(each.y for each in places) == pytest.approx(2.7, abs=0.01), "then a smaller one to the right"
-        assert math.hypot(system.robot.pose.x - 3.0, system.robot.pose.y - 3.0) < 0.01
+    add_world(system, path)
+    heard = system.messages("odom")
+    node = system.start(square.Square, parameters={"side": 0.5, "speed": 0.5})
+    system.run(3.0)
+    asked = {"side": 0.3, "turns": 2, "direction": "right", "turn_speed": 2.0}
+    results = node.set_parameters([Parameter(name, value=value) for name, value in asked.items()])
+    assert all(each.successful for each in results)
+    assert system.result(node.done, PATIENCE) == 0
+    said = [line for line in log(system) if line.startswith("driving")]
+    assert said == [
+        "driving a square with sides of 0.5 m",
+        "driving a square with sides of 0.3 m, 2 of 2",
+    ]
+    places = [each.pose.pose.position for each in heard]
+    assert max(each.y for each in places) == pytest.approx(3.5, abs=0.01), "to the left as it was begun"
+    assert min(each.y for each in places) == pytest.approx(2.7, abs=0.01), "then a smaller one to the right"
+    assert math.hypot(system.robot().pose.x - 3.0, system.robot().pose.y - 3.0) < 0.01
 
 
-def test_what_cannot_be_is_refused_with_the_reason() -> None:
-    with drive() as system:
-        with pytest.raises(InvalidParameterValueException, match="expected 'left' or 'right'"):
-            system.add(square.Square, {"direction": "up"})
-        node = system.add(square.Square)
-        asked = {"side": 0.0, "turns": 0, "direction": "up", "speed": 0.0}
-        results = node.set_parameters([Parameter(name, value=value) for name, value in asked.items()])
-        assert [each.successful for each in results] == [False] * 4
-        assert results[2].reason == "direction: expected 'left' or 'right', got 'up'"
+def test_what_cannot_be_is_refused_with_the_reason(system: System) -> None:
+    with pytest.raises(InvalidParameterValueException, match="expected 'left' or 'right'"):
+        system.start(square.Square, parameters={"direction": "up"})
+    node = system.start(square.Square)
+    asked = {"side": 0.0, "turns": 0, "direction": "up", "speed": 0.0}
+    results = node.set_parameters([Parameter(name, value=value) for name, value in asked.items()])
+    assert [each.successful for each in results] == [False] * 4
+    assert results[2].reason == "direction: expected 'left' or 'right', got 'up'"
 
 
-def test_who_ends_it_on_the_way_stops_the_robot_and_who_is_done_is_silent() -> None:
-    with drive() as system:
-        system.add_world("empty_room")
-        node, heard = system.add(square.Square), system.hear(Twist, "cmd_vel")
-        system.run(2.0)
-        assert heard[-1].linear.x > 0.2
-        told = len(heard)
-        system.remove(node)
-        system.run(0.1)
-        assert heard[told:] == [Twist()]
-        node = system.add(square.Square, {"side": 0.3})
-        system.result(node.done)
-        system.run(0.1)
-        told = len(heard)
-        assert heard[-1] == Twist()
-        system.remove(node)
-        system.run(0.1)
-        assert heard[told:] == []
+def test_who_ends_it_on_the_way_stops_the_robot_and_who_is_done_is_silent(system: System) -> None:
+    add_world(system, "empty_room")
+    node, heard = system.start(square.Square), system.messages("cmd_vel")
+    system.run(2.0)
+    assert heard[-1].linear.x > 0.2
+    told = len(heard)
+    system.stop(node)
+    system.run(0.1)
+    assert heard[told:] == [Twist()]
+    node = system.start(square.Square, parameters={"side": 0.3})
+    system.result(node.done, PATIENCE)
+    system.run(0.1)
+    told = len(heard)
+    assert heard[-1] == Twist()
+    system.stop(node)
+    system.run(0.1)
+    assert heard[told:] == []
 
 
 @pytest.mark.processes

@@ -10,17 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink import Context
-from robolink.exceptions import RobolinkError
-from robolink.executors import SingleThreadedExecutor
+from robolink.exceptions import InvalidParameterValueException, RobolinkError
 from robolink.impl.log_output import Record
-from robolink.parameter import Parameter
+from robolink.testing import System
 from robolink.tf2 import Buffer, TransformListener
 from robolink.time import Time
 from robolink.transformations import euler_from_quaternion
 from tests.nodefiles import load_node_file
-from tests.spins import spin_until
-from tests.test_tf2_nodes import node_in
 from tests.transforms import place, rotation
 
 node_file = load_node_file("static_transform_publisher")
@@ -96,20 +92,24 @@ def test_what_is_no_transform_is_one_line(args: list[str], said: str) -> None:
     assert "\n" not in str(error.value)
 
 
-def test_parameters_say_it_as_well_and_late_listeners_hear_it(
-    virtual: Context, executor: SingleThreadedExecutor, log_lines: list[Record]
-) -> None:
+def test_parameters_say_it_as_well_and_late_listeners_hear_it(system: System) -> None:
     values = {"frame_id": "map", "child_frame_id": "base", "translation.x": 2.0}
-    overrides = [Parameter(name, value=value) for name, value in values.items()]
-    node = node_file.StaticTransformPublisher(context=virtual, parameter_overrides=overrides)
-    executor.add_node(node)
+    node = system.start(node_file.StaticTransformPublisher, parameters=values)
+    system.run(1.0)
     buffer = Buffer()
-    TransformListener(buffer, node_in(virtual, "late", executor))
-    spin_until(executor, lambda: buffer.can_transform("map", "base", Time()))
+    listener = TransformListener(buffer, system.node)
+    system.wait_until(lambda: buffer.can_transform("map", "base", Time()))
     assert buffer.lookup_transform("map", "base", Time()).transform.translation.x == 2
-    refused = node.set_parameters([Parameter("translation.x", value=3.0)])
-    assert not refused[0].successful
-    assert "translation: ('2.000000', '0.000000', '0.000000')" in log_lines[0].message
+    listener.unregister()
+    with pytest.raises(InvalidParameterValueException, match="read-only"):
+        system.set_parameter(node.get_name(), "translation.x", 3.0)
+    system.expect_log("translation: ('2.000000', '0.000000', '0.000000')", within=0.0)
+
+
+def test_its_command_line_is_ros_2s(system: System) -> None:
+    system.start("static_transform_publisher", args=[*FRAMES, "--x", "1.5"])
+    (found,) = system.expect("/tf_static").transforms
+    assert (found.header.frame_id, found.child_frame_id, found.transform.translation.x) == ("map", "base", 1.5)
 
 
 def test_help_is_printed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

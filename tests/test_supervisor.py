@@ -13,7 +13,7 @@ import textwrap
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 import pytest
@@ -21,105 +21,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.supervisor import Process, ProcessStartError, Supervisor
-from robolink.supervisor.guardian import remaining
+from robolink.supervisor.guardian import Guardian, remaining
 from robolink.supervisor.lifeline import VARIABLE, Lifeline, watch_lifeline
-from robolink.supervisor.policy import Ask, Policy, Say, Step
 from robolink.supervisor.printer import Printer, prefixes
 from robolink.supervisor.process import Child
+from robolink.supervisor.rules import Step
 
 PATIENCE = 30.0
 
 posix_only = pytest.mark.skipif(sys.platform == "win32", reason="signals and process groups are POSIX's")
 INTERRUPT, TERMINATE, KILL = Step.INTERRUPT, Step.TERMINATE, Step.KILL
-
-
-# --- deciding -------------------------------------------------------------------------------------------------
-
-
-def asked(*names: str, step: Step) -> list[Ask | Say]:
-    return [Ask(name, step) for name in names]
-
-
-def replay(policy: Policy, history: list[tuple[float, object]]) -> list[list[Ask | Say]]:
-    """Feed (time, event) pairs: a (name, return code), 'interrupt', 'end' or None for mere time."""
-    told = []
-    for now, event in history:
-        if isinstance(event, tuple):
-            name, returncode = event
-            told.append(policy.exited(name, returncode, now))
-        elif event is None:
-            told.append(policy.woken(now))
-        else:
-            told.append(policy.interrupted(now, in_hurry=event == "interrupt"))
-    return told
-
-
-HISTORIES: list[tuple[str, list[tuple[float, object]], int]] = [
-    ("the first to end decides", [(1, ("a", 3)), (2, ("b", 1))], 3),
-    ("a clean end is one too", [(1, ("a", 0)), (2, ("b", 1))], 0),
-    ("a signal counts from 128", [(1, ("a", -11)), (2, ("b", 0))], 139),
-    ("an orderly stop", [(1, "interrupt"), (2, ("a", 0)), (3, ("b", -2))], 0),
-    ("a stop with 130 and 143", [(1, "interrupt"), (2, ("a", 130)), (3, ("b", 143))], 0),
-    ("a crash while stopping", [(1, "interrupt"), (2, ("a", 0)), (3, ("b", 1))], 1),
-    ("the first crash while stopping", [(1, "end"), (2, ("a", 7)), (3, ("b", 1))], 7),
-    ("one that had to be killed", [(1, "interrupt"), (6, None), (11, None), (12, ("a", -9)), (12, ("b", 0))], 137),
-    ("the duration is over", [(60, None), (61, ("a", 0)), (61, ("b", -2))], 0),
-]
-
-
-@pytest.mark.parametrize(("history", "code"), [each[1:] for each in HISTORIES], ids=[each[0] for each in HISTORIES])
-def test_the_exit_code(history: list[tuple[float, object]], code: int) -> None:
-    policy = Policy(["a", "b"], ends=60)
-    replay(policy, history)
-    assert policy.is_over
-    assert policy.code == code
-
-
-def test_each_step_comes_when_patience_ends() -> None:
-    policy = Policy(["a", "b"])
-    told = replay(policy, [(1, ("a", 3)), (5.9, None), (6, None), (11, None), (15, None), (16, None)])
-    assert told == [
-        [Say("a ended with exit code 3"), *asked("b", step=INTERRUPT)],
-        [],
-        [Say("still running after 5 s: b"), *asked("b", step=TERMINATE)],
-        [Say("still running after 5 s: b"), *asked("b", step=KILL)],
-        [],
-        [Say("still running after 5 s: b")],
-    ]
-    assert policy.is_over
-
-
-def test_a_second_interrupt_goes_straight_to_the_next_step() -> None:
-    policy = Policy(["a", "b"])
-    first, echo, second, end, third = replay(
-        policy, [(1, "interrupt"), (1.1, "interrupt"), (2, "interrupt"), (3, "end"), (4, "interrupt")]
-    )
-    assert first == [Say("stopping (Ctrl-C again to hurry)"), *asked("a", "b", step=INTERRUPT)]
-    assert second == asked("a", "b", step=TERMINATE)
-    assert third == asked("a", "b", step=KILL)
-    assert echo == end == []
-
-
-def test_one_that_cannot_be_killed_is_given_up() -> None:
-    policy = Policy(["a"])
-    replay(policy, [(0, "end"), (5, None), (10, None), (15, None)])
-    assert policy.is_over
-    assert policy.code == 137
-
-
-events = st.sampled_from(["interrupt", "end", None]) | st.tuples(st.sampled_from("abc"), st.integers(-15, 255))
-
-
-@given(st.lists(st.tuples(st.floats(0, 9), events), max_size=30))
-def test_any_history_ends_and_asks_only_those_alive(history: list[tuple[float, object]]) -> None:
-    policy, now = Policy("abc", ends=50), 0.0
-    for wait, event in [*history, *[(50.0, None)] * 5]:
-        now += wait
-        if policy.is_over or (isinstance(event, tuple) and event[0] not in policy.alive):
-            continue
-        [actions] = replay(policy, [(now, event)])
-        assert all(action.name in policy.alive for action in actions if isinstance(action, Ask))
-    assert policy.is_over
 
 
 # --- printing -------------------------------------------------------------------------------------------------
@@ -271,7 +182,8 @@ def test_a_process_that_ignores_the_interrupt_is_terminated(tmp_path: Path) -> N
     waiting = python("a", until_there(deaf) + "raise SystemExit(4)")
     code, lines = run(waiting, stubborn, patience=1.0)
     assert code == 4
-    assert lines[-2:] == ["[launch] a ended with exit code 4", "[launch] still running after 1 s: b"]
+    said = ["a ended with exit code 4", "still running after 1 s: b", "summary: a ended with exit code 4"]
+    assert lines[-3:] == [f"[launch] {each}" for each in said]
 
 
 class FakeChild:
@@ -529,7 +441,7 @@ def test_an_interactive_process_has_the_terminal() -> None:
 # --- lifeline and guardian, by themselves ---------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("value", ["", "x", "-1", "99999", str(2**80), "0x3"])
+@pytest.mark.parametrize("value", ["", "x", "-1", "99999", "99999:12ab", ":", str(2**80), "0x3"])
 def test_a_lifeline_that_is_none_is_not_watched(value: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(VARIABLE, value)
     assert not watch_lifeline()
@@ -546,4 +458,24 @@ def test_a_file_is_no_lifeline(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 def test_the_guardian_knows_what_is_left(history: list[tuple[bool, int]]) -> None:
     lines = [b"%s%d\n" % (b"+" if added else b"-", group) for added, group in history]
     last = {group: added for added, group in history}
-    assert remaining([*lines, b"+9"]) == {group for group, added in last.items() if added}
+    left = {group for group, added in last.items() if added}
+    assert remaining([*lines, b"+9"]) == remaining([*lines, b".\n"]) == left
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks at environments in /proc")
+@pytest.mark.parametrize("in_order", [True, False])
+def test_a_process_of_which_the_guardian_was_not_told_yet_is_known_by_its_lifeline(in_order: bool) -> None:
+    with closing(Lifeline()) as lifeline:
+        guardian = Guardian(lifeline.mark, patience=0.0)
+        child = Child(Process("a", [sys.executable, "-c", "import time; time.sleep(100)"]), lifeline)
+        ended = threading.Event()
+        child.watch(lambda name, line: None, lambda name, code: ended.set())
+        assert guardian._process is not None
+        assert guardian._process.stdin is not None
+        if in_order:
+            guardian.close()
+            assert not ended.is_set()
+            child.ask(KILL)
+        guardian._process.stdin.close()
+        assert ended.wait(PATIENCE)
+        guardian._process.wait(PATIENCE)

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from robolink import Parameter
 from robolink.exceptions import InvalidParameterValueException
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
-from tests.driving import Drive, Typed
+from robolink.testing import System
 from tests.nodefiles import load_node_file
+from tests.systems import Typed, log, made_with
 
 teleop = load_node_file("teleop")
 
@@ -82,9 +83,9 @@ def test_with_shift_a_key_asks_for_a_way_to_the_side(key: str, expected: tuple[f
 # The node
 
 
-def test_teleop_drives_while_a_key_is_held_then_stops_once_and_is_silent(system: Drive) -> None:
-    heard, keyboard = system.hear(Twist, "/cmd_vel"), Typed()
-    node = system.add(teleop.Teleop, {"speed": 0.2}, keyboard=keyboard)
+def test_teleop_drives_while_a_key_is_held_then_stops_once_and_is_silent(system: System) -> None:
+    heard, keyboard = system.messages("/cmd_vel"), Typed()
+    node = system.start(made_with(teleop.Teleop, keyboard=keyboard), parameters={"speed": 0.2})
     system.run(1.0)
     assert heard == []
     for _ in range(3):
@@ -100,17 +101,17 @@ def test_teleop_drives_while_a_key_is_held_then_stops_once_and_is_silent(system:
     assert keyboard.closed
 
 
-def test_teleop_tells_of_another_speed(system: Drive) -> None:
+def test_teleop_tells_of_another_speed(system: System) -> None:
     keyboard = Typed()
-    system.add(teleop.Teleop, keyboard=keyboard)
+    system.start(made_with(teleop.Teleop, keyboard=keyboard))
     keyboard.text = "q"
     system.run(0.1)
-    assert "speed 0.33 m/s, 1.10 rad/s" in system.log
+    assert "speed 0.33 m/s, 1.10 rad/s" in log(system)
 
 
-def test_the_keys_of_the_speeds_set_parameters_within_their_ranges(system: Drive) -> None:
+def test_the_keys_of_the_speeds_set_parameters_within_their_ranges(system: System) -> None:
     keyboard = Typed()
-    node = system.add(teleop.Teleop, {"speed": 1.0, "turn_speed": 1.0}, keyboard=keyboard)
+    node = system.start(made_with(teleop.Teleop, keyboard=keyboard), parameters={"speed": 1.0, "turn_speed": 1.0})
     for text, v, w in (("q", 1.1, 1.1), ("r", 1.21, 1.1), ("f", 1.1, 1.1), ("E", 1.1, 1.21), ("cz", 1.0, 1.0)):
         keyboard.text = text
         system.run(0.1)
@@ -118,23 +119,23 @@ def test_the_keys_of_the_speeds_set_parameters_within_their_ranges(system: Drive
     keyboard.text = "r" * 100
     system.run(0.1)
     assert 9.0 < node.get_parameter("speed").value <= 10.0
-    assert any("out of range" in line for line in system.log)
+    assert any("out of range" in line for line in log(system))
 
 
-def test_speeds_set_from_elsewhere_count_from_the_next_key_on(system: Drive) -> None:
-    heard, keyboard = system.hear(Twist, "cmd_vel"), Typed()
-    node = system.add(teleop.Teleop, keyboard=keyboard)
+def test_speeds_set_from_elsewhere_count_from_the_next_key_on(system: System) -> None:
+    heard, keyboard = system.messages("cmd_vel"), Typed()
+    node = system.start(made_with(teleop.Teleop, keyboard=keyboard))
     node.set_parameters([Parameter("speed", value=0.7), Parameter("timeout", value=0.2)])
     keyboard.text = "w"
     system.run(1.0)
     assert [each.linear.x for each in heard] == [0.7] * 3 + [0.0]
     with pytest.raises(InvalidParameterValueException, match="not within"):
-        system.add(teleop.Teleop, {"timeout": 60.0}, keyboard=Typed())
+        system.start(made_with(teleop.Teleop, keyboard=Typed()), parameters={"timeout": 60.0})
 
 
-def test_another_rate_counts_at_once_and_a_key_lasts_as_long(system: Drive) -> None:
-    heard, keyboard = system.hear(Twist, "cmd_vel"), Typed()
-    node = system.add(teleop.Teleop, {"rate": 10.0, "timeout": 1.0}, keyboard=keyboard)
+def test_another_rate_counts_at_once_and_a_key_lasts_as_long(system: System) -> None:
+    heard, keyboard = system.messages("cmd_vel"), Typed()
+    node = system.start(made_with(teleop.Teleop, keyboard=keyboard), parameters={"rate": 10.0, "timeout": 1.0})
     keyboard.text = "w"
     system.run(0.51)
     assert len(heard) == 5
@@ -144,13 +145,13 @@ def test_another_rate_counts_at_once_and_a_key_lasts_as_long(system: Drive) -> N
     assert [each == Twist() for each in heard[-2:]] == [False, True]
 
 
-def test_who_ends_it_on_the_way_stops_the_robot(system: Drive) -> None:
-    heard, keyboard = system.hear(Twist, "cmd_vel"), Typed()
-    node = system.add(teleop.Teleop, keyboard=keyboard)
+def test_who_ends_it_on_the_way_stops_the_robot(system: System) -> None:
+    heard, keyboard = system.messages("cmd_vel"), Typed()
+    node = system.start(made_with(teleop.Teleop, keyboard=keyboard))
     keyboard.text = "w"
     system.run(0.2)
     assert heard[-1] != Twist()
-    system.remove(node)
+    system.stop(node)
     system.run(0.1)
     assert heard[-1] == Twist()
     assert keyboard.closed

@@ -11,14 +11,11 @@ from hypothesis import strategies as st
 
 from robolink import Parameter
 from robolink.exceptions import InvalidParameterValueException
-from robolink.interfaces.geometry_msgs.msg import PoseStamped, Twist, Vector3
-from robolink.interfaces.nav_msgs.msg import Path
-from robolink.interfaces.std_msgs.msg import Int32
+from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.std_srvs.srv import Trigger
-from robolink.interfaces.tf2_msgs.msg import TFMessage
-from robolink.qos import DurabilityPolicy, QoSProfile
-from tests.driving import Drive
+from robolink.testing import System
 from tests.nodefiles import load_node_file
+from tests.systems import ask, log, said
 
 walker = load_node_file("walker")
 
@@ -93,14 +90,14 @@ def test_any_text_is_a_route_or_an_error_of_robolink(text: str) -> None:
 # The node
 
 
-def test_it_walks_its_route_when_it_is_asked_to(system: Drive) -> None:
-    poses, steps = system.hear(PoseStamped, "walk_pose"), system.hear(Int32, "steps")
-    paths, transforms = system.hear(Path, "walk_path"), system.hear(TFMessage, "/tf")
-    system.add(walker.Walker)
+def test_it_walks_its_route_when_it_is_asked_to(system: System) -> None:
+    poses, steps = system.messages("walk_pose"), system.messages("steps")
+    paths, transforms = system.messages("walk_path"), system.messages("/tf")
+    system.start(walker.Walker)
     system.run(2.0)
     assert [each.data for each in steps] == [0]
-    assert system.ask(Trigger, "start_walk") == (True, f"walking {walker.ROUTE}: 20 steps")
-    assert system.ask(Trigger, "start_walk") == (False, "already walking: 20 steps to go")
+    assert ask(system, Trigger, "start_walk") == (True, f"walking {walker.ROUTE}: 20 steps")
+    assert ask(system, Trigger, "start_walk") == (False, "already walking: 20 steps to go")
     system.run(15.0)
     assert [each.data for each in steps] == list(range(21))
     places = [(each.pose.position.x, each.pose.position.y) for each in poses]
@@ -111,17 +108,17 @@ def test_it_walks_its_route_when_it_is_asked_to(system: Drive) -> None:
     last = transforms[-1].transforms[0]
     assert (last.header.frame_id, last.child_frame_id) == ("odom", "walker")
     assert (last.transform.translation.x, last.transform.translation.y) == places[-1]
-    assert "walked the route: 20 steps so far, at (4.50, 1.50), 4.74 m from the start" in system.log
+    assert "walked the route: 20 steps so far, at (4.50, 1.50), 4.74 m from the start" in log(system)
 
 
-def test_it_says_where_it_waits_to_be_asked(system: Drive) -> None:
-    system.add(walker.Walker, namespace="bumi")
-    assert "standing; robolink service call /bumi/start_walk has it walk" in system.log
+def test_it_says_where_it_waits_to_be_asked(system: System) -> None:
+    system.start(walker.Walker, namespace="bumi")
+    assert "standing; robolink service call /bumi/start_walk has it walk" in log(system)
 
 
-def test_it_takes_a_step_each_half_second_from_the_start_on(system: Drive) -> None:
-    steps = system.hear(Int32, "steps")
-    node = system.add(walker.Walker, {"autostart": True})
+def test_it_takes_a_step_each_half_second_from_the_start_on(system: System) -> None:
+    steps = system.messages("steps")
+    node = system.start(walker.Walker, parameters={"autostart": True})
     system.run(2.2)
     assert len(steps) == 1 + 4
     node.set_parameters([Parameter("step_duration", value=0.1)])
@@ -129,68 +126,67 @@ def test_it_takes_a_step_each_half_second_from_the_start_on(system: Drive) -> No
     assert len(steps) == 1 + 4 + 10
 
 
-def test_it_stops_when_it_is_asked_to_and_walks_anew(system: Drive) -> None:
-    node = system.add(walker.Walker, {"route": "0x4"})
-    assert system.ask(Trigger, "stop_walk") == (False, "standing already")
-    system.ask(Trigger, "start_walk")
+def test_it_stops_when_it_is_asked_to_and_walks_anew(system: System) -> None:
+    node = system.start(walker.Walker, parameters={"route": "0x4"})
+    assert ask(system, Trigger, "stop_walk") == (False, "standing already")
+    ask(system, Trigger, "start_walk")
     system.run(1.2)
-    assert system.ask(Trigger, "stop_walk") == (True, "stopped with 2 steps to go")
+    assert ask(system, Trigger, "stop_walk") == (True, "stopped with 2 steps to go")
     system.run(3.0)
     assert node.walk.position == pytest.approx((0.6, 0.0))
-    assert system.ask(Trigger, "start_walk")[0]
+    assert ask(system, Trigger, "start_walk")[0]
     system.run(5.0)
     assert node.walk.position == pytest.approx((1.8, 0.0))
 
 
-def test_who_comes_later_sees_where_it_is(system: Drive) -> None:
-    system.add(walker.Walker, {"route": "90x3", "autostart": True})
+def test_who_comes_later_sees_where_it_is(system: System) -> None:
+    system.start(walker.Walker, parameters={"route": "90x3", "autostart": True})
     system.run(5.0)
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    steps, paths = system.hear(Int32, "steps", latched), system.hear(Path, "walk_path", latched)
+    steps, paths = system.messages("steps"), system.messages("walk_path")
     system.run(0.1)
     assert [each.data for each in steps] == [3]
     assert len(paths[0].poses) == 4
 
 
-def test_it_walks_by_velocity_until_no_more_comes(system: Drive) -> None:
-    node = system.add(walker.Walker)
-    cmd_vel = system.probe.create_publisher(Twist, "cmd_vel", 10)
+def test_it_walks_by_velocity_until_no_more_comes(system: System) -> None:
+    node = system.start(walker.Walker)
+    cmd_vel = system.node.create_publisher(Twist, "cmd_vel", 10)
     cmd_vel.publish(Twist(linear=Vector3(x=0.4)))
     system.run(5.0)
     assert 1 <= node.walk.steps <= 2
     assert node.walk.position == pytest.approx((0.2 * node.walk.steps, 0.0))
     cmd_vel.publish(Twist(linear=Vector3(x=0.4)))
     system.run(0.1)
-    assert system.ask(Trigger, "stop_walk") == (True, "stopped with 0 steps to go")
+    assert ask(system, Trigger, "stop_walk") == (True, "stopped with 0 steps to go")
     taken = node.walk.steps
     system.run(2.0)
     assert node.walk.steps == taken
 
 
 @pytest.mark.parametrize("twist", [Twist(linear=Vector3(x=math.nan)), Twist(angular=Vector3(z=math.inf))])
-def test_nonsense_on_cmd_vel_is_ignored(system: Drive, twist: Any) -> None:
-    node = system.add(walker.Walker)
-    cmd_vel = system.probe.create_publisher(Twist, "cmd_vel", 10)
+def test_nonsense_on_cmd_vel_is_ignored(system: System, twist: Any) -> None:
+    node = system.start(walker.Walker)
+    cmd_vel = system.node.create_publisher(Twist, "cmd_vel", 10)
     for _ in range(3):
         cmd_vel.publish(twist)
     system.run(2.0)
     assert node.walk.steps == 0
-    assert system.said("ignored a cmd_vel") == 1
+    assert said(system, "ignored a cmd_vel") == 1
 
 
-def test_on_a_route_cmd_vel_does_not_count(system: Drive) -> None:
-    node = system.add(walker.Walker, {"route": "0x4", "autostart": True})
-    cmd_vel = system.probe.create_publisher(Twist, "cmd_vel", 10)
-    system.probe.create_timer(0.2, lambda: cmd_vel.publish(Twist(linear=Vector3(y=0.5))) if node.ahead else None)
+def test_on_a_route_cmd_vel_does_not_count(system: System) -> None:
+    node = system.start(walker.Walker, parameters={"route": "0x4", "autostart": True})
+    cmd_vel = system.node.create_publisher(Twist, "cmd_vel", 10)
+    system.node.create_timer(0.2, lambda: cmd_vel.publish(Twist(linear=Vector3(y=0.5))) if node.ahead else None)
     system.run(4.0)
     assert node.walk.position == pytest.approx((1.2, 0.0))
-    assert system.said("cmd_vel is ignored on a route") == 1
+    assert said(system, "cmd_vel is ignored on a route") == 1
 
 
-def test_a_wrong_route_is_refused_and_the_old_one_stays(system: Drive) -> None:
+def test_a_wrong_route_is_refused_and_the_old_one_stays(system: System) -> None:
     with pytest.raises(InvalidParameterValueException, match="'90y5': expected DIRECTIONxSTEPS"):
-        system.add(walker.Walker, {"route": "90y5"})
-    node = system.add(walker.Walker)
+        system.start(walker.Walker, parameters={"route": "90y5"})
+    node = system.start(walker.Walker)
     result = node.set_parameters([Parameter("route", value="up")])[0]
     assert (result.successful, node.get_parameter("route").value) == (False, walker.ROUTE)
     assert "expected DIRECTIONxSTEPS" in result.reason

@@ -14,13 +14,13 @@ import pytest
 from robolink.compat.maker import room_of
 from robolink.exceptions import NotFoundError
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
-from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import JointState
 from robolink.interfaces.std_msgs.msg import Header
+from robolink.testing import System
 from robolink.webots_controller.robot import StepError
 from robolink.webots_controller.webots_controller import WebotsController, robot_name
 from tests.nodefiles import load_node_file
-from tests.simulated import System
+from tests.systems import log, made_with
 
 simulation = load_node_file("world")
 
@@ -79,14 +79,14 @@ def world(tmp_path: Path) -> str:
 
 
 def command(system: System, x: float, z: float = 0.0) -> None:
-    publisher = system.probe.create_publisher(Twist, "/cmd_vel", 10)
+    publisher = system.node.create_publisher(Twist, "/cmd_vel", 10)
     publisher.publish(Twist(linear=Vector3(x=x), angular=Vector3(z=z)))
 
 
 def test_motors_drive_the_robot(system: System, world: str) -> None:
-    odometry = system.hear(Odometry, "/odom")
-    system.add(simulation.SimulatedWorld, {"world": world})
-    system.add(Driver)
+    odometry = system.messages("/odom")
+    system.start(simulation.SimulatedWorld, parameters={"world": world})
+    system.start(Driver)
     system.run(1.0)
     assert odometry[-1].twist.twist.linear.x == 0.0
     command(system, 3.0)
@@ -99,9 +99,9 @@ def test_motors_drive_the_robot(system: System, world: str) -> None:
 
 
 def test_cmd_vel_is_for_the_program_alone(system: System, world: str) -> None:
-    odometry = system.hear(Odometry, "/odom")
-    system.add(simulation.SimulatedWorld, {"world": world})
-    driver = system.add(Driver)
+    odometry = system.messages("/odom")
+    system.start(simulation.SimulatedWorld, parameters={"world": world})
+    driver = system.start(Driver)
     system.run(0.5)
     for _ in range(20):  # 0.5 rad/s are 0.05 m/s; the world itself would go at 0.5 m/s
         command(system, 0.5)
@@ -116,30 +116,30 @@ def test_cmd_vel_is_for_the_program_alone(system: System, world: str) -> None:
 
 
 def test_the_world_may_come_later_and_begin_anew(system: System, world: str) -> None:
-    odometry = system.hear(Odometry, "/odom")
-    driver = system.add(Driver)
+    odometry = system.messages("/odom")
+    driver = system.start(Driver)
     driver.left.setVelocity(2)
     driver.right.setVelocity(2)
     system.run(6.0)
-    assert "nothing is heard on /joint_states: is 'robolink run world -p world:=FILE.wbt' running?" in system.log
-    first = system.add(simulation.SimulatedWorld, {"world": world})
+    assert "nothing is heard on /joint_states: is 'robolink run world -p world:=FILE.wbt' running?" in log(system)
+    first = system.start(simulation.SimulatedWorld, parameters={"world": world})
     system.run(1.0)
     assert odometry[-1].twist.twist.linear.x == pytest.approx(0.2)
     first.destroy_node()
-    system.add(simulation.SimulatedWorld, {"world": world})
+    system.start(simulation.SimulatedWorld, parameters={"world": world})
     system.run(1.0)
     assert odometry[-1].twist.twist.linear.x == pytest.approx(0.2)
 
 
 def test_both_motors_are_told_at_once_and_only_what_is_new(system: System) -> None:
     commands, joints = (
-        system.hear(JointState, "/joint_command"),
-        system.probe.create_publisher(JointState, "/joint_states", 10),
+        system.messages("/joint_command"),
+        system.node.create_publisher(JointState, "/joint_states", 10),
     )
-    driver = system.add(Driver)
+    driver = system.start(Driver)
 
     def tell(milliseconds: int) -> None:
-        stamp = system.probe.get_clock().now().to_msg()
+        stamp = system.node.get_clock().now().to_msg()
         stamp.sec, stamp.nanosec = 5, milliseconds * 1_000_000
         joints.publish(
             JointState(header=Header(stamp=stamp), name=[LEFT, RIGHT], position=[0.0, 0.0], velocity=[0.0, 0.0])
@@ -161,9 +161,9 @@ def test_both_motors_are_told_at_once_and_only_what_is_new(system: System) -> No
 
 
 def test_position_control_reaches_its_angle_and_holds_it(system: System, world: str) -> None:
-    states = system.hear(JointState, "/joint_states")
-    system.add(simulation.SimulatedWorld, {"world": world})
-    node = system.add(WebotsController)
+    states = system.messages("/joint_states")
+    system.start(simulation.SimulatedWorld, parameters={"world": world})
+    node = system.start(WebotsController)
     motor, sensor = node.robot.getDevice(LEFT), node.robot.getDevice("left wheel sensor")
     other = node.robot.getMotor(RIGHT)
     sensor.enable(20)
@@ -178,9 +178,9 @@ def test_position_control_reaches_its_angle_and_holds_it(system: System, world: 
 
 
 def test_what_is_no_number_moves_nothing(system: System, world: str) -> None:
-    odometry = system.hear(Odometry, "/odom")
-    system.add(simulation.SimulatedWorld, {"world": world})
-    driver = system.add(Driver)
+    odometry = system.messages("/odom")
+    system.start(simulation.SimulatedWorld, parameters={"world": world})
+    driver = system.start(Driver)
     command(system, math.nan)
     driver.left.setPosition(math.nan)
     system.run(1.0)
@@ -189,12 +189,12 @@ def test_what_is_no_number_moves_nothing(system: System, world: str) -> None:
     command(system, 1.0)
     system.run(1.0)
     assert odometry[-1].twist.twist.linear.x == pytest.approx(0.1)
-    assert f"motor '{LEFT}': setVelocity was given nan: ignored" in system.log
-    assert f"motor '{LEFT}': setPosition was given NaN: ignored" in system.log
+    assert f"motor '{LEFT}': setVelocity was given nan: ignored" in log(system)
+    assert f"motor '{LEFT}': setPosition was given NaN: ignored" in log(system)
 
 
 def test_sensors(system: System, world: str) -> None:
-    node = system.add(WebotsController)
+    node = system.start(WebotsController)
     names = ("LDS-01", "ds 0", "bumper", "gyro", "accelerometer", "inertial unit")
     lidar, distance, bumper, gyro, accelerometer, unit = map(node.robot.getDevice, names)
     for each in (lidar, distance, bumper, gyro, accelerometer, unit):
@@ -204,7 +204,7 @@ def test_sensors(system: System, world: str) -> None:
     assert math.isnan(distance.getValue())
     assert all(map(math.isnan, gyro.getValues()))
     assert all(map(math.isnan, unit.getRollPitchYaw()))
-    system.add(simulation.SimulatedWorld, {"world": world})
+    system.start(simulation.SimulatedWorld, parameters={"world": world})
     system.run(0.1)
     for each in (lidar, distance, bumper, gyro, accelerometer, unit):
         each.enable(32)
@@ -231,8 +231,8 @@ def test_sensors(system: System, world: str) -> None:
 
 
 def test_the_lidars_first_value_is_on_the_left(system: System, world: str) -> None:
-    system.add(simulation.SimulatedWorld, {"world": world})
-    driver = system.add(Driver)
+    system.start(simulation.SimulatedWorld, parameters={"world": world})
+    driver = system.start(Driver)
     lidar = driver.robot.getLidar("LDS-01")
     system.run(0.1)
     lidar.enable(32)
@@ -248,12 +248,12 @@ def test_the_lidars_first_value_is_on_the_left(system: System, world: str) -> No
 
 
 def test_a_wrong_name_is_told_with_the_nearest(system: System, world: str) -> None:
-    system.add(Driver, left="left wheel motr")
-    system.add(simulation.SimulatedWorld, {"world": world})
+    system.start(made_with(Driver, left="left wheel motr"))
+    system.start(simulation.SimulatedWorld, parameters={"world": world})
     system.run(0.5)
     known = f"there is: '{LEFT}', '{RIGHT}'"
-    assert f"no motor is called 'left wheel motr' (did you mean '{LEFT}'?); {known}" in system.log
-    later = system.add(WebotsController, node_name="later")
+    assert f"no motor is called 'left wheel motr' (did you mean '{LEFT}'?); {known}" in log(system)
+    later = system.start(made_with(WebotsController, node_name="later"))
     system.run(0.5)
     with pytest.raises(
         NotFoundError, match=r"no motor named 'right weel motor' in this robot \(did you mean 'right wheel"
@@ -266,17 +266,17 @@ def test_a_wrong_name_is_told_with_the_nearest(system: System, world: str) -> No
 def test_one_of_several_robots(system: System, tmp_path: Path) -> None:
     path = tmp_path / "two.wbt"
     path.write_text(WORLD + WORLD[WORLD.index("Robot {") :].replace("cart", "my cart").replace("0 0 0.1", "0 3 0.1"))
-    system.add(simulation.SimulatedWorld, {"world": str(path)})
-    first, second = system.hear(Odometry, "/cart/odom"), system.hear(Odometry, "/my_cart/odom")
-    system.add(WebotsController, node_name="lost")
-    driver = system.add(Driver, {"robot": "my cart"})
+    system.start(simulation.SimulatedWorld, parameters={"world": str(path)})
+    first, second = system.messages("/cart/odom"), system.messages("/my_cart/odom")
+    system.start(made_with(WebotsController, node_name="lost"))
+    driver = system.start(Driver, parameters={"robot": "my cart"})
     driver.left.setVelocity(1.0)
     driver.right.setVelocity(1.0)
     system.run(6.0)
     assert second[-1].twist.twist.linear.x == pytest.approx(0.1)
     assert first[-1].twist.twist.linear.x == 0.0
     others = "there is /cart/joint_states, /my_cart/joint_states: the parameter 'robot' says whose is meant"
-    assert f"nothing is heard on /joint_states: {others}" in system.log
+    assert f"nothing is heard on /joint_states: {others}" in log(system)
 
 
 @pytest.mark.parametrize(
@@ -293,23 +293,44 @@ def test_the_robots_name_in_the_environment(environ: dict[str, str], name: str) 
     assert robot_name(environ) == name
 
 
-def test_a_program_with_a_loop_of_its_own(system: System, world: str) -> None:
-    system.add(simulation.SimulatedWorld, {"world": world})
-    robot = system.add(WebotsController).robot
-    for name in (LEFT, RIGHT):
-        motor = robot.getDevice(name)
+LOOP = """
+import math
+import robolink
+from robolink.webots_controller.webots_controller import WebotsController
+
+
+def main():
+    robolink.init()
+    node = WebotsController()
+    node.times = []
+    for name in ("left wheel motor", "right wheel motor"):
+        motor = node.robot.getDevice(name)
         motor.setPosition(math.inf)
         motor.setVelocity(1.0)
-    times = list[float]()
-    while len(times) < 20 and robot.step(100) != -1:
-        times.append(robot.getTime())
-    assert robot.getBasicTimeStep() == pytest.approx(20.0)
-    assert {round(after - before, 9) for before, after in itertools.pairwise(times)} == {0.1}
-    assert robot.positions[LEFT] == pytest.approx(2.0, abs=0.3)
+    while node.robot.step(100) != -1:
+        node.times.append(node.robot.getTime())
+    node.get_logger().info("the loop is over")
+
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+def test_a_program_with_a_loop_of_its_own_ends_with_its_context(system: System, world: str, tmp_path: Path) -> None:
+    system.start(simulation.SimulatedWorld, parameters={"world": world})
+    (tmp_path / "loop.py").write_text(LOOP)
+    node = system.start(tmp_path / "loop.py")
+    system.wait_until(lambda: len(node.times) == 20)
+    assert node.robot.getBasicTimeStep() == pytest.approx(20.0)
+    assert {round(after - before, 9) for before, after in itertools.pairwise(node.times)} == {0.1}
+    assert node.robot.positions[LEFT] == pytest.approx(2.0, abs=0.3)
+    system.stop(node)
+    system.expect_log("the loop is over", within=0.0)
 
 
 def test_a_step_within_a_callback_is_refused(system: System) -> None:
-    node = system.add(WebotsController)
+    node = system.start(WebotsController)
     errors = list[BaseException]()
 
     def callback() -> None:
@@ -325,13 +346,6 @@ def test_a_step_within_a_callback_is_refused(system: System) -> None:
     ]
 
 
-def test_a_step_ends_with_the_context(system: System) -> None:
-    node = WebotsController(context=system.context)
-    system.context.interrupt()
-    assert node.robot.step(32) == -1
-    node.destroy_node()
-
-
 COURSE = Path(os.environ.get("ROBOLINK_COURSE") or Path(__file__).parents[2] / "shared" / "course")
 TEXT = "\n".join(each.read_text(encoding="utf-8") for each in sorted(COURSE.glob("*.txt")))
 
@@ -344,15 +358,11 @@ def test_the_courses_world_and_controller_as_they_stand(system: System, tmp_path
     assert program
     (tmp_path / "meu_mundo.wbt").write_text(found[0], encoding="utf-8")
 
-    class InThisSystem(WebotsController):
-        def __init__(self, name: str) -> None:
-            super().__init__(name, context=system.context)
-
-    names: dict[str, Any] = {"WebotsController": InThisSystem, "Twist": Twist}
+    names: dict[str, Any] = {"WebotsController": WebotsController, "Twist": Twist}
     exec(program[0], names)
-    odometry = system.hear(Odometry, "/odom")
-    system.add(simulation.SimulatedWorld, {"world": str(tmp_path / "meu_mundo.wbt")})
-    system.executor.add_node(names["WebotsRoboController"]())
+    odometry = system.messages("/odom")
+    system.start(simulation.SimulatedWorld, parameters={"world": str(tmp_path / "meu_mundo.wbt")})
+    system.start(names["WebotsRoboController"])
     system.run(0.5)
     for _ in range(10):
         command(system, 0.5)
@@ -362,9 +372,9 @@ def test_the_courses_world_and_controller_as_they_stand(system: System, tmp_path
     command(system, 0.0, 0.5)
     system.run(1.0)
     assert odometry[-1].twist.twist.angular.z == pytest.approx(0.5)
-    assert "/scan" not in dict(system.probe.get_topic_names_and_types())
+    assert "/scan" not in dict(system.node.get_topic_names_and_types())
     guessed = "meu_robo: nothing says what 'motor_esquerdo', 'motor_direito' turn: taken as wheels, radius 0.15 m"
-    told = [each for each in system.log if "meu_mundo.wbt: " in each]
+    told = [each for each in log(system) if "meu_mundo.wbt: " in each]
     assert told == [f"{tmp_path / 'meu_mundo.wbt'}: {guessed}, at the sides of the body"]
 
 

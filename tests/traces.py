@@ -8,46 +8,17 @@ and Pythons.
 
 from __future__ import annotations
 
-import hashlib
 import sys
-from collections import Counter
 from typing import Any
 
 from robolink import Context, Parameter, VirtualTime, logging
 from robolink.executors import SingleThreadedExecutor
+from robolink.oneprocess.trace import Trace
 from robolink.qos import QoSProfile
 from robolink.transport import Outlet
 from robolink.transport.memory import Bus, MemoryTransport
 from tests.nodefiles import load_node_file
 from tests.spins import spin_for
-
-
-class Trace:
-    """All that has been published, in its order: a digest, and how many samples each key had."""
-
-    def __init__(self) -> None:
-        self.digest, self.counts = hashlib.sha256(), Counter[str]()
-
-    def note(self, key: str, payload: bytes, attachment: bytes) -> None:
-        for part in (key.encode(), payload, attachment):
-            self.digest.update(len(part).to_bytes(8, "little") + part)
-        self.counts["/" + "/".join(key.split("/")[1:-2])] += 1
-
-
-class TappedOutlet:
-    """A publisher's way out, on which somebody listens."""
-
-    def __init__(self, outlet: Outlet, key: str, trace: Trace) -> None:
-        self.outlet, self.key, self.trace = outlet, key, trace
-        self.close = outlet.close
-
-    @property
-    def matched(self) -> bool:
-        return self.outlet.matched
-
-    def put(self, payload: bytes, attachment: bytes) -> None:
-        self.trace.note(self.key, payload, attachment)
-        self.outlet.put(payload, attachment)
 
 
 class TappedTransport(MemoryTransport):
@@ -58,7 +29,7 @@ class TappedTransport(MemoryTransport):
         self.trace = trace
 
     def advertise(self, key: str, qos: QoSProfile) -> Outlet:
-        return TappedOutlet(super().advertise(key, qos), key, self.trace)
+        return self.trace.tapped(key, super().advertise(key, qos))
 
 
 def follow(seconds: float, speed: float) -> Trace:
@@ -89,4 +60,4 @@ def _live(seconds: float, world: str, *controllers: tuple[str, str, str, list[Pa
 
 if __name__ == "__main__":
     logging.set_console_handler(None)
-    sys.stdout.write(laboratory(float(sys.argv[1]) if len(sys.argv) > 1 else 10.0).digest.hexdigest() + "\n")
+    sys.stdout.write(laboratory(float(sys.argv[1]) if len(sys.argv) > 1 else 10.0).hexdigest() + "\n")

@@ -116,12 +116,19 @@ def _end(code: int) -> None:
 
 
 def _run(args: list[str]) -> int:
-    import typer
-
-    from robolink.cli.root import command
+    from robolink.cli.shortcut import shortcut
     from robolink.interfaces import add_source
 
     add_source(_OF_WORKSPACE)
+    short = None if os.environ.get(COMPLETION) else shortcut(args)
+    return _parsed(args) if short is None else short()
+
+
+def _parsed(args: list[str]) -> int:
+    import typer
+
+    from robolink.cli.root import command
+
     usage_error: type[Exception] = next(each for each in typer.BadParameter.__mro__ if each.__name__ == "UsageError")
     try:
         code = command().main(args, prog_name="robolink", standalone_mode=False)

@@ -110,12 +110,22 @@ def package_executables(ctx: Context, incomplete: str) -> list[str]:
     return []
 
 
-def launch_files(ctx: Context, incomplete: str) -> list[str]:
-    """Give the launch files that `robolink launch` knows by name."""
+def launch_words(ctx: Context, incomplete: str) -> list[str]:
+    """Give the launch files that are known by name; after one its arguments, after stop and restart what runs."""
     with contextlib.suppress(Exception):
-        from robolink.workspace import list_launches
+        from robolink.workspace import find_launch, list_launches
 
-        return offered((each.stem for each in list_launches(workspace=ctx.params.get("workspace") or None)), incomplete)
+        words, workspace = list(ctx.params.get("words") or []), ctx.params.get("workspace") or None
+        if not words:
+            return offered((each.stem for each in list_launches(workspace=workspace)), incomplete)
+        if words[0] in ("stop", "restart"):
+            from robolink.cli.running import names_for
+
+            return offered(names_for(words, WITHIN), incomplete)
+        from robolink.launch.arguments import arguments_of
+
+        names = [each.name for each in arguments_of(find_launch(words[0], workspace=workspace))]
+        return [f"{each}:=" for each in offered(names, incomplete)]
     return []
 
 
@@ -126,6 +136,16 @@ def world_files(ctx: Context, incomplete: str) -> list[str]:
 
         known = [each.stem for each in list_worlds(workspace=ctx.params.get("workspace") or None)]
         return offered([*known, *_files(incomplete, (".yaml", ".yml", ".wbt"))], incomplete)
+    return []
+
+
+def faults_files(ctx: Context, incomplete: str) -> list[str]:
+    """Give the faults files that are known by name, and the folders and YAML files that begin so."""
+    with contextlib.suppress(Exception):
+        from robolink.workspace import list_faults
+
+        known = [each.stem for each in list_faults(workspace=ctx.params.get("workspace") or None)]
+        return offered([*known, *_files(incomplete, (".yaml", ".yml"))], incomplete)
     return []
 
 

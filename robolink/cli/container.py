@@ -15,6 +15,7 @@ from robolink.cli import runner
 from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.launch.together import Member
 from robolink.workspace import NodeLoadError, NodeSource, find_node, load_node
+from robolink.workspace.making import made
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -31,6 +32,7 @@ def run(members: Sequence[Member]) -> int:
     if sources:
         runner.settle(sources[0], None)
     runner.take_names()
+    runner.pass_over_imports()
     return runner.outcome(lambda: _spin(members, sources), terminated)
 
 
@@ -65,7 +67,7 @@ def make(member: Member, source: NodeSource, context: Context) -> Node:
     sys.argv = [str(source.path or source.name), *member.args]
     try:
         context.arguments = parse_arguments(sys.argv)
-        node = runner.made(_node_class(source))
+        node = made(_node_class(source))
     except ExternalShutdownException:
         raise
     except RobolinkError as error:

@@ -1,38 +1,217 @@
-"""robolink launch: run a system of nodes that a file describes."""
+"""robolink launch: run a system of nodes that a file describes, look at it without running it, ask a running one."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Sequence
+from typing import Annotated, Any, NamedTuple
 
 import typer
+import typer.core
 
 from robolink.cli import complete
+from robolink.cli.launch_words import LaunchFile, launch_file
+from robolink.cli.options import choice, seconds
+
+FORMATS = ["mermaid", "dot"]
 
 app = typer.Typer()
 
 
-@app.command()
+class LaunchCommand(typer.core.TyperCommand):
+    """A command whose `--graph` may go without a value."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Give a bare `--graph` its value."""
+        left: list[str] = super().parse_args(ctx, spelled_out(args))
+        return left
+
+
+def spelled_out(args: Sequence[str]) -> list[str]:
+    """Give the arguments with the format that `--graph` draws in if none is named behind it."""
+    result: list[str] = []
+    for index, each in enumerate(args):
+        is_bare = each == "--graph" and "".join(args[index + 1 : index + 2]) not in FORMATS
+        result.append(f"{each}={FORMATS[0]}" if is_bare else each)
+    return result
+
+
+class Options(NamedTuple):
+    """What is asked for besides a launch file."""
+
+    duration: float | None
+    workspace: str | None
+    json: bool
+    in_process: bool
+    top: bool
+    watch: bool
+
+
+@app.command(cls=LaunchCommand)
 def launch(
     ctx: typer.Context,
-    file: Annotated[
-        str, typer.Argument(metavar="NAME|FILE", help="What to launch.", autocompletion=complete.launch_files)
-    ] = "",
-    duration: Annotated[
-        float | None, typer.Option("--duration", metavar="S", help="End after so many seconds.", min=0.0)
+    words: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="FILE [ARG:=VALUE]...",
+            help="A launch file, by name, by path, or by package and name; and its arguments.",
+            autocompletion=complete.launch_words,
+            show_default=False,
+        ),
     ] = None,
+    duration: Annotated[float | None, seconds("--duration", "End after so many seconds.")] = None,
     workspace: Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Where to look first.")] = "",
     show_list: Annotated[bool, typer.Option("--list", help="List the launch files that there are.")] = False,
+    show_args: Annotated[
+        bool, typer.Option("--show-args", "-s", help="List the arguments of a launch file, and start nothing.")
+    ] = False,
+    validate: Annotated[
+        bool, typer.Option("--validate", help="Find mistakes: make each node, but start nothing.")
+    ] = False,
+    graph: Annotated[str, choice("--graph", FORMATS, "Draw nodes and topics as text, and start nothing")] = "",
+    json: Annotated[
+        bool, typer.Option("--json", help="Print objects of JSON, one a line: events, or what is asked.")
+    ] = False,
+    in_process: Annotated[
+        bool, typer.Option("--in-process", help="Run all nodes in this process, on a network of their own.")
+    ] = False,
+    status: Annotated[bool, typer.Option("--status", help="Show what runs in other shells.")] = False,
+    top: Annotated[
+        bool, typer.Option("--top", help="Show CPU and memory of each node; without a file, of what runs elsewhere.")
+    ] = False,
+    watch: Annotated[bool, typer.Option("--watch", help="Start a node again when its file is saved.")] = False,
 ) -> None:
-    """Run a system of nodes until the first of them ends, Ctrl-C, or for a while."""
-    from robolink.workspace import find_launch, list_launches
+    """Run a system of nodes until the first of them ends, Ctrl-C, or for a while.
 
-    folder = workspace or None
+    `launch stop [NAME]` and `launch restart [NAME] NODE` are for what runs in another shell; --status shows the names.
+    A launch file that is called stop or restart is launched by its path.
+    """
+    given = words or []
+    options = Options(duration, workspace or None, json, in_process, top, watch)
     if show_list:
-        for each in list_launches(workspace=folder):
-            typer.echo(each.stem)
-        return
-    if not file:
+        _list(options.workspace)
+    elif status or given[:1] in (["stop"], ["restart"]) or (top and not given):
+        _ask(ctx, given, options, status)
+    elif not given:
         ctx.fail("launch what? --list shows what there is")
-    from robolink.launch import launch as start
+    else:
+        asked = launch_file(ctx, given, options.workspace)
+        if show_args:
+            _show_arguments(asked, json)
+        elif validate:
+            raise typer.Exit(_validate(asked, options))
+        elif graph:
+            _draw(asked, options, graph)
+        else:
+            raise typer.Exit(_run(ctx, asked, options))
 
-    raise typer.Exit(start(find_launch(file, workspace=folder), workspace=folder, duration=duration))
+
+def _list(workspace: str | None) -> None:
+    from robolink.workspace import list_launches
+
+    for each in list_launches(workspace=workspace):
+        typer.echo(each.stem)
+
+
+def _ask(ctx: typer.Context, words: Sequence[str], options: Options, status: bool) -> None:
+    """Ask what runs in other shells."""
+    from robolink.cli import running
+
+    what, *rest = words or [""]
+    if options.top:
+        running.top(what, json=options.json)
+    elif status:
+        running.status(what, json=options.json)
+    elif what == "restart" and 1 <= len(rest) <= 2:
+        running.restart(rest[-1], *rest[:-1])
+    elif what == "stop" and len(rest) <= 1:
+        running.stop(*rest)
+    else:
+        ctx.fail("ask what? stop [NAME] or restart [NAME] NODE, with the name that --status shows")
+
+
+def _show_arguments(asked: LaunchFile, as_json: bool) -> None:
+    from robolink.launch.arguments import arguments_of
+
+    found = arguments_of(asked.path)
+    if as_json:
+        import msgspec
+
+        typer.echo(msgspec.json.encode(found))
+        return
+    if not found:
+        typer.echo(f"{asked.path.stem} has no arguments")
+    width = max((len(each.name) for each in found), default=0)
+    for each in found:
+        must = "must be given" if each.default is None else f"default: {each.default}"
+        choices = f"; one of {', '.join(each.choices)}" if each.choices else ""
+        description = f"{each.description} " if each.description else ""
+        typer.echo(f"{each.name:<{width}}  {description}({must}{choices})")
+
+
+def _validate(asked: LaunchFile, options: Options) -> int:
+    from robolink.exceptions import DocumentError
+    from robolink.launch.entries import read_launch_file
+    from robolink.launch.validate import Report, found, validate
+
+    try:
+        report = validate(read_launch_file(asked.path, asked.given, workspace=options.workspace))
+    except DocumentError as error:
+        report = Report([error], [])
+    if options.json:
+        import msgspec
+
+        told = {"mistakes": [found(each) for each in report.mistakes], "notes": report.notes}
+        typer.echo(msgspec.json.encode(told))
+        return 1 if report.mistakes else 0
+    for note in report.notes:
+        typer.echo(f"robolink: {note}", err=True)
+    for mistake in report.mistakes:
+        typer.echo(mistake)
+    if not report.mistakes:
+        typer.echo(f"no mistake found in {asked.path}")
+    return 1 if report.mistakes else 0
+
+
+def _draw(asked: LaunchFile, options: Options, format_: str) -> None:
+    from robolink.launch.entries import read_launch_file
+    from robolink.launch.graph import drawn
+    from robolink.launch.look import looks_of
+
+    entries = read_launch_file(asked.path, asked.given, workspace=options.workspace)
+    looks = looks_of(entries)
+    for each in entries:
+        look = looks.get(each.name)
+        if look is not None and (look.error or look.unseen):
+            typer.echo(f"robolink: {each.name} is drawn as far as it was made: {look.error or look.unseen}", err=True)
+    typer.echo(drawn(entries, looks, format_), nl=False)
+
+
+def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
+    from robolink.launch.entries import read_launch_file
+
+    if options.in_process and (options.top or options.watch or options.json):
+        ctx.fail("--in-process goes without --top, --watch and --json: there are no processes to tell of")
+    entries = read_launch_file(asked.path, asked.given, workspace=options.workspace)
+    if not entries:
+        typer.echo(f"robolink: {asked.path}: `if` and `unless` leave nothing to start", err=True)
+        return 0
+    if options.in_process:
+        from robolink import oneprocess
+
+        return oneprocess.run(entries, duration=options.duration)
+    from robolink.launch.command import launch
+
+    return launch(
+        entries,
+        asked.path,
+        duration=options.duration,
+        on_event=_print_event if options.json else None,
+        watches=options.watch,
+        shows_figures=options.top,
+    )
+
+
+def _print_event(event: Any) -> None:
+    import msgspec
+
+    typer.echo(msgspec.json.encode(event))

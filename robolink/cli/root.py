@@ -32,7 +32,9 @@ class Entry(NamedTuple):
 COMMANDS = {
     "run": Entry("robolink.cli.run", "Run a node."),
     "launch": Entry("robolink.cli.launch", "Run a system of nodes that a file describes."),
+    "simulate": Entry("robolink.cli.simulate", "Run a system in virtual time, with faults, as fast as it goes."),
     "run-together": Entry("robolink.cli.together", ""),
+    "look-into": Entry("robolink.cli.look", ""),
     "pub": Entry("robolink.cli.topic", "Publish messages: short for topic pub.", "pub"),
     "topic": Entry("robolink.cli.topic", "See and send what nodes publish."),
     "node": Entry("robolink.cli.node", "See which nodes there are, and what each of them does."),

@@ -9,8 +9,8 @@ import typer
 import typer.core
 
 from robolink.cli import complete
+from robolink.cli.shortcut import ROS_ARGS
 
-ROS_ARGS = "--ros-args"
 META = "robolink.ros_args"
 FIXED = "robolink.after_two_dashes"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import contextlib
-import inspect
+import gc
 import os
 import signal
 import sys
@@ -24,7 +24,7 @@ from robolink.exceptions import (
 )
 from robolink.lacking import LackingNameError
 from robolink.signals import SignalHandlerOptions, get_current_signal_handlers_options
-from robolink.supervisor import watch_lifeline
+from robolink.supervisor.lifeline import watch_lifeline
 from robolink.workspace import (
     VARIABLE,
     NodeLoadError,
@@ -43,6 +43,7 @@ from robolink.workspace import (
     user_workspace,
     workspace_of,
 )
+from robolink.workspace.making import check_needs_nothing, made
 
 if TYPE_CHECKING:
     from robolink.node import Node
@@ -71,6 +72,7 @@ def run(asked: Asked, ros_args: list[str], workspace: str | None) -> int:
     source, args = found(asked, workspace)
     settle(source, workspace)
     take_names()
+    pass_over_imports()
     sys.argv = [str(source.path or source.name), *args, *ros_args]
     return outcome(lambda: _start(source, args), terminated)
 
@@ -145,40 +147,23 @@ def spin(node_class: Callable[[], Node]) -> None:
             node.destroy_node()
 
 
-def made(node_class: Callable[[], Node]) -> Node:
-    """Make a node. Raises NodeLoadError for a class that needs arguments, or does not make its base."""
-    _check_needs_nothing(node_class)
-    node = node_class()
-    if not hasattr(node, "_owner_"):
-        name = type(node).__name__
-        raise NodeLoadError(f"{name}.__init__ must call super().__init__('{name.lower()}') before all else")
-    return node
-
-
-def _check_needs_nothing(found: Callable[[], Any]) -> None:
-    """Raise NodeLoadError for a class or function that needs arguments: nobody is there to give them."""
-    try:
-        needed = [
-            each.name
-            for each in inspect.signature(found).parameters.values()
-            if each.default is each.empty and each.kind not in (each.VAR_POSITIONAL, each.VAR_KEYWORD)
-        ]
-    except (TypeError, ValueError):  # a signature that Python cannot tell
-        return
-    if needed:
-        name, listed = getattr(found, "__name__", str(found)), ", ".join(f"'{each}'" for each in needed)
-        if isinstance(found, type):
-            name, otherwise = f"{name}.__init__", ", or write a main() that makes the node"
-        else:
-            name, otherwise = f"{name}()", f", as in {name}({needed[0]}=None)"
-        raise NodeLoadError(f"{name} needs {listed}: give a default value{otherwise}")
-
-
 def take_names() -> None:
     """Make rclpy and its companions robolink's, for what is run."""
     from robolink import compat  # late: its import takes names already
 
     compat.activate(compat.ALWAYS)
+
+
+def pass_over_imports() -> None:
+    """Import what every node uses, and have the garbage collector never look at it again.
+
+    Without that the interpreter's end looks through all modules, several times: a third of a node's processor time.
+    What the user's code makes is made after this, and is collected as ever.
+    """
+    from robolink import node, spinning  # noqa: F401
+
+    gc.freeze()
+    gc.enable()
 
 
 def _note_termination() -> list[int]:
@@ -201,7 +186,7 @@ def _start(source: NodeSource, args: list[str]) -> Any:
     _tell_of_unread(args, nobody_reads=isinstance(found, type))
     if isinstance(found, type):
         return spin(found)
-    _check_needs_nothing(found)
+    check_needs_nothing(found)
     return found()
 
 

@@ -10,9 +10,6 @@ app = typer.Typer()
 @app.command()
 def run_together() -> None:
     """Run the nodes that standard input names, together in this process: what a launch file calls a `process`."""
-    import sys
+    from robolink.cli import shortcut
 
-    from robolink.cli import container
-    from robolink.launch.together import read
-
-    raise typer.Exit(container.run(read(sys.stdin.buffer.read())))
+    raise typer.Exit(shortcut.run_together())

@@ -1,30 +1,25 @@
-"""What is wrong with what a launch file says, as far as that shows without looking at its nodes' code."""
+"""What is wrong with the nodes and commands of a launch file, as far as that shows without looking at their code."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from typing import Any, TypeVar
+import math
+from collections.abc import Iterable, Iterator
+from typing import Any, get_args
 
-from robolink.exceptions import DocumentError, NameValidationException, RobolinkError
-from robolink.launch.copies import Copy
-from robolink.launch.description import LaunchDescription
-from robolink.parameter_file import parse_parameter_value
+from robolink.launch.description import NodeDescription, Respawn, When
+from robolink.launch.entry import Entry
+from robolink.launch.part import Part
+from robolink.launch.substitution import Step
 from robolink.remapping import parse_remap_rule
-from robolink.validate_namespace import validate_namespace
 from robolink.validate_node_name import validate_node_name
-from robolink.yamlfile import Document, spell
+from robolink.yamlfile import spell
 
-T = TypeVar("T")
-
-
-def check(document: Document[LaunchDescription], copies: Iterable[Copy]) -> None:
-    """Check names, parameters and remappings of the nodes, and who has the keyboard. Raises `DocumentError`."""
-    found = list(copies)
-    if not found:
-        raise document.error(["nodes"], "there is no node to start")
-    for each in found:
-        _check_node(document, each)
-    _check_terminal(document, found)
+_FOR_NODES = {
+    "parameters": "give them to the program in `run`",
+    "remappings": "give them to the program in `run`",
+    "log_level": "give it to the program in `run`",
+    "process": "a command is a process of its own",
+}
 
 
 def flattened(
@@ -43,58 +38,70 @@ def absolute(namespace: str) -> str:
     return namespace if namespace.startswith("/") or not namespace else f"/{namespace}"
 
 
-def _check_node(document: Document[LaunchDescription], copy: Copy) -> None:
-    def check(look: Callable[[T], object], value: T, *steps: str, key: bool = False) -> None:
-        try:
-            look(value)
-        except NameValidationException as error:
-            raise document.error([*copy.place, *steps], f"'{error.name}' {error.error_msg}", key=key) from None
-        except (RobolinkError, ValueError) as error:
-            raise document.error([*copy.place, *steps], _reason_of(error), key=key) from None
-
-    node, written = copy.node, copy.written
-    if node.name:
-        check(validate_node_name, node.name, "name")
-    if node.namespace:
-        check(validate_namespace, absolute(node.namespace), "namespace")
-    if node.process:
-        check(validate_node_name, node.process, "process")
-    # Where something stands in the file is found by what is written there, not by what became of it.
-    places = (steps for _, steps, _ in flattened(written.parameters))
-    for steps, (name, _, value) in zip(places, flattened(node.parameters), strict=True):
-        check(_check_parameter_name, name, "parameters", *steps, key=True)
-        check(_check_parameter, value, "parameters", *steps)
-    for place, (match, replacement) in zip(written.remappings, node.remappings.items(), strict=True):
-        check(parse_remap_rule, f"{match}:={replacement}", "remappings", place, key=True)
+def check_node(part: Part, said: NodeDescription) -> None:
+    """Check what a node or command says of itself. Raises `DocumentError`."""
+    if not said.node and not said.run:
+        key = next((each for each in ("node", "run") if each in part), None)
+        raise part.error([key], "nothing to start") if key else part.error([], "missing key 'node'")
+    if said.node and said.run:
+        raise part.error(["run"], "either `node` or `run`: a command is no node", key=True)
+    if said.run:
+        for key, instead in _FOR_NODES.items():
+            if key in part:
+                raise part.error([key], f"only a node has `{key}`: {instead}", key=True)
+    if said.name:
+        part.check(validate_node_name, said.name, "name")
+    for key, texts in (("args", said.args), ("run", said.run)):
+        _check_texts(part, key, enumerate(texts))
+    check_shared(part, said)
 
 
-def _check_parameter_name(name: str) -> None:
-    if not name or any(each in ":*" or each.isspace() for each in name):
-        raise ValueError(f"'{name}' is no name for a parameter")
+def check_shared(part: Part, said: Any) -> None:
+    """Check what a node or a group says: process, remappings, environment and respawn. Raises `DocumentError`."""
+    if said.process:
+        part.check(validate_node_name, said.process, "process")
+    for match, replacement in said.remappings.items():
+        part.check(parse_remap_rule, f"{match}:={replacement}", "remappings", match, key=True)
+    for name in said.env:
+        if not name or "=" in name or "\0" in name:
+            raise part.error(["env", name], f"'{name}' is no name for a variable", key=True)
+    _check_texts(part, "env", said.env.items())
+    if isinstance(said.respawn, Respawn):
+        _check_respawn(part, said.respawn)
+    if said.cpu == []:
+        raise part.error(["cpu"], "no core is left to run on: give one, or leave `cpu` out")
 
 
-def _check_parameter(value: Any) -> None:
-    """Refuse what would arrive at the node as something else, or not at all."""
-    for item in value if isinstance(value, list) else [value]:
-        if item is None:
-            raise ValueError("a parameter cannot be null")
-        if isinstance(item, int) and not -(2**63) <= item < 2**63:
-            raise ValueError(f"{item} is more than a 64-bit integer holds")
-    parse_parameter_value(spell(value), "")
+def check_words(part: Part) -> None:
+    """Refuse what would be called a wrong type, and say what to write instead. Raises `DocumentError`."""
+    run, respawn = part.get("run"), part.get("respawn")
+    if isinstance(run, str):
+        raise part.error(["run"], f"expected a list, such as [{', '.join(run.split())}]")
+    if respawn is not None and not isinstance(respawn, str | dict):
+        words = ", ".join(get_args(When))
+        raise part.error(["respawn"], f"expected one of {words}, or a mapping with `when`, got '{spell(respawn)}'")
 
 
-def _reason_of(error: Exception) -> str:
-    """Give what an error says, without the place that it has in a text that nobody wrote."""
-    text = str(error)
-    return text.split(": ", 1)[1] if isinstance(error, DocumentError) and text.startswith(":1:") else text
-
-
-def _check_terminal(document: Document[LaunchDescription], copies: Iterable[Copy]) -> None:
-    interactive = [each for each in copies if each.node.interactive]
+def check_terminal(entries: Iterable[Entry]) -> None:
+    """Check who has the keyboard. Raises `DocumentError`."""
+    interactive = [each for each in entries if each.node.interactive]
     if len(interactive) > 1:
-        place = [*interactive[1].place, "interactive"]
-        raise document.error(place, "there is one keyboard, and another node has it")
+        raise interactive[1].error(["interactive"], "there is one keyboard, and another node has it")
     for each in interactive:
         if each.node.process:
-            place = [*each.place, "interactive"]
-            raise document.error(place, "a node with the keyboard cannot share a process: leave `process` out")
+            raise each.error(["interactive"], "a node with the keyboard cannot share a process: leave `process` out")
+
+
+def _check_texts(part: Part, key: str, texts: Iterable[tuple[Step, Any]]) -> None:
+    for at, text in texts:
+        if "\0" in str(text):
+            raise part.error([key, at], "a zero byte ends a text: no program can be given one")
+
+
+def _check_respawn(part: Part, respawn: Respawn) -> None:
+    for key in ("delay", "delay_max", "within"):
+        if not math.isfinite(getattr(respawn, key)):
+            raise part.error(["respawn", key], f"expected seconds, got {getattr(respawn, key)}")
+    if respawn.delay_max < respawn.delay:
+        at = "delay_max" if "delay_max" in part.get("respawn") else "delay"
+        raise part.error(["respawn", at], f"delay {respawn.delay} is more than delay_max {respawn.delay_max}")

@@ -132,6 +132,11 @@ class Robot:
         return Pose(x, y, wrapped(theta))
 
     @property
+    def driven(self) -> float:
+        """How many metres the robot has driven since the start, there and back alike."""
+        return float(self._motion.driven)
+
+    @property
     def twist(self) -> Velocity:
         """The robot's true speeds along, about and across its heading."""
         body = self._body

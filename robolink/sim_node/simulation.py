@@ -22,7 +22,8 @@ class Simulation:
     """A world whose steps are published by a node, with stamps from `epoch` (nanoseconds) on.
 
     The topics of the world file's only robot are in the node's namespace; of several each has its own, and so has
-    whatever is spawned. With `publish_map` the frame `map` holds the odometry's frames.
+    whatever is spawned. With `publish_map` the frame `map` holds the odometry's frames. `seed` is for all noise, the
+    description's by default.
     """
 
     def __init__(
@@ -33,12 +34,13 @@ class Simulation:
         *,
         publish_clock: bool = False,
         publish_map: bool = True,
+        seed: int | None = None,
     ) -> None:
-        self.description, self.world = description, World(description)
+        self.description, self.world = description, World(description, seed=seed)
         self.robots: dict[str, RobotTopics] = {}
         self._wheeled: list[RobotCommands] = []
         self._contacts, self._state_steps = 0, 1
-        self._node, self._epoch, self._publish_map = node, epoch, publish_map
+        self._node, self._epoch, self._publish_map, self._seed = node, epoch, publish_map, seed
         self._clock = node.create_publisher(Clock, "/clock", 10) if publish_clock else None
         self._tf = node.create_publisher(TFMessage, "/tf", 100)
         self._tf_static = node.create_publisher(TFMessage, "/tf_static", LATCHED)
@@ -71,7 +73,7 @@ class Simulation:
 
     def reset(self) -> None:
         """Begin anew: every robot of the world file is where it started, others are gone, and time goes on."""
-        self._epoch, self.world, self._contacts = self.now, World(self.description), 0
+        self._epoch, self.world, self._contacts = self.now, World(self.description, seed=self._seed), 0
         self._open_topics()
 
     def spawn(self, robot: RobotDescription) -> None:

@@ -2,11 +2,13 @@
 
 A lifeline only helps with programs that watch it. So, where there are process groups, the supervisor also
 starts this file as a small program, tells it through a pipe which groups there are, and when the pipe ends with
-groups left, this waits a moment for an orderly end and kills them.
+groups left, this waits a moment for an orderly end and kills them. A process that was just being started when the
+supervisor was killed is known by the mark of its lifeline, where the system shows environments (Linux).
 """
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import sys
@@ -17,15 +19,22 @@ from subprocess import DEVNULL, PIPE, Popen
 
 PATIENCE = 2.5
 """Seconds; longer than a lifeline's, so that programs that watch theirs can end in order."""
+_BEGINNING = 0.2
+"""Seconds in which a process that was just being started is one of its own."""
+_IN_ORDER = b".\n"
+"""What the supervisor says last, unless it is killed."""
 
 
 class Guardian:
-    """The supervisor's side; does nothing where there are no process groups (Windows)."""
+    """The supervisor's side; does nothing where there are no process groups (Windows).
 
-    def __init__(self, patience: float = PATIENCE) -> None:
+    `leavings` are files that it removes when the supervisor has been killed.
+    """
+
+    def __init__(self, mark: str = "", patience: float = PATIENCE, leavings: Iterable[Path] = ()) -> None:
         self._process: Popen[bytes] | None = None
         if sys.platform != "win32":
-            command = [sys.executable, "-I", "-S", __file__, str(patience)]
+            command = [sys.executable, "-I", "-S", __file__, str(patience), mark, *map(str, leavings)]
             self._process = Popen(
                 command, bufsize=0, stdin=PIPE, stdout=DEVNULL, stderr=DEVNULL, start_new_session=True
             )
@@ -41,6 +50,7 @@ class Guardian:
     def close(self) -> None:
         """End the guardian; it kills the groups that it still guards."""
         if self._process is not None and self._process.stdin is not None:
+            self._tell(_IN_ORDER)
             self._process.stdin.close()
             self._process.wait()
 
@@ -57,22 +67,45 @@ def remaining(lines: Iterable[bytes]) -> set[int]:
     """Give the groups that are guarded after `+group` and `-group` lines; a line cut short does not count."""
     groups: set[int] = set()
     for line in lines:
-        if line.endswith(b"\n"):
+        if line.endswith(b"\n") and line != _IN_ORDER:
             group = int(line[1:])
             (groups.add if line.startswith(b"+") else groups.discard)(group)
     return groups
 
 
-def kill_after(groups: Iterable[int], patience: float) -> None:
-    """Kill the groups that still have a process `patience` seconds from now."""
+def remove(leavings: Iterable[str]) -> None:
+    """Remove files, as far as they are there."""
+    for each in leavings:
+        with contextlib.suppress(OSError):
+            Path(each).unlink()
+
+
+def kill_after(groups: Iterable[int], patience: float, mark: str = "") -> None:
+    """Kill the groups that still have a process `patience` seconds from now, and those with the mark."""
     if sys.platform != "win32":
         deadline = time.monotonic() + patience
-        left = list(groups)
+        left = set(groups)
+        if mark:
+            time.sleep(_BEGINNING)
+            left |= marked(mark)
         while left and time.monotonic() < deadline:
             time.sleep(0.05)
-            left = [group for group in left if is_alive(group)]
-        for group in left:
+            left = {group for group in left if is_alive(group)}
+        for group in left | marked(mark):
             signal_group(group, signal.SIGKILL)
+
+
+def marked(mark: str) -> set[int]:
+    """Give the groups of the processes that were started with a lifeline of this mark, as far as the system tells."""
+    groups: set[int] = set()
+    for path in Path("/proc").glob("[0-9]*/environ") if mark else ():
+        try:
+            found = f":{mark}\0".encode() in path.read_bytes()
+        except OSError:  # another user's, or gone
+            continue
+        fields = _stat(path.with_name("stat")) if found else []
+        groups.update(int(each) for each in fields[2:3])
+    return groups
 
 
 def signal_group(group: int, number: int) -> bool:
@@ -102,4 +135,8 @@ def _stat(path: Path) -> list[str]:
 
 
 if __name__ == "__main__":
-    kill_after(remaining(sys.stdin.buffer), float(sys.argv[1]))
+    told = list(sys.stdin.buffer)
+    was_killed = told[-1:] != [_IN_ORDER]
+    if was_killed:
+        remove(sys.argv[3:])
+    kill_after(remaining(told), float(sys.argv[1]), sys.argv[2] if was_killed else "")

@@ -22,6 +22,8 @@ class Lifeline:
 
     def __init__(self) -> None:
         self._reading, self._writing = os.pipe()
+        self.mark = os.urandom(8).hex()
+        """What only the environment of our children has, for all to see: see `guardian`."""
 
     def options(self) -> tuple[dict[str, str], dict[str, Any]]:
         """Give what a child needs: environment variables, and keyword arguments of `Popen`."""
@@ -36,7 +38,7 @@ class Lifeline:
         else:
             handle = self._reading
             options = {"pass_fds": (handle,)}
-        return {VARIABLE: str(handle)}, options
+        return {VARIABLE: f"{handle}:{self.mark}"}, options
 
     def close(self) -> None:
         """Let go: children that are still there take it as our end."""
@@ -48,9 +50,12 @@ def watch_lifeline(patience: float = 2.0) -> bool:
     """Stop this process when its launcher is gone; say whether there is a launcher to watch.
 
     It then gets a SIGINT, for an orderly end, and `patience` seconds later it is killed with all of its
-    process group. Call it once, in a program's main thread, early.
+    process group. Call it once, in a program's main thread, early: a Ctrl-C that its launcher held back comes now.
     """
-    reading = _inherited(os.environ.pop(VARIABLE, ""))
+    variable = os.environ.pop(VARIABLE, "")
+    if variable and sys.platform != "win32":
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    reading = _inherited(variable)
     if reading is None:
         return False
     threading.Thread(target=_watch, args=(reading, patience), name="lifeline", daemon=True).start()
@@ -60,7 +65,7 @@ def watch_lifeline(patience: float = 2.0) -> bool:
 def _inherited(variable: str) -> int | None:
     """Turn the variable into a file descriptor of ours, if it still stands for the pipe."""
     try:
-        reading = _descriptor(int(variable))
+        reading = _descriptor(int(variable.partition(":")[0]))
         if not stat.S_ISFIFO(os.fstat(reading).st_mode):
             return None
         os.set_inheritable(reading, False)

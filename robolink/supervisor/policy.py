@@ -1,26 +1,29 @@
-"""Decide what to do when a process ends, the user interrupts or time passes: events in, actions out."""
+"""Decide when a system's processes start, start again and stop: events in, actions out.
+
+Times are seconds of any one clock and there are no processes here, so that the same decisions are made for real
+processes, for nodes in virtual time, and in tests.
+"""
 
 from __future__ import annotations
 
-import signal
-import sys
-from collections.abc import Iterable
-from dataclasses import dataclass
-from enum import IntEnum
-from typing import TypeAlias
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
 
-
-class Step(IntEnum):
-    """How hard a process is asked to stop."""
-
-    INTERRUPT = 0
-    TERMINATE = 1
-    KILL = 2
-    GIVE_UP = 3
-
+from robolink.supervisor.rules import Rules, Step, described, exit_code, is_orderly
 
 _ECHO = 0.2
 """Seconds in which a second interrupt is the first one again: a terminal and a wrapper may both deliver it."""
+
+State: TypeAlias = Literal["held", "waiting", "running", "stopping", "stopped", "ended"]
+"""Held: not released yet; waiting: to be started, or started again; stopped: as somebody asked; ended: by itself."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """Start the process called `name`; it does not run now."""
+
+    name: str
 
 
 @dataclass(frozen=True)
@@ -38,44 +41,120 @@ class Say:
     text: str
 
 
-Action: TypeAlias = "Ask | Say"
+Action: TypeAlias = "Start | Ask | Say"
+
+
+@dataclass
+class Tracked:
+    """What is known of one process; for others to read."""
+
+    name: str
+    rules: Rules
+    state: State
+    since: float = 0.0
+    """When it came into its state."""
+    starts: int = 0
+    returncode: int | None = None
+    """How it ended last."""
+    due: float | None = None
+    """When it is started again, or asked harder to stop."""
+    step: Step | None = None
+    """How hard it has been asked to stop."""
+    is_restart: bool = False
+    """Whether it is started again once it has stopped."""
+    streak: int = 0
+    respawned: list[float] = field(default_factory=list)
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether it runs, asked to stop or not."""
+        return self.state in ("running", "stopping")
+
+    @property
+    def restarts(self) -> int:
+        """How often it was started again, for whatever reason."""
+        return max(0, self.starts - 1)
 
 
 class Policy:
-    """Ends the system with the first process that ends, harder after each `patience` seconds.
+    """Runs a system until a process ends whose end is not to be ignored, none is left, or somebody wants an end.
 
-    `ends` is when the system ends by itself. Times are seconds of any one clock; there are no processes here.
+    `ends` is when the system ends by itself. On the way to its end, processes are asked harder every `patience`
+    seconds. Call `begin` first; do what each call returns, in that order.
     """
 
-    def __init__(self, names: Iterable[str], *, ends: float | None = None, patience: float = 5.0) -> None:
-        self.alive = list(names)
+    def __init__(self, rules: Mapping[str, Rules], *, ends: float | None = None, patience: float = 5.0) -> None:
+        self.processes = {name: _tracked(name, each) for name, each in rules.items()}
         self.step: Step | None = None
-        self.deadline = ends
+        """How hard the whole system has been asked to stop."""
+        self._ends = ends
         self._patience = patience
         self._code: int | None = None
         self._is_requested = False
         self._asked = 0.0
 
     @property
+    def alive(self) -> list[str]:
+        """The names of the processes that run."""
+        return [name for name, each in self.processes.items() if each.is_alive]
+
+    @property
     def is_over(self) -> bool:
-        """Whether nothing is left to wait for."""
-        return not self.alive or self.step is Step.GIVE_UP
+        """Whether nothing is left to wait for: none runs and none will."""
+        if self.step is Step.GIVE_UP:
+            return True
+        coming = any(each.state in ("held", "waiting") for each in self.processes.values())
+        return not self.alive and (self.step is not None or not coming)
+
+    @property
+    def deadline(self) -> float | None:
+        """When `woken` should be called, if nothing else happens before; None: not at all."""
+        if self.is_over:
+            return None
+        if self.step is not None:
+            return self._asked + self._patience
+        due = [each.due for each in self.processes.values() if each.due is not None]
+        return min(due if self._ends is None else [*due, self._ends], default=None)
 
     @property
     def code(self) -> int:
-        """The system's exit code: that of the process that ended it, or 0 after an orderly stop on request."""
+        """The system's exit code.
+
+        That is the code of the process whose end was the system's: the first whose end is not ignored, or else the
+        last of all; 128 + N when signal N killed it. After an orderly stop on request it is 0; when a process ended
+        in disorder on the way, the first such one's.
+        """
         return self._code or 0
 
-    def exited(self, name: str, returncode: int, now: float) -> list[Action]:
-        """A process ended, with a return code as `Popen` has it: negative for a signal."""
-        self.alive.remove(name)
-        if self.step is None:
-            self._code = exit_code(returncode)
-            return [Say(f"{name} {described(returncode)}"), *self._harder(now)]
-        if self._is_requested and not is_orderly(returncode, self.step):
-            self._code = self._code or exit_code(returncode)
-            return [Say(f"{name} {described(returncode)}")]
-        return []
+    def begin(self, now: float) -> list[Action]:
+        """Start all that is not held."""
+        for each in self.processes.values():
+            each.since = now
+        return self._start_all(lambda each: each.state == "waiting" and each.due is None, now)
+
+    def released(self, name: str, now: float) -> list[Action]:
+        """What a held process waits for is there."""
+        return self._start_all(lambda each: each.name == name and each.state == "held", now)
+
+    def exited(self, name: str, returncode: int, now: float, cause: str = "") -> list[Action]:
+        """A process ended, with a return code as `Popen` has it: negative for a signal. `cause` is told."""
+        each = self.processes[name]
+        if not each.is_alive:
+            return []
+        asked, is_restart, ran = each.step, each.is_restart, now - each.since
+        _move(each, "ended" if asked is None else "stopped", now)
+        each.returncode = returncode
+        how = f"{name} {described(returncode)}" + (f": {cause}" if cause else "")
+        if self.step is not None:
+            return self._ended_on_the_way(how, returncode, is_orderly(returncode, asked or Step.INTERRUPT, cause))
+        if asked is None:
+            return self._ended(each, how, ran, now)
+        told: list[Action] = [] if is_orderly(returncode, asked, cause) else [Say(how)]
+        if is_restart:
+            return [*told, *self._start(each, now)]
+        if self.is_over:
+            self._code = exit_code(returncode) if told else 0
+        return told or [Say(f"{name} has stopped")]
 
     def interrupted(self, now: float, *, in_hurry: bool = True) -> list[Action]:
         """The user wants an end, or, when it is on its way already and they are in a hurry, a quicker one."""
@@ -87,47 +166,131 @@ class Policy:
 
     def woken(self, now: float) -> list[Action]:
         """Time passed."""
-        if self.deadline is None or now < self.deadline or self.is_over:
+        if self.deadline is None or now < self.deadline:
             return []
-        if self.step is None:
+        if self.step is not None:
+            return [self._late(*self.alive), *self._harder(now)]
+        if self._ends is not None and now >= self._ends:
             self._is_requested = True
             return self._harder(now)
-        late = f"still running after {self._patience:g} s: {', '.join(self.alive)}"
-        return [Say(late), *self._harder(now)]
+        due = [each for each in self.processes.values() if each.due is not None and each.due <= now]
+        return [
+            action
+            for each in due
+            for action in (self._start(each, now) if each.state == "waiting" else self._one_harder(each, now))
+        ]
+
+    def restart(self, name: str, now: float) -> list[Action]:
+        """Somebody wants a process anew: it is stopped in order first if it runs. That is no failure of its."""
+        each = self.processes[name]
+        if self.step is not None:
+            return [Say(f"{name} is not restarted: the system is stopping")]
+        if each.state == "held":
+            return [Say(f"{name} is not started yet: it waits for something else")]
+        each.streak, each.respawned = 0, []
+        if not each.is_alive:
+            return [Say(f"starting {name}"), *self._start(each, now)]
+        each.is_restart = True
+        return [] if each.step is not None else [Say(f"restarting {name}"), *self._one_harder(each, now)]
+
+    def stop_one(self, name: str, now: float) -> list[Action]:
+        """Somebody wants one process to stop, and the others to go on."""
+        each = self.processes[name]
+        each.is_restart = False
+        if each.state in ("held", "waiting") and self.step is None:
+            _move(each, "stopped", now)
+            return [Say(f"{name} is not started")]
+        if each.state != "running" or self.step is not None:
+            return []
+        return [Say(f"stopping {name}"), *self._one_harder(each, now)]
+
+    def _start_all(self, is_meant: Callable[[Tracked], bool], now: float) -> list[Action]:
+        meant = [each for each in self.processes.values() if is_meant(each)]
+        return [action for each in meant for action in self._start(each, now)]
+
+    def _start(self, each: Tracked, now: float) -> list[Action]:
+        if self.step is not None:
+            return []
+        _move(each, "running", now)
+        each.starts += 1
+        return [Start(each.name)]
+
+    def _ended(self, each: Tracked, how: str, ran: float, now: float) -> list[Action]:
+        """A process ended that nobody had asked to."""
+        rule, code = each.rules.respawn, each.returncode or 0
+        mark = ";" if ": " in how else ":"  # behind a cause or not
+        if rule.wants(code):
+            each.respawned = [then for then in each.respawned if now - then < rule.within]
+            if len(each.respawned) < rule.most:
+                return [Say(f"{how}{mark} {_respawn(each, ran, now)}")]
+            how += f"{mark} given up after {rule.most} starts within {rule.within:g} s"
+        if each.rules.on_exit == "ignore":
+            self._code = exit_code(code) if self.is_over else None
+            return [Say(how), *self._only_held()]
+        self._code = exit_code(code)
+        return [Say(how), *self._harder(now)]
+
+    def _ended_on_the_way(self, how: str, returncode: int, is_fine: bool) -> list[Action]:
+        if not self._is_requested or is_fine:
+            return []
+        self._code = self._code or exit_code(returncode)
+        return [Say(how)]
+
+    def _only_held(self) -> list[Action]:
+        """Say so when all that is left waits for something that may never come."""
+        left = [each for each in self.processes.values() if each.state not in ("ended", "stopped")]
+        if not left or any(each.state != "held" for each in left):
+            return []
+        return [Say(f"nothing runs any more; not started yet: {', '.join(each.name for each in left)}")]
 
     def _harder(self, now: float) -> list[Action]:
+        """Ask all that run to stop, but none again as it was asked before: that might disturb its orderly end."""
         self.step = Step.INTERRUPT if self.step is None else Step(min(self.step + 1, Step.GIVE_UP))
-        self.deadline, self._asked = now + self._patience, now
+        self._asked = now
         if self.step is Step.GIVE_UP:
             self._code = self._code or exit_code(-9)
             return []
-        return [Ask(name, self.step) for name in self.alive]
+        asked: list[Action] = []
+        for each in self.processes.values():
+            if each.is_alive and (each.step is None or each.step < self.step):
+                _move(each, "stopping", now)
+                each.step = self.step
+                asked.append(Ask(each.name, self.step))
+        return asked
+
+    def _one_harder(self, each: Tracked, now: float) -> list[Action]:
+        if each.step is None:
+            _move(each, "stopping", now)
+            each.step, late = Step.INTERRUPT, []
+        else:
+            each.step, late = Step(each.step + 1), [self._late(each.name)]
+        if each.step is Step.GIVE_UP:  # it stays as it is, and may still end
+            each.step, each.due = Step.KILL, None
+            return [Say(f"{each.name} cannot be killed")]
+        each.due = now + self._patience
+        return [*late, Ask(each.name, each.step)]
+
+    def _late(self, *names: str) -> Say:
+        return Say(f"still running after {self._patience:g} s: {', '.join(names)}")
 
 
-def exit_code(returncode: int) -> int:
-    """Give a return code as shells count: 128 + N for a process killed by signal N."""
-    return 128 - returncode if returncode < 0 else returncode
+def _tracked(name: str, rules: Rules) -> Tracked:
+    return Tracked(name, rules, "held" if rules.held else "waiting")
 
 
-def described(returncode: int) -> str:
-    """Say how a process ended: `ended with exit code 3`, `was killed by SIGSEGV`."""
-    if returncode == 0:
-        return "has ended"
-    if returncode > 0:
-        return f"ended with exit code {returncode}"
-    try:
-        return f"was killed by {signal.Signals(-returncode).name}"
-    except ValueError:
-        return f"was killed by signal {-returncode}"
+def _move(each: Tracked, state: State, now: float) -> None:
+    """Bring a process into a state in which nothing is planned for it yet."""
+    is_restart = each.is_restart and state == "stopping"
+    each.state, each.since, each.due, each.step, each.is_restart = state, now, None, None, is_restart
 
 
-_CONTROL_C_EXIT = 0xC000013A
-"""What Windows says of a process that Ctrl-C or Ctrl-Break ended."""
-
-
-def is_orderly(returncode: int, step: Step) -> bool:
-    """Whether a process that had been asked to stop ended as one that obeys."""
-    obeyed = {0, 128 + signal.SIGINT, 128 + signal.SIGTERM}
-    if sys.platform == "win32":
-        obeyed |= {_CONTROL_C_EXIT, 1} if step >= Step.TERMINATE else {_CONTROL_C_EXIT}
-    return exit_code(returncode) in obeyed
+def _respawn(each: Tracked, ran: float, now: float) -> str:
+    """Plan a process's new start and say it."""
+    rule = each.rules.respawn
+    each.streak = 0 if ran >= rule.within else each.streak
+    pause = rule.pause(each.streak)
+    each.streak += 1
+    _move(each, "waiting", now)
+    each.due = now + pause
+    each.respawned.append(each.due)
+    return f"starting it again in {pause:g} s ({len(each.respawned)} of {rule.most} within {rule.within:g} s)"

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -16,12 +17,14 @@ from typing import IO, Any
 from robolink.exceptions import RobolinkError
 from robolink.supervisor.guardian import is_alive, signal_group
 from robolink.supervisor.lifeline import Lifeline
-from robolink.supervisor.policy import Step
+from robolink.supervisor.rules import Rules, Step
 
 _LONGEST_LINE = 1 << 20
 """Bytes; a longer line is printed in pieces."""
 _LAST_WORDS = 0.3
 """Seconds that the output of a process may go on behind its end, in the pipe or from its own children."""
+_LEFT_BEHIND = 1.0
+"""Seconds that processes have which outlive the one that started them, between SIGTERM and SIGKILL."""
 
 
 class ProcessStartError(RobolinkError, OSError):
@@ -32,7 +35,9 @@ class ProcessStartError(RobolinkError, OSError):
 class Process:
     """What to run: a command, under a name; `env` is added to our own environment.
 
-    An `interactive` process reads our standard input, the others what `input` holds.
+    An `interactive` process reads our standard input, the others what `input` holds. `rules` say what its end means,
+    `cpu` on which cores (from 0) it may run; none means on all. A Ctrl-C waits for one that `holds_interrupts` until
+    it calls `watch_lifeline`: nobody wants to read from which import Python was torn.
     """
 
     name: str
@@ -41,6 +46,9 @@ class Process:
     cwd: str | os.PathLike[str] | None = None
     interactive: bool = False
     input: bytes = b""
+    rules: Rules = field(default_factory=Rules)
+    cpu: Sequence[int] = ()
+    holds_interrupts: bool = False
 
 
 class Child:
@@ -49,7 +57,7 @@ class Child:
     def __init__(self, process: Process, lifeline: Lifeline) -> None:
         variables, options = lifeline.options()
         try:
-            with _standard_input(process) as stdin:
+            with _standard_input(process) as stdin, _interrupts_held(process.holds_interrupts):
                 self._popen = subprocess.Popen(
                     list(process.argv),
                     env={**os.environ, "PYTHONUNBUFFERED": "1", **process.env, **variables},
@@ -64,9 +72,14 @@ class Child:
             raise ProcessStartError(f"cannot start {process.name} ({process.argv[0]}): {error}") from None
         self.name = process.name
         self.group = self._popen.pid
+        self._has_ended = False
 
     def watch(self, on_line: Callable[[str, bytes], None], on_exit: Callable[[str, int], None]) -> None:
-        """Call `on_line` with each line, then `on_exit` with the return code, on threads of our own."""
+        """Call `on_line` with each line, then `on_exit` with the return code, on threads of our own.
+
+        At its exit nothing is left of its process group either, nor is it ever asked again: the number may be
+        another's by then.
+        """
         output = self._popen.stdout
         assert output is not None
         reader = threading.Thread(target=self._read, args=(output, on_line), daemon=True)
@@ -75,6 +88,8 @@ class Child:
 
     def ask(self, step: Step) -> None:
         """Ask the process group to stop, the harder the later the step."""
+        if self._has_ended:
+            return
         if sys.platform != "win32":
             signal_group(self.group, _SIGNALS[step])
         elif step is Step.INTERRUPT:
@@ -84,17 +99,17 @@ class Child:
 
     def pause(self) -> None:
         """Hold the process group where it stands."""
-        if sys.platform != "win32":
+        if sys.platform != "win32" and not self._has_ended:
             signal_group(self.group, signal.SIGSTOP)
 
     def resume(self) -> None:
         """Let a paused process group go on."""
-        if sys.platform != "win32":
+        if sys.platform != "win32" and not self._has_ended:
             signal_group(self.group, signal.SIGCONT)
 
     def is_left(self) -> bool:
-        """Whether the ended process left others in its group."""
-        return is_alive(self.group)
+        """Whether the process, or another of its group, still runs."""
+        return not self._has_ended and is_alive(self.group)
 
     def _read(self, output: IO[bytes], on_line: Callable[[str, bytes], None]) -> None:
         with output:
@@ -103,8 +118,21 @@ class Child:
 
     def _wait(self, reader: threading.Thread, on_exit: Callable[[str, int], None]) -> None:
         returncode = self._popen.wait()
+        self._has_ended = True
+        _end_rest(self.group)
         reader.join(_LAST_WORDS)
         on_exit(self.name, returncode)
+
+
+def _end_rest(group: int) -> None:
+    """End what a process that has just ended left in its group; while there is any, its number is no other's."""
+    if sys.platform != "win32" and signal_group(group, signal.SIGTERM):
+        deadline = time.monotonic() + _LEFT_BEHIND
+        while is_alive(group):
+            if time.monotonic() > deadline:
+                signal_group(group, signal.SIGKILL)
+                return
+            time.sleep(0.02)
 
 
 @contextmanager
@@ -117,6 +145,19 @@ def _standard_input(process: Process) -> Iterator[IO[bytes] | int | None]:
         file.write(process.input)
         file.seek(0)
         yield file
+
+
+@contextmanager
+def _interrupts_held(wanted: bool) -> Iterator[None]:
+    """Have what is started meanwhile begin with SIGINT blocked, which it inherits; ours waits as long."""
+    if not wanted or sys.platform == "win32":
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _own_group() -> dict[str, Any]:

@@ -129,8 +129,7 @@ class BufferClient(BufferInterface):
         if executor is not None and executor.spins_here:
             executor.serve_until(future, deadline)
         elif context.time.virtual:
-            if not future.done():
-                context.time.sleep(deadline - context.time.steady())
+            context.time.wait_until(future.done, deadline)
         else:
             came = threading.Event()
             future.when_done(came.set)

@@ -7,6 +7,7 @@ import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from robolink.defaults import get_defaults
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser
 from robolink.inbox import A_WHILE
 from robolink.interfaces.geometry_msgs.msg import TransformStamped
@@ -74,8 +75,7 @@ class News:
     def _wait_for_others(self, question: Question, span: int, contexts: list[Context]) -> None:
         time = contexts[0].time if contexts else SystemTime()
         if time.virtual:
-            if not question.settled():
-                time.sleep(span)
+            time.wait_until(question.settled, time.steady() + span)
             return
         deadline = time.steady() + span
         with self._came:
@@ -127,7 +127,7 @@ class News:
 def check(contexts: list[Context]) -> None:
     """Raise InterruptedByUser (in the main thread) or ExternalShutdownException when one of them has ended."""
     for context in contexts:
-        if context.interrupted and threading.current_thread() is threading.main_thread():
+        if context.interrupted and get_defaults().in_main_thread():
             raise InterruptedByUser
         if not context.ok():
             raise ExternalShutdownException("the context ended before the transform came")

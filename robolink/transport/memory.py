@@ -234,6 +234,7 @@ class _Call:
     def __init__(self, bus: Bus, sink: Sink, servers: int) -> None:
         self.bus, self._waiting = bus, servers
         self._sink: Sink | None = sink
+        self.abandoned: list[_Query] = []  # held by whoever waits, and forgotten with the wait
         if not servers:
             self.end()
 
@@ -273,6 +274,10 @@ class _Query:
             if self._open:
                 self._open = False
                 self._call.one_less()
+
+    def abandon(self) -> None:
+        """Leave the caller waiting, as when an answer is lost: until it gives up, or either session closes."""
+        self._call.abandoned.append(self)
 
     __del__ = close
 

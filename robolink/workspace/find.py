@@ -91,6 +91,11 @@ def find_world(name: str, *, workspace: Folder = None) -> Path:
     return _find_file("world", name, "configs/worlds", workspace, WORLDS)
 
 
+def find_faults(name: str, *, workspace: Folder = None) -> Path:
+    """Find a faults file by name or path. Raises `NotFoundError` with the nearest name."""
+    return _find_file("faults file", name, "configs/faults", workspace, YAML)
+
+
 def list_nodes(*, workspace: Folder = None) -> list[NodeSource]:
     """Give every node that a name finds, by name; shadowed ones are left out."""
     return sorted(_unshadowed(_node_sources(workspace)), key=lambda each: each.name)
@@ -104,6 +109,11 @@ def list_launches(*, workspace: Folder = None) -> list[Path]:
 def list_worlds(*, workspace: Folder = None) -> list[Path]:
     """Give every world file that a name finds, by name."""
     return _list_files("configs/worlds", workspace, WORLDS)
+
+
+def list_faults(*, workspace: Folder = None) -> list[Path]:
+    """Give every faults file that a name finds, by name."""
+    return _list_files("configs/faults", workspace, YAML)
 
 
 def user_workspace(workspace: Folder = None) -> Path | None:

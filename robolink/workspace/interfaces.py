@@ -11,6 +11,7 @@ import functools
 import stat
 import threading
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -47,6 +48,15 @@ class WorkspaceTypes:
     def add(self, workspace: Path) -> None:
         """Look into this workspace before all others."""
         self._added = [workspace, *(each for each in self._added if each != workspace)]
+
+    @contextmanager
+    def forgetting(self) -> Iterator[None]:
+        """Forget, at the end of a `with`, which workspaces were added in it."""
+        before = self._added
+        try:
+            yield
+        finally:
+            self._added = before
 
     def names(self, kind: str) -> dict[str, list[str]]:
         """Give the types of a kind: package to the names within it."""

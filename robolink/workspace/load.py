@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from robolink.node import Node
 
     Runnable: TypeAlias = "type[Node] | Callable[[], Any]"
+    ScriptMaker: TypeAlias = "Callable[[NodeSource, Callable[[], None]], Callable[[], Any]]"
 
 
 RUNNING = frozenset(["init", "spin", "spin_once", "spin_until_future_complete", "create_node"])
@@ -35,13 +36,14 @@ class NodeLoadError(RobolinkError, ImportError):
     """A file holds no node, or none that can be chosen, or is no Python."""
 
 
-def load_node(source: NodeSource) -> Runnable:
+def load_node(source: NodeSource, *, script: ScriptMaker | None = None) -> Runnable:
     """Give what runs a node: a subclass of `Node` to construct and spin, or something to call.
 
     What a file holds is decided in this order: the attribute asked for; a script, with a `__main__` guard or with
     statements that run a node as the file is read, which is run as Python runs it; a function `main`; its only Node
-    class; a script without any of these, which is run too. Raises `NodeLoadError`, `NotFoundError` for an attribute,
-    and whatever the file itself raises.
+    class; a script without any of these, which is run too. `script` may give something else that runs a script, of
+    its source, and of what is to be called first so that its imports are found. Raises `NodeLoadError`,
+    `NotFoundError` for an attribute, and whatever the file itself raises.
     """
     if source.path is None:
         assert source.entry_point is not None
@@ -54,6 +56,8 @@ def load_node(source: NodeSource) -> Runnable:
     if source.attribute:
         return _attribute(_loaded(source), source)
     if _is_script(tree):
+        if script is not None:
+            return script(source, lambda: _reach_all(source))
         return _script(source, source.path)
     module = _loaded(source)
     return module.main if _defines(tree, "FunctionDef", "main") else _only_node(module, source.path)
@@ -182,14 +186,18 @@ def _script(source: NodeSource, path: Path) -> Callable[[], Any]:
     def run() -> None:
         import runpy
 
+        _reach_all(source)
         if source.module and source.root is not None:
-            _reach(path.parent, source.root)
             runpy.run_module(source.module, run_name="__main__", alter_sys=True)
         else:
-            _reach(path.parent)
             runpy.run_path(str(path), run_name="__main__")
 
     return run
+
+
+def _reach_all(source: NodeSource) -> None:
+    assert source.path is not None
+    _reach(source.path.parent, source.root if source.module else None)
 
 
 def _reach(folder: Path, root: Path | None = None) -> None:

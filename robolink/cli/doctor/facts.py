@@ -28,7 +28,18 @@ COUNT_WITHIN = 1.0
 MOST_DOMAINS = 8
 """So many other domains are looked into."""
 
-DISTRIBUTIONS = ("robolink", "eclipse-zenoh", "msgspec", "numpy", "typer", "PyYAML", "xxhash", "pymunk", "rich")
+DISTRIBUTIONS = (
+    "robolink",
+    "eclipse-zenoh",
+    "msgspec",
+    "numpy",
+    "typer",
+    "PyYAML",
+    "xxhash",
+    "pymunk",
+    "psutil",
+    "rich",
+)
 
 ResultT = TypeVar("ResultT")
 

@@ -1,7 +1,7 @@
 """The functions that a formula needs beyond + - * /, once for floats and once for arrays.
 
 A formula written with these serves one robot or a hundred at once, and gives the same bits either way: Python and
-numpy both ask the C library for sines and cosines (not so for tangents, powers and hypotenuses).
+numpy both ask the C library for sines and cosines (not so for tangents, powers and hypotenuses), and a root is exact.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ class Arithmetic(Generic[Number]):
     sinc: Callable[[Number], Number]
     clipped: Callable[[Number, Number], Number]
     where: Callable[[Any, Number, Number], Number]
+    root: Callable[[Number], Number]
 
 
 def sinc(x: float) -> float:
@@ -64,5 +65,5 @@ def _all_clipped(values: Array, limits: Array) -> Array:
     return clipped
 
 
-FLOATS = Arithmetic[float](math.cos, math.sin, sinc, clipped, _where)
-ARRAYS = Arithmetic[Array](np.cos, np.sin, _sincs, _all_clipped, np.where)
+FLOATS = Arithmetic[float](math.cos, math.sin, sinc, clipped, _where, math.sqrt)
+ARRAYS = Arithmetic[Array](np.cos, np.sin, _sincs, _all_clipped, np.where, np.sqrt)

@@ -49,6 +49,7 @@ _STATE = (
     "rolled",  # the true ways: metres ahead, metres to the left, radians
     "slid",
     "turned",
+    "driven",  # the true way, ahead and back alike; a step that only an omni makes to the side counts too
 )
 
 
@@ -98,6 +99,7 @@ class Motion(Generic[Number]):
     rolled: Number
     slid: Number
     turned: Number
+    driven: Number
 
     def __init__(self, arithmetic: Arithmetic[Number], dt: float) -> None:
         self.arithmetic, self.dt = arithmetic, dt
@@ -152,6 +154,7 @@ class Motion(Generic[Number]):
         tell it.
         """
         dt, v, s, turn, chord = self.dt, self.v, self.s, self.w * self.dt, self.chord
+        self.driven = self.driven + self._way(v, s) * dt
         if self.wheeled:
             self.rolled, self.slid, self.turned = self.rolled + v * dt, self.slid + s * dt, self.turned + turn
         if errors is not None:
@@ -164,6 +167,13 @@ class Motion(Generic[Number]):
             aside = s * self.omni * chord
             x, y = x - aside * sin, y + aside * cos
         self.x, self.y, self.theta = self.x + x, self.y + y, self.theta + turn
+
+    def _way(self, v: Number, s: Number) -> Number:
+        """Give the speed of the wheels' way over the floor; a robot that slips does not drive sideways."""
+        if not self.sideways:
+            return abs(v)
+        aside = s * self.omni
+        return self.arithmetic.root(v * v + aside * aside)
 
 
 def motion_of_one(dt: float, start: Pose, limits: Mapping[str, float], wheeled: bool = False) -> Motion[float]:

@@ -1,0 +1,22 @@
+"""Faults of a network, of nodes and of clocks, drawn from a seed: read from YAML, or added while a system runs."""
+
+from robolink.faults.description import ClockFault, Crash, FaultsDescription, MessageFault, Partition
+from robolink.faults.file import check_nodes, read_faults
+from robolink.faults.injector import Injector
+from robolink.faults.network import FaultyNetwork
+from robolink.faults.report import FaultReport
+from robolink.faults.transport import FaultyTransport
+
+__all__ = [
+    "ClockFault",
+    "Crash",
+    "FaultReport",
+    "FaultsDescription",
+    "FaultyNetwork",
+    "FaultyTransport",
+    "Injector",
+    "MessageFault",
+    "Partition",
+    "check_nodes",
+    "read_faults",
+]

@@ -1,0 +1,136 @@
+"""Read a faults file, and find what is wrong with it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Iterator
+from typing import NamedTuple
+
+from robolink.exceptions import nearest
+from robolink.faults.description import FaultsDescription, MessageFault, Names
+from robolink.faults.patterns import is_pattern, listed, matcher, mistake_in
+from robolink.yamlfile import Document, read
+from robolink.yamlmistakes import Step
+
+_EFFECTS = ("loss", "duplication", "latency", "jitter")
+
+
+class _Problem(NamedTuple):
+    """What is wrong, and the steps that lead there."""
+
+    steps: list[Step]
+    message: str
+
+
+def read_faults(path: str | os.PathLike[str], *, text: str | None = None) -> Document[FaultsDescription]:
+    """Read a faults file (or `text` in its place).
+
+    Raises `DocumentError` with `file:line:column` for YAML that is none, an unknown key, a value of the wrong type or
+    out of its range, a name that cannot be one, a fault that does nothing or that cannot be.
+    """
+    document = read(path, FaultsDescription, text=text)
+    for steps, message in _problems(document.value):
+        raise document.error(steps, message)
+    return document
+
+
+def check_nodes(document: Document[FaultsDescription], known: Collection[str]) -> None:
+    """Refuse a fault that names a node which the system does not have. Raises `DocumentError` with the nearest name.
+
+    A pattern may fit nothing, since nodes may come later.
+    """
+    for steps, pattern in _nodes(document.value):
+        if not is_pattern(pattern) and not any(map(matcher((pattern,)), known)):
+            near = nearest(pattern.lstrip("/"), [each.lstrip("/") for each in known])
+            raise document.error(steps, f"no node named '{pattern}'{near}")
+
+
+def mistakes_of(fault: MessageFault) -> Iterator[tuple[str, str]]:
+    """Yield, as (key, what is wrong), what types cannot say of a fault of messages."""
+    if fault.topic and fault.service:
+        yield "service", "a fault is on topics or on services: make two of it"
+    if not any(getattr(fault, each) for each in _EFFECTS):
+        yield "", f"this does nothing: give {', '.join(_EFFECTS[:-1])} or {_EFFECTS[-1]}"
+    if fault.duplication and fault.service:
+        yield "duplication", "a call is never doubled, only late or lost"
+    if fault.reorder and not fault.jitter:
+        yield "reorder", "without jitter nothing overtakes"
+    if fault.burst is not None:
+        yield from _mistakes_of_burst(fault.loss, fault.burst)
+    yield from _mistakes_of_window(fault.after, fault.until)
+
+
+def _mistakes_of_burst(loss: float, burst: float) -> Iterator[tuple[str, str]]:
+    if not loss:
+        yield "burst", "without loss there are no bursts of it"
+    elif loss > burst / (1.0 + burst):
+        hint = "all is lost anyway" if loss == 1.0 else f"give at least {loss / (1.0 - loss):.3g}"
+        yield "burst", f"a loss of {loss:g} leaves no room between bursts of {burst:g}: {hint}"
+
+
+def _mistakes_of_window(after: float, until: float | None) -> Iterator[tuple[str, str]]:
+    if until is not None and not until > after:
+        yield "until", f"expected a time later than {after:g} s, when it begins, got {until:g}"
+
+
+def _problems(faults: FaultsDescription) -> Iterator[_Problem]:
+    for index, fault in enumerate(faults.messages):
+        for key, message in mistakes_of(fault):
+            yield _Problem(["messages", index, key] if key else ["messages", index], message)
+    for steps, name in (*_topics(faults), *_nodes(faults)):
+        if mistake := mistake_in(name):
+            yield _Problem(steps, mistake)
+    yield from _problems_of_partitions(faults)
+    yield from _problems_of_crashes(faults)
+    yield from _problems_of_clocks(faults)
+
+
+def _problems_of_crashes(faults: FaultsDescription) -> Iterator[_Problem]:
+    for index, crash in enumerate(faults.crashes):
+        if is_pattern(crash.node):
+            yield _Problem(["crashes", index, "node"], f"one node crashes: '{crash.node}' may be several")
+
+
+def _problems_of_clocks(faults: FaultsDescription) -> Iterator[_Problem]:
+    for index, clock in enumerate(faults.clocks):
+        if not clock.offset and not clock.drift:
+            yield _Problem(["clocks", index], "this clock is right: give offset or drift")
+
+
+def _problems_of_partitions(faults: FaultsDescription) -> Iterator[_Problem]:
+    for index, partition in enumerate(faults.partitions):
+        place: list[Step] = ["partitions", index]
+        if len(partition.between) < 2 or not all(partition.between):
+            yield _Problem([*place, "between"], "expected two groups of nodes or more, such as [[world], [follower]]")
+        names = [each.lstrip("/") for group in partition.between for each in listed(group)]
+        if twice := next((each for each in names if names.count(each) > 1), None):
+            yield _Problem([*place, "between"], f"'{twice}' is named twice")
+        for key, message in _mistakes_of_window(partition.after, partition.until):
+            yield _Problem([*place, key], message)
+
+
+def _topics(faults: FaultsDescription) -> Iterator[tuple[list[Step], str]]:
+    for index, fault in enumerate(faults.messages):
+        yield from _placed(fault.topic, ["messages", index, "topic"])
+        yield from _placed(fault.service, ["messages", index, "service"])
+
+
+def _nodes(faults: FaultsDescription) -> Iterator[tuple[list[Step], str]]:
+    """Yield where a node is named, and how."""
+    for index, fault in enumerate(faults.messages):
+        yield from _placed(fault.from_, ["messages", index, "from"])
+        yield from _placed(fault.to, ["messages", index, "to"])
+    for index, partition in enumerate(faults.partitions):
+        for number, group in enumerate(partition.between):
+            yield from _placed(group, ["partitions", index, "between", number])
+    for index, crash in enumerate(faults.crashes):
+        yield from _placed(crash.node, ["crashes", index, "node"])
+    for index, clock in enumerate(faults.clocks):
+        yield from _placed(clock.node, ["clocks", index, "node"])
+
+
+def _placed(names: Names, steps: list[Step]) -> Iterator[tuple[list[Step], str]]:
+    if isinstance(names, str):
+        yield steps, names
+    else:
+        yield from (([*steps, number], each) for number, each in enumerate(names))

@@ -1,0 +1,54 @@
+"""Names with wildcards, as faults spell topics, services and nodes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from functools import lru_cache
+
+from robolink.faults.description import Names
+
+_ALLOWED = re.compile(r"/?[A-Za-z0-9_*]+(?:/[A-Za-z0-9_*]+)*", re.ASCII)
+_PARTS = re.compile(r"(\*\*/|/\*\*|\*\*|\*)")
+_WILD = {"**/": "(?:[^/]+/)*", "/**": "(?:/[^/]+)*", "**": ".*", "*": "[^/]*"}
+
+
+def listed(names: Names) -> tuple[str, ...]:
+    """Give names as a tuple, whether one was written or several."""
+    return (names,) if isinstance(names, str) else tuple(names)
+
+
+def mistake_in(pattern: str) -> str | None:
+    """Say what is wrong with a name; None if nothing is."""
+    if _ALLOWED.fullmatch(pattern) is None:
+        return f"'{pattern}' is no name: it has letters, digits, _ and /, and * or ** for what may stand there"
+    return None
+
+
+def is_pattern(name: str) -> bool:
+    """Whether a name stands for several."""
+    return "*" in name
+
+
+@lru_cache(maxsize=256)
+def matcher(patterns: tuple[str, ...]) -> Callable[[str], bool]:
+    """Give the function that says whether a name fits one of these; every name does when there is none.
+
+    The slash in front does not matter. `*` stands for any letters of one token, `**` for any tokens.
+
+    >>> matcher(("/robot*/scan", "**/odom"))("/robot1/scan")
+    True
+    """
+    if not patterns:
+        return lambda name: True
+    regex = re.compile("|".join(_regex(each.lstrip("/")) for each in patterns))
+    return lambda name: regex.fullmatch(name.lstrip("/")) is not None
+
+
+def fits_any(patterns: tuple[str, ...], names: Iterable[str]) -> bool:
+    """Whether one of the names fits one of the patterns; none does when there are no patterns."""
+    return bool(patterns) and any(map(matcher(patterns), names))
+
+
+def _regex(pattern: str) -> str:
+    return "".join(_WILD.get(part) or re.escape(part) for part in _PARTS.split(pattern))

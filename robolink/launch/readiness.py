@@ -1,0 +1,189 @@
+"""Start what waits for something else as soon as that is there: nodes, topics and services, by what they announce.
+
+A launcher looks at the network only while something is held back.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import threading
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from robolink.exceptions import RobolinkError, WireError
+from robolink.launch.entry import Entry
+from robolink.remapping import RemapKind, parse_remap_rule, remap_name
+
+if TYPE_CHECKING:
+    import ast
+
+    from robolink.workspace import NodeSource
+
+PATIENCE = 5.0
+"""Seconds after which it is told what something still waits for."""
+
+_LEAVING = 5.0
+"""Seconds in which the network is left, or given up while it is being opened."""
+
+_WAITS_FOR = {
+    "node": "node {}: it is not there yet",
+    "topic": "topic {}: nobody publishes it yet",
+    "service": "service {}: nobody serves it yet",
+}
+
+
+class Awaited(NamedTuple):
+    """What something waits for."""
+
+    kind: str
+    """node, topic or service."""
+    names: tuple[str, ...]
+    """Its full name; a node whose name is in its code only may have one of several."""
+
+    def __str__(self) -> str:
+        return _WAITS_FOR[self.kind].format(self.names[0])
+
+
+def awaited(entry: Entry, entries: Sequence[Entry]) -> Iterator[Awaited]:
+    """Yield what a node or command waits for, under the names that its own remappings make of it."""
+    namespace = entry.node.namespace or "/"
+    name = entry.full_name.rpartition("/")[2]
+    rules = [parse_remap_rule(":=".join(each)) for each in entry.node.remappings.items()]
+    for each in entry.node.start_after:
+        if each.node:
+            yield Awaited("node", _names_of(each.node, entries))
+        elif each.topic:
+            yield Awaited("topic", (remap_name(rules, RemapKind.TOPIC, each.topic, name, namespace),))
+        else:
+            yield Awaited("service", (remap_name(rules, RemapKind.SERVICE, each.service, name, namespace),))
+
+
+def _names_of(full_name: str, entries: Sequence[Entry]) -> tuple[str, ...]:
+    """Give the names that a node may be announced by: that of the launch file, else those that its code gives it."""
+    namespace = full_name.rpartition("/")[0]
+    for each in entries:
+        if each.full_name == full_name and not each.node.name and each.source is not None:
+            return tuple(dict.fromkeys([full_name, *(f"{namespace}/{name}" for name in names_in(each.source))]))
+    return (full_name,)
+
+
+def names_in(source: NodeSource) -> list[str]:
+    """Give the names that the code of a node gives to nodes, as far as they stand there."""
+    import ast
+
+    try:
+        tree = ast.parse(source.path.read_bytes() if source.path is not None else b"")
+    except (OSError, SyntaxError, ValueError):
+        return []
+    return [name for each in ast.walk(tree) if isinstance(each, ast.Call) and (name := _node_name(each))]
+
+
+def _node_name(call: ast.Call) -> str:
+    """Give what a call of ``super().__init__``, ``Node`` or ``create_node`` gives as a node's name."""
+    import ast
+
+    called = getattr(call.func, "attr", getattr(call.func, "id", ""))
+    first = call.args[0] if call.args else None
+    named = next((each.value for each in call.keywords if each.arg == "node_name"), first)
+    makes_one = called in ("__init__", "create_node") or called.endswith("Node")
+    return named.value if makes_one and isinstance(named, ast.Constant) and isinstance(named.value, str) else ""
+
+
+@contextlib.contextmanager
+def waiting(
+    held: Mapping[str, Sequence[Awaited]],
+    release: Callable[[str], object],
+    say: Callable[[str], object],
+    *,
+    patience: float = PATIENCE,
+) -> Iterator[None]:
+    """Call `release(name)`, on a thread of the network's, when all is there that the process of that name waits for.
+
+    What is still waited for after `patience` seconds is told by `say`, once. The network is left when nothing is held
+    any more.
+    """
+    if not held:
+        yield
+        return
+    watch = _Watch(held, release)
+    thread = threading.Thread(target=watch.run, args=(say, patience), name="launch readiness", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        watch.over.set()
+        thread.join(_LEAVING)
+
+
+class _Watch:
+    """Keeps account of what is announced of that which is waited for."""
+
+    def __init__(self, held: Mapping[str, Sequence[Awaited]], release: Callable[[str], object]) -> None:
+        self.over = threading.Event()
+        self._held = dict(held)
+        self._release = release
+        self._lock = threading.Lock()
+        self._wanted = {(each.kind, name) for all_of_one in held.values() for each in all_of_one for name in each.names}
+        self._there: Counter[tuple[str, str]] = Counter()
+
+    def run(self, say: Callable[[str], object], patience: float) -> None:
+        """Watch until nothing is held, or it is over."""
+        from robolink.transport import connect
+        from robolink.transport.network import domain_id
+        from robolink.wire import graph_pattern
+
+        try:
+            domain = domain_id(os.environ)
+            session = connect(os.environ.get("ROBOLINK_TRANSPORT") or "zenoh", domain)
+        except (RobolinkError, ValueError) as error:
+            say(f"cannot look for what {', '.join(self._held)} waits for: {error}")
+            return
+        try:
+            session.watch(graph_pattern(domain), self.hear)
+            if not self.over.wait(patience):
+                self._tell(say)
+                self.over.wait()
+        finally:
+            session.close()
+
+    def hear(self, text: str, alive: bool) -> bool:
+        """Hear of a token that came or went; False for one that nobody waits for."""
+        key = _key(text)
+        if key not in self._wanted:
+            return False
+        with self._lock:
+            self._there[key] += 1 if alive else -1
+            ready = [name for name, all_of_one in self._held.items() if all(map(self._is_there, all_of_one))]
+            for name in ready:
+                del self._held[name]
+            is_over = not self._held
+        for name in ready:
+            self._release(name)
+        if is_over:
+            self.over.set()
+        return True
+
+    def _is_there(self, each: Awaited) -> bool:
+        return any(self._there[each.kind, name] > 0 for name in each.names)
+
+    def _tell(self, say: Callable[[str], object]) -> None:
+        with self._lock:
+            missing = {name: [each for each in held if not self._is_there(each)] for name, held in self._held.items()}
+        for name, held in missing.items():
+            say(f"{name} waits for {' and '.join(map(str, held))}")
+
+
+def _key(text: str) -> tuple[str, str]:
+    """Give what a token says that is there: its kind and full name; empty ones for what nobody can wait for."""
+    from robolink.wire import EndpointKind, NodeToken, parse_token
+
+    try:
+        token = parse_token(text)
+    except WireError:
+        return "", ""
+    if isinstance(token, NodeToken):
+        return "node", token.full_node_name
+    kinds = {EndpointKind.PUBLISHER: "topic", EndpointKind.SERVICE: "service"}
+    return kinds.get(token.kind, ""), token.name

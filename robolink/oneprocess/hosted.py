@@ -1,0 +1,89 @@
+"""The contexts of the programs of a host: each has a session of its own, and the host's time."""
+
+from __future__ import annotations
+
+from concurrent.futures import Executor
+from typing import TYPE_CHECKING, Any
+
+from robolink import rosout
+from robolink.context import Context
+from robolink.defaults import get_defaults
+from robolink.inbox import Inbox
+from robolink.logging import get_logger_level, set_logger_level
+from robolink.oneprocess.executor import HostedExecutor
+from robolink.oneprocess.parts import HostedInbox, ParkedInbox
+from robolink.oneprocess.threads import HostedPool
+
+if TYPE_CHECKING:
+    from robolink.executors import SingleThreadedExecutor
+    from robolink.oneprocess.program import Program
+
+
+class HostedContext(Context):
+    """A context of the program whose code makes it: a session of its own, the host's time."""
+
+    def __init__(self, **_: Any) -> None:
+        self.program: Program = get_defaults().program
+        super().__init__(time=self.program.time)
+        self.program.contexts.append(self)
+        if self.time.hosted:
+            self._sweeper.close()  # what arrives is delivered at once
+
+    def init(
+        self, args: list[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
+    ) -> None:
+        """Make it ok, with the program's command line where none is given. See `Context.init`."""
+        super().init(
+            self.program.argv if args is None else args, initialize_logging=initialize_logging, domain_id=domain_id
+        )
+        self._wanted = self.program.host.connect(self.program.name)
+        self.program.on_read()
+
+    def _configure_logging(self) -> None:
+        """Set the levels of loggers by name; the root's is that of this program's nodes, as they come."""
+        for name, level in self.arguments.log_levels:
+            if name:
+                set_logger_level(name, level)
+
+    def track_node(self, node: Any) -> None:
+        """Remember a node, to destroy it when the context ends."""
+        super().track_node(node)
+        logger = node.get_logger().name
+        for name, level in self.arguments.log_levels:
+            if not name and not get_logger_level(logger):
+                set_logger_level(logger, level)
+
+    def make_inbox(self, *, parked: bool = False) -> Inbox:
+        """Make what an executor of this context waits at."""
+        turns = self.program.host.turns
+        if turns is None:
+            return Inbox()
+        return ParkedInbox(turns.due) if parked else HostedInbox(turns.due)
+
+    @property
+    def executor_type(self) -> type[SingleThreadedExecutor] | None:
+        """What a program's `SingleThreadedExecutor` is: in virtual time one that the host runs among others'."""
+        return None if self.program.host.turns is None else HostedExecutor
+
+    def make_pool(self, size: int) -> Executor:
+        """Make the threads in which callbacks of a multi-threaded executor run."""
+        return super().make_pool(size) if self.program.host.turns is None else HostedPool(self.program, size)
+
+    def interrupt(self) -> None:
+        """End the spinning, as Ctrl-C does in a process."""
+        if self.program.host.turns is None:
+            super().interrupt()
+        elif self._ok:
+            self.interrupted, self._ok = True, False
+            self._tell()
+            self._told.put(None)
+
+    def abandon(self) -> None:
+        """Be gone at once, as what a process that is killed has had: nobody is told, nothing is sent."""
+        self._ok, self._closed, self._callbacks = False, True, []
+        for node in list(self._nodes.values()):
+            rosout.keep_to_itself(node.get_logger().name)
+        transport, self._transport = self._transport, None
+        self._sweeper.close()
+        if transport is not None:
+            transport.close()

@@ -1,0 +1,61 @@
+"""Where in a program's own code a thread is."""
+
+from __future__ import annotations
+
+import sys
+import sysconfig
+from functools import cache
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from robolink.oneprocess.parts import Runner
+
+
+@cache
+def is_users(file: str) -> bool:
+    """Whether a file is a program's own, not Python's and not robolink's."""
+    if file.startswith("<"):
+        return file == "<string>"
+    path = str(Path(file).resolve())
+    if path.startswith(_PACKAGE):
+        return path.startswith(_NODES)
+    return not path.startswith(_PYTHON) or "site-packages" in path
+
+
+_PACKAGE = str(Path(__file__).resolve().parent.parent) + "/"
+_NODES = str(Path(_PACKAGE, "share", "nodes"))
+_PYTHON = str(Path(sysconfig.get_path("stdlib")).resolve())
+
+
+def place_of(frame: FrameType | None) -> str:
+    """Give the line of the user's code that has led to this frame, as ``file:line``; '' if none has."""
+    while frame is not None:
+        if is_users(frame.f_code.co_filename):
+            return f"{frame.f_code.co_filename}:{frame.f_lineno}"
+        frame = frame.f_back
+    return ""
+
+
+def frame_of(runner: Runner | None) -> FrameType | None:
+    """Give what a thread runs just now."""
+    thread = None if runner is None else runner.thread
+    return None if thread is None else sys._current_frames().get(thread.ident or 0)
+
+
+def spot_of(runner: Runner | None) -> tuple[int, int]:
+    """Give the instruction at which a thread is."""
+    frame = frame_of(runner)
+    return (0, 0) if frame is None else (id(frame), frame.f_lasti)
+
+
+def where_is(runner: Runner) -> str:
+    """Say at which line of the program's own code a thread is."""
+    return f"it is at {place_of(frame_of(runner)) or 'an unknown place'}"
+
+
+def where_waits(runner: Runner) -> str:
+    """Say who waits where."""
+    name = "somebody" if runner.program is None else runner.program.name
+    return f"{name} at {place_of(frame_of(runner)) or 'an unknown place'}"

@@ -1,0 +1,219 @@
+"""What hosted programs do by the computer's own time: `time.sleep`, threads. It is noted, and taken as virtual time.
+
+While there is a host, some functions of Python's are replaced by ones that look who calls. For a hosted program
+`time.sleep` and the clocks of `time` are the host's, a thread that it starts takes turns with all others, and so does
+who waits at a `threading.Condition` (and so at an Event, a Queue, a Semaphore ...) or joins a thread. Everybody else
+gets what Python gives.
+"""
+
+from __future__ import annotations
+
+import _thread
+import queue
+import signal
+import sys
+import threading
+import time
+import types
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from robolink.defaults import get_defaults
+from robolink.exceptions import InterruptedByUser
+from robolink.oneprocess.parts import Runner
+from robolink.oneprocess.places import is_users, place_of
+from robolink.oneprocess.program import Program
+from robolink.oneprocess.threads import stay_beside, take_part
+from robolink.oneprocess.workers import Worker
+
+
+class RealTimeUse(NamedTuple):
+    """Something that a program did by real time: what, and where in its code (``file:line``)."""
+
+    program: str
+    what: str
+    place: str
+
+
+_CLOCKS = ("time", "time_ns", "monotonic", "monotonic_ns", "perf_counter", "perf_counter_ns")
+_real = {name: getattr(time, name) for name in (*_CLOCKS, "sleep")}
+_real_start, _real_join, _real_wait = threading.Thread.start, threading.Thread.join, threading.Condition.wait
+_real_handle = signal.signal
+_before: list[tuple[Any, str, Any]] = []
+_hosts = 0
+_counting = threading.Lock()
+
+
+def install() -> None:
+    """Have Python's functions look who calls; once for each host."""
+    global _hosts
+    with _counting:
+        _hosts += 1
+        if _hosts > 1:
+            return
+        for owner, name, function in _replacements():
+            _before.append((owner, name, getattr(owner, name)))
+            setattr(owner, name, function)
+
+
+def uninstall() -> None:
+    """Give Python's functions back, after the last host."""
+    global _hosts
+    with _counting:
+        _hosts -= 1
+        if _hosts:
+            return
+        while _before:
+            setattr(*_before.pop())
+
+
+def _replacements() -> list[tuple[Any, str, Any]]:
+    return [
+        *((time, name, function) for name, function in _REPLACED.items()),
+        (threading.Thread, "start", _start),
+        (threading.Thread, "join", _join),
+        (threading.Condition, "wait", _wait),
+        (threading, "_time", _steady),
+        (queue, "time", _steady),
+        (signal, "signal", _handle),
+    ]
+
+
+def adopt(module: types.ModuleType | None) -> None:
+    """Replace what a module has imported of `time` before there was a host: ``from time import sleep``."""
+    for name, value in list(vars(module).items()) if module is not None else ():
+        if isinstance(value, types.BuiltinFunctionType) and _REPLACED.get(value.__name__) and value in _real.values():
+            setattr(module, name, _REPLACED[value.__name__])
+
+
+# Who calls
+
+
+def _note(program: Program, what: str, frame: types.FrameType) -> None:
+    use = RealTimeUse(program.name, what, place_of(frame))
+    if use not in program.host.real_time_use:
+        program.host.real_time_use.append(use)
+
+
+def _runner(program: Program | None) -> Runner | None:
+    """Give the calling thread, if it runs a program's code in virtual time; None leaves it to Python."""
+    turns = None if program is None else program.host.turns
+    if turns is None:
+        return None
+    runner = turns.runner()
+    return None if runner is None or runner.is_real or runner is turns.outside else runner
+
+
+# What is replaced
+
+
+def _sleep(seconds: float, /) -> None:
+    program: Program | None = get_defaults().program
+    caller = sys._getframe(1)
+    if program is not None and is_users(caller.f_code.co_filename):
+        _note(program, "time.sleep", caller)
+        if seconds >= 0 and _runner(program) is not None:
+            program.time.sleep(round(seconds * 1e9))
+            return
+        if seconds >= 0 and program.defaults.in_main_thread():
+            program.on_read()
+            if program.interrupted.wait(seconds):
+                program.interrupted.clear()
+                raise InterruptedByUser
+            return
+    _real["sleep"](seconds)
+
+
+def _clock(name: str, show: Callable[[Program], Any]) -> Callable[[], Any]:
+    real = _real[name]
+
+    def shown() -> Any:
+        program: Program | None = get_defaults().program
+        if program is None or program.host.turns is None or not is_users(sys._getframe(1).f_code.co_filename):
+            return real()
+        return show(program)
+
+    shown.__name__ = name
+    return shown
+
+
+_REPLACED: dict[str, Any] = {
+    "sleep": _sleep,
+    "time": _clock("time", lambda program: program.time.now() / 1e9),
+    "time_ns": _clock("time_ns", lambda program: program.time.now()),
+    "monotonic": _clock("monotonic", lambda program: program.time.steady() / 1e9),
+    "monotonic_ns": _clock("monotonic_ns", lambda program: program.time.steady()),
+    "perf_counter": _clock("perf_counter", lambda program: program.time.steady() / 1e9),
+    "perf_counter_ns": _clock("perf_counter_ns", lambda program: program.time.steady()),
+}
+
+
+def _steady() -> float:
+    """Seconds for those of Python's own waits that have an end."""
+    program: Program | None = get_defaults().program
+    if program is None or _runner(program) is None:
+        return float(_real["monotonic"]())
+    return program.time.steady() / 1e9
+
+
+def _handle(number: int, handler: Any) -> Any:
+    """Have a program handle a signal: as Ctrl-C it gets SIGINT; no other comes."""
+    program: Program | None = get_defaults().program
+    if program is None:
+        return _real_handle(number, handler)
+    before = program.handlers.get(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
+    program.handlers[number] = handler
+    return before
+
+
+def _start(thread: threading.Thread) -> None:
+    program: Program | None = get_defaults().program
+    if program is None:
+        return _real_start(thread)
+    caller = sys._getframe(1)
+    if is_users(caller.f_code.co_filename):
+        _note(program, "threading.Thread", caller)
+    runner = _runner(program)
+    if runner is None:
+        return _real_start(thread)
+    runner.is_real = True  # Python waits until the thread runs
+    try:
+        if isinstance(thread, Worker):
+            return _real_start(thread)
+        target = getattr(thread, "_target", None)  # Python's pools take their work from queues that are written in C
+        join = stay_beside if getattr(target, "__module__", "") == "concurrent.futures.thread" else take_part
+        return join(thread, program, _real_start)
+    finally:
+        runner.is_real = False
+
+
+def _join(thread: threading.Thread, timeout: float | None = None) -> None:
+    program: Program | None = get_defaults().program
+    joined: Runner | None = getattr(thread, "_robolink_runner", None)
+    if program is None or joined is None or _runner(program) is None:
+        return _real_join(thread, timeout)
+    time = program.time
+    until = None if timeout is None else time.steady() + max(0, int(timeout * 1e9))
+    time.wait_until(lambda: joined.is_done, until)
+    return _real_join(thread) if joined.is_done else None
+
+
+def _wait(condition: Any, timeout: float | None = None) -> bool:
+    program: Program | None = get_defaults().program
+    if program is None or _runner(program) is None:
+        return _real_wait(condition, timeout)
+    if not condition._is_owned():
+        raise RuntimeError("cannot wait on un-acquired lock")
+    told = _thread.allocate_lock()
+    told.acquire()
+    condition._waiters.append(told)
+    saved = condition._release_save()
+    time = program.time
+    until = None if timeout is None else time.steady() + max(0, int(timeout * 1e9))
+    try:
+        time.wait_until(lambda: not told.locked(), until)
+    finally:
+        condition._acquire_restore(saved)
+        if told.locked() and told in condition._waiters:
+            condition._waiters.remove(told)
+    return not told.locked()

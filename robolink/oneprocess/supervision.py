@@ -1,0 +1,180 @@
+"""Runs the programs of a launch file in a host, as a supervisor runs processes: started, held, started again, ended."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from robolink.exceptions import WireError
+from robolink.supervisor.policy import Action, Ask, Policy, Say, Start
+from robolink.supervisor.rules import Step, described, is_orderly
+from robolink.transport.memory import MemoryTransport
+from robolink.wire import EndpointKind, NodeToken, graph_pattern, parse_token
+
+if TYPE_CHECKING:
+    from robolink.launch.command import Launched
+    from robolink.launch.readiness import Awaited
+    from robolink.oneprocess.host import Host
+    from robolink.oneprocess.program import Program
+
+
+PATIENCE = 5.0
+"""Seconds after which a program that was asked to end is asked harder."""
+
+
+class Supervision:
+    """What becomes of the programs of a host when they end, and when those begin that wait for others.
+
+    The launch file's rules hold, `respawn`, `on_exit` and `start_after`, in the host's time. Nothing is decided within
+    a program's turn: what it does is looked at as soon as it is nobody's. `say` is told what people should know.
+    """
+
+    def __init__(
+        self,
+        host: Host,
+        launched: Sequence[Launched],
+        *,
+        say: Callable[[str], object] | None = None,
+        ends: float | None = None,
+    ) -> None:
+        self.host = host
+        self.policy = Policy({each.name: each.rules for each in launched}, ends=ends, patience=PATIENCE)
+        self._launched = {each.name: each for each in launched}
+        self._say = say or (lambda text: None)
+        self.crashes: Counter[str] = Counter()
+        """How often a fault has ended a program."""
+        self.failures: list[str] = []
+        """What ended unasked and in disorder: which program, when, and why."""
+        self.ended_at: float | None = None
+        """When the system came to its end."""
+        self._struck: set[str] = set()
+        self._spared: set[str] = set()
+        self._held = {each.name: list(each.held_by) for each in launched if each.held_by}
+        self._session: MemoryTransport | None = None
+        host.on_exit.append(self._on_exit)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the system has ended: no program runs, and none will."""
+        return self.policy.is_over
+
+    def begin(self) -> None:
+        """Start all that waits for nothing else."""
+        if self._held:
+            self._session = MemoryTransport(bus=self.host.bus)
+            self._session.watch(graph_pattern(), self._on_token)
+        self._do(self.policy.begin(self.host.now))
+
+    # What faults need of those who run programs
+
+    def at(self, seconds: float, act: Callable[[], object]) -> None:
+        """Call `act()` when the host is so old."""
+        self.host.at(seconds, act)
+
+    def crash(self, name: str, *, is_restarted: bool) -> None:
+        """Kill a program as a fault does. If whoever does so starts it again, its rules make nothing of this end."""
+        program = self.host.program(name)
+        if program.state != "running":
+            return
+        self.crashes[name] += 1
+        self._struck.add(name)
+        if is_restarted:
+            self._spared.add(name)
+        self.host.crash(name)
+
+    def spare(self, name: str) -> None:
+        """Make nothing of the next end of a program: somebody wants it, and the others to go on."""
+        self._spared.add(name)
+
+    def restart(self, name: str) -> None:
+        """Start a program again that a fault has ended, unless the system is ending or it runs already."""
+        if self.policy.step is None and self.host.program(name).is_over:
+            self.host.restart(name)
+
+    def interrupt(self, *, in_hurry: bool = True) -> None:
+        """Have all programs end in order, as Ctrl-C does; the second time in a hurry, if somebody is."""
+        self._do(self.policy.interrupted(self.host.now, in_hurry=in_hurry))
+
+    def end(self) -> None:
+        """Have all programs end in order, as Ctrl-C does; those that do not are killed after a while."""
+        self._say = lambda text: None
+        self._do(self.policy.interrupted(self.host.now))
+        self.host.run_until(lambda: self.is_over, 3 * PATIENCE)
+        self.close()
+
+    def close(self) -> None:
+        """Look no longer."""
+        with suppress(ValueError):
+            self.host.on_exit.remove(self._on_exit)
+        if self._session is not None:
+            self._session.close()
+
+    def _on_exit(self, program: Program) -> None:
+        name, code, cause = program.name, program.returncode or 0, _cause(program)
+        if name in self._struck:
+            self._struck.remove(name)
+        elif not is_orderly(code, Step.INTERRUPT, cause) or program.error is not None:
+            self.failures.append(f"{name} {described(code)} at {self.host.now:.3f} s" + (f": {cause}" if cause else ""))
+        if name in self._spared:
+            self._spared.remove(name)
+        elif name in self._launched:
+            self._soon(lambda: self._do(self.policy.exited(name, code, self.host.now, cause)))
+
+    def _on_token(self, text: str, alive: bool) -> None:
+        for name, awaited in list(self._held.items()):
+            if alive:
+                awaited[:] = [each for each in awaited if not _is_there(each, text)]
+            if not awaited:
+                del self._held[name]
+                self._soon(lambda name=name: self._do(self.policy.released(name, self.host.now)))  # type: ignore[misc]
+
+    def _soon(self, act: Callable[[], None]) -> None:
+        self.host.at(self.host.now, act)
+
+    def _do(self, actions: Sequence[Action]) -> None:
+        for each in actions:
+            if isinstance(each, Start):
+                self._start(each.name)
+            elif isinstance(each, Ask):
+                self._ask(each.name, each.step)
+            elif isinstance(each, Say):
+                self._say(each.text)
+        deadline = self.policy.deadline
+        if self.policy.is_over:
+            self.ended_at = self.host.now if self.ended_at is None else self.ended_at
+        elif deadline is not None:
+            self.host.at(deadline, lambda: self._do(self.policy.woken(self.host.now)))
+
+    def _start(self, name: str) -> None:
+        if name in self.host.programs:
+            self.host.restart(name)
+        else:
+            each = self._launched[name]
+            self.host.start(name, each.members, env=each.env)
+
+    def _ask(self, name: str, step: Step) -> None:
+        if self.host.program(name).is_over:  # a fault has ended it, and was to start it again
+            self._soon(lambda: self._do(self.policy.exited(name, 0, self.host.now)))
+        elif step is Step.INTERRUPT:
+            self.host.interrupt(name)
+        else:
+            self.host.crash(name)
+
+
+def _cause(program: Program) -> str:
+    error = program.error
+    return "" if error is None else f"{type(error).__name__}: {error}".partition("\n")[0]
+
+
+def _is_there(awaited: Awaited, text: str) -> bool:
+    """Whether a token is that of what is waited for."""
+    try:
+        token = parse_token(text)
+    except WireError:
+        return False
+    if isinstance(token, NodeToken):
+        return awaited.kind == "node" and token.full_node_name in awaited.names
+    kind = {"topic": EndpointKind.PUBLISHER, "service": EndpointKind.SERVICE}.get(awaited.kind)
+    return token.kind is kind and token.name in awaited.names

@@ -1,0 +1,121 @@
+"""Threads that hosted programs start: they take turns with all others, so that a run is the same each time."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import traceback
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
+from typing import TYPE_CHECKING, Any
+
+from robolink.defaults import use_defaults
+from robolink.exceptions import ExternalShutdownException, ROSInterruptException
+from robolink.logging import get_logger
+from robolink.oneprocess.parts import Killed, Runner, Wait
+
+if TYPE_CHECKING:
+    from robolink.oneprocess.program import Program
+
+_QUIET = (Killed, SystemExit, ExternalShutdownException, ROSInterruptException)
+
+
+def take_part(thread: threading.Thread, program: Program, start: Callable[[threading.Thread], None]) -> None:
+    """Start a thread that goes on when it is its turn, for the first time when whoever starts it waits."""
+    turns = program.host.the_turns
+    runner = Runner(turns, program)
+    runner.thread, runner.is_daemon = thread, thread.daemon
+    thread.daemon = True  # whatever it is for its program: it must not keep this process from ending
+    thread._robolink_runner = runner  # type: ignore[attr-defined]
+    first = runner.wait = Wait(runner, None, None)
+    act = thread.run
+
+    def run() -> None:
+        turns.belong(runner)
+        use_defaults(program.defaults)
+        runner.park()
+        runner.wait = None
+        try:
+            if first.error is None:
+                act()
+        except _QUIET:
+            pass
+        except BaseException as error:  # noqa: BLE001 - it ends this thread alone, as in every program
+            text = "".join(traceback.format_exception(type(error), error, error.__traceback__))
+            get_logger("robolink").error(f"a thread of {program.name} ended:\n{text.rstrip()}")
+        finally:
+            runner.is_done = True
+            turns.leave(runner)
+
+    thread.run = run  # type: ignore[method-assign]
+    turns.join_in(runner)
+    turns.due.append(first)
+    start(thread)
+
+
+def stay_beside(thread: threading.Thread, program: Program, start: Callable[[threading.Thread], None]) -> None:
+    """Start a thread that only works for others, who wait for it: it goes on beside those that take turns."""
+    turns = program.host.the_turns
+    runner = Runner(turns, program)
+    runner.thread = thread
+    act = thread.run
+
+    def run() -> None:
+        turns.belong(runner)
+        use_defaults(program.defaults)
+        act()
+
+    thread.run = run  # type: ignore[method-assign]
+    turns.beside.add(runner)
+    start(thread)
+
+
+class HostedPool(Executor):
+    """The threads in which callbacks of a program's multi-threaded executor run."""
+
+    def __init__(self, program: Program, size: int) -> None:
+        self._program, self._size = program, size
+        self._jobs: deque[tuple[Callable[..., Any], tuple[Any, ...]]] = deque()
+        self._idle: deque[Runner] = deque()
+        self._threads: list[threading.Thread] = []
+        self._is_closed = False
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **_: Any) -> Future[Any]:
+        """Have a thread call it. Raises RuntimeError after `shutdown`."""
+        if self._is_closed:
+            raise RuntimeError("cannot schedule new futures after shutdown")
+        self._jobs.append((fn, args))
+        if self._idle:
+            self._wake(self._idle.popleft())
+        elif len(self._threads) < self._size:
+            thread = threading.Thread(target=self._work, name="robolink callbacks", daemon=True)
+            self._threads.append(thread)
+            thread.start()
+        return Future()
+
+    def _work(self) -> None:
+        turns = self._program.host.the_turns
+        me = turns.runner()
+        assert me is not None
+        while not self._is_closed:
+            while self._jobs:
+                act, args = self._jobs.popleft()
+                act(*args)
+            self._idle.append(me)
+            me.is_idle = True
+            turns.wait()
+            me.is_idle = False
+            with contextlib.suppress(ValueError):
+                self._idle.remove(me)
+
+    def _wake(self, runner: Runner) -> None:
+        self._program.host.the_turns.due.append(runner.wait)
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Call nothing more, and wait for the threads to end."""
+        self._is_closed = True
+        while self._idle:
+            self._wake(self._idle.popleft())
+        for thread in self._threads if wait else ():
+            thread.join()

@@ -1,0 +1,90 @@
+"""Run a simulation with many seeds, each in a process of its own: what fails there fails again by itself."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+
+import msgspec
+
+from robolink.simulating.result import SimulationResult
+
+ROBOLINK = (sys.executable, "-m", "robolink")
+
+
+class SeedRun(msgspec.Struct, frozen=True):
+    """What came of one seed: its result, or the error that kept it from having one."""
+
+    seed: int
+    result: SimulationResult | None = None
+    error: str = ""
+
+    @property
+    def failures(self) -> list[str]:
+        """Why it counts as failed; none if it does not."""
+        return [self.error] if self.result is None else self.result.failures
+
+
+def run_seeds(
+    words: Callable[[int], Sequence[str]],
+    seeds: Iterable[int],
+    *,
+    workers: int,
+    on_done: Callable[[SeedRun], object] = lambda run: None,
+) -> list[SeedRun]:
+    """Run `robolink WORDS`, which are to end with a result in JSON, for each seed; give what came of them, in order.
+
+    `workers` run at a time. `on_done` is told of each as it ends. When this is interrupted, no process is left.
+    """
+    running = _Running()
+    with ThreadPoolExecutor(max_workers=workers) as pool:
+        try:
+            started = [pool.submit(running.run, seed, [*ROBOLINK, *words(seed)]) for seed in seeds]
+            for each in as_completed(started):
+                on_done(each.result())
+        except BaseException:
+            running.end()
+            pool.shutdown(wait=True, cancel_futures=True)
+            raise
+    return [each.result() for each in started]
+
+
+class _Running:
+    """The processes that run, so that none is left."""
+
+    def __init__(self) -> None:
+        self._processes: set[subprocess.Popen[bytes]] = set()
+        self._lock = threading.Lock()
+        self._ended = False
+
+    def run(self, seed: int, command: Sequence[str]) -> SeedRun:
+        with self._lock:
+            if self._ended:
+                return SeedRun(seed, error="not run")
+            process = subprocess.Popen(
+                command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+            )
+            self._processes.add(process)
+        out, err = process.communicate()
+        with self._lock:
+            self._processes.discard(process)
+        return _outcome(seed, process.returncode, out, err)
+
+    def end(self) -> None:
+        """Kill all that run, and start no more."""
+        with self._lock:
+            self._ended = True
+            for each in self._processes:
+                each.kill()
+
+
+def _outcome(seed: int, code: int, out: bytes, err: bytes) -> SeedRun:
+    lines = out.splitlines()
+    try:
+        return SeedRun(seed, msgspec.json.decode(lines[-1] if lines else b"", type=SimulationResult))
+    except msgspec.DecodeError:
+        told = err.decode(errors="replace").strip().rpartition("\n")[2]
+        return SeedRun(seed, error=told or f"its process ended with exit code {code}")

@@ -1,0 +1,132 @@
+"""What a simulated run has come to: as a Struct for machines, as lines for people."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+
+import msgspec
+
+from robolink.faults import FaultReport
+
+SHOWN = 40
+"""Of so many topics people are told; of robots, of half as many or the first quarter."""
+
+
+class RobotResult(msgspec.Struct, frozen=True):
+    """A robot of a simulated world as it truly is in the end: metres driven, things run into, pose in m and rad."""
+
+    name: str
+    driven: float
+    contacts: int
+    x: float
+    y: float
+    theta: float
+
+
+class ProgramResult(msgspec.Struct, frozen=True):
+    """A program of the system: how it stands in the end, how often faults and errors ended it, and its last error."""
+
+    name: str
+    state: str
+    crashes: int = 0
+    """By faults."""
+    restarts: int = 0
+    error: str = ""
+
+
+class SimulationResult(msgspec.Struct, frozen=True, kw_only=True):
+    """A run: what was asked for, what happened, and the hash of all that was published."""
+
+    file: str = ""
+    seed: int
+    seconds: float
+    """Simulated."""
+    real_seconds: float
+    messages: dict[str, int]
+    """By topic."""
+    bytes: dict[str, int]
+    robots: list[RobotResult] = []
+    programs: list[ProgramResult] = []
+    faults: list[FaultReport] = []
+    real_time: list[str] = []
+    """What nodes did in real time, each as one line: it cannot be repeated."""
+    errors: int = 0
+    """Lines that were logged as errors."""
+    warnings: list[str] = []
+    failures: list[str] = []
+    """Why the run counts as failed; none if it does not."""
+    hash: str
+
+    @property
+    def real_time_factor(self) -> float:
+        """How many times as fast as life it was."""
+        return self.seconds / self.real_seconds if self.real_seconds > 0 else math.inf
+
+    @property
+    def contacts(self) -> int:
+        """How many things all robots ran into."""
+        return sum(each.contacts for each in self.robots)
+
+    def as_json(self) -> str:
+        """Give it as one line of JSON."""
+        plain = {**msgspec.to_builtins(self), "real_time_factor": round(self.real_time_factor, 1)}
+        return msgspec.json.encode(plain).decode()
+
+    def lines(self) -> Iterator[str]:
+        """Give it as lines for people."""
+        pace = f"{self.real_time_factor:.0f} times as fast as life"
+        yield f"{self.file}: {self.seconds:g} s in {self.real_seconds:.1f} s, {pace}; seed {self.seed}"
+        yield from _of_robots(self.robots)
+        yield from _of_messages(self.messages, sum(self.bytes.values()))
+        yield from (line for each in self.programs for line in _of_program(each))
+        yield from (f"fault {each}" for each in self.faults)
+        yield from (f"real time: {each}" for each in self.real_time)
+        yield from (f"warning: {each}" for each in self.warnings)
+        yield from (f"failed: {each}" for each in self.failures)
+        yield f"hash {self.hash}"
+
+
+def failed_by(result: SimulationResult, kinds: Iterable[str]) -> SimulationResult:
+    """Give a result that counts as failed also for what is asked: ``contact``, ``error`` (logged) or ``real-time``."""
+    said = {
+        "contact": [f"{each.name} had {_counted(each.contacts, 'contact')}" for each in result.robots if each.contacts],
+        "error": [f"{_counted(result.errors, 'error')} logged"] if result.errors else [],
+        "real-time": [f"real time: {each}" for each in result.real_time],
+    }
+    more = [each for kind in kinds for each in said[kind]]
+    return msgspec.structs.replace(result, failures=[*result.failures, *more])
+
+
+def _of_robots(robots: Sequence[RobotResult]) -> Iterator[str]:
+    shown = robots[: SHOWN // 4] if len(robots) > SHOWN // 2 else robots
+    yield from map(_of_robot, shown)
+    if others := robots[len(shown) :]:
+        driven, contacts = sum(each.driven for each in others), sum(each.contacts for each in others)
+        yield f"{len(others)} more robots: drove {driven:.2f} m, {_counted(contacts, 'contact')}"
+
+
+def _of_robot(robot: RobotResult) -> str:
+    where = f"({robot.x:.2f}, {robot.y:.2f}), heading {math.degrees(robot.theta):.0f} degrees"
+    return f"{robot.name}: drove {robot.driven:.2f} m, {_counted(robot.contacts, 'contact')}, ends at {where}"
+
+
+def _of_messages(messages: dict[str, int], size: int) -> Iterator[str]:
+    sent = {name: count for name, count in messages.items() if count}
+    yield f"{_counted(sum(sent.values()), 'message')} on {_counted(len(sent), 'topic')}, {size / 1e6:.1f} MB"
+    shown = list(sent.items())[:SHOWN]
+    widest = max((len(name) for name, _ in shown), default=0)
+    yield from (f"  {name:<{widest}} {count:>9}" for name, count in shown)
+    if others := len(sent) - len(shown):
+        yield f"  ... and {_counted(others, 'more topic')}: --json has all"
+
+
+def _of_program(program: ProgramResult) -> Iterator[str]:
+    if program.crashes or program.restarts:
+        crashed = f", crashed {_counted(program.crashes, 'time')} by faults" if program.crashes else ""
+        again = f", started again {_counted(program.restarts, 'time')}" if program.restarts else ""
+        yield f"{program.name}: {program.state}{crashed}{again}"
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"

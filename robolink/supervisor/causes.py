@@ -1,0 +1,61 @@
+"""Find in what a program printed why it ended: the last line of its traceback, or what else names a cause."""
+
+from __future__ import annotations
+
+import re
+
+from robolink.exceptions import shown
+
+_STALE = 25
+"""Lines; what was printed longer ago than that is not why a program ends."""
+_LONGEST = 200
+_COLOURS = re.compile(r"\x1b\[[0-9;]*m")
+_GROUP = re.compile(r"^\s*[+|][ -]")
+"""What stands before the lines of an exception group."""
+_FRAME = re.compile(r'^\s+File ".*", line \d+(, in .*)?$')
+_HEADER = "Traceback (most recent call last):"
+_FATAL = ("Fatal Python error: ", "terminate called ")
+"""How a fatal error of Python and an exception of C++ begin."""
+_OWN = "robolink: "
+"""How a command of robolink tells of an error before it ends."""
+
+
+class Cause:
+    """Reads a program's output line by line; `text` is then the cause of its end, or empty."""
+
+    def __init__(self) -> None:
+        self._found = ""
+        self._age = 0
+        self._is_in_traceback = False
+
+    @property
+    def text(self) -> str:
+        """For example `ZeroDivisionError: division by zero`, on one line."""
+        return self._found if self._age <= _STALE else ""
+
+    def line(self, line: bytes) -> None:
+        """Take note of a line."""
+        self._age += 1
+        text = line[: 4 * _LONGEST].decode(errors="replace").rstrip()
+        if "\x1b" in text:
+            text = _COLOURS.sub("", text)
+        if self._is_in_traceback:
+            self._traceback(text)
+        elif text.endswith(_HEADER) or _FRAME.match(text):
+            self._is_in_traceback = True
+        elif text.startswith(_OWN):
+            self._note(text.removeprefix(_OWN))
+        elif text.startswith(_FATAL):
+            self._note(text)
+        elif text.startswith("  what():"):
+            self._note(text.partition(":")[2].strip())
+
+    def _traceback(self, text: str) -> None:
+        """Wait for the line that is not indented: the exception."""
+        plain = _GROUP.sub("", text)
+        if plain and not plain[0].isspace() and not plain.endswith(_HEADER):
+            self._is_in_traceback = False
+            self._note(plain)
+
+    def _note(self, text: str) -> None:
+        self._found, self._age = shown(text, _LONGEST), 0

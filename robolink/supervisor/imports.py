@@ -1,0 +1,95 @@
+"""Which files a Python program imports, found by reading it: no program is run for it."""
+
+from __future__ import annotations
+
+import ast
+import warnings
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+
+class Imports:
+    """Finds the files that a program imports from its own folder and from `roots`, and those that these import.
+
+    Imports inside functions count as well; names that are put together at run time are not seen. What a file imports
+    is read once, and again after `forget`; while the file is no Python, it counts as before.
+    """
+
+    def __init__(self, roots: Iterable[Path] = ()) -> None:
+        self._roots = list(roots)
+        self._read: dict[Path, set[Path]] = {}
+        self._stale: set[Path] = set()
+
+    def of(self, path: Path) -> set[Path]:
+        """Give a program's file and all that it imports, directly or not."""
+        found, left = {path}, [path]
+        while left:
+            new = self._direct(left.pop()) - found
+            found |= new
+            left += new
+        return found
+
+    def forget(self, path: Path) -> None:
+        """Read this file again when it is asked for next."""
+        self._stale.add(path)
+
+    def _direct(self, path: Path) -> set[Path]:
+        if path.suffix == ".py" and (path not in self._read or path in self._stale):
+            try:
+                tree = parse(path)
+            except (OSError, SyntaxError):
+                return self._read.get(path, set())
+            roots = [path.parent, _above_package(path.parent), *self._roots]
+            self._read[path] = {file for names in _imported(tree, path) for file in _found(names, roots)}
+            self._stale.discard(path)
+        return self._read.get(path, set())
+
+
+def parse(path: Path) -> ast.Module:
+    """Read a file as Python would. Raises SyntaxError for whatever is none, and OSError."""
+    text = path.read_bytes()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # an odd escape is no news here
+            tree = ast.parse(text, str(path))
+            compile(tree, str(path), "exec", dont_inherit=True)  # finds a `return` outside of functions, too
+    except (ValueError, RecursionError, MemoryError) as error:
+        raise SyntaxError(str(error) or type(error).__name__, (str(path), 1, 1, None)) from None
+    return tree
+
+
+def _imported(tree: ast.Module, path: Path) -> Iterator[tuple[Path | None, list[str]]]:
+    """Give the parts of each module's name that is imported, with the folder where it must be if the import says so."""
+    for each in ast.walk(tree):
+        if isinstance(each, ast.Import):
+            for alias in each.names:
+                yield None, alias.name.split(".")
+        elif isinstance(each, ast.ImportFrom):
+            folder = path.parents[each.level - 1] if 0 < each.level <= len(path.parents) else None
+            begin = each.module.split(".") if each.module else []
+            for alias in each.names:
+                yield folder, begin if alias.name == "*" else [*begin, alias.name]
+
+
+def _above_package(folder: Path) -> Path:
+    """Give the folder from which the modules in `folder` are imported with the names of their packages."""
+    while (folder / "__init__.py").is_file() and folder != folder.parent:
+        folder = folder.parent
+    return folder
+
+
+def _found(imported: tuple[Path | None, list[str]], roots: list[Path]) -> set[Path]:
+    """Give the files that are read for a module: its own, and those of the packages around it.
+
+    The last part of a name may be something in a module rather than a module.
+    """
+    folder, parts = imported
+    for root in roots if folder is None else [folder]:
+        files = {root / "__init__.py"} if folder is not None else set()
+        for count in range(1, len(parts) + 1):
+            inner = root.joinpath(*parts[:count])
+            files |= {inner.with_suffix(".py"), inner / "__init__.py"}
+        there = {each for each in files if each.is_file()}
+        if there:
+            return there
+    return set()

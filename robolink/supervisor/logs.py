@@ -1,0 +1,195 @@
+"""Keep what a system's processes print: a folder for each run, a file for each process.
+
+A folder is called by its time and what was launched (`2026-11-21_14-05-59_follow`), `latest` leads to the newest. In
+it `launch.log` holds what the launcher itself says, with its times, and NAME.log what a process printed, as it came.
+Old runs are removed; one that goes on is known by a lock on its launch.log.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shutil
+import sys
+import threading
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import BinaryIO
+
+KEPT_RUNS = 30
+LARGEST = 50_000_000
+"""Bytes of a file; then it becomes NAME.log.old and a new one begins: a process has twice as much at most."""
+OWN_FILE = "launch.log"
+_RUN = re.compile(r"\d{4}-\d\d-\d\d_\d\d-\d\d-\d\d_.*")
+_RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d|launch)", re.IGNORECASE)
+"""What Windows takes for devices, and our own."""
+
+
+def logs_home(environ: Mapping[str, str] = os.environ) -> Path:
+    """Give the folder of all runs: $ROBOLINK_LOG_DIR, or $ROS_LOG_DIR, or ~/.robolink/log.
+
+    Raises RuntimeError for a user that has no home.
+    """
+    return Path(environ.get("ROBOLINK_LOG_DIR") or environ.get("ROS_LOG_DIR") or "~/.robolink/log").expanduser()
+
+
+class RunLogs:
+    """The files of one run; nothing is written before `open`.
+
+    A disk that is full or a folder that cannot be written ends the keeping of logs, never the system: `on_trouble` is
+    told of it once.
+    """
+
+    def __init__(self, label: str, home: Path | None = None, *, kept: int = KEPT_RUNS) -> None:
+        self.folder: Path | None = None
+        """Where this run's files are, once there are any."""
+        self._label = re.sub(r"[^\w.-]+", "-", label, flags=re.ASCII)[:60] or "launch"
+        self._home = home
+        self._kept = kept
+        self._files: dict[str, _File] = {}
+        self._own: _File | None = None
+        self._lock = threading.Lock()
+        self._on_trouble: Callable[[str], object] = lambda text: None
+
+    def open(self, names: list[str], on_trouble: Callable[[str], object]) -> None:
+        """Make the folder and the files of the processes; remove old runs."""
+        self._on_trouble = on_trouble
+        try:
+            home = self._home or logs_home()
+            folder = _new_folder(home, time.strftime(f"%Y-%m-%d_%H-%M-%S_{self._label}"))
+            self._own = _File(folder / OWN_FILE)
+            _lock(self._own.file)
+            self._files = {name: _File(folder / each) for name, each in file_names(names).items()}
+            self.folder = folder
+        except (OSError, RuntimeError) as error:
+            self._give_up(f"no logs are kept: {error}")
+            return
+        _point_to(folder)
+        remove_old_runs(home, self._kept)
+
+    def line(self, name: str, line: bytes) -> None:
+        """Keep a line of a process; called from one thread for each process."""
+        self._write(self._files.get(name), line if line.endswith(b"\n") else line + b"\n")
+
+    def say(self, text: str) -> None:
+        """Keep a line of our own."""
+        now = time.time()
+        stamp = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(now)) + f".{int(now % 1 * 1000):03}"
+        self._write(self._own, f"{stamp} {text}\n".encode(errors="replace"))
+
+    def close(self) -> None:
+        """Close the files; lines that still come are lost."""
+        with self._lock:
+            files = [*self._files.values(), *([] if self._own is None else [self._own])]
+            self._files, self._own = {}, None
+        for file in files:
+            file.close()
+
+    def _write(self, file: _File | None, line: bytes) -> None:
+        try:
+            if file is not None:
+                file.write(line)
+        except ValueError:  # closed meanwhile
+            return
+        except OSError as error:
+            self._give_up(f"no more logs are kept: {error} ({self.folder})")
+
+    def _give_up(self, text: str) -> None:
+        with self._lock:
+            tell, self._on_trouble = self._on_trouble, lambda text: None
+        self.close()
+        tell(text)
+
+
+class _File:
+    """A file that is written a line at a time, without a buffer, and begins anew when it is too large."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._size = 0
+        self.file = path.open("wb", buffering=0)
+
+    def write(self, line: bytes) -> None:
+        if self._size > LARGEST:
+            self._begin_anew()
+        rest = memoryview(line)
+        while rest:
+            rest = rest[self.file.write(rest) :]
+        self._size += len(line)
+
+    def close(self) -> None:
+        with contextlib.suppress(OSError):
+            self.file.close()
+
+    def _begin_anew(self) -> None:
+        self.file.close()
+        self._path.replace(self._path.with_name(f"{self._path.name}.old"))
+        self.file, self._size = self._path.open("wb", buffering=0), 0
+
+
+def file_names(names: list[str]) -> dict[str, str]:
+    """Give each process the name of its file; all differ, from our own too, on any file system."""
+    given: dict[str, str] = {}
+    taken = {OWN_FILE}
+    for name in names:
+        stem = re.sub(r"[^\w-]+", "-", name, flags=re.ASCII).strip("-")[:100] or "process"
+        stem = f"{stem}_" if _RESERVED.fullmatch(stem) else stem
+        chosen, serial = f"{stem}.log", 2
+        while chosen.casefold() in taken:
+            chosen, serial = f"{stem}_{serial}.log", serial + 1
+        given[name] = chosen
+        taken.add(chosen.casefold())
+    return given
+
+
+def remove_old_runs(home: Path, kept: int) -> None:
+    """Remove all but the newest runs. What is not clearly a run's folder stays, and so does a run that goes on."""
+    with contextlib.suppress(OSError):
+        runs = sorted(each for each in home.iterdir() if _RUN.fullmatch(each.name) and not each.is_symlink())
+        for run in runs[: max(0, len(runs) - kept)]:
+            if (run / OWN_FILE).is_file() and not _is_locked(run / OWN_FILE):
+                shutil.rmtree(run, ignore_errors=True)
+
+
+def _new_folder(home: Path, name: str) -> Path:
+    home.mkdir(parents=True, exist_ok=True)
+    for serial in range(1, 1000):
+        folder = home / (name if serial == 1 else f"{name}_{serial}")
+        with contextlib.suppress(FileExistsError):
+            folder.mkdir()
+            return folder
+    raise FileExistsError(f"{home / name} is there, and so are a thousand more of this second")
+
+
+def _point_to(folder: Path) -> None:
+    """Have `latest` lead to a folder, where the system has symbolic links and nothing else is called so."""
+    link = folder.parent / "latest"
+    unfinished = folder.parent / f".latest-{os.getpid()}"
+    if link.exists() and not link.is_symlink():
+        return
+    with contextlib.suppress(OSError):
+        unfinished.symlink_to(folder.name, target_is_directory=True)
+        unfinished.replace(link)
+
+
+def _lock(file: BinaryIO) -> None:
+    """Hold a file for as long as it is open; on Windows what is open cannot be removed anyway."""
+    if sys.platform != "win32":
+        import fcntl
+
+        with contextlib.suppress(OSError):  # a file system without locks
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def _is_locked(path: Path) -> bool:
+    if sys.platform != "win32":
+        import fcntl
+
+        try:
+            with path.open("rb") as file:
+                fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except OSError:
+            return True
+    return False

@@ -1,0 +1,311 @@
+"""The stage on which all programs of a system live in this process: in memory, in virtual time, with faults."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import traceback
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from robolink import logging
+from robolink.faults import FaultReport, Injector, read_faults
+from robolink.faults.injector import Fault
+from robolink.launch import processes
+from robolink.message import type_hash
+from robolink.node import Node
+from robolink.oneprocess import Host, Program
+from robolink.oneprocess.host_time import HostTime
+from robolink.oneprocess.supervision import Supervision
+from robolink.simulating.settings import numpy_seeded, seeded
+from robolink.supervisor.rules import Step, is_orderly
+from robolink.testing.faults import Faults
+from robolink.testing.launching import entry_of
+from robolink.testing.stage import Failure, Wanted
+from robolink.transport.memory import MemoryTransport
+from robolink.workspace.interfaces import WORKSPACE_TYPES
+
+if TYPE_CHECKING:
+    from robolink.launch import Entry, Launched
+    from robolink.launch.together import Member
+    from robolink.logging import Record
+    from robolink.message import Message
+    from robolink.testing.recorder import Topic
+    from robolink.timebase import TimeBase
+    from robolink.transport import Transport
+
+
+class Tester(Node):
+    """The test's own node."""
+
+    def __init__(self) -> None:
+        super().__init__("test")
+
+
+class OneProcess:
+    """Runs all programs of a system in this process; `seed` decides all that is drawn."""
+
+    virtual = True
+
+    def __init__(self, seed: int) -> None:
+        self.failures: list[Failure] = []
+        self.logs: list[Record] = []
+        self.supervisions: list[Supervision] = []
+        self.expected: set[str] = set()
+        with ExitStack() as stack:
+            self.host = stack.enter_context(Host(seed=seed, connect=self._connect, clock=self._clock))
+            self.injector = Injector(self.host.bus, cast(HostTime, self.host.time), _Programs(self), seed=seed)
+            self.faults = Faults(_Struck(self.host, self.injector))
+            self.host.on_exit.append(self._on_exit)
+            logging.add_handler(self.logs.append)
+            stack.callback(logging.remove_handler, self.logs.append)
+            stack.enter_context(numpy_seeded(seed))
+            stack.enter_context(WORKSPACE_TYPES.forgetting())
+            self._seeded = stack.enter_context(seeded(seed))
+            self.begin_ns = self.now_ns()
+            self.node: Node = self.host.start_node(Tester)
+            self._own = next(iter(self.host.programs))
+            self.domain = self.node.context.get_domain_id()
+            self._stack = stack.pop_all()
+
+    # The host is made first: it asks for both only once a program starts.
+
+    def _connect(self, program: str) -> Transport:
+        return self.injector.connect(program)
+
+    def _clock(self, program: str, time: TimeBase) -> TimeBase:
+        return self.injector.clock(program, time)
+
+    def now_ns(self) -> int:
+        """Give the virtual time."""
+        return self.host.time.now()
+
+    def session(self) -> Transport:
+        """Open a session that no fault touches."""
+        return MemoryTransport(bus=self.host.bus)
+
+    # Programs
+
+    def start(self, wanted: Wanted) -> Any:
+        """Start a node; give it, or the program of a script."""
+        failed = len(self.failures)
+        try:
+            if isinstance(wanted.what, type):
+                return self._started_class(wanted.what, wanted)
+            (launched,) = processes(entry_of(str(wanted.what), wanted))
+            self._introduce(launched)
+            program = self.host.start(launched.name, self._members(launched), env=launched.env)
+            if program.error is not None:
+                raise program.error
+        except BaseException:
+            del self.failures[failed:]  # whoever starts it sees it
+            raise
+        return self._node_of(program)
+
+    def _started_class(self, node_class: type[Node], wanted: Wanted) -> Any:
+        called = self._free_name(wanted.namespace, wanted.name or _name_in(node_class) or node_class.__name__)
+        self.injector.introduce(called, [called])
+        return self.host.start_node(
+            node_class,
+            name=wanted.name,
+            namespace=wanted.namespace,
+            parameters=wanted.parameters,
+            remappings=wanted.remappings,
+            called=called,
+        )
+
+    def _free_name(self, namespace: str, name: str) -> str:
+        """Give a name for a program that no other has."""
+        first = f"{namespace.strip('/')}/{name}".lstrip("/")
+        names = (first if number == 1 else f"{first}_{number}" for number in range(1, len(self.host.programs) + 2))
+        return next(each for each in names if each not in self.host.programs)
+
+    def launch(self, entries: Sequence[Entry]) -> None:
+        """Start what a launch file says, by its rules; commands are left out."""
+        launched = [replace(each, members=self._members(each)) for each in processes(entries)]
+        for each in launched:
+            self._introduce(each)
+        for each in launched:
+            if not each.members:
+                logging.get_logger("robolink.testing").warning(
+                    f"{each.name} is left out: a command knows no virtual time"
+                )
+        supervision = Supervision(self.host, [each for each in launched if each.members])
+        self.supervisions.append(supervision)
+        supervision.begin()
+        self.run_until(lambda: False, 0.0)
+
+    def _introduce(self, launched: Launched) -> None:
+        self.injector.introduce(launched.name, (entry.name for entry in launched.entries))
+
+    def _members(self, launched: Launched) -> tuple[Member, ...]:
+        return tuple(map(self._seeded, launched.members))
+
+    def _node_of(self, program: Program) -> Any:
+        """Give the node of a program, once it has made it; of one that makes none at once, the program."""
+        self.run_until(lambda: bool(program.nodes) or program.is_over, 0.0)
+        nodes = program.nodes
+        return nodes[0] if nodes else program
+
+    def stop(self, program: str) -> None:
+        """End a program in order."""
+        with self._expecting(program):
+            self.host.stop(program)
+
+    def crash(self, program: str) -> None:
+        """End a program at once."""
+        with self._expecting(program):
+            self.host.crash(program)
+
+    def restart(self, program: str) -> Any:
+        """Start a program anew."""
+        with self._expecting(program):
+            made = self.host.restart(program)
+        return self._node_of(made)
+
+    def supervision_of(self, program: str) -> Supervision | None:
+        """Give what sees to the rules of a program that a launch file started."""
+        return next((each for each in self.supervisions if program in each.policy.processes), None)
+
+    @contextmanager
+    def _expecting(self, program: str) -> Iterator[None]:
+        """What ends meanwhile because the test wants it is no failure, and no rule of a launch file is applied."""
+        self.expected.add(program)
+        if not self.host.program(program).is_over:
+            supervision = self.supervision_of(program)
+            if supervision is not None:
+                supervision.spare(program)
+        try:
+            yield
+        finally:
+            self.expected.discard(program)
+
+    @property
+    def programs(self) -> list[str]:
+        """The names of all programs, ended ones too."""
+        return [_called(each) for name, each in self.host.programs.items() if name != self._own]
+
+    def program_of(self, node: str) -> str:
+        """Give the program of a node, or of the only one of this name in any namespace. Raises NotFoundError."""
+        wanted, names = node.strip("/"), self.injector.network.programs.items()
+        found = [program for program, of_one in names if any(each.endswith(f"/{wanted}") for each in of_one)]
+        is_short = len(found) == 1 and not any(wanted in of_one for _, of_one in names)
+        return found[0] if is_short else self.injector.program_of(node)
+
+    def _on_exit(self, program: Program) -> None:
+        code = program.returncode or 0
+        is_expected = program.name in self.expected or is_orderly(code, Step.INTERRUPT)
+        if program.error is not None or not is_expected:
+            self.failures.append(Failure(_called(program), self.now_ns(), _why(program), program.error))
+
+    # Time
+
+    def run_until(self, condition: Callable[[], bool], within: float) -> bool:
+        """Let time pass until the condition holds, so many seconds at most; whether it holds."""
+        return self.host.run_until(condition, within)
+
+    # What is known of the programs
+
+    def nodes(self) -> list[Node]:
+        """Give all nodes."""
+        return [node for program in self.host.programs.values() for node in program.nodes]
+
+    def class_of(self, topic: Topic) -> type[Message] | None:
+        """Give the message class of a publisher."""
+        for node in self.nodes():
+            for each in node.publishers:
+                if each.topic_name == topic.name and type_hash(each.msg_type) == topic.type_hash:
+                    found: type[Message] = each.msg_type
+                    return found
+        return None
+
+    def real_time_use(self) -> list[str]:
+        """Tell which nodes slept or started threads in real time, and where."""
+        return [f"{each.program} {each.what} ({each.place})" for each in self.host.real_time_use]
+
+    def fault_reports(self) -> list[str]:
+        """Tell what each fault of messages has done."""
+        return [str(each) for each in self.injector.network.reports]
+
+    def close(self) -> None:
+        """End all programs."""
+        self._stack.close()
+
+
+def _name_in(node_class: type[Node]) -> str:
+    """Give the name that the code of a class gives its nodes, if it stands there: faults may name it beforehand."""
+    try:
+        found = re.search(r"""__init__\(\s*(?:node_name=)?["'](\w+)["']""", inspect.getsource(node_class))
+    except (OSError, TypeError):
+        return ""
+    return found[1] if found else ""
+
+
+def _called(program: Program) -> str:
+    """Give a program's name for people: that of its node, if it has one."""
+    nodes = program.nodes
+    return nodes[0].get_fully_qualified_name().strip("/") if len(nodes) == 1 else program.name
+
+
+def _why(program: Program) -> str:
+    """Say in one line why a program has ended."""
+    error = program.error
+    if error is None:
+        return f"it ended with exit code {program.returncode}"
+    last = traceback.extract_tb(error.__traceback__)[-1:]
+    place = f" ({Path(last[0].filename).name}:{last[0].lineno})" if last else ""
+    return f"{type(error).__name__}: {error}{place}"
+
+
+class _Programs:
+    """The programs of a system, as faults crash and restart them: by the rules of the launch file that they are of."""
+
+    def __init__(self, stage: OneProcess) -> None:
+        self._stage = stage
+
+    def at(self, seconds: float, act: Callable[[], object]) -> None:
+        """Call `act()` when the run is so old."""
+        self._stage.host.at(seconds, act)
+
+    def crash(self, name: str, *, is_restarted: bool) -> None:
+        """End a program at once; its rules count unless the fault starts it again."""
+        stage = self._stage
+        stage.expected.add(name)
+        supervision = stage.supervision_of(name)
+        if supervision is None:
+            stage.host.crash(name)
+        else:
+            supervision.crash(name, is_restarted=is_restarted)
+        stage.expected.discard(name)
+
+    def restart(self, name: str) -> None:
+        """Start a program anew."""
+        supervision = self._stage.supervision_of(name)
+        (self._stage.host if supervision is None else supervision).restart(name)
+
+
+class _Struck:
+    """Has faults strike the programs of a host."""
+
+    def __init__(self, host: Host, injector: Injector) -> None:
+        self._host, self._injector = host, injector
+
+    def now(self) -> float:
+        """Give the seconds of the run."""
+        return self._host.now
+
+    def add(self, fault: Fault) -> FaultReport | None:
+        """Have a fault from now on."""
+        return self._injector.add(fault)
+
+    def read(self, path: str | PathLike[str]) -> None:
+        """Have all that a file of faults says."""
+        self._injector.have(read_faults(path).value)
+
+    def clear(self) -> None:
+        """Have no faults of messages and connections any more."""
+        self._injector.network.clear()

@@ -1,0 +1,176 @@
+"""The last messages of every topic of a system, as bytes: for whoever wants to know afterwards what was said.
+
+What is kept is read only when it is shown, and nobody in the system sees that there is a listener.
+"""
+
+from __future__ import annotations
+
+import itertools
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, NamedTuple
+
+from robolink.exceptions import WireError
+from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.transport import Handle, Sample, Transport
+from robolink.wire import (
+    DataKey,
+    EndpointKind,
+    EndpointToken,
+    format_key,
+    gid_of,
+    graph_pattern,
+    parse_token,
+    unpack_attachment,
+)
+
+KEPT = 20
+"""Messages of each topic."""
+
+_LATCHED = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Heard(NamedTuple):
+    """Something that was published, when it was heard (nanoseconds of the system's time), and as which of all."""
+
+    time_ns: int
+    arrived: Any
+    number: int
+
+
+class Topic:
+    """One topic of one type: its last messages, and who listens to it beside."""
+
+    def __init__(self, token: EndpointToken) -> None:
+        self.token, self.name = token, token.name
+        self.type_name, self.type_hash = token.type_name, token.type_hash
+        self.key = format_key(DataKey(token.domain, token.name, token.type_name, token.type_hash))
+        self.count = 0
+        self.kept: deque[Heard] = deque(maxlen=KEPT)
+
+
+class Recorder:
+    """Hears all that is published on a domain, from the moment when its publisher is announced.
+
+    `transport` is a session of its own, `now` the time in nanoseconds that each message is noted with.
+    """
+
+    def __init__(self, transport: Transport, domain: int, now: Callable[[], int]) -> None:
+        self.topics: dict[str, Topic] = {}
+        """By key: two publishers of one topic may differ in type."""
+        self._transport, self._now = transport, now
+        self._senders: dict[bytes, str] = {}
+        self._numbers = itertools.count()
+        self._ears: list[Ear] = []
+        self._followers: list[Callable[[Topic], object]] = []
+        self._lock = threading.RLock()  # over Zenoh, news of publishers come on a thread of its own
+        transport.watch(graph_pattern(domain), self._on_token)
+
+    def named(self, name: str) -> list[Topic]:
+        """Give the topics of this name: none, one, or as many as there are types."""
+        with self._lock:
+            return [each for each in self.topics.values() if each.name == name]
+
+    def listen(self, name: str) -> Ear:
+        """Begin to keep what is published on a topic, now or later; what publishers keep for late ones comes first."""
+        ear = Ear(name, self._transport)
+        with self._lock:
+            self._ears.append(ear)
+            for topic in self.named(name):
+                ear.hear(topic)
+        return ear
+
+    @contextmanager
+    def listening(self, name: str) -> Iterator[Ear]:
+        """Listen for as long as a `with` lasts."""
+        ear = self.listen(name)
+        try:
+            yield ear
+        finally:
+            with self._lock:
+                self._ears.remove(ear)
+            ear.close()
+
+    def tell_of_topics(self, follower: Callable[[Topic], object]) -> None:
+        """Call `follower(topic)` for each topic that there is, and for each that comes."""
+        with self._lock:
+            self._followers.append(follower)
+            for topic in self.topics.values():
+                follower(topic)
+
+    def hear(self, topic: Topic, callback: Callable[[bytes], object]) -> None:
+        """Call `callback(payload)` with all that is published on a topic from now on, where it is published."""
+        read = self._transport.read
+        self._transport.subscribe(topic.key, _LATCHED, lambda arrived: callback(read(arrived).payload))
+
+    def sample(self, heard: Heard) -> Sample:
+        """Give the bytes of what was heard."""
+        return self._transport.read(heard.arrived)
+
+    def sender(self, sample: Sample) -> str:
+        """Name the node that published it; '' when nobody knows."""
+        with suppress(WireError):
+            return self._senders.get(unpack_attachment(sample.attachment).gid, "")
+        return ""
+
+    def close(self) -> None:
+        """Leave the network."""
+        self._transport.close()
+
+    def _on_token(self, text: str, alive: bool) -> bool:
+        try:
+            token = parse_token(text)
+        except WireError:
+            return False
+        if alive and isinstance(token, EndpointToken) and token.kind is EndpointKind.PUBLISHER:
+            self._senders[gid_of(text)] = token.full_node_name
+            with self._lock:
+                topic = Topic(token)
+                if topic.key not in self.topics:
+                    self.topics[topic.key] = topic
+                    self._record(topic)
+        return True
+
+    def _record(self, topic: Topic) -> None:
+        now, number, keep = self._now, self._numbers.__next__, topic.kept.append
+
+        def note(arrived: Any) -> None:
+            topic.count += 1
+            keep(Heard(now(), arrived, number()))
+
+        self._transport.subscribe(topic.key, _LATCHED, note)
+        for ear in self._ears:
+            if ear.name == topic.name:
+                ear.hear(topic)
+        for follower in self._followers:
+            follower(topic)
+
+
+class Ear:
+    """What is heard of one topic from now on, until it is taken."""
+
+    def __init__(self, name: str, transport: Transport) -> None:
+        self.name = name
+        self._transport = transport
+        self._arrived: deque[tuple[Topic, Any]] = deque()
+        self._handles: list[Handle] = []
+
+    def hear(self, topic: Topic) -> None:
+        """Listen to it in this type, too."""
+        put = self._arrived.append
+        self._handles.append(self._transport.subscribe(topic.key, _LATCHED, lambda arrived: put((topic, arrived))))
+
+    def take(self) -> list[tuple[Topic, bytes]]:
+        """Give what has come since the last time, in its order, as bytes."""
+        taken = []
+        while self._arrived:
+            topic, arrived = self._arrived.popleft()
+            taken.append((topic, self._transport.read(arrived).payload))
+        return taken
+
+    def close(self) -> None:
+        """Hear no more."""
+        for each in self._handles:
+            each.close()

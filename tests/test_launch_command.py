@@ -1,0 +1,379 @@
+"""`robolink launch`: what is launched, with which arguments, what is shown instead, and what is asked of others."""
+
+from __future__ import annotations
+
+import json
+import sys
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robolink.cli import COMPLETION, main, running
+from robolink.cli import launch as cli
+from robolink.launch.find import find
+from robolink.supervisor import Process, Supervisor
+from robolink.workspace import VARIABLE
+from tests.commands import Command
+
+Captured = pytest.CaptureFixture[str]
+
+TALKER = """
+from robolink import Node
+from robolink.interfaces.std_msgs.msg import String
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__("talker")
+        word = self.declare_parameter("word", "hi").value
+        print("up", word, flush=True)
+        self.create_publisher(String, "chatter", 10)
+"""
+LISTENER = """
+from robolink import Node
+from robolink.interfaces.std_msgs.msg import String
+
+class Listener(Node):
+    def __init__(self):
+        super().__init__("hears")
+        print("listening", flush=True)
+        self.create_subscription(String, "chatter", print, 10)
+        self.create_service
+"""
+SYSTEM = """
+arguments:
+  word: {default: hello, description: What it says., choices: [hello, bye]}
+  loud:
+nodes:
+- node: talker
+  parameters: {word: "{word}"}
+"""
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    for folder in ("nodes", "configs", "configs/worlds"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "nodes" / "talker.py").write_text(TALKER)
+    (tmp_path / "nodes" / "listener.py").write_text(LISTENER)
+    (tmp_path / "configs" / "talk.yaml").write_text(SYSTEM)
+    (tmp_path / "configs" / "none.yaml").write_text("nodes: [node: talker]\n")
+    monkeypatch.setenv("ROBOLINK_LOG_DIR", str(tmp_path / "log"))
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path.resolve()
+
+
+def said(capsys: Captured, *args: str) -> tuple[int, str, str]:
+    code = main(["launch", *args])
+    out, err = capsys.readouterr()
+    return code, out, err
+
+
+# --- arguments ------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch) -> list[list[Process]]:
+    """What is started: nothing runs."""
+    found: list[list[Process]] = []
+
+    class Fake(Supervisor):
+        def __init__(self, processes: Sequence[Process], **settings: Any) -> None:
+            super().__init__(processes, **settings)
+            found.append(list(processes))
+
+        def run(self, duration: float | None = None) -> int:
+            return 7
+
+    monkeypatch.setattr("robolink.launch.command.Supervisor", Fake)
+    return found
+
+
+def test_arguments_are_given_behind_the_file(home: Path, started: list[list[Process]], capsys: Captured) -> None:
+    assert said(capsys, "talk", "loud:=a:=b", "word:=bye") == (7, "", "")
+    [[process]] = started
+    assert process.argv[-2:] == ["-p", 'word:="bye"']
+
+
+BAD = [
+    ((), 2, "launch what? --list shows what there is (see 'robolink launch --help')"),
+    (("word:=bye",), 2, "launch what? --list shows what there is (see 'robolink launch --help')"),
+    (("talk", ":=x"), 2, "an argument has a name, as in speed:=0.5, got ':=x' (see"),
+    (("talk", "a", "b"), 2, "what is 'b'? an argument is given as NAME:=VALUE (see"),
+    (("talk", "word=a=b"), 2, "what is 'word=a=b'? an argument is given as word:=a=b (see"),
+    (("talk", "bye"), 1, "no package named 'talk' in the workspace (an argument is given as NAME:=VALUE)"),
+    (("talk",), 1, "{home}/configs/talk.yaml:4:8: arguments.loud: 'loud' must be given: loud:=VALUE"),
+    (("talk", "loud:=1", "wrd:=x"), 1, "{home}/configs/talk.yaml:3:3: arguments.wrd: no argument is called 'wrd'"),
+    (("talk", "loud:=1", "word:=x"), 1, "{home}/configs/talk.yaml:3:9: arguments.word: 'word' is one of hello, bye"),
+    (("tlk",), 1, "no launch file named 'tlk' in {home} or robolink itself (did you mean 'talk'?)"),
+    (("robot.launch.py",), 1, "robot.launch.py is a Python program, and robolink launches YAML: list its nodes in a"),
+    (("robot.launch.xml",), 1, "robot.launch.xml is XML, and robolink launches YAML"),
+    (("stop", "a", "b"), 2, "ask what? stop [NAME] or restart [NAME] NODE, with the name that --status shows (see"),
+    (("restart",), 2, "ask what? stop [NAME] or restart [NAME] NODE, with the name that --status shows (see"),
+    (("talk", "--graph=png"), 2, "Invalid value for '--graph': 'png' is none of mermaid, dot (see"),
+    (("none", "--in-process", "--watch"), 2, "--in-process goes without --top, --watch and --json"),
+    (("none", "--duration", "nan"), 2, "Invalid value for '--duration': expected 0 to 1e+09 seconds, got nan"),
+]
+
+
+@pytest.mark.parametrize(("args", "code", "line"), BAD)
+def test_what_is_wrong_is_one_line(home: Path, capsys: Captured, args: tuple[str, ...], code: int, line: str) -> None:
+    found, out, err = said(capsys, *args)
+    assert (found, out) == (code, "")
+    assert err.startswith("robolink: " + line.format(home=home))
+    assert err.count("\n") == 1
+
+
+def test_arguments_are_shown(home: Path, capsys: Captured) -> None:
+    shown = "word  What it says. (default: hello; one of hello, bye)\nloud  (must be given)\n"
+    assert said(capsys, "talk", "--show-args") == said(capsys, "talk", "-s") == (0, shown, "")
+    assert said(capsys, "none", "-s") == (0, "none has no arguments\n", "")
+    assert json.loads(said(capsys, "talk", "-s", "--json")[1]) == [
+        {"name": "word", "default": "hello", "description": "What it says.", "choices": ["hello", "bye"]},
+        {"name": "loud", "default": None, "description": "", "choices": []},
+    ]
+
+
+def test_a_package_has_launch_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "src" / "my_robot"
+    (package / "launch").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>my_robot</name></package>")
+    (package / "setup.py").write_text("from setuptools import setup\nsetup(name='my_robot')\n")
+    file = package / "launch" / "robot.launch.yaml"
+    file.write_text("nodes: [node: world]")
+    (package / "launch" / "other.launch.py").write_text("")
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.chdir(tmp_path)
+    for name in ("robot", "robot.launch", "robot.launch.yaml"):
+        assert find(["my_robot", name]).samefile(file)
+    with pytest.raises(ValueError, match=r"other.launch.py is a Python program, and robolink launches YAML"):
+        find(["my_robot", "other"])
+    with pytest.raises(LookupError, match=r"no launch file named 'robt' in package my_robot"):
+        find(["my_robot", "robt"])
+
+
+# --- instead of launching -------------------------------------------------------------------------------------
+
+
+def test_a_launch_file_is_validated(home: Path, capsys: Captured) -> None:
+    file = home / "configs" / "none.yaml"
+    assert said(capsys, "none", "--validate") == (0, f"no mistake found in {file}\n", "")
+    assert json.loads(said(capsys, "none", "--validate", "--json")[1]) == {"mistakes": [], "notes": []}
+    file.write_text(f"nodes:\n- {{node: talker, parameters: {{wrd: x}}}}\n- run: ['{sys.executable}']\n  name: py\n")
+    line = f"{file}:2:31: nodes[0].parameters.wrd: 'talker' declares no parameter 'wrd' (did you mean 'word'?)\n"
+    assert said(capsys, "none", "--validate") == (1, line, "robolink: py was not looked into: it is a command\n")
+    code, out, err = said(capsys, "none", "--validate", "--json")
+    [mistake] = json.loads(out)["mistakes"]
+    assert (code, err) == (1, "")
+    assert (mistake["file"], mistake["line"], mistake["column"]) == (str(file), 2, 31)
+
+
+def test_a_launch_file_that_cannot_be_read_has_a_mistake(home: Path, capsys: Captured) -> None:
+    (home / "configs" / "none.yaml").write_text("nods: []")
+    code, out, err = said(capsys, "none", "--validate")
+    assert (code, err) == (1, "")
+    assert out.startswith(f"{home}/configs/none.yaml:1:1: nods: unknown key 'nods'")
+    assert json.loads(said(capsys, "none", "--validate", "--json")[1])["mistakes"][0]["line"] == 1
+
+
+def test_a_system_is_drawn(home: Path, capsys: Captured) -> None:
+    (home / "configs" / "none.yaml").write_text(f"nodes: [node: talker, run: ['{sys.executable}'], node: gone.py]")
+    (home / "configs" / "none.yaml").write_text("nodes: [node: talker, node: gone.py]")
+    (home / "gone.py").write_text("raise ValueError('no')")
+    code, out, err = said(capsys, "none", "--graph")
+    assert code == 0
+    assert err.startswith("robolink: gone is drawn as far as it was made: ValueError: no (at")
+    assert out == (
+        "flowchart LR\n"
+        '    n0["/talker"]\n'
+        '    n1["/gone"]\n'
+        '    p0(["/chatter<br/>std_msgs/msg/String"])\n'
+        "    n0 --> p0\n"
+    )
+    assert said(capsys, "none", "--graph", "dot")[1].startswith("digraph system {\n")
+
+
+@pytest.mark.parametrize(
+    ("args", "spelled"),
+    [
+        (["a", "--graph"], ["a", "--graph=mermaid"]),
+        (["--graph", "a"], ["--graph=mermaid", "a"]),
+        (["--graph", "dot", "a"], ["--graph", "dot", "a"]),
+        (["--graph=dot", "a"], ["--graph=dot", "a"]),
+        ([], []),
+    ],
+)
+def test_the_format_of_a_graph_may_be_left_out(args: list[str], spelled: list[str]) -> None:
+    assert cli.spelled_out(args) == spelled
+
+
+ASKED = [
+    (("--status",), ("status", "", False)),
+    (("--status", "talk", "--json"), ("status", "talk", True)),
+    (("--top",), ("top", "", False)),
+    (("--status", "--top", "talk", "--json"), ("top", "talk", True)),
+    (("stop",), ("stop",)),
+    (("stop", "talk"), ("stop", "talk")),
+    (("restart", "r0/talker"), ("restart", "r0/talker")),
+    (("restart", "talk", "talker"), ("restart", "talker", "talk")),
+]
+
+
+@pytest.mark.parametrize(("args", "call"), ASKED)
+def test_what_runs_elsewhere_is_asked(monkeypatch: pytest.MonkeyPatch, args: tuple[str, ...], call: Any) -> None:
+    calls: list[tuple[Any, ...]] = []
+    for name in ("status", "top", "stop", "restart"):
+
+        def note(*words: str, name: str = name, **named: bool) -> None:
+            calls.append((name, *words, *named.values()))
+
+        monkeypatch.setattr(running, name, note)
+    assert main(["launch", *args]) == 0
+    assert calls == [call]
+
+
+def test_a_launch_file_may_be_called_stop(home: Path, started: list[list[Process]], capsys: Captured) -> None:
+    (home / "configs" / "stop.yaml").write_text("nodes: [node: talker]")
+    assert said(capsys, "configs/stop.yaml")[0] == 7
+    assert len(started) == 1
+
+
+def test_all_of_it_runs_in_one_process_if_wished(home: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    from robolink import oneprocess
+
+    calls: list[tuple[list[str], float | None]] = []
+
+    def run(entries: Any, *, duration: float | None) -> int:
+        calls.append(([each.name for each in entries], duration))
+        return 3
+
+    monkeypatch.setattr(oneprocess, "run", run, raising=False)
+    assert said(capsys, "none", "--in-process", "--duration", "2") == (3, "", "")
+    assert calls == [(["talker"], 2.0)]
+
+
+# --- launching ------------------------------------------------------------------------------------------------
+
+
+def test_nodes_are_watched_and_measured(
+    home: Path, monkeypatch: pytest.MonkeyPatch, started: list[list[Process]], capsys: Captured
+) -> None:
+    entered: list[tuple[str, Any]] = []
+
+    def fake(kind: str) -> Any:
+        class Fake:
+            def __init__(self, what: Any, **settings: Any) -> None:
+                self.what = what
+
+            def __enter__(self) -> None:
+                entered.append((kind, self.what))
+
+            def __exit__(self, *_: object) -> None:
+                entered.append((kind, "left"))
+
+        return Fake
+
+    monkeypatch.setattr("robolink.supervisor.watch.Watch", fake("watch"))
+    monkeypatch.setattr("robolink.supervisor.resources.Figures", fake("figures"))
+    assert said(capsys, "none", "--watch", "--top") == (7, "", "")
+    assert entered[0] == ("watch", {"talker": [home / "nodes" / "talker.py"]})
+    assert [each[0] for each in entered] == ["watch", "figures", "figures", "watch"]
+    assert [each.rules.on_exit for [each] in started] == ["ignore"]
+
+
+def test_a_core_that_is_not_there_is_told_before_anything_starts(home: Path, capsys: Captured) -> None:
+    (home / "configs" / "none.yaml").write_text("nodes: [{node: talker, cpu: 4095}]")
+    code, out, err = said(capsys, "none")
+    assert (code, out) == (1, "")
+    assert err.startswith(f"robolink: {home}/configs/none.yaml:1:29: nodes[0].cpu: core 4095 is not there")
+
+
+def test_a_system_of_nothing_is_told_of(home: Path, started: list[list[Process]], capsys: Captured) -> None:
+    (home / "configs" / "none.yaml").write_text("nodes: [{node: talker, if: false}]")
+    line = f"robolink: {home}/configs/none.yaml: `if` and `unless` leave nothing to start\n"
+    assert said(capsys, "none") == (0, "", line)
+    assert started == []
+    assert said(capsys, "none", "--graph") == (0, "flowchart LR\n", "")
+    assert said(capsys, "none", "--validate")[0] == 0
+
+
+def test_events_are_printed_one_a_line_and_nothing_else(home: Path, capsys: Captured) -> None:
+    program = f"run: ['{sys.executable}', -c, 'print(\"a word\")']"
+    (home / "configs" / "none.yaml").write_text(f"nodes:\n- {program}\n  name: py\n")
+    code, out, err = said(capsys, "none", "--json")
+    events = [json.loads(each) for each in out.splitlines()]
+    assert (code, err) == (0, "")
+    assert [each["event"] for each in events if each["event"] != "said"] == ["started", "output", "exited", "ended"]
+    assert [each["line"] for each in events if each["event"] == "output"] == ["a word"]
+
+
+def test_what_waits_starts_when_what_it_waits_for_is_there(home: Path, domain: int) -> None:
+    (home / "configs" / "late.yaml").write_text(
+        """
+nodes:
+- {node: talker, name: last, start_after: {topic: heard/there}, parameters: {word: last}}
+- {node: listener, namespace: heard, start_after: [talker], remappings: {chatter: /chatter}}
+- {node: talker, start_after: other}
+- {node: talker, name: other, namespace: /, remappings: {chatter: /heard/there}, parameters: {word: first}}
+"""
+    )
+    with Command(domain, "launch", "late", folder=home) as launched:
+        launched.wait_for("[other] up first")
+        launched.wait_for("[heard/listener] listening")
+        launched.interrupt()
+        assert launched.end() == 0
+    lines = [each.text for each in launched.lines]
+    assert lines.index("[other] up first") < lines.index("[talker] up hi") < lines.index("[heard/listener] listening")
+    assert "[last] up last" in lines
+    assert launched.errors == []
+
+
+def test_a_launcher_that_holds_nothing_has_no_thread_for_it(home: Path, capsys: Captured) -> None:
+    program = "import threading; print(threading.active_count())"
+    (home / "configs" / "none.yaml").write_text(f"nodes: [run: ['{sys.executable}', -c, '{program}']]")
+    names: list[str] = []
+    seen = threading.Event()
+
+    class Output:
+        def write(self, text: str) -> None:
+            names.extend(each.name for each in threading.enumerate())
+            seen.set()
+
+        def flush(self) -> None: ...
+
+        def isatty(self) -> bool:
+            return False
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "stdout", Output())
+        assert main(["launch", "none"]) == 0
+    assert seen.is_set()
+    assert "launch readiness" not in names
+
+
+# --- completion -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("line", "offered"),
+    [
+        ("robolink launch ta", ["talk"]),
+        ("robolink launch talk ", ["word:=", "loud:="]),
+        ("robolink launch talk w", ["word:="]),
+        ("robolink launch talk --graph m", ["mermaid"]),
+        ("robolink launch nothing ", []),
+    ],
+)
+def test_names_and_arguments_are_completed(
+    home: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured, line: str, offered: list[str]
+) -> None:
+    for name, value in {COMPLETION: "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(line.count(" "))}.items():
+        monkeypatch.setenv(name, value)
+    main([])
+    out, err = capsys.readouterr()
+    assert sorted(out.split()) == sorted(offered)
+    assert err == ""

@@ -1,0 +1,298 @@
+"""Launch files as people write them: arguments, includes, groups, copies and conditions come to what they mean."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from robolink.exceptions import DocumentError, NotFoundError
+from robolink.launch import Entry, read_launch_file
+from robolink.launch.description import Respawn, StartAfter
+from robolink.workspace import VARIABLE, built_in_workspace, list_launches
+from tests.launchfiles import make_workspace
+
+CONFIGS = {
+    "robot": """
+arguments:
+  id:
+  mode: {default: slow, choices: [slow, fast]}
+nodes:
+- {node: mine, name: "driver_{id}", parameters: {id: "{id}", mode: "{mode}"}, start_after: world}
+""",
+    "gains": """
+/**:
+  ros__parameters: {gain: 1, careful: yes}
+/r0/mine:
+  ros__parameters: {gain: 2.5}
+""",
+}
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    return make_workspace(tmp_path, monkeypatch, **CONFIGS)
+
+
+def entries(home: Path, text: str, **given: str) -> dict[str, Entry]:
+    found = read_launch_file(home / "configs" / "lap.yaml", given, text=text)
+    return {each.name: each for each in found}
+
+
+def test_a_fleet_of_included_robots(home: Path) -> None:
+    found = entries(
+        home,
+        """
+arguments: {robots: 2, mode: {default: fast, choices: [slow, fast]}}
+nodes:
+- node: world
+groups:
+- namespace: fleet
+  groups:
+  - namespace: r{i}
+    count: "{robots}"
+    include:
+    - {file: robot, namespace: inner, arguments: {id: "0{i}", mode: "{mode}"}}
+""",
+        robots="3",
+    )
+    assert list(found) == ["world", *(f"fleet/r{i}/inner/driver_0{i}" for i in range(3))]
+    last = found["fleet/r2/inner/driver_02"]
+    assert last.full_name == "/fleet/r2/inner/driver_02"
+    assert last.node.namespace == "/fleet/r2/inner"
+    assert last.node.parameters == {"id": "02", "mode": "fast"}
+    assert last.node.start_after == (StartAfter(node="/world"),)
+    assert last.source is not None
+    assert last.source.path == home / "nodes" / "mine.py"
+    assert last.home == home
+
+
+def test_what_a_group_says_holds_within_and_the_nearer_counts(home: Path) -> None:
+    found = entries(
+        home,
+        """
+groups:
+- process: p
+  respawn: on_failure
+  env: {A: outer, B: outer}
+  remappings: {scan: a, odom: b}
+  parameters: {x: 1, y: {z: 1}}
+  log_level: debug
+  on_exit: ignore
+  cpu: 1
+  start_after: {topic: map}
+  groups:
+  - namespace: in
+    respawn: {when: always, delay: 0.5}
+    parameters: {y.z: 2}
+    nodes:
+    - {node: mine, name: a, env: {B: inner}, remappings: {scan: c}, parameters: {x: 3}, log_level: warn, cpu: [0, 1]}
+    - {node: mine, name: b, process: "", respawn: never, start_after: [a, {service: go}, {topic: /clock}]}
+  nodes:
+  - {run: [python], name: helper}
+""",
+    )
+    a, b, helper = found["in/a"].node, found["in/b"].node, found["helper"].node
+    assert (a.process, a.log_level, a.on_exit, a.cpu) == ("p", "warn", "ignore", (0, 1))
+    assert a.respawn == Respawn("always", delay=0.5)
+    assert a.env == {"A": "outer", "B": "inner"}
+    assert list(a.remappings.items()) == [("scan", "c"), ("odom", "b")]
+    assert a.parameters == {"x": 3, "y.z": 2}
+    assert found["in/a"].wide == {"y.z"}
+    assert a.start_after == (StartAfter(topic="/in/map"),)
+    assert (b.process, b.log_level, b.respawn.when) == ("", "debug", "never")
+    waits = [StartAfter(topic="/in/map"), StartAfter(node="/in/a"), StartAfter(service="/in/go")]
+    assert b.start_after == (*waits, StartAfter(topic="/clock"))
+    assert (helper.process, helper.log_level, helper.parameters, helper.remappings) == ("", None, {}, {})
+    assert (helper.env, helper.on_exit, helper.cpu) == ({"A": "outer", "B": "outer"}, "ignore", (1,))
+    assert helper.start_after == (StartAfter(topic="/map"),)
+
+
+def test_a_name_that_is_waited_for_is_the_nearest(home: Path) -> None:
+    found = entries(
+        home,
+        """
+nodes: [{node: mine}, {node: mine, name: base, namespace: r1}, {node: mine, name: a, start_after: r1/mine}]
+groups:
+- namespace: r1
+  nodes:
+  - {node: mine}
+  - {node: mine, namespace: arm, name: b, start_after: [mine, /mine, base]}
+  - {node: mine, namespace: /r2, name: c, start_after: mine}
+""",
+    )
+    waits = {name: [each.node for each in entry.node.start_after] for name, entry in found.items()}
+    assert waits["a"] == ["/r1/mine"]
+    assert waits["r1/arm/b"] == ["/r1/mine", "/mine", "/r1/base"]
+    assert waits["r2/c"] == ["/mine"]
+
+
+@pytest.mark.parametrize("word", ["true", "yes", "on", "On", "Y", "1", "'true'", "'{yes}'", "'{typed}'"])
+def test_conditions_that_are_true(home: Path, word: str) -> None:
+    text = f"arguments: {{yes: yes, typed: off}}\nnodes: [{{node: mine, if: {word}}}, {{node: world, unless: {word}}}]"
+    assert list(entries(home, text, typed="on")) == ["mine"]
+
+
+@pytest.mark.parametrize("word", ["false", "no", "off", "OFF", "n", "0"])
+def test_conditions_that_are_false(home: Path, word: str) -> None:
+    text = f"nodes: [{{node: mine, if: {word}}}]\ngroups: [{{unless: {word}, nodes: [node: world]}}]"
+    assert list(entries(home, text)) == ["world"]
+
+
+def test_what_is_not_wanted_may_be_impossible(home: Path) -> None:
+    text = """
+groups:
+- if: off
+  nodes: [{node: not_there, parameters: nor_this.yaml, name: "{env:NOR_THAT}"}]
+include: [{file: nowhere, unless: on}]
+nodes: [{run: [no_such_program], if: no}]
+"""
+    assert entries(home, text) == {}
+
+
+def test_what_programs_get_is_as_it_is_written(home: Path) -> None:
+    text = """
+arguments: {version: 1.10}
+nodes:
+- node: mine
+  env: {A: on, B: 012, C: 1e3, D: yes, E: , F: "{version}", G: 0x10, H: null, on: "{here}"}
+  args: [012, 1.10, true, "{version}", "v{version}", {linear: 1}]
+"""
+    with pytest.raises(DocumentError, match=r"args\[5\]: expected a value, got mapping"):
+        entries(home, text)
+    node = entries(home, text.replace(", {linear: 1}", ", '{linear: 1}'"), version="2.50")["mine"].node
+    here = str(home / "configs")
+    assert node.env == {
+        "A": "on",
+        "B": "012",
+        "C": "1e3",
+        "D": "yes",
+        "E": "",
+        "F": "2.50",
+        "G": "0x10",
+        "H": "null",
+        "on": here,
+    }
+    assert node.args == ["012", "1.10", "true", "2.50", "v2.50", "{linear: 1}"]
+
+
+def test_an_argument_may_be_a_list_or_a_mapping(home: Path) -> None:
+    text = """
+arguments: {more: [--fast, 2.5], names: {default: {scan: lidar}}, gains: {default: {p: 1.0}}, cores: [0, 1]}
+nodes: [{node: mine, args: "{more}", remappings: "{names}", parameters: "{gains}", cpu: "{cores}"}]
+"""
+    node = entries(home, text, more="[--slow, 3]")["mine"].node
+    assert (node.args, node.remappings, node.parameters, node.cpu) == (
+        *(["--slow", "3"], {"scan": "lidar"}, {"p": 1.0}),
+        (0, 1),
+    )
+
+
+def test_what_is_merged_is_read_too(home: Path) -> None:
+    text = "nodes: [&a {node: mine, name: a, env: {X: 012}, args: [012]}, {<<: *a, name: b, args: [013]}]"
+    found = entries(home, text)
+    assert [(each.node.env, each.node.args) for each in found.values()] == [
+        ({"X": "012"}, ["012"]),
+        ({"X": "012"}, ["013"]),
+    ]
+
+
+def test_a_command_is_found_before_anything_starts(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(home))
+    text = "nodes: [{run: [robolink, topic, list]}, {run: [python, '{here}/x.py', 5], name: tool, namespace: a}]"
+    found = entries(home, text)
+    assert found["robolink"].node.run == [sys.executable, "-m", "robolink", "topic", "list"]
+    tool = found["a/tool"]
+    assert tool.node.run == [sys.executable, f"{home / 'configs'}/x.py", "5"]
+    assert (tool.source, tool.home) == (None, home)
+
+
+def test_parameter_files_are_read_for_each_node(home: Path) -> None:
+    text = """
+nodes:
+- {node: mine, count: 2, namespace: "r{i}", parameters: [gains.yaml, {extra: "{i}"}]}
+- {node: world, parameters: [{gain: 7, speed: 1}, configs/gains.yaml]}
+"""
+    found = entries(home, text)
+    assert found["r0/mine"].node.parameters == {"gain": 2.5, "careful": True, "extra": 0}
+    assert found["r0/mine"].wide == {"careful"}
+    assert found["r1/mine"].node.parameters == {"gain": 1, "careful": True, "extra": 1}
+    assert found["world"].node.parameters == {"gain": 1, "careful": True, "speed": 1}
+
+
+def test_a_file_for_a_group_need_not_be_for_all_of_it(home: Path) -> None:
+    (home / "configs" / "one.yaml").write_text("/r0/mine:\n  ros__parameters: {a: 1}\n")
+    text = "groups: [{parameters: one.yaml, nodes: [{node: mine, count: 2, namespace: 'r{i}'}]}]"
+    found = entries(home, text)
+    assert (found["r0/mine"].node.parameters, found["r1/mine"].node.parameters) == ({"a": 1}, {})
+
+
+def test_an_error_about_an_entry_is_where_the_thing_is_said(home: Path) -> None:
+    text = """
+groups:
+- process: p
+  parameters: {a: {b: 1}}
+  count: 1
+  nodes:
+  - node: mine
+    remappings: {"x{i}": y}
+    parameters: [gains.yaml, {"c{i}": 2}]
+    start_after: [world]
+- nodes: [node: world]
+"""
+    entry = entries(home, text)["mine"]
+
+    def place(*steps: str | int, key: bool = False) -> str:
+        return (
+            str(entry.error(list(steps), "x", key=key)).replace("\\", "/").removeprefix(f"{home.as_posix()}/configs/")
+        )
+
+    assert place("process") == "lap.yaml:3:12: groups[0].process: x"
+    assert place("parameters", "a.b") == "lap.yaml:4:23: groups[0].parameters.a.b: x"
+    assert place("parameters", "gain") == "lap.yaml:9:18: groups[0].nodes[0].parameters[0]: x"
+    assert place("parameters", "c0") == "lap.yaml:9:39: groups[0].nodes[0].parameters[1].c{i}: x"
+    assert place("remappings", "x0", key=True) == "lap.yaml:8:18: groups[0].nodes[0].remappings.x{i}: x"
+    assert place("start_after") == "lap.yaml:10:19: groups[0].nodes[0].start_after[0]: x"
+    assert place("node") == "lap.yaml:7:11: groups[0].nodes[0].node: x"
+    assert place("cpu") == "lap.yaml:7:5: groups[0].nodes[0].cpu: x"
+
+
+def test_included_files_look_around_themselves(home: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    elsewhere = make_other_workspace(tmp_path_factory.mktemp("elsewhere"))
+    text = f"""
+nodes: [node: mine]
+include:
+- {{file: "{elsewhere.as_posix()}/configs/other.yaml", namespace: o}}
+- {{file: wander, namespace: w}}
+"""
+    found = entries(home, text)
+    assert {name: each.home for name, each in found.items()} == {
+        "mine": home,
+        "o/mine": elsewhere,
+        "w/world": home,
+        "w/reactive_controller": home,
+    }
+    assert found["o/mine"].node.parameters == {"here": str(elsewhere / "configs"), "a": 5}
+    assert found["o/mine"].source != found["mine"].source
+
+
+def make_other_workspace(folder: Path) -> Path:
+    for part in ("nodes", "configs"):
+        (folder / part).mkdir()
+    (folder / "nodes" / "mine.py").write_text("")
+    (folder / "configs" / "own.yaml").write_text("mine: {ros__parameters: {a: 4}}\n/o/mine: {ros__parameters: {a: 5}}")
+    text = "nodes: [{node: mine, parameters: [{here: '{here}'}, own.yaml]}]"
+    (folder / "configs" / "other.yaml").write_text(text)
+    return folder.resolve()
+
+
+def test_a_workspace_that_is_none_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(VARIABLE, raising=False)
+    with pytest.raises(NotFoundError, match="no workspace folder named"):
+        read_launch_file(tmp_path / "lap.yaml", workspace=tmp_path / "none", text="nodes: [node: world]")
+
+
+@pytest.mark.parametrize("path", list_launches(workspace=built_in_workspace()), ids=lambda path: path.stem)
+def test_the_launch_files_that_come_with_robolink_are_read(path: Path) -> None:
+    assert read_launch_file(path)

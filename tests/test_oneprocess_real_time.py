@@ -1,0 +1,140 @@
+"""A host in real time: programs side by side in threads, and `robolink launch --in-process`."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from robolink import logging
+from robolink.exceptions import DocumentError
+from robolink.launch import Entry, read_launch_file
+from robolink.oneprocess import Host, run
+from tests.hosts import Counter, Listener, Stage
+from tests.test_oneprocess_scripts import CLIENT, SERVER
+
+PATIENCE = 30.0
+
+
+@pytest.fixture
+def host() -> Iterator[Host]:
+    logging.set_console_handler(None)
+    with Host(virtual=False) as made:
+        yield made
+
+
+@pytest.fixture
+def log() -> Iterator[list[str]]:
+    lines: list[str] = []
+
+    def note(record: logging.Record) -> None:
+        lines.append(record.message)
+
+    logging.add_handler(note)
+    yield lines
+    logging.remove_handler(note)
+
+
+def launched(folder: Path, text: str, **files: str) -> list[Entry]:
+    for name in ("nodes", "configs"):
+        (folder / name).mkdir()
+    for name, program in files.items():
+        (folder / "nodes" / f"{name}.py").write_text(program)
+    path = folder / "configs" / "system.yaml"
+    path.write_text(text)
+    return list(read_launch_file(path))
+
+
+def test_nodes_talk_in_real_time(host: Host) -> None:
+    counter, listener = host.start_node(Counter), host.start_node(Listener)
+    assert host.run_until(lambda: len(listener.heard) >= 3, PATIENCE)
+    assert listener.heard[-3:] == list(range(listener.heard[-3], listener.heard[-3] + 3))
+    assert threading.current_thread() is threading.main_thread()
+    host.stop("Counter")
+    assert (host.programs["Counter"].state, host.programs["Counter"].returncode) == ("ended", 0)
+    assert not counter.context.ok()
+    assert host.programs["Listener"].state == "running"
+
+
+def test_acts_are_done_by_whoever_runs_the_host(host: Host) -> None:
+    threads: list[threading.Thread] = []
+    host.at(0.05, lambda: threads.append(threading.current_thread()))
+    assert host.run_until(lambda: bool(threads), PATIENCE)
+    assert threads == [threading.current_thread()]
+
+
+def test_scripts_end_with_their_exit_codes_and_crashes_stay_their_own(host: Host, tmp_path: Path) -> None:
+    stage = Stage(tmp_path, host)
+    server = stage.start("server", SERVER)
+    client = stage.start("client", CLIENT)
+    breaks = stage.start("breaks", "raise ValueError('no')")
+    assert host.run_until(lambda: client.is_over and breaks.is_over, PATIENCE)
+    assert (client.state, client.returncode) == ("ended", 3)
+    assert (breaks.state, breaks.returncode, str(breaks.error)) == ("crashed", 1, "no")
+    assert server.state == "running"
+    host.crash("server")
+    assert (server.state, server.returncode) == ("crashed", -9)
+    assert host.restart("server").lives == 2
+
+
+def test_stop_breaks_into_a_sleep(host: Host, tmp_path: Path) -> None:
+    text = "import time\ntry:\n    time.sleep(1e6)\nexcept KeyboardInterrupt:\n    raise SystemExit(7)"
+    program = Stage(tmp_path, host).start("sleeps", text)
+    host.stop("sleeps")
+    assert (program.state, program.returncode) == ("ended", 7)
+
+
+def test_a_launch_file_in_one_process_ends_with_its_first_program(tmp_path: Path, log: list[str]) -> None:
+    logging.set_console_handler(None)
+    text = """
+nodes:
+  - {node: server}
+  - {node: client, start_after: {service: add}}
+"""
+    assert run(launched(tmp_path, text, server=SERVER, client=CLIENT)) == 3
+    assert "waiting" not in log
+    assert "interrupted" in log
+
+
+def test_respawn_until_it_is_given_up(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    logging.set_console_handler(None)
+    text = """
+nodes:
+  - {node: server}
+  - {node: fails, respawn: {delay: 0.01, most: 3}}
+"""
+    assert run(launched(tmp_path, text, server=SERVER, fails="raise SystemExit(4)")) == 4
+    assert capsys.readouterr().out.count("[launch] fails ended with exit code 4") == 4
+
+
+def test_the_duration_ends_it(tmp_path: Path, log: list[str]) -> None:
+    logging.set_console_handler(None)
+    assert run(launched(tmp_path, "nodes: [{node: server}]", server=SERVER), duration=0.1) == 0
+    assert log[-1] == "interrupted"
+
+
+def test_ctrl_c_ends_the_system_in_order(tmp_path: Path, log: list[str]) -> None:
+    logging.set_console_handler(None)
+    ready = SERVER.replace("node = Adder()", "node = Adder(); node.get_logger().info('ready')")
+    entries = launched(tmp_path, "nodes: [{node: server}]", server=ready)
+
+    def press(record: logging.Record) -> None:
+        if record.message == "ready":
+            signal.raise_signal(signal.SIGINT)
+
+    logging.add_handler(press)
+    try:
+        assert run(entries) == 0
+    finally:
+        logging.remove_handler(press)
+    assert log[-1] == "interrupted"
+
+
+def test_commands_are_refused(tmp_path: Path) -> None:
+    entries = launched(tmp_path, f"nodes: [{{run: [{sys.executable}, -V], name: version}}]")
+    with pytest.raises(DocumentError, match=r"system\.yaml:1:\d+: .*a command needs a process of its own"):
+        run(entries)

@@ -1,0 +1,72 @@
+"""What a launcher asks of its processes is read without typer, and means what it means with it."""
+
+from __future__ import annotations
+
+import gc
+import subprocess
+import sys
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robolink.cli import _parsed, runner
+from robolink.cli.shortcut import shortcut
+
+WORDS = st.sampled_from(["talker", "my/node.py:Talker", "demo_nodes_py", "a b", "x:=1", "--", "-r", "--two", "", "-"])
+LATER = st.lists(st.sampled_from(["--ros-args", "-r", "__node:=a", "-p", "x:=1", "--", "-"]), max_size=4)
+
+
+def asked_by(act: Any, monkeypatch: pytest.MonkeyPatch) -> list[object]:
+    """What the runner is asked for."""
+    asked: list[object] = []
+
+    def run(*arguments: object) -> int:
+        asked.append(arguments)
+        return 0
+
+    with monkeypatch.context() as patched:
+        patched.setattr(runner, "run", run)
+        assert act() == 0
+    return asked
+
+
+@given(st.lists(WORDS, max_size=4), LATER)
+def test_it_reads_what_the_parser_reads(words: list[str], later: list[str]) -> None:
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        short = shortcut(["run", *words, *later])
+        if short is not None:
+            parsed = asked_by(lambda: _parsed(["run", *words, *later]), monkeypatch)
+            assert asked_by(short, monkeypatch) == parsed
+
+
+@pytest.mark.parametrize(
+    "words", [[], ["-p", "x:=1", "talker"], ["talker", "-p", "x:=1"], ["--list"], ["--", "talker"]]
+)
+def test_options_are_left_to_the_parser(words: list[str]) -> None:
+    assert shortcut(["run", *words]) is None
+
+
+@pytest.mark.parametrize("command", ["topic", "launch", "run-together x"])
+def test_so_are_other_commands(command: str) -> None:
+    assert shortcut(command.split()) is None
+
+
+def test_what_a_launcher_writes_is_read_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    words = ["run", "/a/talker.py", "--", "fast", "--ros-args", "-r", "__node:=a"]
+    short = shortcut(words)
+    assert short is not None
+    asked = runner.Asked("/a/talker.py", ["fast"], 0)
+    assert asked_by(short, monkeypatch) == [(asked, ["--ros-args", "-r", "__node:=a"], None)]
+    assert gc.isenabled()
+
+
+def test_a_node_is_run_without_what_it_does_not_need(tmp_path: Any) -> None:
+    script = tmp_path / "script.py"
+    script.write_text("import gc, sys\ndef main():\n    print(gc.isenabled(), *sys.modules)\n")
+    command = [sys.executable, "-m", "robolink", "run", f"{script}:main"]
+    shown = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+    assert shown[0] == "True"
+    assert "robolink.node" in shown
+    assert not {"typer", "rich", "yaml", "subprocess", "tempfile", "numpy", "asyncio"} & set(shown)

@@ -1,0 +1,183 @@
+"""Simulating a launch file: what is counted, that a run is the same twice, faults, and what counts as a failure."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robolink import logging
+from robolink.exceptions import NotFoundError
+from robolink.launch import read_launch_file
+from robolink.logging import Record
+from robolink.simulating import Watching, failed_by, simulate, with_parameters
+from robolink.simulating.settings import SettingError, parse_settings
+from robolink.workspace import find_launch
+from tests.simulations import simulated, workspace
+
+ROUGH = """
+messages:
+  - {topic: /chatter, loss: 0.2, duplication: 0.1, latency: 0.05, jitter: 0.05}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return workspace(
+        tmp_path,
+        fails="nodes:\n  - {node: talker, parameters: {fails_at: 21}}\n  - {node: listener}\n",
+        ignored="nodes:\n  - {node: talker, on_exit: ignore, parameters: {fails_at: 21}}\n  - {node: listener}\n",
+        again="nodes:\n  - {node: talker, respawn: always, parameters: {fails_at: 21}}\n  - {node: listener}\n",
+        waits="nodes:\n  - {node: listener, start_after: talker}\n  - {node: talker}\n",
+        gambles="nodes:\n  - {node: gambler}\n  - {node: talker}\n",
+        fixed="nodes:\n  - {node: gambler, parameters: {seed: 7}}\n",
+        command="nodes:\n  - {node: talker}\n  - {run: [echo, hello], name: echo}\n",
+        spares="nodes:\n  - {node: talker, on_exit: ignore}\n  - {node: listener}\n",
+    )
+
+
+def test_messages_are_counted_by_topic(folder: Path) -> None:
+    result = simulated(folder)
+    assert (result.messages["/chatter"], result.messages["/heard"]) == (100, 100)
+    assert (result.seconds, result.failures) == (10.0, [])
+    assert [(each.name, each.state) for each in result.programs] == [("talker", "running"), ("listener", "running")]
+
+
+def test_a_run_is_the_same_twice_and_another_seed_is_another_run(folder: Path) -> None:
+    first, again, other = (simulated(folder, seed=seed, faults=ROUGH) for seed in (3, 3, 4))
+    assert first.hash == again.hash
+    assert first.messages == again.messages
+    assert first.hash != other.hash
+    assert 60 < first.messages["/heard"] < 100
+
+
+def test_whoever_watches_changes_nothing(folder: Path) -> None:
+    times: list[float] = []
+    watched = simulated(folder, duration=3.5, watching=Watching(time=times.append))
+    assert watched.hash == simulated(folder, duration=3.5).hash
+    assert times == [1.0, 2.0, 3.0, 3.5]
+
+
+def test_a_robots_way_contacts_and_pose_are_told() -> None:
+    entries = read_launch_file(find_launch("follow"), {})
+    result = simulate(entries, duration=10.0)
+    (robot,) = result.robots
+    assert robot.name == "robot"
+    assert robot.contacts == 0
+    assert 2.0 < robot.driven < 3.5
+    assert robot.x - 3.0 == pytest.approx(robot.driven, abs=0.2)  # along the first wall
+
+
+def test_what_a_fault_did_is_told(folder: Path) -> None:
+    (report,) = simulated(folder, seed=1, faults=ROUGH).faults
+    assert report.met == 100
+    assert 5 < report.lost < 40
+    assert report.late > 60
+
+
+def test_a_partition_and_its_end(folder: Path) -> None:
+    faults = "partitions: [{between: [talker, listener], after: 2, until: 7}]"
+    assert simulated(folder, faults=faults).messages["/heard"] == pytest.approx(50, abs=2)
+
+
+def test_a_crash_and_a_new_start_are_no_failure(folder: Path) -> None:
+    faults = "crashes: [{node: talker, at: 2.05, restart_after: 3}]"
+    result = simulated(folder, faults=faults)
+    talker = result.programs[0]
+    assert (talker.state, talker.crashes, talker.restarts, result.failures) == ("running", 1, 1, [])
+    assert result.messages["/chatter"] == 20 + 49
+
+
+def test_a_crash_without_a_new_start_is_left_to_the_launch_file(folder: Path) -> None:
+    faults = "crashes: [{node: talker, at: 2.05}]"
+    ended, spared = simulated(folder, faults=faults), simulated(folder, "spares", faults=faults)
+    assert ended.seconds == pytest.approx(2.05, abs=0.01)
+    assert (spared.seconds, spared.programs[0].state) == (10.0, "crashed")
+    assert ended.failures == spared.failures == []
+
+
+def test_a_clock_that_is_wrong(folder: Path) -> None:
+    right = simulated(folder)
+    ahead = simulated(folder, faults="clocks: [{node: listener, offset: 0.5}]")
+    fast = simulated(folder, faults="clocks: [{node: talker, drift: 0.1}]")
+    assert right.messages == ahead.messages
+    assert right.hash != ahead.hash
+    assert fast.messages["/chatter"] == 110
+
+
+def test_a_node_that_fails_ends_the_run_and_fails_it(folder: Path) -> None:
+    said: list[str] = []
+    result = simulated(folder, "fails", watching=Watching(say=said.append))
+    assert result.seconds == pytest.approx(2.1)
+    assert result.failures == ["talker ended with exit code 1 at 2.100 s: ZeroDivisionError: it was to fail"]
+    assert result.programs[0].error == "ZeroDivisionError: it was to fail"
+    assert said == ["talker ended with exit code 1: ZeroDivisionError: it was to fail"]
+
+
+def test_a_node_that_fails_and_is_ignored_fails_the_run_all_the_same(folder: Path) -> None:
+    result = simulated(folder, "ignored")
+    assert (result.seconds, len(result.failures)) == (10.0, 1)
+
+
+def test_respawn_holds_in_virtual_time(folder: Path) -> None:
+    result = simulated(folder, "again", duration=8.05)
+    assert result.programs[0].restarts == 2  # it fails at 2.1 s and at 5.2 s, and waits 1 s and then 2 s
+    assert result.messages["/chatter"] == 20 + 20 + 8
+
+
+def test_start_after_holds_in_virtual_time(folder: Path) -> None:
+    assert simulated(folder, "waits").messages["/heard"] == 100
+
+
+def test_commands_are_left_out(folder: Path) -> None:
+    result = simulated(folder, "command")
+    assert result.warnings == ["echo is left out: a command knows no virtual time"]
+    assert result.messages["/chatter"] == 100
+
+
+def test_a_fault_that_met_nothing_is_told(folder: Path) -> None:
+    (warning,) = simulated(folder, faults="messages: [{topic: /chater, loss: 1}]").warnings
+    assert warning.endswith("no topic '/chater' was received by any node (did you mean '/chatter'?)")
+
+
+def test_a_seed_is_that_of_random_of_numpy_and_of_parameters(folder: Path) -> None:
+    state, array_state = random.getstate(), str(np.random.get_state())
+    logs: list[Record] = []
+    runs = [simulated(folder, "gambles", seed=seed, watching=Watching(log=logs.append)) for seed in (5, 5, 6)]
+    assert runs[0].hash == runs[1].hash != runs[2].hash
+    assert [each.message for each in logs if each.severity >= logging.LoggingSeverity.WARN] == []
+    assert (random.getstate(), str(np.random.get_state())) == (state, array_state)
+
+
+def test_a_seed_that_a_node_was_given_stays(folder: Path) -> None:
+    seeds = [simulated(folder, "fixed", seed=seed).bytes["/seed"] for seed in (5, 6)]
+    assert seeds[0] == seeds[1]
+
+
+def test_a_seed_in_the_faults_is_everybodys(folder: Path) -> None:
+    assert simulated(folder, "gambles", faults="seed: 5").hash == simulated(folder, "gambles", seed=5).hash
+    assert simulated(folder, "gambles", seed=6, faults="seed: 5").hash == simulated(folder, "gambles", seed=6).hash
+
+
+def test_parameters_are_set_by_node(folder: Path) -> None:
+    entries = read_launch_file(folder / "configs" / "talk.yaml", {})
+    changed = with_parameters(entries, parse_settings(["talker.fails_at:=5"]))
+    assert simulate(changed, duration=1.0).failures == [
+        "talker ended with exit code 1 at 0.500 s: ZeroDivisionError: it was to fail"
+    ]
+    with pytest.raises(NotFoundError, match=r"no node named 'taker' in the launch file \(did you mean 'talker'\?\)"):
+        with_parameters(entries, {"taker.fails_at": 5})
+
+
+@pytest.mark.parametrize("text", ["talker", "talker:=5", "talker.x", ".x:=1", "talker.:=1"])
+def test_a_setting_that_is_none(text: str) -> None:
+    with pytest.raises(SettingError, match=r"expected NODE\.PARAMETER:=VALUE"):
+        parse_settings([text])
+
+
+def test_what_else_may_count_as_a_failure(folder: Path) -> None:
+    result = simulated(folder, "ignored")
+    assert failed_by(result, ["contact", "real-time"]).failures == result.failures
+    assert failed_by(result, ["error"]).failures[-1] == "1 error logged"

@@ -1,0 +1,142 @@
+"""The command `robolink simulate`: what it prints, its exit codes, what is told of wrong usage, and many seeds."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from robolink.cli import main
+from robolink.simulating.repeat import run_seeds
+from tests.simulations import workspace
+
+ROUGH = "messages:\n  - {topic: /chatter, loss: 0.2}\n"
+UNLUCKY = '''
+"""Fails when it draws a small number."""
+
+import random
+
+from robolink import Node
+
+
+class Unlucky(Node):
+    def __init__(self, **options):
+        super().__init__("unlucky", **options)
+        self.create_timer(0.1, self.tick)
+
+    def tick(self):
+        if (drawn := random.random()) < 0.02:
+            raise ValueError(f"drew {drawn:.6f}")
+'''
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    workspace(
+        tmp_path,
+        fails="nodes:\n  - {node: talker, parameters: {fails_at: 21}}\n",
+        fast="arguments: {count: -1}\nnodes:\n  - {node: talker, parameters: {fails_at: '{count}'}}\n",
+        gambles="nodes:\n  - {node: unlucky}\n",
+    )
+    (tmp_path / "nodes" / "unlucky.py").write_text(UNLUCKY)
+    (tmp_path / "configs" / "faults").mkdir()
+    (tmp_path / "configs" / "faults" / "rough.yaml").write_text(ROUGH)
+    monkeypatch.delenv("ROBOLINK_WORKSPACE", raising=False)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_summary_ends_with_the_hash(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["simulate", "talk", "--duration", "3", "--faults", "rough", "--seed", "2"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("talk: 3 s in ")
+    assert lines[0].endswith(" times as fast as life; seed 2")
+    assert "  /chatter                 30" in lines
+    assert any(line.startswith("fault {topic: /chatter, loss: 0.2}: ") and line.endswith(" of 30") for line in lines)
+    assert len(lines[-1].removeprefix("hash ")) == 64
+
+
+def test_json_is_one_object_on_the_last_line(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["simulate", "talk", "--duration", "3", "--json"]) == 0
+    out = capsys.readouterr().out
+    result = json.loads(out.splitlines()[-1])
+    assert result["messages"]["/chatter"] == 30
+    assert (result["file"], result["seed"], result["failures"], len(result["hash"])) == ("talk", 0, [], 64)
+
+
+def test_two_processes_have_the_same_hash(folder: Path) -> None:
+    runs = run_seeds(
+        lambda seed: ["simulate", "talk", "--duration", "2", "--faults", "rough", "--json"], [1, 2], workers=2
+    )
+    hashes = [each.result.hash for each in runs if each.result is not None]
+    assert len(hashes) == 2
+    assert hashes[0] == hashes[1]
+
+
+def test_a_node_that_fails_is_told_and_the_exit_code_is_1(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["simulate", "fails", "--duration", "3"]) == 1
+    out, err = capsys.readouterr()
+    assert "failed: talker ended with exit code 1 at 2.100 s: ZeroDivisionError: it was to fail" in out
+    assert "ZeroDivisionError" in err
+
+
+def test_arguments_and_parameters_are_given(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["simulate", "fast", "count:=5", "--duration", "3"]) == 1
+    assert "at 0.500 s" in capsys.readouterr().out
+    assert main(["simulate", "fast", "count:=5", "--set", "talker.fails_at:=-1", "--duration", "3"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "told", "code"),
+    [
+        (["tolk"], " or robolink itself (did you mean 'talk'?)", 1),
+        (["talk", "--faults", "ruogh"], "no faults file named 'ruogh' in ", 1),
+        (["talk", "--set", "taker.x:=1"], "no node named 'taker' in the launch file (did you mean 'talker'?)", 1),
+        (["talk", "--set", "talker.x"], "--set: expected NODE.PARAMETER:=VALUE, got 'talker.x'", 1),
+        (["talk", "--set", "talker.x:=[1"], "--set talker.x:1:3: expected ',' or ']'", 1),
+        (["talk", "--seed", "-1"], "Invalid value for '--seed': -1 is not in the range", 2),
+        (["talk", "--fail-on", "contct"], "'contct' is none of contact, error, real-time (did you mean 'contact'?)", 2),
+        (["count:=1"], "simulate what?", 2),
+    ],
+)
+def test_wrong_usage_is_one_line(
+    folder: Path, words: list[str], told: str, code: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["simulate", *words, "--duration", "1"]) == code
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert told in err
+    assert err.count("\n") == 1
+
+
+def test_a_fault_on_an_unknown_node_is_told_with_its_place(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    faults = folder / "wrong.yaml"
+    faults.write_text("crashes:\n  - {node: taker, at: 1}\n")
+    assert main(["simulate", "talk", "--faults", str(faults)]) == 1
+    assert capsys.readouterr().err == (
+        f"robolink: {faults}:2:12: crashes[0].node: no node named 'taker' (did you mean 'talker'?)\n"
+    )
+
+
+def test_a_seed_that_fails_is_told_and_fails_again_by_itself(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["simulate", "gambles", "--duration", "2", "--repeat", "4", "--seed", "3"]) == 1
+    *told, last = capsys.readouterr().out.splitlines()
+    assert last == f"{4 - len(told) // 2} of 4 seeds passed"
+    assert 0 < len(told) // 2 < 4
+    line, replay = told[:2]
+    words = shlex.split(replay)
+    assert words[0] == "robolink"
+    again = subprocess.run([sys.executable, "-m", *words], capture_output=True, text=True, timeout=60, check=False)
+    assert again.returncode == 1
+    assert f"failed: {line.partition(' failed: ')[2]}" in again.stdout
+
+
+def test_many_seeds_as_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["simulate", "talk", "--duration", "1", "--repeat", "2", "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out.splitlines()[-1])
+    assert (summary["seeds"], summary["failed"], len(summary["hash"])) == (2, [], 64)
+    assert [each["seed"] for each in summary["results"]] == [0, 1]

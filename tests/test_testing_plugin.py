@@ -1,0 +1,259 @@
+"""The plugin for pytest: its fixtures, its options, what a failure shows, and that it stays out of others' way."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+
+import pytest
+
+# pytester forgets what was imported meanwhile, and numpy cannot be imported twice.
+import robolink.testing.one_process
+import robolink.testing.processes
+import robolink.testing.system  # noqa: F401
+
+pytest_plugins = ["pytester"]
+
+HEAVY = ("zenoh", "numpy", "yaml", "msgspec", "robolink.node", "robolink.context", "robolink.testing.system")
+
+NODE = """
+from robolink import Node
+from robolink.interfaces.std_msgs.msg import Int32
+
+
+class Counter(Node):
+    def __init__(self):
+        super().__init__("counter")
+        self.count = 0
+        self.publisher = self.create_publisher(Int32, "count", 10)
+        self.create_timer(0.1, self.on_timer)
+
+    def on_timer(self):
+        self.count += 1
+        self.publisher.publish(Int32(data=self.count))
+"""
+
+
+@pytest.fixture
+def project(pytester: pytest.Pytester) -> pytest.Pytester:
+    """A project of somebody's own, with a node."""
+    pytester.makepyfile(counter=NODE)
+    pytester.syspathinsert()
+    return pytester
+
+
+def run(project: pytest.Pytester, text: str, *options: str) -> pytest.RunResult:
+    project.makepyfile(test_it="from counter import Counter\n" + text)
+    return project.runpytest_inprocess("-p", "no:cacheprovider", "-p", "no:xdist", *options)
+
+
+def test_a_test_has_a_system_a_node_and_a_clock(project: pytest.Pytester) -> None:
+    text = """
+from robolink.interfaces.std_msgs.msg import Int32
+
+def test_counts(system, node, virtual_time):
+    heard = []
+    node.create_subscription(Int32, "count", heard.append, 10)
+    system.start(Counter)
+    virtual_time.run(1.05)
+    assert [each.data for each in heard] == list(range(1, 11))
+    assert virtual_time.now == system.time == 1.05
+
+def test_begins_anew(system):
+    assert system.nodes == []
+    system.start(Counter)
+    assert system.expect("count").data == 1
+"""
+    run(project, text).assert_outcomes(passed=2)
+
+
+FAILS = """
+def test_fails(system):
+    system.start(Counter)
+    system.expect("count", lambda count: count.data > 100, within=1.0)
+"""
+
+
+def test_a_failed_expectation_shows_what_came_and_how_to_replay_it(project: pytest.Pytester) -> None:
+    result = run(project, FAILS)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        [
+            ">   *system.expect(*",
+            "E   *none of the 10 messages on /count fulfilled the condition within 1 s (from 0 s to 1 s)",
+            "E  *1.000 s  /count  /counter  data=10",
+            "E  *replay: pytest 'test_it.py::test_fails' --robolink-seed *",
+        ]
+    )
+    result.stdout.no_fnmatch_line("*testing*observing.py*def expect*")
+
+
+def seed_of(result: pytest.RunResult) -> str:
+    found = re.search(r"--robolink-seed (\d+)", result.stdout.str())
+    assert found is not None
+    return found[1]
+
+
+def test_the_seed_is_the_tests_own_and_the_same_each_time_or_the_one_asked_for(project: pytest.Pytester) -> None:
+    assert seed_of(run(project, FAILS)) == seed_of(run(project, FAILS))
+    assert seed_of(run(project, FAILS)) != seed_of(run(project, FAILS.replace("fails", "breaks")))
+    assert seed_of(run(project, FAILS, "--robolink-seed", "7")) == "7"
+    drawn = {seed_of(run(project, FAILS, "--robolink-seed", "random")) for _ in range(3)}
+    assert len(drawn) > 1
+    result = run(project, FAILS, "--robolink-seed", "often")
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines(["*--robolink-seed: invalid whole number, or 'random' value: 'often'"])
+
+
+def test_any_other_failure_has_the_story_and_the_seed_beside_it(project: pytest.Pytester) -> None:
+    text = """
+def test_fails(system):
+    system.start(Counter)
+    system.run(0.3)
+    assert system.expect("count").data == 5
+
+def test_of_something_else():
+    assert False
+"""
+    result = run(project, text, "--robolink-seed=12")
+    result.assert_outcomes(failed=2)
+    result.stdout.fnmatch_lines(
+        [
+            "E  *assert 4 == 5",
+            "*- robolink -*",
+            "the system after 0.400 s",
+            "  0.400 s  /count  /counter  data=4",
+            "replay: pytest 'test_it.py::test_fails' --robolink-seed 12",
+        ]
+    )
+    assert result.stdout.str().count("replay:") == 1
+
+
+def test_a_node_that_breaks_is_shown_where_it_broke(project: pytest.Pytester) -> None:
+    text = """
+class Fragile(Counter):
+    def on_timer(self):
+        raise ValueError("broken")
+
+def test_it(system):
+    system.start(Fragile)
+    system.run(10.0)
+"""
+    result = run(project, text)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        ["> *raise ValueError(*", "*NodeFailure: counter failed at 0.1 s: ValueError: broken (test_it.py:5)"]
+    )
+
+
+def test_fixtures_of_a_projects_own_go_first(project: pytest.Pytester) -> None:
+    project.makeconftest("""
+import pytest
+
+@pytest.fixture
+def system():
+    return "theirs"
+
+@pytest.fixture
+def node():
+    return "their node"
+""")
+    result = run(project, "def test_it(system, node):\n    assert (system, node) == ('theirs', 'their node')\n")
+    result.assert_outcomes(passed=1)
+
+
+def test_a_test_that_is_interrupted_leaves_nothing(project: pytest.Pytester) -> None:
+    text = """
+import pathlib
+
+class Polite(Counter):
+    def destroy_node(self):
+        pathlib.Path("goodbye").touch()
+        super().destroy_node()
+
+def test_it(system):
+    system.start(Polite)
+    system.run(1.0)
+    raise KeyboardInterrupt
+"""
+    project.makepyfile(test_it="from counter import Counter\n" + text)
+    result = project.runpytest_subprocess("-p", "no:cacheprovider")
+    assert result.ret == pytest.ExitCode.INTERRUPTED
+    assert (project.path / "goodbye").exists()
+
+
+def test_nothing_heavy_is_imported_for_those_who_do_not_ask() -> None:
+    code = f"import sys, robolink.testing.plugin; print([name for name in {HEAVY} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+# Over Zenoh
+
+
+@pytest.mark.processes
+def test_the_same_test_runs_against_processes(project: pytest.Pytester) -> None:
+    text = """
+def test_counts(system):
+    node = system.start(Counter, name="teller", namespace="ada", remappings={"count": "/number"})
+    assert node.get_fully_qualified_name() == "/ada/teller"
+    first = system.expect("number").data
+    assert system.expect("number", lambda number: number.data > first + 3)
+    assert (system.publishers("number"), system.nodes) == (["/ada/teller"], ["/ada/teller"])
+    system.crash(node)
+    assert system.nodes == []
+    system.restart(node)
+    assert system.expect("number").data < 9
+    assert system.parameter("ada/teller", "use_sim_time") is False
+
+def test_faults(system):
+    system.faults.lose("number", 0.5)
+
+def test_virtual_time(virtual_time):
+    virtual_time.run(3600)
+"""
+    run(project, text).assert_outcomes(passed=3)
+    result = run(project, text, "--robolink-transport=zenoh", "-rs")
+    result.assert_outcomes(passed=1, skipped=2)
+    result.stdout.fnmatch_lines(["SKIPPED *test_it.py:*MessageFault: faults strike in memory alone; run this with*"])
+    result.stdout.fnmatch_lines(["SKIPPED *test_it.py:*: real processes have no virtual time*"])
+
+
+@pytest.mark.processes
+def test_processes_that_fail_are_told_and_none_is_left(project: pytest.Pytester) -> None:
+    text = """
+import os
+
+class Fragile(Counter):
+    def on_timer(self):
+        super().on_timer()
+        if self.count == 5:
+            raise ValueError("broken")
+
+class Broken(Counter):
+    def __init__(self):
+        raise ValueError("no such thing")
+
+def test_breaks(system):
+    system.start(Fragile)
+    system.run(20.0)
+
+def test_never_begins(system):
+    system.start(Broken)
+
+def test_waits_in_vain(system):
+    system.start(Counter)
+    system.expect("count", lambda count: count.data < 0, within=0.5)
+"""
+    result = run(project, text, "--robolink-transport=zenoh", "--robolink-seed=3")
+    result.assert_outcomes(failed=3)
+    result.stdout.fnmatch_lines(
+        [
+            "*NodeFailure: counter failed at * s: ended with exit code 1: ValueError: broken",
+            "*replay: pytest 'test_it.py::test_breaks' --robolink-seed 3 --robolink-transport zenoh",
+            "*NodeFailure: *failed at its start: ended with exit code 1: ValueError: no such thing",
+            "*messages on /count fulfilled the condition within 0.5 s*",
+            "*/count  /counter  data=*",
+        ]
+    )

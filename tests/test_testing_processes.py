@@ -1,0 +1,134 @@
+"""Systems under test that are processes: started, watched, killed, and none of them left."""
+
+from __future__ import annotations
+
+import sys
+import threading
+import time
+import uuid
+from pathlib import Path
+
+import pytest
+
+from robolink import Node
+from robolink.exceptions import NotFoundError
+from robolink.testing import System
+from robolink.testing.domains import free_domain
+from robolink.testing.expectations import OnlyInMemoryError
+from tests.commands import MARK
+from tests.nodefiles import load_node_file
+
+pytest_plugins = ["pytester"]
+pytestmark = pytest.mark.processes
+
+PATIENCE = 60.0
+
+
+@pytest.fixture
+def mark(monkeypatch: pytest.MonkeyPatch) -> str:
+    """What all processes have in their environment that are started meanwhile."""
+    made = uuid.uuid4().hex
+    monkeypatch.setenv(MARK, made)
+    return made
+
+
+def left(mark: str) -> list[str]:
+    """The processes that still run, without this one; known only where /proc is."""
+    wanted = f"{MARK}={mark}".encode()
+    return [each.parent.name for each in Path("/proc").glob("[0-9]*/environ") if wanted in _read(each)]
+
+
+def _read(file: Path) -> bytes:
+    try:
+        return file.read_bytes()
+    except OSError:
+        return b""
+
+
+LAUNCH = """
+nodes:
+  - {node: world, parameters: {world: corners, rtf: 5.0}}
+  - {node: wall_follower, start_after: world}
+"""
+
+
+def test_a_launch_file_as_processes(tmp_path: Path, mark: str) -> None:
+    file = tmp_path / "drive.yaml"
+    file.write_text(LAUNCH)
+    threads = set(threading.enumerate())
+    with System(transport="zenoh") as system:
+        system.launch(file, set={"wall_follower.speed": 0.4})
+        system.wait_until(lambda: system.nodes == ["/wall_follower", "/world"], within=PATIENCE)
+        assert system.parameter("wall_follower", "speed") == 0.4
+        system.set_parameter("wall_follower", "speed", 1)
+        assert system.parameter("wall_follower", "speed") == 1.0
+        system.expect("odom", lambda odom: odom.pose.pose.position.x > 3.3, within=PATIENCE)
+        robot = system.robot()
+        assert robot.driven > 0.2
+        assert robot.pose.x > 3.2
+        assert robot.contacts == 0
+        assert system.call("std_srvs/srv/Trigger", "world/pause").message.startswith("paused")
+        assert system.expect_log("paused at").name == "world"
+        assert {*left(mark)} if sys.platform == "linux" else True
+        system.crash("wall_follower")
+        system.run(0.2)
+        assert (system.nodes, system.failures) == (["/world"], [])
+        system.restart("wall_follower")
+        assert system.nodes == ["/wall_follower", "/world"]
+        system.stop("world")
+        assert system.nodes == ["/wall_follower"]
+        with pytest.raises(NotFoundError, match="did you mean 'world'"):
+            system.stop("wrld")
+    system.close()
+    assert set(threading.enumerate()) == threads
+    assert left(mark) == []
+
+
+def test_two_nodes_of_one_class_are_two_programs() -> None:
+    first = load_node_file("first_node").FirstNode
+    with System(transport="zenoh") as system:
+        system.start(first, name="one", parameters={"greeting": "servus"})
+        system.start(first, namespace="ada")
+        assert sorted(system.programs) == ["ada/first_node", "one"]
+        assert system.expect_log("servus", within=PATIENCE).name == "one"
+        system.stop("first_node")
+        assert system.nodes == ["/one"]
+
+
+def test_what_only_memory_can_is_refused_with_the_reason() -> None:
+    class Inner(Node):
+        pass
+
+    with System(transport="zenoh") as system:
+        for refused in (
+            lambda: system.faults.lose("scan", 0.5),
+            lambda: system.faults.read("faults.yaml"),
+            lambda: system.start(Inner),
+        ):
+            with pytest.raises(OnlyInMemoryError, match=r"memory|put it outside"):
+                refused()
+        with pytest.raises(NotFoundError, match="no simulated world"):
+            system.robot()
+
+
+INTERRUPTED = """
+def test_it(system):
+    system.start("first_node")
+    system.start("velocity_publisher")
+    raise KeyboardInterrupt
+"""
+
+
+def test_ctrl_c_leaves_no_process(pytester: pytest.Pytester, mark: str) -> None:
+    pytester.makepyfile(test_it=INTERRUPTED)
+    result = pytester.runpytest_subprocess("-p", "no:cacheprovider", "--robolink-transport=zenoh")
+    assert result.ret == pytest.ExitCode.INTERRUPTED
+    deadline = time.monotonic() + PATIENCE
+    while left(mark) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert left(mark) == []
+
+
+def test_two_systems_at_once_have_domains_of_their_own() -> None:
+    with free_domain() as one, free_domain() as other:
+        assert one != other
