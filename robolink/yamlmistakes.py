@@ -78,6 +78,13 @@ class Reader:
             node = None if entry is None else entry[1]
         return node.value if isinstance(node, yaml.ScalarNode) else None
 
+    def spelled(self, steps: Sequence[Step]) -> str:
+        """Give what stands at the end of these steps as the text has it, a mapping with its braces."""
+        node = self._node(steps)
+        if node is None or node.start_mark.buffer is None:
+            return ""
+        return node.start_mark.buffer[node.start_mark.pointer : node.end_mark.pointer]
+
     def line(self, steps: Sequence[Step]) -> int:
         """Give the line, from 1, of what stands at the end of these steps."""
         node = self._node(steps)

@@ -248,6 +248,8 @@ _CLEARER = {
     "found unexpected end of stream": "a quote is opened and never closed",
     "but found another document": "a second document begins here, and one file holds one",
     "second occurrence": "this anchor is given twice",
+    "expected escape sequence of": "a backslash in double quotes begins an escape: use '/' or single quotes",
+    "found unknown escape character": "a backslash in double quotes begins an escape: use '/' or single quotes",
     "found character '@' that": "a plain value cannot begin with '@': put it in quotes",
     "found character '`' that": "a plain value cannot begin with '`': put it in quotes",
     "found character '%' that": "a plain value cannot begin with '%': put it in quotes",

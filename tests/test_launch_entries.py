@@ -177,6 +177,43 @@ nodes:
     assert node.args == ["012", "1.10", "true", "2.50", "v2.50", "{linear: 1}"]
 
 
+def test_what_ros_spells_otherwise_is_read_as_it_means_it(home: Path) -> None:
+    found = entries(
+        home,
+        """
+arguments: {again: true}
+nodes:
+- {node: mine, name: a, log_level: WARN, respawn: true}
+- {node: mine, name: b, log_level: Debug, respawn: false}
+groups:
+- {log_level: ERROR, respawn: "{again}", nodes: [{node: mine, name: c}, {node: mine, name: d, respawn: on_failure}]}
+""",
+    )
+    assert [each.node.log_level for each in found.values()] == ["warn", "debug", "error", "error"]
+    assert [each.node.respawn.when for each in found.values()] == ["always", "never", "always", "on_failure"]
+
+
+def test_braces_and_colons_that_are_meant_so_stay(home: Path) -> None:
+    found = entries(
+        home,
+        """
+arguments: {again, speed: 1}
+nodes:
+- node: mine
+  name: m{again}
+  args: ["a:b", a:b, '{"speed": {"x": 1}}', '{again} {']
+  parameters: {nodes: [a:b], '{speed}': 2, empty: {}, shell: $(var, date: $(date)}
+  env:
+    SCRIPT: |
+      f"{here}"
+""",
+        again="5",
+    )
+    assert found["m5"].node.args == ["a:b", "a:b", '{"speed": {"x": 1}}', "5 {"]
+    assert found["m5"].node.parameters == {"nodes": ["a:b"], "1": 2, "shell": "$(var", "date": "$(date)"}
+    assert found["m5"].node.env == {"SCRIPT": f'f"{home / "configs"}"\n'}
+
+
 def test_an_argument_may_be_a_list_or_a_mapping(home: Path) -> None:
     text = """
 arguments: {more: [--fast, 2.5], names: {default: {scan: lidar}}, gains: {default: {p: 1.0}}, cores: [0, 1]}
@@ -206,6 +243,24 @@ def test_a_command_is_found_before_anything_starts(home: Path, monkeypatch: pyte
     tool = found["a/tool"]
     assert tool.node.run == [sys.executable, f"{home / 'configs'}/x.py", "5"]
     assert (tool.source, tool.home) == (None, home)
+
+
+def test_a_node_may_be_an_executable_of_a_package(home: Path) -> None:
+    folder = home / "src" / "rover"
+    (folder / "rover").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>rover</name></package>")
+    (folder / "setup.py").write_text(
+        "setup(entry_points={'console_scripts': ['drive = rover.driver:main']}, packages=['rover'])"
+    )
+    (folder / "rover" / "driver.py").write_text("def main(): pass\n")
+    found = entries(home, "nodes: [{node: rover drive}, {node: tf2_ros static_transform_publisher, name: tf}]")
+    assert list(found) == ["drive", "tf"]
+    assert [each.source.spec.rpartition("/")[2] for each in found.values() if each.source] == [
+        "driver.py:main",
+        "static_transform_publisher.py",
+    ]
+    with pytest.raises(DocumentError, match=r"no node named 'drive' in .*; package rover has one: 'rover drive'$"):
+        entries(home, "nodes: [node: drive]")
 
 
 def test_parameter_files_are_read_for_each_node(home: Path) -> None:

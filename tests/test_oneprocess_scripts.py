@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import random
 import subprocess
 import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from time import monotonic, sleep
 from typing import Any
 
 import pytest
@@ -600,3 +602,51 @@ def test_a_system_of_scripts_publishes_the_same_bytes_each_time(tmp_path: Path) 
         command, env={**os.environ, "PYTHONHASHSEED": "77"}, capture_output=True, check=True, text=True
     )
     assert found.stdout.split()[0] == digest
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_any_order_of_starts_and_ends_leaves_nothing_behind(tmp_path: Path, seed: int) -> None:
+    logging.set_console_handler(None)
+    before = threading.active_count()
+    drawn = random.Random(seed)
+    with Host(seed=seed) as host:
+        stage = Stage(tmp_path, host)
+        for _ in range(30):
+            name = drawn.choice(sorted(ALL))
+            program = host.programs.get(name)
+            if program is None:
+                stage.start(name, ALL[name])
+            else:
+                drawn.choice([host.stop, host.crash, host.restart, host.interrupt])(name)
+                if program.is_over:
+                    host.restart(name)
+            host.run(drawn.choice([0.0, 0.1, 1.0]))
+        assert {each.state for each in host.programs.values()} <= {"running", "ended", "crashed"}
+    assert all(each.is_over for each in host.programs.values())
+    assert threading.active_count() == before
+    assert not host.bus.tokens
+
+
+def test_what_a_module_took_of_time_before_there_was_a_host(stage: Stage) -> None:
+    class Naps(Counter):
+        def tick(self) -> None:
+            super().tick()
+            sleep(0.5)
+            self.woke = monotonic()
+
+    node = stage.host.start_node(Naps)
+    stage.host.run(0.65)
+    assert (node.count, node.woke) == (2, 1.6)
+    assert [use.what for use in stage.host.real_time_use] == ["time.sleep"]
+
+
+def test_as_often_as_possible_is_every_millisecond(stage: Stage) -> None:
+    class Hurries(Counter):
+        def __init__(self) -> None:
+            super().__init__()
+            self.timer.timer_period_ns = 0
+            self.timer.reset()
+
+    node = stage.host.start_node(Hurries)
+    stage.host.run(0.1)
+    assert node.count in (99, 100, 101)

@@ -188,7 +188,7 @@ def test_two_words_are_a_package_and_its_executable_only_if_both_are_there(top: 
             ["first"],
             (
                 "no node named 'first' in {top} or robolink itself (did you mean 'first_node'?); "
-                "package pkg_a has one: robolink run pkg_a first"
+                "package pkg_a has one: 'pkg_a first'"
             ),
         ),
     ],

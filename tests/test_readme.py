@@ -16,9 +16,12 @@ from robolink.testing import System
 
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 PROGRAMS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+(SYSTEM,) = re.findall(r"```yaml\n(.*?)```", README, re.DOTALL)
 
 
-def module(text: str) -> ModuleType:
+def module(word: str) -> ModuleType:
+    """Run the only program in which a word stands."""
+    (text,) = (each for each in PROGRAMS if word in each)
     made = ModuleType("readme")
     exec(compile(text, "README.md", "exec"), made.__dict__)
     return made
@@ -28,7 +31,7 @@ def test_the_node_stops_before_what_is_near(monkeypatch: pytest.MonkeyPatch) -> 
     context = Context(transport="memory://readme", time=VirtualTime())
     context.init(args=[])
     monkeypatch.setattr("robolink.node.get_default_context", lambda: context)
-    node = module(PROGRAMS[0]).Careful()
+    node = module("class Careful").Careful()
     sent: list[float] = []
     node.create_subscription(Twist, "cmd_vel", lambda twist: sent.append(twist.linear.x), 10)
     scans = node.create_publisher(LaserScan, "scan", 10)
@@ -43,10 +46,17 @@ def test_the_node_stops_before_what_is_near(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_type_of_ones_own_has_its_fields() -> None:
-    basket = module(PROGRAMS[1]).Basket(label="red", weights=[0.5])
+    basket = module("class Basket").Basket(label="red", weights=[0.5])
     assert (basket.label, list(basket.weights)) == ("red", [0.5])
 
 
 def test_the_test_passes() -> None:
     with System(seed=1) as system:
-        module(PROGRAMS[2]).test_follows_the_wall_though_a_fifth_of_its_scans_is_lost(system)
+        module("def test_").test_follows_the_wall_though_a_fifth_of_its_scans_is_lost(system)
+
+
+def test_the_system_drives_as_fast_as_it_is_told(tmp_path: Path) -> None:
+    (tmp_path / "lap.yaml").write_text(SYSTEM)
+    with System(seed=1) as system:
+        system.launch(tmp_path / "lap.yaml", {"speed": 0.5})
+        system.expect("cmd_vel", lambda twist: twist.linear.x > 0.45, within=30.0)

@@ -74,12 +74,19 @@ def check_shared(part: Part, said: Any) -> None:
 
 def check_words(part: Part) -> None:
     """Refuse what would be called a wrong type, and say what to write instead. Raises `DocumentError`."""
-    run, respawn = part.get("run"), part.get("respawn")
-    if isinstance(run, str):
-        raise part.error(["run"], f"expected a list, such as [{', '.join(run.split())}]")
+    for key in ("run", "args"):
+        if isinstance(text := part.get(key), str):
+            raise part.error([key], f"expected a list, such as [{', '.join(text.split())}]")
+    for key, right in (("remappings", "{from: to}"), ("env", "{NAME: value}")):
+        if isinstance(part.get(key), list):
+            raise part.error([key], f"expected a mapping, such as {right}")
+    respawn, awaited = part.get("respawn"), part.get("start_after")
     if respawn is not None and not isinstance(respawn, str | dict):
         words = ", ".join(get_args(When))
         raise part.error(["respawn"], f"expected one of {words}, or a mapping with `when`, got '{spell(respawn)}'")
+    if isinstance(awaited, int | float):
+        reason = f"expected a node, {{topic: NAME}} or {{service: NAME}}, got '{spell(awaited)}'"
+        raise part.error(["start_after"], f"{reason}: nothing waits for a time")
 
 
 def check_terminal(entries: Iterable[Entry]) -> None:

@@ -50,11 +50,11 @@ class StartAfter(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 class NodeDescription(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """One node or command of a system, or `count` copies of it, in a process of its own or with other nodes in one.
 
-    `node` is a name, a file or FILE:function; a relative file is one of the launch file's workspace. `run` stands in
-    its place: a command and its arguments. `args` are the program's own arguments; these, `run` and `env` arrive
-    letter by letter as they are written. An `interactive` node has the terminal's keyboard. All nodes that name the
-    same `process` run there. `cpu` says on which cores (from 0) it may run. With `count`, `{i}` in all that is said of
-    it stands for 0, 1, 2 ... in turn.
+    `node` is a name, a file, FILE:function or FILE:Class, or a package and its executable; a relative file is one of
+    the launch file's workspace. `run` stands in its place: a command and its arguments. `args` are the program's own
+    arguments; these, `run` and `env` arrive letter by letter as they are written. An `interactive` node has the
+    terminal's keyboard. All nodes that name the same `process` run there. `cpu` says on which cores (from 0) it may
+    run. With `count`, `{i}` in all that is said of it stands for 0, 1, 2 ... in turn.
     """
 
     node: str = ""

@@ -9,6 +9,7 @@ from typing import Any
 import msgspec
 
 from robolink.exceptions import DocumentError
+from robolink.launch.slips import hint, slips
 from robolink.launch.substitution import Step
 from robolink.yamlfile import read_text
 from robolink.yamlmistakes import Reader
@@ -26,10 +27,13 @@ class LaunchFile:
     def __init__(self, path: Path, text: str | None = None, above: str = "") -> None:
         self.path, self._above = path, above
         try:
-            self._reader = Reader(read_text(path) if text is None else text, str(path))
+            text = read_text(path) if text is None else text
+            self._reader = Reader(text, str(path))
         except DocumentError as error:
-            raise self._told(error) from None
+            raise self._told(_with_hint(error, str(path), text)) from None
         self.data: dict[str, Any] = self.value(self._reader.data, dict[str, Any], [])
+        for steps, message in slips(self.data, self._reader.spelled):
+            raise self.error(steps, message)
 
     @property
     def folder(self) -> Path:
@@ -59,3 +63,10 @@ class LaunchFile:
 
     def _told(self, error: DocumentError) -> DocumentError:
         return type(error)(f"{error} (included in {self._above})") if self._above else error
+
+
+def _with_hint(error: DocumentError, name: str, text: str | None) -> DocumentError:
+    """Give an error about a text that is no YAML, with what is probably the reason."""
+    line = str(error).removeprefix(f"{name}:").partition(":")[0]
+    said = hint(text, int(line)) if text is not None and line.isdecimal() else ""
+    return type(error)(f"{error}: {said}") if said else error

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from robolink.exceptions import NotFoundError, RobolinkError
-from robolink.workspace import Folder, find_launch, find_package
+from robolink.workspace import Folder, find_launch, find_package, list_packages
 
 LAUNCH_FOLDER = "launch"
 """Where a ROS 2 package has its launch files."""
@@ -30,7 +30,8 @@ def find(names: Sequence[str], *, workspace: Folder = None) -> Path:
     package, name = names
     folder = find_package(package, workspace=workspace)
     if folder is None:
-        raise NotFoundError("package", package, where="the workspace (an argument is given as NAME:=VALUE)")
+        known = list_packages(workspace=workspace)
+        raise NotFoundError("package", package, known, "the workspace (an argument is given as NAME:=VALUE)")
     return _in_package(folder, package, name)
 
 

@@ -25,7 +25,7 @@ class _Kind(NamedTuple):
         return [each.encode_name for each in msgspec.structs.fields(self.struct)]
 
 
-_PACKAGE = "no packages are named here: `node: NAME`, `node: FILE.py` or `run: [program, ...]`"
+_PACKAGE = "`node: PACKAGE EXECUTABLE`, or `node: NAME`"
 _SHARED = {
     "param": "`parameters`",
     "params": "`parameters`",
@@ -41,6 +41,7 @@ _SHARED = {
     "container": "`process`, the same for all nodes that share one",
     "when": "`if`",
     "condition": "`if`",
+    "delay": "nothing waits for a time: `start_after` names what must be there",
     "respawn_delay": "`respawn: {delay: SECONDS}`",
     "respawn_max_retries": "`respawn: {most: N, within: SECONDS}`",
 }
@@ -58,6 +59,7 @@ _NODE_OTHERS = {
     "stdin": "`interactive: true`",
     "affinity": "`cpu`",
     "output": "leave it out: output is shown and written to the log folder",
+    "prefix": "`run: [program, ...]`, the whole command",
     "emulate_tty": "leave it out: output is line-buffered as it is",
 }
 _TOP_OTHERS = {
@@ -109,6 +111,8 @@ def _meant(key: str, kind: _Kind) -> str:
     if key in kind.others:
         instead = kind.others[key]
         return f": write {instead}" if instead.startswith("`") else f": {instead}"
+    if key.startswith("-"):
+        return f": write '- {key[1:]}', with a space"
     if near := nearest(key, kind.keys):
         return near
     owners = [each.title for each in _KINDS if each is not kind and key in each.keys]

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from robolink.exceptions import DocumentError, shown
 from robolink.launch import sources
 from robolink.launch.checks import flattened
+from robolink.launch.find import YAML
 from robolink.launch.part import Part, Place
 from robolink.launch.substitution import Step
 from robolink.parameter_file import parse_parameter_value, read_parameter_file
@@ -84,6 +85,9 @@ def _inline(said: dict[str, Any], place: Place) -> Iterator[tuple[Override, Plac
     known: set[str] = set()
     for name, steps, value in flattened(said):
         at = Place(place.part, (*place.steps, *steps))
+        if "ros__parameters" in steps:
+            is_of_files = "`ros__parameters` and what stands above it are for parameter files"
+            raise at.error(f"{is_of_files}: write {{{shown(steps[-1])}: {shown(spell(value))}}}", key=True)
         if name in known:
             raise at.error(f"parameter '{shown(name)}' is given twice", key=True)
         if not name or any(each in ":*=" or each.isspace() or not each.isprintable() for each in name):
@@ -109,6 +113,8 @@ def _check_value(value: Any, place: Place) -> None:
 
 
 def _check_ros_spelling(said: dict[str, Any], place: Place) -> None:
+    if len(place.steps) > 1 and said.keys() == {"from"} and str(said["from"]).endswith(YAML):
+        raise place.error(f"a parameter file is given by its name: write {shown(said['from'])}")
     if len(place.steps) > 1 and said.keys() == {"name", "value"}:
         name = shown(str(said["name"]))
         raise place.error(f"parameters are given as {{name: value}}: write {{{name}: {shown(spell(said['value']))}}}")

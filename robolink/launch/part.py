@@ -41,7 +41,7 @@ class Part:
         data, steps = self.written[key], (*self.steps, key)
         is_typed = key in _TYPED or (key in _COLLECTIONS and isinstance(data, str))
         try:
-            return filled(data, self.values, steps, as_text=not is_typed, renamed=self._renamed)
+            return _as_ros_spells(key, filled(data, self.values, steps, as_text=not is_typed, renamed=self._renamed))
         except SubstitutionError as error:
             raise self.file.error(error.steps, str(error), key=error.is_key) from None
 
@@ -103,6 +103,15 @@ def copies(file: LaunchFile, steps: Sequence[Step], data: Mapping[str, Any], val
         return
     for number in range(whole.value("count", Count, 1)):
         yield Part(file, steps, whole.written, values.joined_by({NUMBER: Value.of(number)}))
+
+
+def _as_ros_spells(key: str, value: Any) -> Any:
+    """Read what ROS 2 spells otherwise: log levels in capitals, and `respawn: true` for what is always done."""
+    if key == "log_level" and isinstance(value, str):
+        return value.lower()
+    if key == "respawn" and isinstance(value, bool):
+        return "always" if value else "never"
+    return value
 
 
 def _as_written(file: LaunchFile, steps: Sequence[Step], data: Mapping[str, Any]) -> dict[str, Any]:

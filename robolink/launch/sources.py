@@ -8,17 +8,23 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from robolink.exceptions import NotFoundError, nearest
+from robolink.launch.find import YAML
 from robolink.workspace import (
     Folder,
     NodeSource,
     built_in_workspace,
+    canonical,
+    executable,
+    executables,
     find_launch,
     find_node,
+    find_package,
+    find_ros_node,
+    list_packages,
     user_workspace,
     workspace_of,
 )
 
-_YAML = (".yaml", ".yml")
 WHERE_PROGRAMS_ARE = "a name is looked up on the PATH, a path from the working directory ({here} is the file's folder)"
 _OURS = {
     "robolink": (sys.executable, "-m", "robolink"),
@@ -48,8 +54,12 @@ def home_of(path: Path, workspace: Folder) -> Path | None:
 def source_of(name: str, home: Path | None, folder: Path) -> NodeSource:
     """Find a node; a file that has no workspace around it is looked for beside the launch file, in `folder`, too.
 
-    Raises `NotFoundError` with the nearest name.
+    Two words are a package and an executable of it, as `robolink run` takes them. Raises `NotFoundError` with the
+    nearest name.
     """
+    package, _, its_name = name.partition(" ")
+    if its_name and canonical(package).isidentifier():
+        return _executable(package, its_name.strip(), home)
     file, colon, attribute = name.rpartition(":") if ".py:" in name else (name, "", "")
     beside = folder / file
     if home is None and file.endswith(".py") and beside.is_file():
@@ -57,18 +67,28 @@ def source_of(name: str, home: Path | None, folder: Path) -> NodeSource:
     return find_node(name, workspace=home)
 
 
+def _executable(package: str, name: str, home: Path | None) -> NodeSource:
+    folder = find_package(package, workspace=home)
+    source = find_ros_node(package, name) if folder is None else executable(folder, name)
+    if source is not None:
+        return source
+    if folder is None:
+        raise NotFoundError("package", package, list_packages(workspace=home), "the workspace")
+    raise NotFoundError("executable", name, executables(folder), f"package {package}")
+
+
 def included_file(name: str, home: Path | None, folder: Path) -> Path:
     """Find a launch file that another one in `folder` includes: beside it, with or without `.yaml`, or by name.
 
     Raises `NotFoundError` with the nearest name.
     """
-    found = _first_file(folder / Path(f"{name}{suffix}").expanduser() for suffix in ("", *_YAML))
+    found = _first_file(folder / Path(f"{name}{suffix}").expanduser() for suffix in ("", *YAML))
     if found is not None:
         return found
     try:
         return find_launch(name, workspace=home)
     except NotFoundError as error:
-        beside = [text for each in folder.glob("*") if each.suffix in _YAML for text in (each.name, each.stem)]
+        beside = [text for each in folder.glob("*") if each.suffix in YAML for text in (each.name, each.stem)]
         raise (NotFoundError("launch file", name, beside) if nearest(name, beside) else error) from None
 
 
@@ -81,7 +101,7 @@ def parameter_file(name: str, home: Path | None, folder: Path) -> Path:
     folders = [folder] if home is None else [folder, home]
     found = _first_file(each / path for each in folders)
     if found is None:
-        beside = (str(path.with_name(each.name)) for each in (folder / path).parent.glob("*") if each.suffix in _YAML)
+        beside = (str(path.with_name(each.name)) for each in (folder / path).parent.glob("*") if each.suffix in YAML)
         raise NotFoundError("file", name, beside, " or ".join(map(str, folders)))
     return found
 

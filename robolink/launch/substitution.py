@@ -22,6 +22,11 @@ _BRACES = re.compile(r"\{\{|\}\}|\{([^{}]*)\}|[{}]")
 _IN_BRACES = re.compile(r"\{([^{}]*)\}")
 _NAME = re.compile(r"[^\W\d]\w*|env:.*", re.DOTALL)
 _MOST_SHOWN = 6
+_ROS = re.compile(r"\$\((var|find-pkg-share)\s+'?([\w-]+)'?\)")
+_ROS_MEANS = {
+    "var": "write {{{0}}}, and `{0}` under `arguments`",
+    "find-pkg-share": "write a path, which begins in this file's folder or in the workspace",
+}
 
 
 class SubstitutionError(RobolinkError, ValueError):
@@ -113,6 +118,9 @@ def _filled_mapping(
 
 
 def _filled_text(text: str, values: Values, steps: Sequence[Step], *, is_key: bool, as_text: bool) -> Any:
+    if "$(" in text and (theirs := _ROS.search(text)):
+        instead = _ROS_MEANS[theirs[1]].format(theirs[2])
+        raise SubstitutionError(f"`{theirs[0]}` is ROS 2's: {instead}", steps, is_key)
     if "{" not in text and "}" not in text:
         return text
     has_pairs = "{{" in text

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
 
-from robolink.entity import Entity
+from robolink.entity import NOTHING, Entity
 from robolink.executors import POLL_NS, SingleThreadedExecutor
 from robolink.oneprocess.parts import HostedInbox, Job, Runner
 from robolink.timer import Timer
@@ -40,6 +40,7 @@ class HostedExecutor(SingleThreadedExecutor):
         self._stop: Callable[[], bool] | None = None
         self._outcome: BaseException | None = None
         self._has_ended = False
+        self._taken: Any = None
 
     # What code of the program sees
 
@@ -119,21 +120,19 @@ class HostedExecutor(SingleThreadedExecutor):
         """Run one callback, if one is ready."""
         if self.asked:
             self._ask_waitables()
-        taken = self._take()
+        entity = self._take_first()
         program = self.program
         if runner.defaults is not program.defaults:
             runner.enter(program, shows=False)
         if self._surroundings.env is not program.env:
             self._surroundings.show(program)
-        if taken is not None:
-            self._run_one(runner, taken)
-        elif not self._context._ok or self._is_shutdown or (self._stop is not None and self._stop()):
-            self._let_go()
-
-    def _run_one(self, runner: Runner, taken: tuple[Entity, Any]) -> None:
+        if entity is None:
+            if self._is_at_end():
+                self._let_go()
+            return
         self.is_free, self._stepper = False, runner
         try:
-            self.run(*taken)
+            self.run(entity, self._taken)
         except BaseException as error:  # noqa: BLE001 - whoever spins meets it
             self._stepper = None
             self._end(error)
@@ -145,6 +144,26 @@ class HostedExecutor(SingleThreadedExecutor):
         self.is_free = self._is_lent
         if (self.ready or self._blocked) and not self.inbox.queued:
             self.inbox.wake()
+
+    def _take_first(self) -> Entity | None:
+        """Take as `_take` does, without its lock: nobody else runs; give the entity, and keep what it gave."""
+        if self._blocked:
+            self._unblock()
+        ready = self.ready
+        while ready:
+            entity = ready.popleft()
+            group = entity.gate
+            if group.can_execute(entity) and group.beginning_execution(entity):
+                self._taken = entity.take()
+                if self._taken is not NOTHING:
+                    return entity
+                group.ending_execution(entity)
+            else:
+                self._blocked.append(entity)
+        return None
+
+    def _is_at_end(self) -> bool:
+        return not self._context._ok or self._is_shutdown or (self._stop is not None and self._stop())
 
     def _end(self, error: BaseException | None = None) -> None:
         """Have the spinning end after a callback, with what it raised."""

@@ -55,7 +55,7 @@ class Host:
     ) -> None:
         self.seed = seed
         self.bus = Bus()
-        self.connect: Callable[[str], Transport] = connect or (self._session)
+        self.connect: Callable[[str], Transport] = connect or self._session
         self.pace: VirtualPace | RealPace = VirtualPace() if virtual else RealPace()
         self.time: TimeBase = self.pace.time
         self.turns: Turns | None = self.pace.turns
@@ -189,7 +189,7 @@ class Host:
     def stop(self, name: str) -> Program:
         """Have a program end in order, as Ctrl-C does; one that has not ended after five seconds is killed."""
         program = self.program(name)
-        if program.state == "running":
+        if not program.is_over:
             self.interrupt(name)
             self.run_until(lambda: program.is_over, PATIENCE)
             program.kill()

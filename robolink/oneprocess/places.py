@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import sysconfig
 from functools import cache
@@ -24,9 +25,9 @@ def is_users(file: str) -> bool:
     return not path.startswith(_PYTHON) or "site-packages" in path
 
 
-_PACKAGE = str(Path(__file__).resolve().parent.parent) + "/"
-_NODES = str(Path(_PACKAGE, "share", "nodes"))
-_PYTHON = str(Path(sysconfig.get_path("stdlib")).resolve())
+_PACKAGE = str(Path(__file__).resolve().parent.parent) + os.sep
+_NODES = str(Path(_PACKAGE, "share", "nodes")) + os.sep
+_PYTHON = str(Path(sysconfig.get_path("stdlib")).resolve()) + os.sep
 
 
 def place_of(frame: FrameType | None) -> str:

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from robolink.arguments import parse_arguments
 from robolink.defaults import Defaults
-from robolink.exceptions import ExternalShutdownException, InterruptedByUser, ROSInterruptException
+from robolink.exceptions import ExternalShutdownException, InterruptedByUser, RobolinkError, ROSInterruptException
 from robolink.executors import SingleThreadedExecutor
+from robolink.lacking import LackingNameError
 from robolink.logging import get_logger, set_logger_level
 from robolink.oneprocess.executor import HostedExecutor
 from robolink.oneprocess.hosted import HostedContext
@@ -86,7 +87,7 @@ class Program:
         """Set once it was asked to end; for what sleeps in real time."""
         self.handlers: dict[int, Any] = {}
         """What it has given to `signal.signal`."""
-        self._is_script = False
+        self._is_script = self._is_ending = False
         self.has_begun = False
         """Whether its nodes are made, or its script is over."""
 
@@ -110,7 +111,7 @@ class Program:
         """Be as before the first start."""
         self.state, self.error, self.returncode = "waiting", None, None
         self._made, self.contexts, self.executor = [], [], None
-        self._is_script = False
+        self._is_script = self._is_ending = False
         self.handlers = {}
         self.interrupted = threading.Event()
         self.has_waited = self.has_begun = False
@@ -124,6 +125,8 @@ class Program:
 
     def begin(self) -> None:
         """Make its nodes, or run its script; called as its code is."""
+        if self.state != "waiting":
+            return
         self.state = "running"
         self.lives += 1
         life = self.lives
@@ -175,13 +178,15 @@ class Program:
 
     def end(self, error: BaseException | None = None) -> None:
         """End as a process does when this has come out of its code; None when it has come to its end."""
-        if self.state != "running" or isinstance(error, Killed):
+        if self.state != "running" or self._is_ending or isinstance(error, Killed):
             return
+        self._is_ending = True
         self.returncode = self._outcome(error)
         is_crash = self.error is not None
         if self.executor is not None:
             self.executor.withdraw()
         self._clear_away()
+        self.host.pace.end_daemons(self)
         self.state = "crashed" if is_crash or self.error is not None else "ended"
         self.host.note_exit(self)
 
@@ -199,10 +204,16 @@ class Program:
             return INTERRUPTED if is_script else 0
         self.error = error
         if not getattr(error, "__robolink_logged__", False):
-            what = "raised" if self.has_begun or is_script else "raised while it was made"
-            text = "".join(traceback.format_exception(type(error), error, _of_the_user(error)))
-            get_logger("robolink").error(f"{self.name} {what}:\n{text.rstrip()}")
+            get_logger("robolink").error(self._told(error))
         return 1
+
+    def _told(self, error: BaseException) -> str:
+        """Say what went wrong: what is robolink's in a line, what is the program's with its traceback."""
+        if isinstance(error, RobolinkError) and not isinstance(error, LackingNameError):
+            return f"{self.name}: {error}"
+        what = "raised" if self.has_begun or self._is_script else "raised while it was made"
+        text = "".join(traceback.format_exception(type(error), error, _of_the_user(error)))
+        return f"{self.name} {what}:\n{text.rstrip()}"
 
     def _clear_away(self) -> None:
         """Destroy what it has, as `robolink run` does at its end."""
@@ -221,7 +232,7 @@ class Program:
 
     def kill(self) -> None:
         """Be gone at once: nothing of it is destroyed in order, nobody is told."""
-        if self.state != "running":
+        if self.is_over:
             return
         self.state, self.returncode = "crashed", KILLED
         if self.executor is not None:
@@ -238,6 +249,9 @@ class Program:
 
     def interrupt(self) -> None:
         """Ask it to end, as Ctrl-C does: by its own handler, if it has set one, which replaces that of its contexts."""
+        if self.state == "waiting":
+            self.state, self.returncode = "ended", INTERRUPTED
+            self.host.note_exit(self)
         if self.state != "running":
             return
         handler = self.handlers.get(signal.SIGINT, signal.default_int_handler)

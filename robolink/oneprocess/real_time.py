@@ -101,6 +101,9 @@ class RealPace:
         if thread is not None and thread.is_alive() and thread is not threading.current_thread():
             ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident or 0), ctypes.py_object(Killed))
 
+    def end_daemons(self, program: Program) -> None:
+        """Do nothing: Python ends no thread."""
+
     def note_exit(self) -> None:
         """Let whoever runs the host look around."""
         self._incoming.put(None)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from robolink.oneprocess.host_time import HostTime
-from robolink.oneprocess.parts import Job, Killed
+from robolink.oneprocess.parts import Job, Killed, Runner
 from robolink.oneprocess.watchdog import Watchdog
 
 if TYPE_CHECKING:
@@ -59,7 +59,14 @@ class VirtualPace:
 
     def unwind(self, program: Program) -> None:
         """Have what waits of a program's code end where it waits."""
-        for runner in self.turns.waiting(program):
+        self._kill(self.turns.waiting(program))
+
+    def end_daemons(self, program: Program) -> None:
+        """Have those threads end that do not keep a program from ending."""
+        self._kill(each for each in self.turns.waiting(program) if each.is_daemon)
+
+    def _kill(self, runners: Iterable[Runner]) -> None:
+        for runner in runners:
             assert runner.wait is not None
             runner.wait.error = Killed()
             runner.killed = True

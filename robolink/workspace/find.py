@@ -249,7 +249,7 @@ def _no_node(name: str, workspace: Folder) -> NotFoundError:
     for package, found in list_executables(workspace=workspace).items():
         for each in found:
             if canonical(each.name) == canonical(name):
-                error.args = (f"{error}; package {package} has one: robolink run {package} {each.name}",)
+                error.args = (f"{error}; package {package} has one: '{package} {each.name}'",)
                 return error
     return error
 
