@@ -7,6 +7,7 @@ What the tests hold to a limit is measured here, by other formulas than the simu
 
 from __future__ import annotations
 
+import json
 import math
 import statistics
 import subprocess
@@ -140,9 +141,9 @@ def walled(heading: float, drive: Drive) -> World:
 
 def same_bytes() -> bool:
     """Whether two processes publish the same in ten seconds of a noisy laboratory."""
-    command = [sys.executable, "-m", "tests.traces", "10"]
-    hashes = {subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True).stdout for _ in range(2)}
-    return len(hashes) == 1
+    command = [sys.executable, "-m", "robolink", "simulate", "lab", "--duration", "10", "--json"]
+    runs = [subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True).stdout for _ in range(2)]
+    return len({json.loads(run.splitlines()[-1])["hash"] for run in runs}) == 1
 
 
 def closed_loops() -> Iterator[str]:

@@ -25,7 +25,7 @@ from robolink import Parameter
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.laser import Array, in_view, lane_ahead, returns
+from robolink.laser import Array, in_view, lane_among, looks_all_round, returns
 from robolink.parameter_descriptors import described
 from robolink.plane import clipped
 from robolink.scan_controller import ScanController
@@ -168,7 +168,8 @@ def follow(scan: LaserScan, goal: Goal, memory: Memory, seconds: float) -> Decis
     mirror = -1.0 if goal.side == "left" else 1.0  # what follows knows walls on the right alone
     angles, ranges = returns(scan)
     angles = angles * mirror
-    near = joined(points(angles, ranges), unseen(remembered(memory, seconds), scan, mirror), pace)
+    seen = points(angles, ranges)
+    near = joined(seen, unseen(memory, seconds, scan, mirror), pace)
 
     wall = nearest(near, memory.speed / pace.gain, pace)
     if wall.distance < 2 * pace.distance:
@@ -178,7 +179,7 @@ def follow(scan: LaserScan, goal: Goal, memory: Memory, seconds: float) -> Decis
         target = easiest(angles, ranges)
         off = target.bearing
         words = f"driving to a wall {target.distance:.1f} m away" if len(ranges) else "no wall in reach: driving ahead"
-    free = lane_ahead(angles, ranges, goal.robot_radius + CLEARANCE / 2)
+    free = lane_among(seen.x, seen.y, goal.robot_radius + CLEARANCE / 2)
     speed, turn = drive(off, free, goal, pace)
     if speed < 0.3 * pace.speed and math.isfinite(free):
         words = f"turning {'left' if mirror * turn > 0 else 'right'}, {free:.1f} m free ahead"
@@ -225,20 +226,25 @@ def nearest(near: Points, ahead: float, pace: Pace) -> Target:
     those far from the lidar more than those close by, since they stand for more of the wall.
     """
     x, y = near.x - ahead, near.y
-    distances, bearings = np.hypot(x, y), np.arctan2(y, x)
-    inside = (bearings >= SIDE[0]) & (bearings <= SIDE[1])
-    if not inside.any():
+    bearings = np.arctan2(y, x)
+    beside = np.flatnonzero((bearings >= SIDE[0]) & (bearings <= SIDE[1]))
+    if not len(beside):
         return Target(math.inf, 0.0)
-    at = np.where(inside, distances, math.inf).argmin()
-    chosen = inside & (np.hypot(x - x[at], y - y[at]) < pace.distance / 2)
-    weights = np.exp((distances[at] - distances) / NEAREST) * (near.x**2 + near.y**2 + 1e-9)
-    mean_x, mean_y, ago = np.average((x[chosen], y[chosen], near.ago[chosen]), axis=1, weights=weights[chosen])
+    x, y = x[beside], y[beside]
+    distances = np.hypot(x, y)
+    at = distances.argmin()
+    around = np.hypot(x - x[at], y - y[at]) < pace.distance / 2
+    chosen = near.those(beside[around])
+    weights = np.exp((distances[at] - distances[around]) / NEAREST) * (chosen.x**2 + chosen.y**2 + 1e-9)
+    seen, weight = (x[around], chosen.y, chosen.ago), weights.sum()
+    mean_x, mean_y, ago = (float((each * weights).sum() / weight) for each in seen)
     return Target(math.hypot(mean_x, mean_y) - DOUBT * ago, math.atan2(mean_y, mean_x))
 
 
 def room_on_the_left(near: Points) -> float:
     """Give the distance of the nearest point to the left, within 45 degrees; inf for none."""
-    return float(np.hypot(near.x, near.y)[near.y > np.abs(near.x)].min(initial=math.inf))
+    left = near.y > np.abs(near.x)
+    return float(np.hypot(near.x[left], near.y[left]).min(initial=math.inf))
 
 
 def easiest(angles: Array, ranges: Array) -> Target:
@@ -270,12 +276,15 @@ def remembered(memory: Memory, dt: float) -> Points:
     return Points(cos * x + sin * y, cos * y - sin * x, near.ago + way)
 
 
-def unseen(old: Points, scan: LaserScan, mirror: float) -> Points:
-    """Give the points that the scan does not see."""
+def unseen(memory: Memory, dt: float, scan: LaserScan, mirror: float) -> Points:
+    """Give what was near and the scan does not see."""
+    if looks_all_round(scan):
+        return Points()
+    old = remembered(memory, dt)
     return old.those(~in_view(scan, mirror * np.arctan2(old.y, old.x)))
 
 
 def joined(new: Points, old: Points, pace: Pace) -> Points:
     """Put together what is seen and what is remembered of the surroundings, and forget what is far or long ago."""
-    both = Points(*(np.concatenate(each) for each in zip(new, old, strict=True)))
+    both = Points(*map(np.concatenate, zip(new, old, strict=True))) if len(old.x) else new
     return both.those((np.hypot(both.x, both.y) < 3 * pace.distance) & (both.ago < BLIND_WAY * pace.distance))

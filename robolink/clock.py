@@ -117,6 +117,7 @@ class Clock:
     def __init__(self, *, clock_type: ClockType = ClockType.SYSTEM_TIME, time_base: TimeBase | None = None) -> None:
         self._clock_type = clock_type
         self._base: TimeBase = time_base or get_defaults().time
+        self._read = self._base.steady if clock_type is ClockType.STEADY_TIME else self._base.now
         self._jumps: list[JumpHandle] = []
 
     @property
@@ -138,7 +139,7 @@ class Clock:
 
     def now_ns(self) -> int:
         """The time in nanoseconds, for those who count."""
-        return self._base.steady() if self._clock_type is ClockType.STEADY_TIME else self._base.now()
+        return self._read()
 
     def wait_ns(self, until: int) -> int | None:
         """How many nanoseconds of steady time it takes until `until`; None when only /clock knows."""
@@ -232,7 +233,7 @@ class ROSClock(Clock):
 
     def now_ns(self) -> int:
         """The time in nanoseconds, for those who count."""
-        return self._override if self._active else self._base.now()
+        return self._override if self._active else self._read()
 
     def wait_ns(self, until: int) -> int | None:
         """How many nanoseconds of steady time it takes until `until`; None when only /clock knows."""

@@ -142,10 +142,13 @@ class Receiver(Entity):
 
     def take(self) -> Any:
         """Give the oldest of what waits."""
-        executor = self.executor
-        if self.gives_way and executor is not None and executor.ready and self._gave_way < len(self.mailbox):
-            self._gave_way += 1
-            executor.ready.append(self)
-            return NOTHING
-        self._gave_way = max(0, self._gave_way - 1)
-        return self.mailbox.take() if self.mailbox.waiting else NOTHING
+        waiting = self.mailbox.waiting
+        if self.gives_way:
+            executor = self.executor
+            if executor is not None and executor.ready and self._gave_way < len(waiting):
+                self._gave_way += 1
+                executor.ready.append(self)
+                return NOTHING
+        if self._gave_way:
+            self._gave_way -= 1
+        return waiting.popleft() if waiting else NOTHING

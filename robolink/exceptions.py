@@ -23,7 +23,15 @@ class RobolinkError(Exception):
 
 
 class DocumentError(RobolinkError, ValueError):
-    """A YAML document is malformed or says what it cannot say; the text begins with file:line:column."""
+    """A YAML document is malformed or says what it cannot say; the text begins with file:line:column.
+
+    `message` is what stands behind that. Lines and columns count from 1; 0 is for what has none, '' for no file.
+    """
+
+    def __init__(self, message: str, file: str = "", line: int = 0, column: int = 0) -> None:
+        self.message, self.file, self.line, self.column = message, file, line, column
+        place = file + "".join(f":{number}" for number in (line, column) if number)
+        super().__init__(f"{place}: {message}" if place else message)
 
 
 class MessageError(RobolinkError, ValueError):

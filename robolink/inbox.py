@@ -51,9 +51,11 @@ class Mailbox:
 
     def put(self, arrived: Any) -> bool:
         """Keep it; whether there is one more now than before."""
-        full = len(self.waiting) == self.waiting.maxlen
-        self.dropped += full
-        self.waiting.append(arrived)
+        waiting = self.waiting
+        full = len(waiting) == waiting.maxlen
+        if full:
+            self.dropped += 1
+        waiting.append(arrived)
         return not full
 
     def take(self) -> Any:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import math
+import sys
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -25,11 +27,17 @@ def returns(scan: LaserScan) -> tuple[Array, Array]:
     empty when nothing is in reach.
     """
     ranges = np.array(scan.ranges if _has_angles(scan) else (), dtype=np.float64)
-    angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges), dtype=np.float64)
-    ranges[np.isneginf(ranges)] = max(scan.range_min, 1e-3)
-    farthest = scan.range_max if scan.range_max > 0.0 else math.inf
-    met = (ranges >= scan.range_min) & (ranges <= farthest) & (ranges > 0.0) & np.isfinite(ranges)
-    return wrapped(angles[met]), ranges[met]
+    ranges[ranges == -math.inf] = max(scan.range_min, 1e-3)
+    nearest = max(scan.range_min, sys.float_info.min)
+    farthest = min(scan.range_max, sys.float_info.max) if scan.range_max > 0.0 else sys.float_info.max
+    met = (ranges >= nearest) & (ranges <= farthest)
+    return _directions(scan.angle_min, scan.angle_increment, len(ranges))[met], ranges[met]
+
+
+@functools.lru_cache(maxsize=16)
+def _directions(start: float, increment: float, count: int) -> Array:
+    """Give the angles of beams; a scanner's are the same in each of its scans."""
+    return wrapped(start + increment * np.arange(count, dtype=np.float64))
 
 
 def in_view(scan: LaserScan, angles: Array) -> npt.NDArray[np.bool_]:
@@ -37,14 +45,19 @@ def in_view(scan: LaserScan, angles: Array) -> npt.NDArray[np.bool_]:
 
     A scan without beams looks nowhere, and nor does one of which every beam is NaN: it has measured nothing.
     """
-    beams, step = len(scan.ranges), abs(scan.angle_increment)
-    if not _has_angles(scan) or np.isnan(scan.ranges).all():
+    if not _has_angles(scan) or (math.isnan(scan.ranges[0]) and np.isnan(scan.ranges).all()):
         return np.zeros(len(angles), dtype=np.bool_)
-    if beams * step > math.tau - 1e-3:
+    if looks_all_round(scan):
         return np.ones(len(angles), dtype=np.bool_)
+    beams, step = len(scan.ranges), abs(scan.angle_increment)
     middle = scan.angle_min + scan.angle_increment * (beams - 1) / 2
     looks: npt.NDArray[np.bool_] = np.abs(wrapped(angles - middle)) <= step * (beams - 1) / 2 + 1e-6
     return looks
+
+
+def looks_all_round(scan: LaserScan) -> bool:
+    """Tell whether a scan's beams go all round, so that nothing is out of its view."""
+    return len(scan.ranges) * abs(scan.angle_increment) > math.tau - 1e-3
 
 
 def _has_angles(scan: LaserScan) -> bool:
@@ -72,7 +85,11 @@ def lane_ahead(angles: Array, ranges: Array, half_width: float) -> float:
 
     The lane is `half_width` metres wide to both sides; the returns are those that `returns` gives.
     """
-    forward, aside = ranges * np.cos(angles), ranges * np.sin(angles)
+    return lane_among(ranges * np.cos(angles), ranges * np.sin(angles), half_width)
+
+
+def lane_among(forward: Array, aside: Array, half_width: float) -> float:
+    """Give what `lane_ahead` gives of points: metres ahead of the sensor, and metres to its left."""
     inside = (forward > 0.0) & (np.abs(aside) < half_width)
     return float(forward[inside].min(initial=math.inf))
 

@@ -38,7 +38,7 @@ def read_parameter_file(path: str | os.PathLike[str]) -> list[Override]:
     except DocumentNotFoundError:
         raise
     except DocumentError as error:
-        raise ParameterFileError(str(error)) from None
+        raise ParameterFileError(error.message, error.file, error.line, error.column) from None
     return parse_parameter_file(text, os.fspath(path))
 
 
@@ -57,7 +57,7 @@ def parse_parameter_value(text: str, name: str = "<value>") -> Value:
     reader = _Reader(name)
     node = reader.compose(text)
     if node is None:
-        raise ParameterFileError(f"{name}:1:1: no value (write '' for an empty string)")
+        raise ParameterFileError("no value (write '' for an empty string)", name, 1, 1)
     return reader.value(node)
 
 
@@ -72,7 +72,7 @@ class _Reader:
         try:
             return yamltext.compose(text, self.name)
         except DocumentError as error:
-            raise ParameterFileError(str(error)) from None
+            raise ParameterFileError(error.message, error.file, error.line, error.column) from None
 
     def sections(self, node: yaml.Node, path: tuple[str, ...]) -> Iterator[Override]:
         """Yield the parameters of all sections below a mapping of (parts of) node names."""
@@ -160,8 +160,7 @@ class _Reader:
             raise self.error(node, "half a surrogate pair is no character")
 
     def error(self, node: yaml.Node, message: str) -> ParameterFileError:
-        place = yamltext.place(self.name, node.start_mark)
-        return ParameterFileError(f"{place}: {shown(message, 200)}")
+        return ParameterFileError(shown(message, 200), self.name, *yamltext.place(node.start_mark))
 
 
 def _found(node: yaml.Node) -> str:

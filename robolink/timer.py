@@ -123,7 +123,7 @@ class Timer(Entity):
         if self._period == 0:
             self.next_call_ns = now
             return
-        self.next_call_ns += self._period * max(1, 1 + (now - self.next_call_ns) // self._period)
+        self.next_call_ns += self._period * (1 + (now - self.next_call_ns) // self._period)
 
     def execute(self, taken: Any) -> Any:
         """Call the callback."""

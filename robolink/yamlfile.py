@@ -120,16 +120,16 @@ def read_text(path: str | os.PathLike[str]) -> str:
         raise DocumentNotFoundError(f"no file '{file}'{nearest(file.name, siblings(file))}") from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
-        raise DocumentError(f"{file}: cannot be read: {reason}") from None
+        raise DocumentError(f"cannot be read: {reason}", str(file)) from None
     if len(raw) > LONGEST:  # a device, say, which never ends
-        raise DocumentError(f"{file}: longer than {LONGEST // 2**20} MiB")
+        raise DocumentError(f"longer than {LONGEST // 2**20} MiB", str(file))
     encoding = "utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
     try:
         return raw.decode(encoding)
     except UnicodeDecodeError as error:
         before = raw[: error.start]
         line, column = before.count(b"\n") + 1, error.start - before.rfind(b"\n")
-        raise DocumentError(f"{file}:{line}:{column}: not UTF-8 text") from None
+        raise DocumentError("not UTF-8 text", str(file), line, column) from None
 
 
 def siblings(path: Path) -> list[str]:

@@ -61,12 +61,12 @@ class Reader:
 
     def error(self, steps: Sequence[Step], message: str, *, key: bool = False) -> DocumentError:
         """Make an error about what stands at the end of these steps, or about its key."""
+        from robolink import yamltext
+
         node = self._node(steps, key)
-        where = f"{self._name}:1:1"
-        if node is not None:
-            where = f"{self._name}:{node.start_mark.line + 1}:{node.start_mark.column + 1}"
+        place = (1, 1) if node is None else yamltext.place(node.start_mark)
         spelled = _spelled(steps)
-        return DocumentError(f"{where}: " + shown(f"{spelled}: {message}" if spelled else message, 300))
+        return DocumentError(shown(f"{spelled}: {message}" if spelled else message, 300), self._name, *place)
 
     def written(self, steps: Sequence[Step]) -> str | None:
         """Give the text of the value at the end of these steps, before it is read as a number; None if it is none."""

@@ -62,14 +62,14 @@ def compose(text: str, name: str) -> yaml.Node | None:
     try:
         loader = _Loader(text)
     except yaml.reader.ReaderError as error:
-        raise DocumentError(f"{_place(name, text, error.position)}: {_unreadable(error)}") from None
+        raise DocumentError(_unreadable(error), name, *_place(text, error.position)) from None
     try:
         return loader.get_single_node()
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark or loader.get_mark()
-        raise DocumentError(f"{place(name, mark)}: {_problem(error)}") from None
+        raise DocumentError(_problem(error), name, *place(mark)) from None
     except (ValueError, OverflowError) as error:  # what PyYAML lets through: '\UFFFFFFFF', '%YAML 9999...'
-        raise DocumentError(f"{place(name, loader.get_mark())}: {shown(str(error))}") from None
+        raise DocumentError(shown(str(error)), name, *place(loader.get_mark())) from None
     finally:
         loader.dispose()
 
@@ -79,9 +79,9 @@ def plain(node: yaml.Node | None, name: str) -> Data:
     return None if node is None else _Builder(name).build(node)
 
 
-def place(name: str, mark: yaml.Mark) -> str:
-    """Spell a place as editors understand it: `name:line:column`, both from 1."""
-    return f"{name}:{mark.line + 1}:{mark.column + 1}"
+def place(mark: yaml.Mark) -> tuple[int, int]:
+    """Give a place as editors count: line and column from 1."""
+    return mark.line + 1, mark.column + 1
 
 
 def pairs(node: yaml.MappingNode) -> Iterator[tuple[yaml.Node, yaml.Node]]:
@@ -189,7 +189,7 @@ class _Builder:
             raise self._error(node, f"unknown tag '{_shown_tag(node)}'")
 
     def _error(self, node: yaml.Node, message: str) -> DocumentError:
-        return DocumentError(f"{place(self.name, node.start_mark)}: {message}")
+        return DocumentError(message, self.name, *place(node.start_mark))
 
 
 def kind(node: yaml.Node) -> str:
@@ -231,9 +231,9 @@ def _shown_tag(node: yaml.Node) -> str:
     return shown(node.tag.replace(_TAG, "!!"))
 
 
-def _place(name: str, text: str, position: int) -> str:
+def _place(text: str, position: int) -> tuple[int, int]:
     before = text[:position]
-    return f"{name}:{before.count(chr(10)) + 1}:{position - before.rfind(chr(10))}"
+    return before.count(chr(10)) + 1, position - before.rfind(chr(10))
 
 
 def _unreadable(error: yaml.reader.ReaderError) -> str:

@@ -35,6 +35,7 @@ class FakeSupervisor:
         now = time.time()
         self.nodes = [Status(name, None, "running", 0, None, now - 90.0) for name in names]
         self.restarted: list[str] = []
+        self.why_not = ""
         self.said: list[str] = []
         self.leavings: list[Path] = []
         self.stopped = threading.Event()
@@ -44,6 +45,9 @@ class FakeSupervisor:
 
     def restart(self, name: str) -> None:
         self.restarted.append(name)
+
+    def why_not_restarted(self, name: str) -> str:
+        return self.why_not
 
     def stop(self) -> None:
         self.stopped.set()
@@ -59,7 +63,7 @@ class FakeSupervisor:
 
 LAUNCHER = """
 import sys, time
-from robolink.supervisor.control import Control
+from robolink.supervisor.door.control import Control
 from tests.launchers import FakeSupervisor
 supervisor = FakeSupervisor("talker")
 supervisor.stop = lambda: print("stop", flush=True)

@@ -25,7 +25,7 @@ from pathlib import Path
 
 import psutil
 
-from robolink.supervisor.logs import KEPT_RUNS
+from robolink.supervisor.telling.logs import KEPT_RUNS
 from robolink.transport.network import FIRST_PORT
 from tests.domains import free_domain
 

@@ -170,6 +170,15 @@ def test_an_error_about_a_huge_argument_is_not_huge(capsys: pytest.CaptureFixtur
     assert line.endswith("(see 'robolink topic hz --help')\n")
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no disk that is always full")
+def test_a_full_disk_behind_standard_output_is_one_line_and_1() -> None:
+    environ = {**os.environ, "PYTHONUNBUFFERED": ""}
+    command = [sys.executable, "-m", "robolink", "launch", "--list"]
+    with Path("/dev/full").open("wb") as full:
+        ended = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, check=False, timeout=PATIENCE, env=environ)
+    assert (ended.returncode, ended.stderr) == (1, b"robolink: [Errno 28] No space left on device\n")
+
+
 def test_the_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--version"]) == 0
     assert capsys.readouterr().out.startswith("robolink 0.")
@@ -394,6 +403,16 @@ def test_ctrl_c_ends_a_system_quietly(write: Write, domain: int) -> None:
         out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0
     assert (out, err) == ("[launch] stopping (Ctrl-C again to hurry)\n", "")
+
+
+@posix_only
+def test_a_system_starts_where_all_standard_streams_are_closed(write: Write) -> None:
+    program = "import os; os.fstat(0); print('said'); open('done', 'w').close()"
+    path = write("configs/one.yaml", f'nodes:\n- {{run: [python, -c, "{program}"], name: a, interactive: true}}\n')
+    command = [sys.executable, "-m", "robolink", "launch", "one"]
+    closed = subprocess.run(["/bin/sh", "-c", '"$@" <&- >&- 2>&-', "sh", *command], check=False, timeout=PATIENCE)
+    assert closed.returncode == 0
+    assert (path.parents[1] / "done").exists()
 
 
 def test_a_node_that_fails_ends_the_system_with_its_code(write: Write, domain: int) -> None:

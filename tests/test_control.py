@@ -22,11 +22,11 @@ from hypothesis import strategies as st
 
 from robolink.cli import main
 from robolink.exceptions import RobolinkError
-from robolink.supervisor import asking, control, runtime, talk
-from robolink.supervisor.asking import LauncherError, LauncherGoneError, running
-from robolink.supervisor.control import Control
-from robolink.supervisor.runtime import Registration, RuntimeFolderError, new_place, register, runtime_folder
-from robolink.supervisor.talk import Line, Question, connect
+from robolink.supervisor.door import asking, control, runtime, talk
+from robolink.supervisor.door.asking import LauncherError, LauncherGoneError, running
+from robolink.supervisor.door.control import Control
+from robolink.supervisor.door.runtime import Registration, RuntimeFolderError, new_place, register, runtime_folder
+from robolink.supervisor.door.talk import Line, Question, connect
 from tests.launchers import FakeSupervisor, files_in, launcher_elsewhere, own_runtime_folder
 
 posix_only = pytest.mark.skipif(sys.platform == "win32", reason="modes, owners and SIGSTOP are POSIX's")
@@ -94,6 +94,13 @@ def test_a_node_is_restarted(kind: str, supervisor: FakeSupervisor) -> None:
 def test_an_unknown_node_is_refused_with_the_nearest(supervisor: FakeSupervisor, launched: Control) -> None:
     with pytest.raises(LauncherError, match=r"no node named 'wrld' in 'follow' \(did you mean 'world'\?\)"):
         the_only().restart("wrld")
+    assert supervisor.restarted == []
+
+
+def test_what_asks_for_a_restart_learns_why_not(supervisor: FakeSupervisor, launched: Control) -> None:
+    supervisor.why_not = "the system is stopping"
+    with pytest.raises(LauncherError, match="'world' of 'follow' is not restarted: the system is stopping"):
+        the_only().restart("world")
     assert supervisor.restarted == []
 
 
@@ -448,7 +455,7 @@ def test_a_link_in_its_place_is_refused(folder: Path, tmp_path: Path) -> None:
 
 
 @posix_only
-@pytest.mark.parametrize("given_folder", ["", "/nowhere/at/all", "/tmp/" + 80 * "x"])
+@pytest.mark.parametrize("given_folder", ["", ".", "/nowhere/at/all", "/tmp/" + 80 * "x"])
 def test_without_a_runtime_folder_it_is_the_temporary_one(
     given_folder: str, monkeypatch: pytest.MonkeyPatch, folder: Path
 ) -> None:

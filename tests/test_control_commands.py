@@ -13,8 +13,8 @@ import msgspec
 import pytest
 
 from robolink.cli import complete, main
-from robolink.supervisor.asking import running
-from robolink.supervisor.control import Control
+from robolink.supervisor.door.asking import running
+from robolink.supervisor.door.control import Control
 from tests.launchers import FakeSupervisor, files_in, launcher_elsewhere, own_runtime_folder
 
 PATIENCE = 30.0
@@ -102,6 +102,7 @@ def test_restart_finds_the_launcher_by_the_node(launched: Control, supervisor: F
         (["restart", "camera"], r"'camera' shares the process 'sensors' of lap \(pid \d+\): restart that one"),
         (["restart", "lapp", "world"], r"no launcher named 'lapp' \(did you mean 'lap'\?\)"),
         (["stop"], r"2 launchers are running, say which one: follow \(pid \d+\), lap \(pid \d+\)"),
+        (["--top"], r"2 launchers are running, say which one by --status --top NAME: follow \(pid .*"),
     ],
 )
 def test_what_is_not_clear(
@@ -129,6 +130,12 @@ def test_the_shell_completes_what_runs(words: list[str], offered: list[str], lau
     with Control(FakeSupervisor("sensors"), name="lap"):
         context = SimpleNamespace(params={"words": words, "workspace": ""})
         assert complete.launch_words(context, "") == offered  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("flag", ["--status", "--top"])
+def test_only_one_launcher_is_looked_at_by_name(flag: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", "--status", flag, "follow", "lap"]) == 2
+    assert "one NAME" in capsys.readouterr().err
 
 
 def test_restart_in_a_named_launcher(launched: Control, supervisor: FakeSupervisor) -> None:

@@ -15,8 +15,8 @@ from robolink.arguments import parse_arguments
 from robolink.exceptions import DocumentError
 from robolink.impl.logging_severity import LoggingSeverity
 from robolink.launch import plan, together
-from robolink.launch.command import core_errors
-from robolink.launch.entries import read_launch_file
+from robolink.launch.planning import core_errors
+from robolink.launch.reading.entries import read_launch_file
 from robolink.supervisor import Process
 from robolink.supervisor.rules import Restarts, Rules
 from robolink.workspace import VARIABLE, built_in_workspace
@@ -141,7 +141,7 @@ nodes:
     )
     assert plain.rules == Rules(Restarts("never"), "shutdown", held=False)
     assert patient.rules == Rules(Restarts("always", 1.0, 30.0, 5, 60.0), "ignore", held=False)
-    assert exact.rules == Rules(Restarts("on_failure", 0.5, 4.0, 2, 9.0), "shutdown", held=True)
+    assert exact.rules == Rules(Restarts("on_failure", 0.5, 4.0, 2, 9.0), "shutdown", True, frozenset({"world"}))
 
 
 def test_nodes_that_name_a_process_share_it(home: Path) -> None:
@@ -174,6 +174,31 @@ nodes:
     assert together.read(other.input) == [together.Member("mine", file, ["--ros-args"])]
     assert other.rules.respawn.when == "always"
     assert world.input == single.input == b""
+
+
+def test_a_process_is_of_the_namespace_of_what_is_around(home: Path) -> None:
+    (home / "configs" / "robot.yaml").write_text(
+        "nodes: [{node: mine, process: control, count: 2, namespace: 'n{i}'}]\n"
+        "groups: [{process: '/all', nodes: [{node: mine, name: x}]}]\n"
+    )
+    found = planned(
+        home,
+        """
+include: [{file: robot, namespace: r1}, {file: robot, namespace: r2}]
+groups:
+- {namespace: "g{i}", count: 2, process: control, nodes: [node: mine], groups: [{namespace: in, nodes: [node: mine]}]}
+- {namespace: r1, nodes: [{node: mine, process: arm/control}, {node: mine, name: b, process: /r1/control}]}
+""",
+    )
+    members = {each.name: [member.name for member in together.read(each.input)] for each in found}
+    assert members == {
+        "r1/control": ["r1/n0/mine", "r1/n1/mine", "r1/b"],
+        "all": ["r1/x", "r2/x"],
+        "r2/control": ["r2/n0/mine", "r2/n1/mine"],
+        "g0/control": ["g0/mine", "g0/in/mine"],
+        "g1/control": ["g1/mine", "g1/in/mine"],
+        "r1/arm/control": ["r1/mine"],
+    }
 
 
 scalars: list[Any] = [
@@ -243,6 +268,8 @@ BAD = [
         "nodes:\n- {node: mine, process: world}\n- {node: world}",
         "2:25: nodes[0].process: 'world' is what a node is called that has its own process: give another name",
     ),
+    ("nodes:\n- {node: mine, process: p/}", "2:25: nodes[0].process: '' "),
+    ("nodes:\n- {node: mine, process: a-b/p}", "2:25: nodes[0].process: '/a-b' "),
     (
         "nodes:\n- {node: script, process: p}",
         "2:10: nodes[0].node: script.py is run by a script, which needs a process of its own: leave `process` out",

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from robolink.launch import read_launch_file
-from robolink.launch.arguments import ArgumentHelp, arguments_of
+from robolink.launch.reading.arguments import ArgumentHelp, arguments_of
 
 TEXT = """
 arguments:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import sys
 import threading
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ import pytest
 
 from robolink.cli import COMPLETION, main, running
 from robolink.cli import launch as cli
-from robolink.launch.find import find
+from robolink.launch.reading.lookup import find
 from robolink.supervisor import Process, Supervisor
 from robolink.workspace import VARIABLE
 from tests.commands import Command
@@ -86,8 +87,11 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[list[Process]]:
             super().__init__(processes, **settings)
             found.append(list(processes))
 
-        def run(self, duration: float | None = None) -> int:
-            return 7
+        def run(self, duration: float | None = None, beside: Iterable[AbstractContextManager[object]] = ()) -> int:
+            with ExitStack() as stack:
+                for each in beside:
+                    stack.enter_context(each)
+                return 7
 
     monkeypatch.setattr("robolink.launch.command.Supervisor", Fake)
     return found
@@ -115,6 +119,8 @@ BAD = [
     (("stop", "a", "b"), 2, "ask what? stop [NAME] or restart [NAME] NODE, with the name that --status shows (see"),
     (("restart",), 2, "ask what? stop [NAME] or restart [NAME] NODE, with the name that --status shows (see"),
     (("talk", "--graph=png"), 2, "Invalid value for '--graph': 'png' is none of mermaid, dot (see"),
+    (("none", "--graph", "svg"), 2, "--graph draws mermaid or dot, not 'svg' (see"),
+    (("--graph", "nne"), 1, "no launch file named 'nne' in {home} or robolink itself (did you mean 'none'?)"),
     (("none", "--in-process", "--watch"), 2, "--in-process goes without --top, --watch and --json"),
     (("none", "--duration", "nan"), 2, "Invalid value for '--duration': expected 0 to 1e+09 seconds, got nan"),
 ]
@@ -152,7 +158,9 @@ def test_a_package_has_launch_files(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         assert find(["my_robot", name]).samefile(file)
     with pytest.raises(ValueError, match=r"other.launch.py is a Python program, and robolink launches YAML"):
         find(["my_robot", "other"])
-    with pytest.raises(LookupError, match=r"no launch file named 'robt' in package my_robot"):
+    with pytest.raises(
+        LookupError, match=r"no launch file named 'robt' in package my_robot, which has robot.launch.yaml"
+    ):
         find(["my_robot", "robt"])
 
 
@@ -277,8 +285,8 @@ def test_nodes_are_watched_and_measured(
 
         return Fake
 
-    monkeypatch.setattr("robolink.supervisor.watch.Watch", fake("watch"))
-    monkeypatch.setattr("robolink.supervisor.resources.Figures", fake("figures"))
+    monkeypatch.setattr("robolink.supervisor.watching.watch.Watch", fake("watch"))
+    monkeypatch.setattr("robolink.supervisor.watching.resources.Figures", fake("figures"))
     assert said(capsys, "none", "--watch", "--top") == (7, "", "")
     assert entered[0] == ("watch", {"talker": [home / "nodes" / "talker.py"]})
     assert [each[0] for each in entered] == ["watch", "figures", "figures", "watch"]
@@ -299,6 +307,31 @@ def test_a_system_of_nothing_is_told_of(home: Path, started: list[list[Process]]
     assert started == []
     assert said(capsys, "none", "--graph") == (0, "flowchart LR\n", "")
     assert said(capsys, "none", "--validate")[0] == 0
+
+
+def test_what_waits_for_what_has_ended_ends_it(home: Path, domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    (home / "nodes" / "gone.py").write_text("print('gone')")
+    (home / "configs" / "vain.yaml").write_text(
+        "nodes: [{node: gone, on_exit: ignore}, {node: talker, start_after: gone}]"
+    )
+    for options in ((), ("--in-process",)):
+        with Command(domain, "launch", "vain", *options, folder=home, merged=True) as launched:
+            launched.wait_for("nothing runs any more, and talker waits for gone, which has ended")
+            assert launched.end() == 1
+
+
+def test_a_node_that_waits_is_not_restarted(home: Path, capsys: Captured) -> None:
+    program = f"run: ['{sys.executable}', -c, 'print(\"up\")'], on_exit: ignore"
+    (home / "configs" / "none.yaml").write_text(
+        f"nodes: [{{{program}, name: py}}, {{node: talker, start_after: {{topic: never}}}}]"
+    )
+    with Command(0, "launch", "none", folder=home, merged=True) as launched:
+        launched.wait_for("up")
+        why = "it is not started yet, since it waits for something else"
+        line = f"robolink: 'talker' of 'none' is not restarted: {why}\n"
+        assert said(capsys, "restart", "talker") == (1, "", line)
+        launched.interrupt()
+        assert launched.end() == 0
 
 
 def test_events_are_printed_one_a_line_and_nothing_else(home: Path, capsys: Captured) -> None:
@@ -324,6 +357,8 @@ nodes:
     with Command(domain, "launch", "late", folder=home) as launched:
         launched.wait_for("[other] up first")
         launched.wait_for("[heard/listener] listening")
+        if "[last] up last" not in [each.text for each in launched.lines]:
+            launched.wait_for("[last] up last")
         launched.interrupt()
         assert launched.end() == 0
     lines = [each.text for each in launched.lines]

@@ -11,8 +11,9 @@ import pytest
 import typer.main
 
 from robolink.cli.launch import app
-from robolink.launch.command import processes
-from robolink.launch.description import (
+from robolink.launch.looking.validate import validate
+from robolink.launch.planning import processes
+from robolink.launch.reading.description import (
     Argument,
     GroupDescription,
     IncludeDescription,
@@ -21,8 +22,7 @@ from robolink.launch.description import (
     Respawn,
     StartAfter,
 )
-from robolink.launch.entries import read_launch_file
-from robolink.launch.validate import validate
+from robolink.launch.reading.entries import read_launch_file
 
 PAGE = (Path(__file__).parent.parent / "docs" / "launch.md").read_text(encoding="utf-8")
 FILES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)

@@ -9,7 +9,7 @@ import pytest
 
 from robolink.exceptions import DocumentError, NotFoundError
 from robolink.launch import Entry, read_launch_file
-from robolink.launch.description import Respawn, StartAfter
+from robolink.launch.reading.description import Respawn, StartAfter
 from robolink.workspace import VARIABLE, built_in_workspace, list_launches
 from tests.launchfiles import make_workspace
 
@@ -128,6 +128,72 @@ groups:
     assert waits["r2/c"] == ["/mine"]
 
 
+SWITCHED_OFF = """
+arguments: {sim: true}
+nodes:
+- {node: mine, start_after: [world, other, drive/Two, /drive/helper, drive/driver_{number}, lab/mine]}
+- {node: world, if: "{sim}"}
+- {node: world, name: other, if: "{sim}"}
+- {node: mine, namespace: lab}
+- {node: mine, namespace: lab/in, name: b, start_after: mine, if: "{sim}"}
+groups:
+- if: "{sim}"
+  namespace: drive
+  nodes:
+  - {node: "program.py:Two"}
+  - {node: "not_there{env:HOME_OF_NOBODY}"}
+  - {node: no_such_package helper}
+  - {run: [no_such_program]}
+  include: [{file: robot, count: 2, arguments: {id: "{i}"}}, {file: nowhere}]
+  groups: [{count: not_a_number}]
+"""
+
+
+def test_what_is_switched_off_is_not_waited_for(home: Path) -> None:
+    text = SWITCHED_OFF.replace("{number}", "1")
+    found = entries(home, text, sim="off")
+    assert found["mine"].node.start_after == (StartAfter(node="/lab/mine"),)
+    assert list(found) == ["mine", "lab/mine"]
+    with pytest.raises(DocumentError, match=r"start_after\[4\]: no node of this system is called 'drive/driver_2'"):
+        entries(home, text.replace("driver_1", "driver_2"), sim="off")
+    with pytest.raises(DocumentError, match="the environment has no 'HOME_OF_NOBODY'"):
+        entries(home, text, sim="on")
+
+
+def test_what_is_switched_off_is_read_only_so_far(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("robolink.launch.reading.entries.MOST_PARTS", 100)
+    with pytest.raises(DocumentError, match="more than 100 nodes, groups and includes"):
+        entries(home, "nodes: [node: mine]\ngroups: [{if: off, count: 60, nodes: [{node: world, count: 60}]}]")
+
+
+def test_classes_of_one_file_are_called_by_their_names(home: Path) -> None:
+    text = """
+nodes:
+- {node: program.py:One, start_after: Two}
+- {node: program.py:Two}
+- {node: program.py:Two, name: given}
+- {node: program.py, start_after: [given, One]}
+- {node: program.py:One, namespace: r1}
+"""
+    found = entries(home, text)
+    assert list(found) == ["One", "Two", "given", "program", "r1/program"]
+    assert found["program"].node.start_after == (StartAfter(node="/given"), StartAfter(node="/One"))
+    assert found["One"].node.name == ""
+    with pytest.raises(DocumentError, match="two nodes are called 'One': give this one another `name`"):
+        entries(home, text + "- {node: program.py:One}")
+
+
+def test_null_says_nothing(home: Path) -> None:
+    text = """
+arguments: {n: {default: null}, mode:}
+nodes: [{node: mine, name: "{n}", namespace: "{ n }", log_level: "{n}", respawn: "{n}", process: "{mode}", cpu: "{n}"}]
+"""
+    found = entries(home, text, mode="null")
+    assert (list(found), found["mine"].node.name, found["mine"].node.process) == (["mine"], "", "")
+    with pytest.raises(DocumentError, match="expected true or false, got nothing"):
+        entries(home, 'arguments: {n: {default: null}}\nnodes: [{node: mine, if: "{n}"}]')
+
+
 @pytest.mark.parametrize("word", ["true", "yes", "on", "On", "Y", "1", "'true'", "'{yes}'", "'{typed}'"])
 def test_conditions_that_are_true(home: Path, word: str) -> None:
     text = f"arguments: {{yes: yes, typed: off}}\nnodes: [{{node: mine, if: {word}}}, {{node: world, unless: {word}}}]"
@@ -243,6 +309,23 @@ def test_a_command_is_found_before_anything_starts(home: Path, monkeypatch: pyte
     tool = found["a/tool"]
     assert tool.node.run == [sys.executable, f"{home / 'configs'}/x.py", "5"]
     assert (tool.source, tool.home) == (None, home)
+
+
+def test_files_are_looked_for_around_the_launch_file_wherever_one_is(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    trials, elsewhere = home / "trials", home / "elsewhere"
+    for folder in (trials, elsewhere, elsewhere / "nodes", elsewhere / "configs"):
+        folder.mkdir()
+    for file in (trials / "probe.py", elsewhere / "probe.py", elsewhere / "nodes" / "mine.py"):
+        file.write_text("")
+    (elsewhere / "configs" / "robot.yaml").write_text("nodes: [node: probe.py]")
+    monkeypatch.chdir(elsewhere)
+    text = "nodes: [node: probe.py, node: nodes/mine.py]\ninclude: [{file: configs/robot.yaml, arguments: {id: 1}}]"
+    text += "\ngroups: [nodes: [node: world]]"
+    found = read_launch_file(trials / "lap.yaml", text=text)
+    assert [each.name for each in found] == ["probe", "mine", "driver_1", "world"]
+    assert [each.source and each.source.path for each in found][:2] == [trials / "probe.py", home / "nodes" / "mine.py"]
 
 
 def test_a_node_may_be_an_executable_of_a_package(home: Path) -> None:

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.launch import Entry, read_launch_file
-from robolink.launch.graph import drawn
-from robolink.launch.look import End, Look
+from robolink.launch.looking.graph import drawn
+from robolink.launch.looking.look import End, Look
 
 SCAN, TWIST, TRIGGER = "sensor_msgs/msg/LaserScan", "geometry_msgs/msg/Twist", "std_srvs/srv/Trigger"
 GOAL = "nav2_msgs/action/NavigateToPose"

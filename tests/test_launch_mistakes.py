@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 
 from robolink.exceptions import DocumentError
 from robolink.launch import plan, read_launch_file
-from robolink.launch.description import (
+from robolink.launch.reading.description import (
     GroupDescription,
     IncludeDescription,
     LaunchDescription,
@@ -49,6 +50,12 @@ def bad_files() -> list[tuple[str, str]]:
 def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("ROBOT", "r1")
     return make_workspace(tmp_path, monkeypatch, **INCLUDED)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows knows programs by their names")
+def test_a_script_that_may_not_be_executed_is_told_so(home: Path) -> None:
+    with pytest.raises(DocumentError, match=r"run\[0\]: '.*/robot.yaml' may not be executed: chmod \+x it"):
+        plan(home / "configs" / "lap.yaml", text="nodes: [{run: ['{here}/robot.yaml']}]")
 
 
 @pytest.mark.parametrize(("text", "report"), bad_files())
@@ -96,7 +103,7 @@ def test_a_name_that_no_file_can_have_is_one_line(home: Path, key: str) -> None:
 
 
 def test_files_that_multiply_are_refused(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robolink.launch.entries.MOST_PARTS", 100)
+    monkeypatch.setattr("robolink.launch.reading.entries.MOST_PARTS", 100)
     text = "groups:\n- count: 20\n  groups:\n  - count: 20\n    nodes: [{node: mine, if: false}]"
     with pytest.raises(DocumentError, match=r"more than 100 nodes, groups and includes$"):
         read_launch_file(home / "configs" / "lap.yaml", text=text)

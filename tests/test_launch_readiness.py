@@ -13,8 +13,9 @@ from robolink import Context, Node
 from robolink.interfaces.std_msgs.msg import String
 from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.launch import processes, read_launch_file
-from robolink.launch.readiness import Awaited, names_in, waiting
+from robolink.launch.readiness import Awaited, Readiness, names_in, waiting
 from robolink.transport.memory import MemoryTransport
+from robolink.wire import graph_pattern
 from robolink.workspace import VARIABLE, NodeSource
 from tests.seen_by_commands import a_node_that_commands_see, made
 
@@ -87,7 +88,30 @@ nodes:
 def test_names_are_read_from_the_code(home: Path) -> None:
     found = {name: names_in(NodeSource(name, home / "nodes" / f"{name}.py")) for name in FILES}
     assert found == {"plain": [], "named": ["camera_driver"], "by_key": ["left", "right"], "broken": []}
+    two = home / "nodes" / "two.py"
+    two.write_text("class A(Node):\n def f(self): super().__init__('a')\nclass B(Node):\n def f(self): Node('b')\n")
+    assert [names_in(NodeSource("two", two, each)) for each in ("A", "B", "main", "")] == [
+        ["a"],
+        ["b"],
+        *2 * [["a", "b"]],
+    ]
     assert names_in(NodeSource("gone", home / "gone.py")) == names_in(NodeSource("installed")) == []
+
+
+def test_a_process_is_ready_once_when_all_is_there_at_the_same_time(robot: Node) -> None:
+    robot.create_publisher(String, "/a", 10)
+    robot.create_service(Trigger, "/b", lambda request, response: response)
+    tokens = robot.context.transport.tokens(graph_pattern())
+    [a] = [each for each in tokens if "%a" in each and "/MP/" in each]
+    [b] = [each for each in tokens if "%b" in each and "/SS/" in each]
+    ab = [Awaited("topic", ("/a",)), Awaited("service", ("/c", "/b"))]
+    readiness = Readiness({"ab": ab, "a": ab[:1], "free": []})
+    assert readiness.held == ["ab", "a"]
+    assert [readiness.heard(*each) for each in ((a, True), (a, False), (b, True))] == [["a"], [], []]
+    assert readiness.missing() == {"ab": ab[:1]}
+    assert [readiness.heard(*each) for each in ((a, True), (a, True), ("nonsense", True))] == [["ab"], [], []]
+    assert [readiness.knows(each) for each in (a, b, tokens[0], "nonsense")] == [True, True, False, False]
+    assert readiness.held == []
 
 
 # --- on the network -------------------------------------------------------------------------------------------

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from robolink.cli import main
-from robolink.launch.command import processes
-from robolink.launch.entries import read_launch_file
+from robolink.launch.planning import processes
+from robolink.launch.reading.entries import read_launch_file
 from robolink.launch.watching import files_of, roots_of, settings_of
 from tests.commands import PATIENCE, Command
 from tests.launchers import files_in, own_runtime_folder
@@ -98,6 +98,35 @@ def test_a_launcher_that_was_killed_leaves_nothing_behind(folder: Path, system: 
         while command.left() and time.monotonic() < deadline:
             time.sleep(0.05)
     assert [each for each in files_in(folder) if each.startswith("launch-")] == []
+
+
+ORDERLY = """
+import pathlib
+import time
+
+try:
+    print("hello", flush=True)
+    while True:
+        time.sleep(0.02)
+except KeyboardInterrupt:
+    pathlib.Path(__file__).with_suffix(".orderly").touch()
+"""
+
+
+@posix_only
+def test_a_launcher_that_another_one_launched_ends_in_order_when_that_is_killed(folder: Path, tmp_path: Path) -> None:
+    program = tmp_path / "program.py"
+    program.write_text(ORDERLY)
+    inner, outer = tmp_path / "inner.yaml", tmp_path / "outer.yaml"
+    inner.write_text(f"nodes: [{{name: program, run: ['{sys.executable}', '{program}']}}]")
+    outer.write_text(f"nodes: [{{name: inner, run: ['{sys.executable}', -m, robolink, launch, '{inner}']}}]")
+    with Command(0, "launch", str(outer), merged=True) as command:
+        command.wait_for("[inner] [program] hello")
+        command.kill()
+        deadline = time.monotonic() + PATIENCE
+        while command.left() and time.monotonic() < deadline:
+            time.sleep(0.05)
+    assert program.with_suffix(".orderly").exists()
 
 
 def test_a_saved_file_starts_what_imports_it_anew(folder: Path, system: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,8 +13,8 @@ from hypothesis import strategies as st
 
 from robolink.exceptions import DocumentError
 from robolink.launch import read_launch_file
-from robolink.launch.look import End, Job, Look, LookError, look_into, read
-from robolink.launch.validate import Report, found, judged, validate
+from robolink.launch.looking.look import End, Job, Look, LookError, look_into, read
+from robolink.launch.looking.validate import Found, Report, found, judged, validate
 from robolink.workspace import VARIABLE
 
 STRING, INT = "std_msgs/msg/String", "std_msgs/msg/Int32"
@@ -133,7 +134,7 @@ def test_a_node_that_is_never_made_is_seen_as_far_as_it_was(home: Path) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no signal holds a process up there")
 def test_a_process_that_is_held_up_is_killed(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robolink.launch.look._GRACE", 3.0)
+    monkeypatch.setattr("robolink.launch.looking.look._GRACE", 3.0)
     stop = f"{NODE})\n        import os, signal\n        os.kill(os.getpid(), signal.SIGSTOP)\n"
     (home / "nodes" / "stops.py").write_text(stop)
     [look] = looked(home, "stops", patience=0.5)
@@ -263,8 +264,8 @@ WAITS = [
     ("{topic: /chatter}", [], []),
     ("{node: talker}", [], []),
     ("{service: /reset}", [], []),
-    ("{topic: /chater}", ["'waits' waits for topic /chater, which no node of this system has (did you mean"], []),
-    ("{topic: /reset}", [], ["'waits' waits for topic /reset, which no node of this system has"]),
+    ("{topic: /chater}", ["'waits' waits for topic /chater, which no other node of this system has (did you mean"], []),
+    ("{topic: /reset}", [], ["'waits' waits for topic /reset, which no other node of this system has"]),
 ]
 
 
@@ -282,6 +283,21 @@ def test_what_is_waited_for_is_there(home: Path, start_after: str, mistakes: lis
     assert report == ([], ["talker was not looked into: it hangs"])
 
 
+def test_a_node_that_is_announced_otherwise_is_never_there(home: Path) -> None:
+    text = "nodes:\n- node: talker\n- {node: listener, start_after: talker}"
+    report = judge(home, text, talker=Look(["/made", "/up"]), listener=Look(["/listener"]))
+    reason = "'listener' waits for node /talker, which is announced as /made and /up: give it a `name`"
+    assert texts(home, report) == [f"3:33: nodes[1].start_after: {reason}"]
+
+
+def test_what_every_node_has_may_be_waited_for_but_not_what_only_the_waiting_one_has(home: Path) -> None:
+    text = "nodes:\n- node: talker\n- {node: listener, start_after: [{service: talker/get_parameters}, {topic: a}]}"
+    every = End("SS", "/talker/get_parameters", "rcl_interfaces/srv/GetParameters", "", "/talker")
+    own = End("MP", "/a", STRING, "", "/listener")
+    report = judge(home, text, talker=Look(["/talker"], [every]), listener=Look(["/listener"], [own]))
+    assert report == ([], ["'listener' waits for topic /a, which no other node of this system has"])
+
+
 def test_commands_and_nodes_with_the_keyboard_are_noted(home: Path) -> None:
     text = f"nodes:\n- {{run: [{sys.executable}], name: python}}\n- {{node: talker, interactive: true}}"
     report = judge(home, text, talker=Look(error="no terminal"))
@@ -294,11 +310,9 @@ def test_a_core_that_is_not_there_is_a_mistake(home: Path) -> None:
 
 
 def test_a_mistake_is_parted_for_programs() -> None:
-    parted = found(DocumentError("C:\\a b\\lap.yaml:3:14: nodes[0]: no: 1:2: x"))
-    assert (parted.file, parted.line, parted.column, parted.message) == (
-        "C:\\a b\\lap.yaml",
-        3,
-        14,
-        "nodes[0]: no: 1:2: x",
-    )
-    assert found(DocumentError("no place")).message == "no place"
+    error = DocumentError("nodes[0]: no: 1:2: x", "C:\\a b\\lap.yaml", 3, 14)
+    assert str(error) == "C:\\a b\\lap.yaml:3:14: nodes[0]: no: 1:2: x"
+    assert found(error) == Found("C:\\a b\\lap.yaml", 3, 14, "nodes[0]: no: 1:2: x")
+    assert found(DocumentError("no place")) == Found("", 0, 0, "no place")
+    again = pickle.loads(pickle.dumps(error))
+    assert (str(again), found(again)) == (str(error), found(error))

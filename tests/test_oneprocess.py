@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
@@ -316,3 +316,20 @@ def test_parameters_are_set_as_in_a_process(host: Host) -> None:
     counter.declare_parameter("limit", 3)
     counter.set_parameters([Parameter("limit", value=5)])
     assert counter.get_parameter("limit").value == 5
+
+
+@pytest.mark.parametrize("virtual", [True, False])
+def test_nothing_runs_in_a_host_that_is_closed(virtual: bool) -> None:
+    logging.set_console_handler(None)
+    with Host(virtual=virtual) as host:
+        host.start_node(Counter, name="one")
+    asked: list[Callable[[], object]] = [
+        lambda: host.start_node(Counter),
+        lambda: host.restart("one"),
+        lambda: host.run(1.0),
+        lambda: host.run_until(lambda: True, 1.0),
+    ]
+    for ask in asked:
+        with pytest.raises(HostError, match="this host is closed"):
+            ask()
+    host.close()

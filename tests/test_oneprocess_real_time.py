@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import subprocess
 import sys
 import threading
 from collections.abc import Iterator
@@ -132,6 +134,113 @@ def test_ctrl_c_ends_the_system_in_order(tmp_path: Path, log: list[str]) -> None
     finally:
         logging.remove_handler(press)
     assert log[-1] == "interrupted"
+
+
+def test_threads_and_callbacks_in_threads_have_their_programs_default_context(tmp_path: Path, log: list[str]) -> None:
+    logging.set_console_handler(None)
+    assert run(launched(tmp_path, "nodes: [{node: threaded}]", threaded=THREADED)) == 0
+    assert sorted(log) == ["pool: True", "thread: True"]
+
+
+THREADED = """
+import threading
+import rclpy
+from rclpy.executors import MultiThreadedExecutor
+
+rclpy.init()
+node = rclpy.create_node("threaded")
+told = threading.Event()
+
+
+def tell(what):
+    node.get_logger().info(f"{what}: {rclpy.ok()}")
+
+
+def tick():
+    timer.cancel()
+    tell("pool")
+    told.set()
+
+
+thread = threading.Thread(target=tell, args=("thread",))
+thread.start()
+thread.join()
+timer = node.create_timer(0.01, tick)
+executor = MultiThreadedExecutor(2)
+executor.add_node(node)
+while not told.is_set():
+    executor.spin_once(timeout_sec=0.1)
+"""
+
+
+def test_the_environment_is_there_while_nodes_are_made(tmp_path: Path, log: list[str]) -> None:
+    logging.set_console_handler(None)
+    made = "os.environ['WHO'], sys.argv[0][-6:]"
+    node_class = f"""
+import os, sys
+import rclpy
+from rclpy.node import Node
+
+class Reader(Node):
+    def __init__(self):
+        super().__init__("reader")
+        self.get_logger().info(str(({made})))
+"""
+    script = node_class + "rclpy.init()\nnode = Reader()\nrclpy.spin_once(node, timeout_sec=0)\n"
+    text = "nodes: [{node: first, env: {WHO: a}}, {node: second, env: {WHO: b}}]"
+    arguments = sys.argv
+    assert run(launched(tmp_path, text, first=node_class, second=script)) == 0
+    assert log[:2] == ["('a', 'rst.py')", "('b', 'ond.py')"]
+    assert sys.argv is arguments
+    assert "WHO" not in os.environ
+
+
+def test_who_is_interrupted_while_a_node_is_made_has_not_failed(tmp_path: Path, log: list[str]) -> None:
+    logging.set_console_handler(None)
+    text = """
+from rclpy.node import Node
+
+class Slow(Node):
+    def __init__(self):
+        super().__init__("slow")
+        while self.context.ok():
+            pass
+        Node("part")
+"""
+    assert run(launched(tmp_path, "nodes: [{node: slow}]", slow=text), duration=0.2) == 0
+    assert log == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no Ctrl-C for one process on Windows")
+def test_a_callback_that_blocks_in_a_pool_does_not_keep_the_process(tmp_path: Path) -> None:
+    launched(tmp_path, "nodes: [{node: blocks}]", blocks=BLOCKS)
+    command = [sys.executable, "-m", "robolink", "launch", "configs/system.yaml", "--in-process"]
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "blocks\n"
+        process.send_signal(signal.SIGINT)
+        assert process.wait(PATIENCE) == 0
+
+
+BLOCKS = """
+import time
+import rclpy
+from rclpy.executors import MultiThreadedExecutor
+
+def tick():
+    print("blocks", flush=True)
+    time.sleep(600)
+
+rclpy.init()
+node = rclpy.create_node("blocks")
+node.create_timer(0.01, tick)
+executor = MultiThreadedExecutor(2)
+executor.add_node(node)
+try:
+    executor.spin()
+except KeyboardInterrupt:
+    pass
+"""
 
 
 def test_commands_are_refused(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ import random
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from time import monotonic, sleep
 from typing import Any
@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from robolink import logging
-from robolink.oneprocess import Host, HostError
+from robolink.oneprocess import Host, HostError, turns
 from tests.hosts import Counter, Listener, Stage, start_files, traced
 
 SERVER = """
@@ -426,6 +426,106 @@ lock.acquire()
     assert stage.host.programs["stuck"].state == "crashed"
     stage.host.run(1.0)
     assert counter.count == 10
+
+
+@pytest.mark.parametrize("wait", [lambda host: host.run(10.0), lambda host: host.run_until(lambda: False, 10.0)])
+def test_ctrl_c_leaves_code_behind_that_blocks(
+    stage: Stage, wait: Callable[[Host], Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(turns, "INTERRUPT_PATIENCE", 0.2)
+    before = set(threading.enumerate())
+    program = stage.start("blocks", BLOCKS_IN_A_CALLBACK)
+    with pytest.raises(KeyboardInterrupt):
+        wait(stage.host)
+    assert program.state == "crashed"
+    assert "blocks did not go on after Ctrl-C: it is at" in str(program.error)
+    stage.host.run(1.0)
+    stage.host.close()  # would never end if the turn were still the callback's
+    threads = set(threading.enumerate()) - before
+    for each in threads:
+        each.join(10.0)
+    assert not any(each.is_alive() for each in threads)
+
+
+BLOCKS_IN_A_CALLBACK = """
+import _thread
+from rclpy.node import Node
+
+class Blocks(Node):
+    def __init__(self):
+        super().__init__("blocks")
+        self.create_timer(0.5, self.tick)
+
+    def tick(self):
+        _thread.interrupt_main()
+        while True:
+            pass
+"""
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [
+        "while node.count < 5: time.sleep(0)",
+        "end = time.monotonic() + 0.7\nwhile time.monotonic() < end: time.sleep((end - time.monotonic()) / 3)",
+        "event = threading.Event()\nwhile node.count < 5: event.wait(0)",
+        "thread = threading.Timer(0.7, print)\nthread.start()\nwhile thread.is_alive(): thread.join(0)",
+        "while node.count < 5: client.wait_for_service(timeout_sec=0)",
+        "full = queue.Queue(1)\nwhile node.count < 5:\n try: full.put(1, timeout=0.3)\n except queue.Full: pass",
+    ],
+)
+def test_loops_that_ask_without_waiting_let_time_pass(stage: Stage, loop: str) -> None:
+    program = stage.start("asks", ASKS + loop)
+    assert stage.host.run_until(lambda: program.is_over, 2.0)
+    assert (program.state, program.error) == ("ended", None)
+
+
+ASKS = """
+import queue, threading, time
+import rclpy
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+
+class Ticks(Node):
+    count = 0
+    def tick(self):
+        self.count += 1
+
+rclpy.init()
+node = Ticks("ticks")
+node.create_timer(0.1, node.tick)
+client = node.create_client(Trigger, "nobody")
+threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+"""
+
+
+def test_messages_that_go_round_without_end_are_named(stage: Stage) -> None:
+    stage.host.the_turns.patience = 0.3
+    stage.start("echo", ECHO)
+    with pytest.raises(HostError, match=r"time has stood still for 0\.3 s of real time: .*, just now echo"):
+        stage.host.run(10.0)
+
+
+ECHO = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Int32
+
+class Echo(Node):
+    def __init__(self):
+        super().__init__("echo")
+        there, back = self.create_publisher(Int32, "there", 10), self.create_publisher(Int32, "back", 10)
+        self.create_subscription(Int32, "there", back.publish, 10)
+        self.create_subscription(Int32, "back", there.publish, 10)
+        there.publish(Int32())
+"""
+
+
+def test_a_thread_that_never_began_when_its_program_ends_keeps_nobody(stage: Stage) -> None:
+    brief = stage.start("brief", "import threading\nthreading.Thread(target=print, daemon=True).start()")
+    counter = stage.host.start_node(Counter)
+    stage.host.run(1.0)
+    assert (brief.state, counter.count) == ("ended", 10)
 
 
 def test_a_thread_that_waits_for_a_lock_of_another_is_passed_over(stage: Stage) -> None:

@@ -20,10 +20,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.cli import main, running
-from robolink.supervisor.affinity import CoreError, check_cores, ranges, set_affinity, usable_cores
-from robolink.supervisor.asking import running as launchers
-from robolink.supervisor.control import Control
-from robolink.supervisor.resources import (
+from robolink.supervisor.door.asking import running as launchers
+from robolink.supervisor.door.control import Control
+from robolink.supervisor.processes.affinity import CoreError, check_cores, ranges, set_affinity, usable_cores
+from robolink.supervisor.watching.resources import (
     Figures,
     Identity,
     Meter,

@@ -139,6 +139,12 @@ def test_a_world_can_run_faster_than_time(system: System) -> None:
     assert world.simulation.world.time_ns == pytest.approx(4e9, abs=5e7)
 
 
+def test_as_fast_as_it_goes_is_the_pace_of_virtual_time(system: System) -> None:
+    world = system.start(simulation.SimulatedWorld, parameters={"world": "empty_room", "rtf": 0.0})
+    system.run(3.0)
+    assert world.simulation.world.time_ns == pytest.approx(3e9, abs=5e7)
+
+
 @pytest.mark.parametrize("rtf", [-1.0, math.nan, math.inf])
 def test_an_impossible_pace_is_refused(system: System, rtf: float) -> None:
     with pytest.raises(InvalidParameterValueException, match="rtf"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 
 from robolink import logging
 from robolink.exceptions import NotFoundError
+from robolink.faults.injector import FaultError
 from robolink.launch import read_launch_file
 from robolink.logging import Record
 from robolink.simulating import Watching, failed_by, simulate, with_parameters
@@ -30,6 +32,7 @@ def folder(tmp_path: Path) -> Path:
         fails="nodes:\n  - {node: talker, parameters: {fails_at: 21}}\n  - {node: listener}\n",
         ignored="nodes:\n  - {node: talker, on_exit: ignore, parameters: {fails_at: 21}}\n  - {node: listener}\n",
         again="nodes:\n  - {node: talker, respawn: always, parameters: {fails_at: 21}}\n  - {node: listener}\n",
+        waits_in_vain="nodes:\n  - {node: listener, start_after: {topic: /nothing}}\n  - {node: talker}\n",
         waits="nodes:\n  - {node: listener, start_after: talker}\n  - {node: talker}\n",
         gambles="nodes:\n  - {node: gambler}\n  - {node: talker}\n",
         fixed="nodes:\n  - {node: gambler, parameters: {seed: 7}}\n",
@@ -60,6 +63,16 @@ def test_whoever_watches_changes_nothing(folder: Path) -> None:
     assert times == [1.0, 2.0, 3.0, 3.5]
 
 
+def test_ctrl_c_ends_a_run_with_what_has_come_until_then(folder: Path) -> None:
+    def interrupt(seconds: float) -> None:
+        if seconds >= 2.0:
+            raise KeyboardInterrupt
+
+    result = simulated(folder, watching=Watching(time=interrupt))
+    assert (result.interrupted, result.seconds, result.messages["/chatter"]) == (True, 2.0, 20)
+    assert (result.warnings, result.failures) == (["interrupted at 2 of 10 s"], [])
+
+
 def test_a_robots_way_contacts_and_pose_are_told() -> None:
     entries = read_launch_file(find_launch("follow"), {})
     result = simulate(entries, duration=10.0)
@@ -68,6 +81,12 @@ def test_a_robots_way_contacts_and_pose_are_told() -> None:
     assert robot.contacts == 0
     assert 2.0 < robot.driven < 3.5
     assert robot.x - 3.0 == pytest.approx(robot.driven, abs=0.2)  # along the first wall
+
+
+def test_robots_of_two_worlds_are_told_apart(folder: Path) -> None:
+    world = "{node: world, parameters: {world: empty_room}, namespace: "
+    (folder / "configs" / "two.yaml").write_text(f"nodes:\n  - {world}one}}\n  - {world}two}}\n")
+    assert [each.name for each in simulated(folder, "two", duration=0.1).robots] == ["one/robot", "two/robot"]
 
 
 def test_what_a_fault_did_is_told(folder: Path) -> None:
@@ -131,6 +150,15 @@ def test_start_after_holds_in_virtual_time(folder: Path) -> None:
     assert simulated(folder, "waits").messages["/heard"] == 100
 
 
+def test_what_waits_for_what_has_ended_ends_the_system(folder: Path) -> None:
+    (folder / "nodes" / "gone.py").write_text("print('gone')")
+    vain = "nodes: [{node: gone, on_exit: ignore}, {node: listener, start_after: gone}]"
+    (folder / "configs" / "vain.yaml").write_text(vain)
+    result = simulated(folder, "vain")
+    assert result.seconds == 0.0
+    assert [(each.name, each.state) for each in result.programs] == [("gone", "ended")]
+
+
 def test_commands_are_left_out(folder: Path) -> None:
     result = simulated(folder, "command")
     assert result.warnings == ["echo is left out: a command knows no virtual time"]
@@ -142,6 +170,38 @@ def test_a_fault_that_met_nothing_is_told(folder: Path) -> None:
     assert warning.endswith("no topic '/chater' was received by any node (did you mean '/chatter'?)")
 
 
+@pytest.mark.parametrize(
+    ("faults", "told"),
+    [
+        ("messages: [{topic: /chatter, loss: 1, after: 50}]", "/chatter, loss: 1, after: 50} met nothing: the run"),
+        ("partitions: [{between: [talker, listener], after: 50}]", "after: 50} met nothing: the run ended before"),
+        ("crashes: [{node: talker, at: 50}]", "{node: talker, at: 50} did not happen: the run ended before"),
+    ],
+)
+def test_a_fault_that_would_have_come_later_is_told(folder: Path, faults: str, told: str) -> None:
+    (warning,) = simulated(folder, faults=faults).warnings
+    assert told in warning
+
+
+def test_a_node_that_does_not_run_cannot_crash_nor_be_started_by_it(folder: Path) -> None:
+    faults = "crashes: [{node: talker, at: 2.05, restart_after: 5}, {node: talker, at: 3, restart_after: 1}]"
+    result = simulated(folder, faults=faults)
+    assert result.messages["/chatter"] == 20 + 29
+    assert result.warnings == ["{node: talker, at: 3, restart_after: 1} did not happen: the node did not run then"]
+
+
+def test_a_node_that_waits_for_another_cannot_crash(folder: Path) -> None:
+    result = simulated(folder, "waits_in_vain", faults="crashes: [{node: listener, at: 1, restart_after: 1}]")
+    assert [each.name for each in result.programs] == ["talker"]
+    assert result.warnings[0].endswith("did not happen: the node did not run then")
+
+
+def test_a_clock_that_would_be_before_all_time_is_refused(folder: Path) -> None:
+    with pytest.raises(FaultError, match="the clock of listener cannot be 5 s behind: it is 1 s now"):
+        simulated(folder, faults="clocks: [{node: listener, offset: -5}]")
+    assert simulated(folder, faults="clocks: [{node: listener, offset: -0.5}]").messages["/heard"] == 100
+
+
 def test_a_seed_is_that_of_random_of_numpy_and_of_parameters(folder: Path) -> None:
     state, array_state = random.getstate(), str(np.random.get_state())
     logs: list[Record] = []
@@ -149,6 +209,43 @@ def test_a_seed_is_that_of_random_of_numpy_and_of_parameters(folder: Path) -> No
     assert runs[0].hash == runs[1].hash != runs[2].hash
     assert [each.message for each in logs if each.severity >= logging.LoggingSeverity.WARN] == []
     assert (random.getstate(), str(np.random.get_state())) == (state, array_state)
+
+
+CHANCES = """
+'Publishes all the chance that Python has from the operating system.'
+
+import os, random, secrets, uuid
+
+import numpy
+
+from robolink import Node
+from robolink.interfaces.std_msgs.msg import String
+
+
+class Chances(Node):
+    def __init__(self, **options):
+        super().__init__("chances", **options)
+        random.seed()
+        numpy.random.seed()
+        self.drawn = self.create_publisher(String, "drawn", 10)
+        self.create_timer(0.1, self.tick)
+
+    def tick(self):
+        system = random.SystemRandom().random(), secrets.token_hex(), uuid.uuid4(), os.urandom(8)
+        seeded = random.Random().random(), random.random(), numpy.random.default_rng().random(), numpy.random.random()
+        self.drawn.publish(String(data=f"{system} {seeded}"))
+"""
+
+
+def test_chance_of_the_operating_system_is_the_seeds(folder: Path) -> None:
+    (folder / "nodes" / "chances.py").write_text(CHANCES)
+    (folder / "configs" / "two.yaml").write_text("nodes:\n  - {node: chances, count: 2, name: 'c{i}'}\n")
+    before = os.urandom, random.Random.seed, random.seed
+    first, again, other = (simulated(folder, "two", duration=0.55, seed=seed) for seed in (3, 3, 4))
+    assert first.messages["/drawn"] == 10
+    assert first.hash == again.hash != other.hash
+    assert (os.urandom, random.Random.seed, random.seed) == before
+    assert random.Random().random() != random.Random().random()
 
 
 def test_a_seed_that_a_node_was_given_stays(folder: Path) -> None:

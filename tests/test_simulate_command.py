@@ -33,6 +33,32 @@ class Unlucky(Node):
             raise ValueError(f"drew {drawn:.6f}")
 '''
 
+INTERRUPTER = '''
+"""Does what Ctrl-C does."""
+
+import _thread
+
+from robolink import Node
+
+
+class Interrupter(Node):
+    def __init__(self, **options):
+        super().__init__("interrupter", **options)
+        self.create_timer(1.0, _thread.interrupt_main)
+'''
+
+PRINTER = '''
+"""Prints something that is no line."""
+
+from robolink import Node
+
+
+class Printer(Node):
+    def __init__(self, **options):
+        super().__init__("printer", **options)
+        print("no line", end="")
+'''
+
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
@@ -41,7 +67,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         fails="nodes:\n  - {node: talker, parameters: {fails_at: 21}}\n",
         fast="arguments: {count: -1}\nnodes:\n  - {node: talker, parameters: {fails_at: '{count}'}}\n",
         gambles="nodes:\n  - {node: unlucky}\n",
+        interrupts="nodes:\n  - {node: interrupter}\n",
     )
+    (tmp_path / "nodes" / "interrupter.py").write_text(INTERRUPTER)
     (tmp_path / "nodes" / "unlucky.py").write_text(UNLUCKY)
     (tmp_path / "configs" / "faults").mkdir()
     (tmp_path / "configs" / "faults" / "rough.yaml").write_text(ROUGH)
@@ -66,6 +94,15 @@ def test_json_is_one_object_on_the_last_line(folder: Path, capsys: pytest.Captur
     result = json.loads(out.splitlines()[-1])
     assert result["messages"]["/chatter"] == 30
     assert (result["file"], result["seed"], result["failures"], len(result["hash"])) == ("talk", 0, [], 64)
+
+
+def test_what_nodes_print_is_no_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "nodes" / "printer.py").write_text(PRINTER)
+    (folder / "configs" / "prints.yaml").write_text("nodes:\n  - {node: printer}\n")
+    assert main(["simulate", "prints", "--duration", "1", "--json"]) == 0
+    out, err = capsys.readouterr()
+    assert json.loads(out)["file"] == "prints"
+    assert err == "no line"
 
 
 def test_two_processes_have_the_same_hash(folder: Path) -> None:
@@ -98,6 +135,8 @@ def test_arguments_and_parameters_are_given(folder: Path, capsys: pytest.Capture
         (["talk", "--set", "taker.x:=1"], "no node named 'taker' in the launch file (did you mean 'talker'?)", 1),
         (["talk", "--set", "talker.x"], "--set: expected NODE.PARAMETER:=VALUE, got 'talker.x'", 1),
         (["talk", "--set", "talker.x:=[1"], "--set talker.x:1:3: expected ',' or ']'", 1),
+        (["talk", "--duration", "nan"], "'--duration': expected 0 to 1e+09 seconds, got nan", 2),
+        (["talk", "--duration", "-1"], "'--duration': expected 0 to 1e+09 seconds, got -1", 2),
         (["talk", "--seed", "-1"], "Invalid value for '--seed': -1 is not in the range", 2),
         (["talk", "--fail-on", "contct"], "'contct' is none of contact, error, real-time (did you mean 'contact'?)", 2),
         (["count:=1"], "simulate what?", 2),
@@ -106,7 +145,7 @@ def test_arguments_and_parameters_are_given(folder: Path, capsys: pytest.Capture
 def test_wrong_usage_is_one_line(
     folder: Path, words: list[str], told: str, code: int, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["simulate", *words, "--duration", "1"]) == code
+    assert main(["simulate", "--duration", "1", *words]) == code
     out, err = capsys.readouterr()
     assert out == ""
     assert told in err
@@ -123,16 +162,32 @@ def test_a_fault_on_an_unknown_node_is_told_with_its_place(folder: Path, capsys:
 
 
 def test_a_seed_that_fails_is_told_and_fails_again_by_itself(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["simulate", "gambles", "--duration", "2", "--repeat", "4", "--seed", "3"]) == 1
+    assert main(["simulate", "gambles", "--duration", "2.00000001", "--repeat", "4", "--seed", "3"]) == 1
     *told, last = capsys.readouterr().out.splitlines()
     assert last == f"{4 - len(told) // 2} of 4 seeds passed"
     assert 0 < len(told) // 2 < 4
     line, replay = told[:2]
     words = shlex.split(replay)
-    assert words[0] == "robolink"
+    assert words[:4] == ["robolink", "simulate", "gambles", "--duration"]
+    assert words[4] == "2.00000001"
     again = subprocess.run([sys.executable, "-m", *words], capture_output=True, text=True, timeout=60, check=False)
     assert again.returncode == 1
     assert f"failed: {line.partition(' failed: ')[2]}" in again.stdout
+
+
+def test_ctrl_c_ends_a_run_with_the_summary_so_far(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["simulate", "interrupts", "--duration", "1e9"]) == 130
+    out = capsys.readouterr().out
+    assert "warning: interrupted at " in out
+    assert len(out.splitlines()[-1].removeprefix("hash ")) == 64
+
+
+def test_ctrl_c_ends_many_seeds_with_those_that_are_done() -> None:
+    def interrupt(run: object) -> None:
+        raise KeyboardInterrupt
+
+    (run,) = run_seeds(lambda seed: ["simulate", "--json"], range(9), workers=1, on_done=interrupt)
+    assert (run.seed, run.result) == (0, None)
 
 
 def test_many_seeds_as_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -18,7 +18,7 @@ import signal, sys
 def is_held():
     return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])
 print("held", is_held(), flush=True)
-from robolink.supervisor.lifeline import watch_lifeline
+from robolink.supervisor.processes.lifeline import watch_lifeline
 try:
     while signal.SIGINT not in signal.sigpending():
         pass

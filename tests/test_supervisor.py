@@ -21,86 +21,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.supervisor import Process, ProcessStartError, Supervisor
-from robolink.supervisor.guardian import Guardian, remaining
-from robolink.supervisor.lifeline import VARIABLE, Lifeline, watch_lifeline
-from robolink.supervisor.printer import Printer, prefixes
-from robolink.supervisor.process import Child
+from robolink.supervisor.processes.guardian import Guardian, marked, remaining
+from robolink.supervisor.processes.lifeline import VARIABLE, Lifeline, watch_lifeline
+from robolink.supervisor.processes.process import Child
 from robolink.supervisor.rules import Step
 
 PATIENCE = 30.0
 
 posix_only = pytest.mark.skipif(sys.platform == "win32", reason="signals and process groups are POSIX's")
 INTERRUPT, TERMINATE, KILL = Step.INTERRUPT, Step.TERMINATE, Step.KILL
-
-
-# --- printing -------------------------------------------------------------------------------------------------
-
-
-class Terminal(io.StringIO):
-    def isatty(self) -> bool:
-        return True
-
-
-def test_lines_are_prefixed_and_coloured_on_a_terminal_only(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("NO_COLOR", raising=False)
-    monkeypatch.setenv("TERM", "xterm")
-    for output, expected in [
-        (io.StringIO(), "[a] hi\n[b] é\ufffd\n[launch] over\n"),
-        (Terminal(), "\x1b[36m[a]\x1b[0m hi\n\x1b[33m[b]\x1b[0m é\ufffd\n\x1b[32m[launch]\x1b[0m over\n"),
-    ]:
-        printer = Printer(output, ["a", "b"])
-        printer.line("a", b"hi\r\n")
-        printer.line("b", b"\xc3\xa9\xff")
-        printer.say("over")
-        printer.close()
-        assert output.getvalue() == expected
-
-
-def test_no_color_is_respected(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("NO_COLOR", "1")
-    output = Terminal()
-    printer = Printer(output, ["a"])
-    printer.line("a", b"hi\n")
-    printer.close()
-    assert output.getvalue() == "[a] hi\n"
-
-
-def test_every_name_has_a_colour() -> None:
-    names = [f"node{index}" for index in range(30)]
-    assert len(set(prefixes(names, has_colour=True).values())) == 30
-
-
-def test_bytes_reach_a_pipe_unchanged_and_nobody_waits_for_a_broken_one() -> None:
-    reading, writing = os.pipe()
-    broken = threading.Event()
-    with os.fdopen(writing, "w") as output:
-        printer = Printer(output, ["a"], on_broken=broken.set)
-        printer.line("a", bytes(range(14, 256)))
-        with os.fdopen(reading, "rb") as received:
-            assert received.readline() == b"[a] " + bytes(range(14, 256)) + b"\n"
-        for _ in range(5000):
-            printer.line("a", b"x" * 100)
-        printer.close()
-        assert broken.wait(PATIENCE)
-        os.dup2(os.open(os.devnull, os.O_WRONLY), writing)  # so that what is buffered can be flushed
-
-
-def test_a_terminal_that_stands_still_does_not_hold_us_up() -> None:
-    go_on = threading.Event()
-
-    class Still(io.StringIO):
-        def write(self, text: str) -> int:
-            go_on.wait(PATIENCE)
-            return super().write(text)
-
-    output = Still()
-    printer = Printer(output, ["a"])
-    for _ in range(3000):
-        printer.say("ready")
-    printer.close(timeout=0.01)
-    go_on.set()
-    printer.close()
-    assert output.getvalue().startswith("[launch] ready\n")
 
 
 # --- running --------------------------------------------------------------------------------------------------
@@ -173,6 +102,16 @@ def test_a_program_that_is_not_there_stops_the_others() -> None:
         Supervisor(processes, output=io.StringIO(), start=start).run()
     assert [child.name for child in started] == ["a"]
     assert is_gone(started[0].group)
+
+
+@posix_only
+@pytest.mark.parametrize("text", ["echo hi\n", "#!/bin/sh\r\necho hi\r\n", "#!/nowhere/sh\n"])
+def test_a_script_of_which_nobody_knows_what_runs_it_is_told_of(text: str, tmp_path: Path) -> None:
+    script = tmp_path / "script.sh"
+    script.write_bytes(text.encode())
+    script.chmod(0o755)
+    with pytest.raises(ProcessStartError, match=r"cannot start a \(.*script.sh\): its first line names no program"):
+        run(Process("a", [str(script)]))
 
 
 @posix_only
@@ -412,6 +351,35 @@ def test_ctrl_z_pauses_all_and_fg_lets_them_go_on() -> None:
 
 
 @posix_only
+def test_a_process_that_stands_still_is_let_go_on_to_obey() -> None:
+    with closing(Lifeline()) as lifeline:
+        child = Child(python("a", "os.kill(os.getpid(), signal.SIGSTOP)\n" + DOZE), lifeline)
+        ended = threading.Event()
+        child.watch(lambda name, line: None, lambda name, code: ended.set())
+        assert wait_until(lambda: state(child.group) == "T")
+        child.ask(INTERRUPT)
+        has_obeyed = ended.wait(PATIENCE)
+        child.ask(KILL)
+        assert has_obeyed
+
+
+@posix_only
+def test_a_terminal_is_as_before_after_a_process_that_was_killed() -> None:
+    import termios
+
+    keys = "import tty; tty.setraw(0); say('raw'); os.kill(os.getpid(), signal.SIGKILL)"
+    take_terminal = "import fcntl, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0)\n"
+    ours, theirs = os.openpty()
+    with os.fdopen(ours, "wb", buffering=0):
+        before = termios.tcgetattr(theirs)
+        with launched({"teleop": keys}, first=take_terminal, terminal=theirs) as launcher:
+            launcher.wait_for("raw")
+            assert launcher.end() == 137
+        assert termios.tcgetattr(theirs) == before
+        os.close(theirs)
+
+
+@posix_only
 def test_an_interactive_process_has_the_terminal() -> None:
     teleop = """
         def count(*args):
@@ -452,6 +420,26 @@ def test_a_file_is_no_lifeline(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     with (tmp_path / "file").open("w") as file:
         monkeypatch.setenv(VARIABLE, str(file.fileno()))
         assert not watch_lifeline()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks at environments in /proc")
+def test_a_guardian_outlives_the_launcher_that_launched_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    with closing(Lifeline()) as outer:
+        monkeypatch.setenv(VARIABLE, outer.options()[0][VARIABLE])
+        with closing(Guardian()):
+            assert not marked(outer.mark)
+
+
+@posix_only
+def test_an_end_waits_for_no_guardian_that_stands_still() -> None:
+    guardian = Guardian()
+    assert guardian._process is not None
+    guardian._process.send_signal(signal.SIGSTOP)
+    its_end = threading.Thread(target=guardian.close, daemon=True)
+    its_end.start()
+    its_end.join(PATIENCE)
+    guardian._process.kill()
+    assert not its_end.is_alive()
 
 
 @given(st.lists(st.tuples(st.booleans(), st.integers(1, 5))))

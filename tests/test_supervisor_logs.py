@@ -13,8 +13,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.supervisor import Process, RunLogs, Supervisor, logs
-from robolink.supervisor.logs import file_names, logs_home, remove_old_runs
+from robolink.supervisor import Process, RunLogs, Supervisor
+from robolink.supervisor.telling import logs
+from robolink.supervisor.telling.logs import file_names, logs_home, remove_old_runs
 
 posix_only = pytest.mark.skipif(sys.platform == "win32", reason="locks, links and rights are POSIX's")
 

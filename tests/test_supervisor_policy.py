@@ -230,6 +230,44 @@ def test_what_waits_when_nothing_runs_any_more_is_told() -> None:
     assert not policy.is_over
 
 
+AWAITS_A = Rules(held=True, awaits=frozenset("a"))
+AWAITS_B = Rules(held=True, awaits=frozenset("b"))
+
+
+def test_who_waits_for_what_has_ended_waits_for_ever_and_that_is_the_end() -> None:
+    policy = Policy({"a": IGNORED, "b": AWAITS_A, "c": AWAITS_B})
+    policy.begin(0)
+    vain = "b waits for a, which has ended; c waits for a, which has ended"
+    assert policy.exited("a", 0, 1) == [Say("a has ended"), Say(f"nothing runs any more, and {vain}")]
+    assert policy.is_over
+    assert policy.code == 1
+
+
+@pytest.mark.parametrize(
+    ("rules", "history"),
+    [
+        ({"a": IGNORED, "b": AWAITS_A, "c": HELD}, [("a", 0)]),
+        ({"a": IGNORED, "b": AWAITS_A, "c": IGNORED}, [("a", 0)]),
+        ({"a": Rules(RESPAWNED.respawn, "ignore"), "b": AWAITS_A}, [("a", 1)]),
+        ({"a": IGNORED, "b": AWAITS_A}, [("a", "stop"), ("a", 0)]),
+    ],
+    ids=["another waits for anything", "another runs", "it is started again", "it was stopped: it may be restarted"],
+)
+def test_as_long_as_something_may_come_the_system_goes_on(rules: dict[str, Rules], history: list[object]) -> None:
+    policy = Policy(rules)
+    policy.begin(0)
+    replay(policy, [(1, event) for event in history])
+    assert not policy.is_over
+
+
+def test_the_last_that_runs_may_be_stopped_by_somebody() -> None:
+    policy = Policy({"a": IGNORED, "b": AWAITS_A, "c": PLAIN})
+    policy.begin(0)
+    replay(policy, [(1, ("a", 0)), (2, ("c", "stop")), (3, ("c", 0))])
+    assert policy.is_over
+    assert policy.code == 1
+
+
 def test_a_restart_on_request_is_orderly_and_no_failure() -> None:
     policy = two(RESPAWNED)
     asking, again, ended = replay(policy, [(1, ("a", "restart")), (1.5, ("a", "restart")), (2, ("a", -2))])
@@ -263,9 +301,19 @@ def test_a_process_that_does_not_run_is_started_by_a_restart(before: list[object
     assert policy.woken(50) == []
 
 
+def test_nothing_is_restarted_on_the_way_to_the_end() -> None:
+    policy = two(PLAIN, PLAIN)
+    assert policy.why_not_restarted("b") == ""
+    policy.interrupted(1)
+    assert policy.why_not_restarted("b") == "the system is stopping"
+    assert policy.restart("b", 1) == [Say("b is not restarted: the system is stopping")]
+
+
 def test_a_restart_starts_nothing_that_waits_for_something_else() -> None:
     policy = two(PLAIN, HELD)
-    assert policy.restart("b", 1) == [Say("b is not started yet: it waits for something else")]
+    why_not = policy.why_not_restarted("b")
+    assert why_not == "it is not started yet, since it waits for something else"
+    assert policy.restart("b", 1) == [Say(f"b is not restarted: {why_not}")]
     assert policy.processes["b"].state == "held"
     policy.stop_one("b", 2)
     assert policy.restart("b", 3) == [Say("starting b"), Start("b")]

@@ -18,7 +18,7 @@ import pytest
 from robolink.exceptions import NotFoundError
 from robolink.supervisor import Event, Process, Restarts, Rules, Supervisor
 from robolink.supervisor.events import Exited, Output, Said, Started
-from robolink.supervisor.guardian import is_alive
+from robolink.supervisor.processes.guardian import is_alive
 
 PATIENCE = 30.0
 RUNS_ON = "import os, time\nprint('ready', flush=True)\nwhile True: time.sleep(0.02)\n"

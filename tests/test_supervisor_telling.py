@@ -13,9 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.supervisor import Event, Process, Restarts, Rules, Supervisor
-from robolink.supervisor.causes import Cause
 from robolink.supervisor.events import Output
-from robolink.supervisor.summary import Summary
+from robolink.supervisor.telling.causes import Cause
+from robolink.supervisor.telling.summary import Summary
 
 TRACEBACK = 'Traceback (most recent call last):\n  File "x.py", line 1, in <module>\n    1 / 0\n    ~~^~~\n'
 GROUP = """\

@@ -6,9 +6,10 @@ import re
 import subprocess
 import sys
 
+# pytester forgets what was imported meanwhile, and numpy cannot be imported twice.
+import numpy  # noqa: F401
 import pytest
 
-# pytester forgets what was imported meanwhile, and numpy cannot be imported twice.
 import robolink.testing.one_process
 import robolink.testing.processes
 import robolink.testing.system  # noqa: F401
@@ -86,7 +87,7 @@ def test_a_failed_expectation_shows_what_came_and_how_to_replay_it(project: pyte
             "E  *replay: pytest 'test_it.py::test_fails' --robolink-seed *",
         ]
     )
-    result.stdout.no_fnmatch_line("*testing*observing.py*def expect*")
+    result.stdout.no_fnmatch_line("*testing*expecting.py*def *")
 
 
 def seed_of(result: pytest.RunResult) -> str:
@@ -103,7 +104,18 @@ def test_the_seed_is_the_tests_own_and_the_same_each_time_or_the_one_asked_for(p
     assert len(drawn) > 1
     result = run(project, FAILS, "--robolink-seed", "often")
     assert result.ret == pytest.ExitCode.USAGE_ERROR
-    result.stderr.fnmatch_lines(["*--robolink-seed: invalid whole number, or 'random' value: 'often'"])
+    result.stderr.fnmatch_lines(["*--robolink-seed: invalid whole number up to 4294967295, or 'random' value: 'often'"])
+
+
+def test_what_replays_a_failure_can_be_pasted_in_any_folder(
+    project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = project.mkdir("robots")
+    (folder / "test_it.py").write_text("from counter import Counter\n" + FAILS)
+    project.makeini("[pytest]")
+    monkeypatch.chdir(folder)
+    result = project.runpytest_inprocess("-p", "no:cacheprovider", "-p", "no:xdist", "test_it.py")
+    result.stdout.fnmatch_lines(["E  *replay: pytest 'test_it.py::test_fails' --robolink-seed *"])
 
 
 def test_any_other_failure_has_the_story_and_the_seed_beside_it(project: pytest.Pytester) -> None:
@@ -145,6 +157,102 @@ def test_it(system):
     result.stdout.fnmatch_lines(
         ["> *raise ValueError(*", "*NodeFailure: counter failed at 0.1 s: ValueError: broken (test_it.py:5)"]
     )
+
+
+def test_the_story_is_told_wherever_a_test_fails(project: pytest.Pytester) -> None:
+    text = """
+import unittest
+import pytest
+
+@pytest.fixture
+def counting(system):
+    system.start(Counter)
+    assert system.expect("count").data == 100
+
+def test_fails_before(counting):
+    pass
+
+@pytest.fixture
+def counted(system):
+    system.start(Counter)
+    yield
+    assert system.expect("count").data == 100
+
+def test_fails_behind(counted):
+    pass
+
+class TestUnit(unittest.TestCase):
+    @pytest.fixture(autouse=True)
+    def begin(self, system):
+        self.system = system
+
+    def test_fails(self):
+        self.system.start(Counter)
+        self.assertEqual(self.system.expect("count").data, 100)
+"""
+    result = run(project, text)
+    result.assert_outcomes(passed=1, failed=1, errors=2)
+    assert result.stdout.str().count("replay: pytest 'test_it.py::") == 3
+    assert result.stdout.str().count("0.100 s  /count  /counter  data=1") == 3
+
+
+def test_what_is_expected_to_fail_is_shown_as_ever(project: pytest.Pytester) -> None:
+    text = """
+import pytest
+
+@pytest.mark.xfail(reason="known")
+def test_it(system):
+    system.start(Counter)
+    assert system.expect("count").data == 100
+
+def test_skips(system):
+    pytest.skip("not today")
+"""
+    result = run(project, text, "-rxs", "--xfail-tb")
+    result.assert_outcomes(xfailed=1, skipped=1)
+    result.stdout.fnmatch_lines([">*assert system.expect(*", "E*assert 1 == 100"])
+    result.stdout.fnmatch_lines_random(["XFAIL test_it.py::test_it*known", "SKIPPED *test_it.py:*: not today"])
+
+
+def test_a_node_that_breaks_last_breaks_the_test(project: pytest.Pytester) -> None:
+    text = """
+class Rude(Counter):
+    def destroy_node(self):
+        super().destroy_node()
+        raise ValueError("rude")
+
+def test_it(system):
+    system.start(Rude)
+    system.stop("counter")
+"""
+    result = run(project, text)
+    result.assert_outcomes(passed=1, errors=1)
+    result.stdout.fnmatch_lines(["E *NodeFailure: counter failed at 0 s: ValueError: rude (test_it.py:*)"])
+
+
+def test_what_lies_between_the_test_and_its_nodes_is_left_out(project: pytest.Pytester) -> None:
+    text = """
+class Fragile(Counter):
+    def on_timer(self):
+        raise ValueError("broken")
+
+def test_breaks(system):
+    system.start(Fragile)
+    system.run(1.0)
+
+def test_asks(system):
+    system.start(Counter)
+    system.expect("count", lambda count: count.nothing)
+
+def test_starts(system):
+    system.start(3)
+"""
+    result = run(project, text)
+    result.assert_outcomes(failed=3)
+    result.stdout.no_fnmatch_line("*robolink?oneprocess?*.py:*: in *")
+    result.stdout.no_fnmatch_line("*robolink?testing?*.py:*: in *")
+    result = run(project, text, "--full-trace")
+    result.stdout.fnmatch_lines(["*robolink?oneprocess?*.py:*"])
 
 
 def test_fixtures_of_a_projects_own_go_first(project: pytest.Pytester) -> None:

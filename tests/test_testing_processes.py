@@ -12,9 +12,9 @@ import pytest
 
 from robolink import Node
 from robolink.exceptions import NotFoundError
-from robolink.testing import System
-from robolink.testing.domains import free_domain
+from robolink.testing import ExpectationError, NodeFailure, System
 from robolink.testing.expectations import OnlyInMemoryError
+from robolink.transport.free_domain import free_domain
 from tests.commands import MARK
 from tests.nodefiles import load_node_file
 
@@ -71,7 +71,6 @@ def test_a_launch_file_as_processes(tmp_path: Path, mark: str) -> None:
         assert system.expect_log("paused at").name == "world"
         assert {*left(mark)} if sys.platform == "linux" else True
         system.crash("wall_follower")
-        system.run(0.2)
         assert (system.nodes, system.failures) == (["/world"], [])
         system.restart("wall_follower")
         assert system.nodes == ["/wall_follower", "/world"]
@@ -80,6 +79,8 @@ def test_a_launch_file_as_processes(tmp_path: Path, mark: str) -> None:
         with pytest.raises(NotFoundError, match="did you mean 'world'"):
             system.stop("wrld")
     system.close()
+    for each in set(threading.enumerate()) - threads:
+        each.join(10.0)  # one of Zenoh's may be about to end
     assert set(threading.enumerate()) == threads
     assert left(mark) == []
 
@@ -93,6 +94,46 @@ def test_two_nodes_of_one_class_are_two_programs() -> None:
         assert system.expect_log("servus", within=PATIENCE).name == "one"
         system.stop("first_node")
         assert system.nodes == ["/one"]
+        system.start(first, name="one")
+        assert system.programs == ["one", "ada/first_node", "one_2"]
+        system.stop("one_2")
+        assert system.nodes == ["/one"]
+
+
+BROKEN = """
+import time
+
+from robolink import Node
+
+
+class Broken(Node):
+    def __init__(self):
+        super().__init__("broken")
+        time.sleep(0.3)
+        raise ValueError("no camera")
+"""
+
+SLIPPED = """
+from robolink import Node
+
+
+class Slipped(Node):
+    def __init__(self):
+        super().__init__("slipped")
+        self.declare_parameter("speed", 1.0)
+"""
+
+
+def test_what_a_constructor_raises_and_what_it_does_not_declare(tmp_path: Path) -> None:
+    broken, slipped = tmp_path / "broken.py", tmp_path / "slipped.py"
+    broken.write_text(BROKEN)
+    slipped.write_text(SLIPPED)
+    with System(transport="zenoh") as system:
+        with pytest.raises(NodeFailure, match=r"broken failed at its start: .*no camera"):
+            system.start(broken)
+        system.start(slipped, parameters={"sped": 2.0})
+        with pytest.raises(ExpectationError, match=r"'sped' was given to /slipped, .*mean 'speed'"):
+            system.run(0.1)
 
 
 def test_what_only_memory_can_is_refused_with_the_reason() -> None:

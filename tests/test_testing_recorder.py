@@ -15,12 +15,12 @@ from robolink.interfaces.geometry_msgs.msg import Point, Polygon, Twist
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.std_msgs.msg import Int32, String
+from robolink.message.one_line import WIDTH, short
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.serialization import deserialize_message
 from robolink.testing.expectations import Ends, near, no_such, nothing_came, seconds
 from robolink.testing.recorder import KEPT, Recorder
 from robolink.testing.timeline import Moment, messages_of, table
-from robolink.testing.values import WIDTH, short
 from robolink.transport.memory import Bus, MemoryTransport
 from tests.filled import filled
 

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.supervisor.imports import Imports, parse
-from robolink.supervisor.watch import Changes, Stamp, Watch
+from robolink.supervisor.watching.imports import Imports, parse
+from robolink.supervisor.watching.watch import Changes, Stamp, Watch
 
 PATIENCE = 30.0
 

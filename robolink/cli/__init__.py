@@ -29,6 +29,7 @@ def main(args: Sequence[str] | None = None) -> int:
     """
     given = sys.argv[1:] if args is None else list(args)
     if args is None:
+        _open_closed_streams()
         _write_any_letter()
     if os.environ.get(COMPLETION):
         code = _complete(given)
@@ -58,6 +59,16 @@ def complain(error: object, code: int = 1, place: str = "") -> int:
     return code
 
 
+def _open_closed_streams() -> None:
+    """Let standard streams that whoever started us has closed lead nowhere: other files would get their numbers."""
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:
+            with contextlib.suppress(OSError):
+                opened = os.open(os.devnull, os.O_WRONLY if number else os.O_RDONLY)  # gets the lowest number: this one
+                os.set_inheritable(opened, True)
+                setattr(sys, name, os.fdopen(opened, "w" if number else "r", closefd=False))
+
+
 def _write_any_letter() -> None:
     """Have standard output take letters that its encoding has not (ASCII, cp1252 behind a pipe on Windows), escaped."""
     codecs.register_error("robolink", _escaped)
@@ -84,11 +95,21 @@ def _outcome(args: list[str]) -> int:
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for the flush at exit
+        _drop_output()
         return 141
     except OSError as error:  # a full disk behind standard output, say
+        _drop_output()
         return complain(error)
     return code
+
+
+def _drop_output() -> None:
+    """Write what is left to write; drop what cannot be written, or Python would complain of it at the exit."""
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _complete(args: list[str]) -> int:

@@ -122,7 +122,7 @@ def launch_words(ctx: Context, incomplete: str) -> list[str]:
             from robolink.cli.running import names_for
 
             return offered(names_for(words, WITHIN), incomplete)
-        from robolink.launch.arguments import arguments_of
+        from robolink.launch.reading.arguments import arguments_of
 
         names = [each.name for each in arguments_of(find_launch(words[0], workspace=workspace))]
         return [f"{each}:=" for each in offered(names, incomplete)]

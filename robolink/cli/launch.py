@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Annotated, Any, NamedTuple
 
 import typer
 import typer.core
 
 from robolink.cli import complete
-from robolink.cli.launch_words import LaunchFile, launch_file
+from robolink.cli.launch_words import ASSIGN, LaunchFile, launch_file
+from robolink.cli.layout import aligned
 from robolink.cli.options import choice, seconds
 
 FORMATS = ["mermaid", "dot"]
@@ -23,6 +24,10 @@ class LaunchCommand(typer.core.TyperCommand):
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Give a bare `--graph` its value."""
         left: list[str] = super().parse_args(ctx, spelled_out(args))
+        names = [each for each in ctx.params.get("words") or [] if ASSIGN not in each]
+        behind = next((args[index + 1] for index, each in enumerate(args[:-1]) if each == "--graph"), "")
+        if behind in names[1:]:  # the first is the launch file
+            ctx.fail(f"--graph draws {' or '.join(FORMATS)}, not '{behind}'")
         return left
 
 
@@ -117,6 +122,8 @@ def _ask(ctx: typer.Context, words: Sequence[str], options: Options, status: boo
     from robolink.cli import running
 
     what, *rest = words or [""]
+    if rest and (status or options.top):
+        ctx.fail("--status and --top take one NAME, or none")
     if options.top:
         running.top(what, json=options.json)
     elif status:
@@ -130,7 +137,7 @@ def _ask(ctx: typer.Context, words: Sequence[str], options: Options, status: boo
 
 
 def _show_arguments(asked: LaunchFile, as_json: bool) -> None:
-    from robolink.launch.arguments import arguments_of
+    from robolink.launch.reading.arguments import arguments_of
 
     found = arguments_of(asked.path)
     if as_json:
@@ -140,18 +147,20 @@ def _show_arguments(asked: LaunchFile, as_json: bool) -> None:
         return
     if not found:
         typer.echo(f"{asked.path.stem} has no arguments")
-    width = max((len(each.name) for each in found), default=0)
+    rows = []
     for each in found:
         must = "must be given" if each.default is None else f"default: {each.default}"
         choices = f"; one of {', '.join(each.choices)}" if each.choices else ""
         description = f"{each.description} " if each.description else ""
-        typer.echo(f"{each.name:<{width}}  {description}({must}{choices})")
+        rows.append((each.name, f"{description}({must}{choices})"))
+    for line in aligned(rows):
+        typer.echo(line)
 
 
 def _validate(asked: LaunchFile, options: Options) -> int:
     from robolink.exceptions import DocumentError
-    from robolink.launch.entries import read_launch_file
-    from robolink.launch.validate import Report, found, validate
+    from robolink.launch.looking.validate import Report, found, validate
+    from robolink.launch.reading.entries import read_launch_file
 
     try:
         report = validate(read_launch_file(asked.path, asked.given, workspace=options.workspace))
@@ -173,9 +182,9 @@ def _validate(asked: LaunchFile, options: Options) -> int:
 
 
 def _draw(asked: LaunchFile, options: Options, format_: str) -> None:
-    from robolink.launch.entries import read_launch_file
-    from robolink.launch.graph import drawn
-    from robolink.launch.look import looks_of
+    from robolink.launch.looking.graph import drawn
+    from robolink.launch.looking.look import looks_of
+    from robolink.launch.reading.entries import read_launch_file
 
     entries = read_launch_file(asked.path, asked.given, workspace=options.workspace)
     looks = looks_of(entries)
@@ -187,8 +196,10 @@ def _draw(asked: LaunchFile, options: Options, format_: str) -> None:
 
 
 def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
-    from robolink.launch.entries import read_launch_file
+    from robolink.launch.reading.entries import read_launch_file
+    from robolink.supervisor import watch_lifeline
 
+    watch_lifeline()  # a launcher that another one launched ends with it
     if options.in_process and (options.top or options.watch or options.json):
         ctx.fail("--in-process goes without --top, --watch and --json: there are no processes to tell of")
     entries = read_launch_file(asked.path, asked.given, workspace=options.workspace)
@@ -205,13 +216,18 @@ def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
         entries,
         asked.path,
         duration=options.duration,
-        on_event=_print_event if options.json else None,
+        on_event=_event_printer() if options.json else None,
         watches=options.watch,
         shows_figures=options.top,
     )
 
 
-def _print_event(event: Any) -> None:
+def _event_printer() -> Callable[[Any], None]:
+    import sys
+
     import msgspec
 
-    typer.echo(msgspec.json.encode(event))
+    from robolink.supervisor.telling.writer import Writer
+
+    writer = Writer(sys.stdout)
+    return lambda event: writer.write(msgspec.json.encode(event) + b"\n")

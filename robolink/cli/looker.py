@@ -24,7 +24,7 @@ from robolink.exceptions import (
     NameValidationException,
     RobolinkError,
 )
-from robolink.launch.look import End, Job, Look, Request
+from robolink.launch.looking.look import End, Job, Look, Request
 from robolink.timebase import VirtualTime
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.utilities import set_default_context

@@ -24,7 +24,7 @@ from robolink.exceptions import (
 )
 from robolink.lacking import LackingNameError
 from robolink.signals import SignalHandlerOptions, get_current_signal_handlers_options
-from robolink.supervisor.lifeline import watch_lifeline
+from robolink.supervisor.processes.lifeline import watch_lifeline
 from robolink.workspace import (
     VARIABLE,
     NodeLoadError,
@@ -126,13 +126,14 @@ def found(asked: Asked, workspace: str | None) -> tuple[NodeSource, list[str]]:
 
 def show_nodes(workspace: str | None) -> None:
     """Print each node's name, for one of a package with the package's, and what its file says of it."""
+    from robolink.cli.layout import aligned
+
     rows = [(each.name, each) for each in list_nodes(workspace=workspace)]
     shown = {each.path for _, each in rows}
     for package, nodes in list_executables(workspace=workspace).items():
         rows += [(f"{package} {each.name}", each) for each in nodes if each.path not in shown]
-    width = max((len(name) for name, _ in rows), default=0)
-    for name, each in rows:
-        print(f"{name:<{width}}  {_purpose(each)}".rstrip())  # noqa: T201
+    for line in aligned([(name, _purpose(each)) for name, each in rows]):
+        print(line)  # noqa: T201
 
 
 def spin(node_class: Callable[[], Node]) -> None:

@@ -8,13 +8,14 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from robolink.cli.layout import aligned, shown_time
 from robolink.exceptions import NotFoundError, shown
 
 if TYPE_CHECKING:
-    from robolink.supervisor.asking import Launcher
+    from robolink.supervisor.door.asking import Launcher
+    from robolink.supervisor.door.talk import Answer
     from robolink.supervisor.events import Status
-    from robolink.supervisor.resources import Usage
-    from robolink.supervisor.talk import Answer
+    from robolink.supervisor.watching.resources import Usage
 
     Answered: TypeAlias = tuple[Launcher, Answer]
 
@@ -26,7 +27,7 @@ FIRST_LOOK = 0.5
 
 def status(launch: str = "", *, json: bool = False) -> None:
     """Show how the processes of the user's launchers are, or of one: by its launch file's name or its pid."""
-    from robolink.supervisor.asking import LauncherError
+    from robolink.supervisor.door.asking import LauncherError
 
     found: list[tuple[Launcher, Answer | str]] = []
     for launcher in _named(launch):
@@ -44,7 +45,7 @@ def status(launch: str = "", *, json: bool = False) -> None:
 
 def stop(launch: str = "") -> None:
     """Stop a launcher, the only one if none is named, and wait until it has stopped."""
-    from robolink.supervisor.asking import LauncherError
+    from robolink.supervisor.door.asking import LauncherError
 
     launcher = _only(launch)
     if not launcher.stop(STOPPED_WITHIN):
@@ -54,7 +55,7 @@ def stop(launch: str = "") -> None:
 
 def restart(node: str, launch: str = "") -> None:
     """Start a node anew, by the name that stands before its lines; `launch` says in which launcher."""
-    from robolink.supervisor.asking import LauncherError
+    from robolink.supervisor.door.asking import LauncherError
 
     answered = list(_answering(_named(launch)))
     if not answered:
@@ -75,7 +76,7 @@ def top(launch: str = "", *, json: bool = False, every: float = 2.0) -> None:
     On a terminal the table is refreshed in its place, elsewhere one is written below the other; as JSON it is an object
     on a line.
     """
-    launcher = _only(launch)
+    launcher = _only(launch, " by --status --top NAME")
     if json:
         for answer, usage in _measured(launcher, every):
             _say_json(_used(launcher, answer, usage))
@@ -90,7 +91,7 @@ def top(launch: str = "", *, json: bool = False, every: float = 2.0) -> None:
 
 def names_for(words: Sequence[str], within: float) -> list[str]:
     """Give what may come next, for a shell that completes `stop` or `restart`, with what was written behind it."""
-    from robolink.supervisor.asking import LauncherError, running
+    from robolink.supervisor.door.asking import LauncherError, running
 
     verb, *launch = words
     everyone = running()
@@ -104,7 +105,7 @@ def names_for(words: Sequence[str], within: float) -> list[str]:
 
 def _named(launch: str) -> list[Launcher]:
     """Give the launchers that run, or those that a name or pid means. Raises NotFoundError when it means none."""
-    from robolink.supervisor.asking import running
+    from robolink.supervisor.door.asking import running
 
     everyone = running()
     if not launch:
@@ -115,22 +116,22 @@ def _named(launch: str) -> list[Launcher]:
     return found
 
 
-def _only(launch: str) -> Launcher:
-    """Give the launcher that is meant. Raises LauncherError for none or several."""
-    from robolink.supervisor.asking import LauncherError
+def _only(launch: str, how: str = "") -> Launcher:
+    """Give the launcher that is meant. Raises LauncherError for none or several: they are named, and `how` to say."""
+    from robolink.supervisor.door.asking import LauncherError
 
     found = _named(launch)
     if not found:
         raise LauncherError("no launcher is running")
     if len(found) > 1:
-        what = f"are called '{launch}', say by pid which one" if launch else "are running, say which one"
+        what = f"are called '{launch}', say by pid which one" if launch else f"are running, say which one{how}"
         raise LauncherError(f"{len(found)} launchers {what}: {_listed(found)}")
     return found[0]
 
 
 def _answering(found: Sequence[Launcher]) -> Iterator[Answered]:
     """Give what the launchers say. One that says nothing is passed over, unless it is the only one."""
-    from robolink.supervisor.asking import LauncherError, LauncherGoneError
+    from robolink.supervisor.door.asking import LauncherError, LauncherGoneError
 
     for launcher in found:
         try:
@@ -144,7 +145,7 @@ def _answering(found: Sequence[Launcher]) -> Iterator[Answered]:
 
 def _unknown_node(node: str, answered: Sequence[Answered]) -> Exception:
     """Say that nothing is called so; of a node that shares a process, say which one."""
-    from robolink.supervisor.asking import LauncherError
+    from robolink.supervisor.door.asking import LauncherError
 
     asked = node.strip("/")
     for launcher, answer in answered:
@@ -197,8 +198,8 @@ def _last_exit(status: Status) -> str:
 
 def _measured(launcher: Launcher, every: float) -> Iterator[tuple[Answer, Mapping[str, Usage]]]:
     """Measure every so many seconds, until the launcher has ended."""
-    from robolink.supervisor.asking import LauncherGoneError
-    from robolink.supervisor.resources import Meter, measured
+    from robolink.supervisor.door.asking import LauncherGoneError
+    from robolink.supervisor.watching.resources import Meter, measured
 
     meter = Meter()
     try:
@@ -225,7 +226,7 @@ def _show_in_place(launcher: Launcher, every: float) -> None:
 
 def _table(nodes: Sequence[Status], usage: Mapping[str, Usage]) -> list[list[str]]:
     """Give the rows of --top: all together first, since the end of a long table may not be on the screen."""
-    from robolink.supervisor.resources import Usage, shown_cpu, shown_memory
+    from robolink.supervisor.watching.resources import Usage, shown_cpu, shown_memory
 
     cpu, memory = sum(each.cpu or 0.0 for each in usage.values()), sum(each.memory for each in usage.values())
     whole = Usage(cpu, memory, sum(each.processes for each in usage.values()))
@@ -259,29 +260,6 @@ def _used(launcher: Launcher, answer: Answer, usage: Mapping[str, Usage]) -> dic
             }
         )
     return {"at": time.time(), "launch": launcher.name, "pid": launcher.pid, "nodes": nodes}
-
-
-def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Give the lines of a table whose first row is its head."""
-    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    return ["  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
-
-
-def shown_time(seconds: float) -> str:
-    """Write how long something lasts, by its two largest units at most.
-
-    >>> [shown_time(each) for each in (3.2, 75, 7500, 200_000)]
-    ['3 s', '1 min 15 s', '2 h 5 min', '2 d 7 h']
-    """
-    whole = max(0, int(seconds))
-    for (unit, size), (smaller, part) in (
-        (("d", 86400), ("h", 3600)),
-        (("h", 3600), ("min", 60)),
-        (("min", 60), ("s", 1)),
-    ):
-        if whole >= size:
-            return f"{whole // size} {unit} {whole % size // part} {smaller}"
-    return f"{whole} s"
 
 
 def _say(text: str) -> None:

@@ -33,7 +33,7 @@ def run_together() -> int:
 def look_into() -> NoReturn:
     """Tell on standard output of the nodes that standard input names, and end the process."""
     from robolink.cli import looker
-    from robolink.launch.look import read
+    from robolink.launch.looking.look import read
 
     looker.run(read(sys.stdin.buffer.read()))
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import sys
 import time
+from contextlib import nullcontext, redirect_stdout
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
 from robolink.cli import complete
-from robolink.cli.options import LONGEST_WAIT
+from robolink.cli.options import seconds
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 MOST_SEED = 2**32 - 1
 LONG = 2.0
 """Seconds of real time after which a person is shown how far a run is."""
+
+INTERRUPTED = 130
+"""The exit code of what Ctrl-C has ended."""
 
 FAIL_ON = ["contact", "error", "real-time"]
 
@@ -60,10 +64,7 @@ def simulate(
             show_default=False,
         ),
     ],
-    duration: Annotated[
-        float,
-        typer.Option("--duration", metavar="S", help="Simulated seconds.", min=0.0, max=LONGEST_WAIT),
-    ] = 60.0,
+    duration: Annotated[float, seconds("--duration", "Simulated seconds.")] = 60.0,
     seed: Annotated[
         int | None,
         typer.Option(
@@ -106,7 +107,8 @@ def simulate(
 ) -> None:
     """Run a system of nodes in virtual time, as fast as it goes; end with a summary and a hash of all it published.
 
-    The exit code is 1 when a node crashes or ends with an error, other than by a fault.
+    The exit code is 1 when a node crashes or ends with an error, other than by a fault. Ctrl-C ends with the summary so
+    far, and exit code 130.
     """
     asked = Asked(words, duration, settings or [], faults, workspace, fail_on or [])
     if repeat:
@@ -119,7 +121,8 @@ def _once(ctx: typer.Context, asked: Asked, seed: int | None, as_json: bool, ver
     path, entries, faults = _read(ctx, asked)
     from robolink.simulating import failed_by, simulate
 
-    with Progress(asked.duration, "s") as progress:
+    apart = redirect_stdout(sys.stderr) if as_json else nullcontext()  # what nodes print
+    with apart, Progress(asked.duration, "s") as progress:
         result = simulate(
             entries,
             duration=asked.duration,
@@ -134,7 +137,7 @@ def _once(ctx: typer.Context, asked: Asked, seed: int | None, as_json: bool, ver
     else:
         for line in result.lines():
             typer.echo(line)
-    return 1 if result.failures else 0
+    return INTERRUPTED if result.interrupted else 1 if result.failures else 0
 
 
 def _read(ctx: typer.Context, asked: Asked) -> tuple[Path, list[Entry], FaultsDescription | None]:
@@ -183,12 +186,13 @@ def _repeat(ctx: typer.Context, asked: Asked, seeds: range, as_json: bool) -> in
 
     with Progress(len(seeds), "seeds") as progress:
         runs = run_seeds(lambda seed: [*_command(asked, seed), "--json"], seeds, workers=count_cores(), on_done=done)
-    failed = [each for each in runs if each.failures]
+    failed, interrupted = [each for each in runs if each.failures], len(runs) < len(seeds)
     if as_json:
         typer.echo(_summary(runs, asked))
     else:
-        typer.echo(f"{len(runs) - len(failed)} of {len(runs)} seeds passed")
-    return 1 if failed else 0
+        rest = f"; interrupted before the other {len(seeds) - len(runs)}" if interrupted else ""
+        typer.echo(f"{len(runs) - len(failed)} of {len(runs)} seeds passed{rest}")
+    return INTERRUPTED if interrupted else 1 if failed else 0
 
 
 def _told(run: SeedRun, asked: Asked) -> str:
@@ -223,7 +227,7 @@ def _summary(runs: list[SeedRun], asked: Asked) -> str:
 
 def _command(asked: Asked, seed: int) -> list[str]:
     """Give the words behind `robolink` that run this with a seed."""
-    words = ["simulate", *asked.words, "--duration", f"{asked.duration:g}", "--seed", str(seed)]
+    words = ["simulate", *asked.words, "--duration", repr(asked.duration).removesuffix(".0"), "--seed", str(seed)]
     for each in asked.settings:
         words += ["--set", each]
     for flag, value in (("--faults", asked.faults), ("--workspace", asked.workspace)):

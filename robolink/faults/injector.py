@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
-from robolink.exceptions import NotFoundError
+from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.faults.description import ClockFault, Crash, FaultsDescription, MessageFault, Partition
-from robolink.faults.network import FaultyNetwork, Timetable
+from robolink.faults.network import FaultyNetwork, Timetable, spelled
 from robolink.faults.patterns import fits_any, listed
 from robolink.faults.report import FaultReport
 from robolink.faults.transport import FaultyTransport
@@ -17,17 +18,34 @@ from robolink.transport.memory import Bus
 Fault: TypeAlias = "MessageFault | Partition | Crash | ClockFault"
 
 
+class FaultError(RobolinkError, ValueError):
+    """A fault that cannot happen here."""
+
+
 class Programs(Protocol):
     """What runs the programs: `robolink.oneprocess.supervision`."""
 
     def at(self, seconds: float, act: Callable[[], object]) -> object:
         """Call `act()` when the run is so old."""
 
-    def crash(self, name: str, *, is_restarted: bool) -> object:
-        """End a program at once; whether it will be asked to start it again."""
+    def crash(self, name: str, *, is_restarted: bool) -> bool:
+        """End a program at once, which will be asked to start again if it `is_restarted`; whether it ran."""
 
     def restart(self, name: str) -> object:
         """Start a program again."""
+
+
+@dataclass
+class _Strike:
+    """A crash that is planned, and what has come of it."""
+
+    crash: Crash
+    has_come: bool = False
+    has_struck: bool = False
+
+    def __str__(self) -> str:
+        why = "the node did not run then" if self.has_come else "the run ended before"
+        return f"{spelled(self.crash)} did not happen: {why}"
 
 
 class Injector:
@@ -40,19 +58,33 @@ class Injector:
         self.network = FaultyNetwork(bus, time, seed=seed)
         self._programs = programs
         self._clocks: list[ClockFault] = []
+        self._times: dict[str, tuple[list[ClockFault], TimeBase]] = {}
+        self._strikes: list[_Strike] = []
 
     def connect(self, program: str) -> FaultyTransport:
         """Open a program's session."""
         return FaultyTransport(self.network, program)
 
     def clock(self, program: str, time: TimeBase) -> TimeBase:
-        """Give a program's time: the host's, unless its clock is wrong. Several faults of a clock add up."""
+        """Give a program's time: the host's, unless its clock is wrong. Several faults of a clock add up.
+
+        A program that starts anew has the clock that it had, whose drift goes on, unless a fault was added since.
+        Raises `FaultError` for a clock that is so far behind that it would show a time before 0.
+        """
         names = self.network.programs.get(program, {program})
         wrong = [each for each in self._clocks if fits_any(listed(each.node), names)]
-        if not wrong:
-            return time
+        if program in self._times and self._times[program][0] == wrong:
+            return self._times[program][1]
+        self._times[program] = wrong, self._skewed(program, time, wrong) if wrong else time
+        return self._times[program][1]
+
+    def _skewed(self, program: str, time: TimeBase, wrong: Sequence[ClockFault]) -> TimeBase:
         ahead, drift = sum(each.offset for each in wrong), sum(each.drift for each in wrong)
-        return SkewedTime(time, ahead=round(ahead * 1e9), drift=drift)
+        shown = SkewedTime(time, ahead=round(ahead * 1e9), drift=drift)
+        if shown.now() <= 0:
+            behind, now = f"{-ahead:g} s behind", f"{time.now() / 1e9:g} s"
+            raise FaultError(f"the clock of {program} cannot be {behind}: it is {now} now, and no time is before 0")
+        return shown
 
     def introduce(self, program: str, nodes: Iterable[str]) -> None:
         """Say by which nodes' names faults may call a program, before it has any."""
@@ -80,13 +112,20 @@ class Injector:
 
     def _plan(self, crash: Crash) -> None:
         program = self.program_of(crash.node)
+        planned = _Strike(crash)
 
         def strike() -> None:
-            self._programs.crash(program, is_restarted=crash.restart_after is not None)
-            if crash.restart_after is not None:
+            planned.has_come = True
+            planned.has_struck = self._programs.crash(program, is_restarted=crash.restart_after is not None)
+            if planned.has_struck and crash.restart_after is not None:
                 self._programs.at(crash.at + crash.restart_after, lambda: self._programs.restart(program))
 
+        self._strikes.append(planned)
         self._programs.at(crash.at, strike)
+
+    def unmet(self) -> list[str]:
+        """Say of each fault that has done nothing so far why that may be."""
+        return [*self.network.unmet(), *(str(each) for each in self._strikes if not each.has_struck)]
 
     def program_of(self, node: str) -> str:
         """Give the program in which a node runs. Raises `NotFoundError` with the nearest name."""

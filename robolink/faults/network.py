@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import msgspec
 
 from robolink.exceptions import nearest
-from robolink.faults.description import MessageFault, Partition
+from robolink.faults.description import Crash, MessageFault, Partition
 from robolink.faults.fate import Strand, Way, Window, window
 from robolink.faults.patterns import fits_any, is_pattern, listed, matcher
 from robolink.faults.report import FaultReport
@@ -194,19 +194,24 @@ class FaultyNetwork:
 
     def unmet(self) -> list[str]:
         """Say of each fault that has met nothing so far why that may be."""
-        return [
-            f"{each.report.fault} met nothing{self._cause(each.fault)}" for each in self._rules if not each.report.met
-        ]
+        added: list[_Rule | _Cut] = [*self._rules, *self._cuts]
+        return [f"{each.report.fault} met nothing: {self._cause(each)}" for each in added if not each.report.met]
 
-    def _cause(self, fault: MessageFault) -> str:
+    def _cause(self, unmet: _Rule | _Cut) -> str:
+        wrong = self._wrong_name(unmet.fault) if isinstance(unmet, _Rule) else None
+        if wrong is None and unmet.when[0] > self.time.steady():
+            return "the run ended before"
+        return wrong or "nothing went that way (what stays within a process never travels)"
+
+    def _wrong_name(self, fault: MessageFault) -> str | None:
         for wanted, of_service in ((fault.topic, False), (fault.service, True)):
             known = [each.text for each in self._names if each.of_service is of_service]
             for each in listed(wanted):
                 if not any(map(matcher((each,)), known)):
                     kind = "service" if of_service else "topic"
                     near = "" if is_pattern(each) else nearest("/" + each.lstrip("/"), known)
-                    return f": no {kind} '{each}' was received by any node{near}"
-        return ": nothing went that way (what stays within a process never travels)"
+                    return f"no {kind} '{each}' was received by any node{near}"
+        return None
 
 
 def _identity(fault: MessageFault) -> str:
@@ -214,7 +219,7 @@ def _identity(fault: MessageFault) -> str:
     return "|".join(" ".join(listed(each)) for each in (fault.topic, fault.service, fault.from_, fault.to))
 
 
-def spelled(fault: MessageFault | Partition) -> str:
+def spelled(fault: MessageFault | Partition | Crash) -> str:
     """Give a fault as its file would spell it, without what is as it usually is."""
     plain = msgspec.to_builtins(fault)
     usual = {each.encode_name: each.default for each in msgspec.structs.fields(fault)}

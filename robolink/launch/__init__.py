@@ -1,7 +1,7 @@
-"""Start the systems that launch files describe: `entries` reads them, `command` turns their nodes into processes.
+"""Start the systems that launch files describe: `reading` gives their nodes, `planning` the processes for these.
 
-`validate` and `graph` only look at them. Names are imported when they are first used: a node's process wants none of
-a launcher's.
+`command` runs them; `looking` tells what they are made of. Names are imported when they are first used: a node's
+process wants none of a launcher's.
 """
 
 from typing import TYPE_CHECKING
@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 from robolink.lacking import lazily
 
 if TYPE_CHECKING:
-    from robolink.launch.command import Launched, launch, plan, processes
-    from robolink.launch.description import LaunchDescription, NodeDescription
-    from robolink.launch.entries import read_launch_file
-    from robolink.launch.entry import Entry
+    from robolink.launch.command import launch
+    from robolink.launch.planning import Launched, plan, processes
+    from robolink.launch.reading.description import LaunchDescription, NodeDescription
+    from robolink.launch.reading.entries import read_launch_file
+    from robolink.launch.reading.entry import Entry
 
 __all__ = [
     "Entry",
@@ -26,14 +27,14 @@ __all__ = [
 ]
 
 _HOMES = {
-    "Entry": "entry",
-    "LaunchDescription": "description",
-    "Launched": "command",
-    "NodeDescription": "description",
+    "Entry": "reading.entry",
+    "LaunchDescription": "reading.description",
+    "Launched": "planning",
+    "NodeDescription": "reading.description",
     "launch": "command",
-    "plan": "command",
-    "processes": "command",
-    "read_launch_file": "entries",
+    "plan": "planning",
+    "processes": "planning",
+    "read_launch_file": "reading.entries",
 }
 
 __getattr__, __dir__ = lazily(__name__, _HOMES, ())

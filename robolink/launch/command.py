@@ -1,53 +1,22 @@
-"""Turn the nodes and commands of a launch file into processes, and run them as one system."""
+"""Run the nodes and commands of a launch file as one system: `robolink launch`."""
 
 from __future__ import annotations
 
 import contextlib
 import os
-import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from graphlib import CycleError, TopologicalSorter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robolink.exceptions import DocumentError, RobolinkError
-from robolink.launch.description import Respawn
-from robolink.launch.entries import read_launch_file
-from robolink.launch.entry import Entry
-from robolink.launch.readiness import Awaited, awaited, waiting
-from robolink.launch.together import COMMAND, Member, written
+from robolink.launch.planning import Launched, as_process, core_errors, processes
+from robolink.launch.readiness import waiting
+from robolink.launch.reading.entry import Entry
 from robolink.supervisor import Process, RunLogs, Supervisor
-from robolink.supervisor.rules import Restarts, Rules
-from robolink.workspace import VARIABLE, Folder, own_process_needed
-from robolink.yamlfile import spell
 
 if TYPE_CHECKING:
     from robolink.supervisor.events import Event
-    from robolink.supervisor.watch import Watch
-
-PYTHON = (sys.executable, "-m", "robolink")
-
-SHARED = ("respawn", "on_exit", "env", "cpu")
-"""What a process has once, however many nodes run in it."""
-
-
-@dataclass(frozen=True)
-class Launched:
-    """A process of a system: the nodes that run in it, or the command that it is."""
-
-    name: str
-    entries: tuple[Entry, ...]
-    members: tuple[Member, ...]
-    command: tuple[str, ...]
-    """The command and its arguments; empty where there are members."""
-    env: Mapping[str, str]
-    """What is added to the environment."""
-    rules: Rules
-    held_by: tuple[Awaited, ...]
-    """What must be there before it is started."""
-    interactive: bool
-    cpu: tuple[int, ...]
+    from robolink.supervisor.watching.watch import Watch
 
 
 def launch(
@@ -65,7 +34,7 @@ def launch(
     else to the terminal. With `watches`, nodes are started again when their files are saved, and no end of one is the
     system's. Raises `DocumentError`, before anything is started, for nodes that cannot run as they shall.
     """
-    from robolink.supervisor.control import Control
+    from robolink.supervisor.door.control import Control
 
     launched = processes(entries)
     for error in core_errors(entries):
@@ -75,187 +44,29 @@ def launch(
     with contextlib.ExitStack() as stack:
         output = None if on_event is None else stack.enter_context(Path(os.devnull).open("w"))
         supervisor = Supervisor(_to_run(launched, watches), output=output, logs=RunLogs(path.stem), on_event=on_event)
-        stack.enter_context(supervisor.hears_signals())
-        stack.enter_context(Control(supervisor, name=path.stem, file=str(path.resolve()), members=members))
+        beside: list[contextlib.AbstractContextManager[object]] = [
+            Control(supervisor, name=path.stem, file=str(path.resolve()), members=members)
+        ]
         if watches:
-            stack.enter_context(_watch(launched, path, supervisor))
+            beside.append(_watch(launched, path, supervisor))
         if shows_figures:
-            from robolink.supervisor.resources import Figures
+            from robolink.supervisor.watching.resources import Figures
 
-            stack.enter_context(Figures(supervisor.status, say=supervisor.say))
-        stack.enter_context(waiting(held, supervisor.release, supervisor.say))
-        return supervisor.run(duration)
+            beside.append(Figures(supervisor.status, say=supervisor.say))
+        return supervisor.run(duration, [*beside, waiting(held, supervisor.release, supervisor.say)])
 
 
 def _to_run(launched: Iterable[Launched], watches: bool) -> list[Process]:
     """Give the processes; when files are watched, a crash is what is just being mended: it must not end the system."""
     found = [as_process(each) for each in launched]
-    return [replace(each, rules=replace(each.rules, on_exit="ignore")) for each in found] if watches else found
+    mended = (replace(each, rules=replace(each.rules, on_exit="ignore", awaits=frozenset())) for each in found)
+    return list(mended) if watches else found
 
 
 def _watch(launched: Sequence[Launched], path: Path, supervisor: Supervisor) -> Watch:
     """Have processes started again when the files of their nodes are saved."""
     from robolink.launch.watching import files_of, roots_of, settings_of
-    from robolink.supervisor.watch import Watch
+    from robolink.supervisor.watching.watch import Watch
 
     roots, settings = roots_of(launched), [path.resolve(), *settings_of(launched)]
     return Watch(files_of(launched), roots=roots, settings=settings, restart=supervisor.restart, say=supervisor.say)
-
-
-def core_errors(entries: Iterable[Entry]) -> Iterator[DocumentError]:
-    """Give an error for each node that is kept on a core that this computer has not."""
-    from robolink.supervisor.affinity import CoreError, check_cores
-
-    for each in entries:
-        try:
-            if each.node.cpu:
-                check_cores(each.node.cpu)
-        except CoreError as error:
-            yield each.error(["cpu"], str(error))
-
-
-def plan(
-    path: Path, given: Mapping[str, str] | None = None, *, workspace: Folder = None, text: str | None = None
-) -> list[Process]:
-    """Give the processes that a launch file (or `text` in its place) stands for, as the supervisor takes them."""
-    entries = read_launch_file(path, given or {}, workspace=workspace, text=text)
-    return [as_process(each) for each in processes(entries)]
-
-
-def processes(entries: Iterable[Entry]) -> list[Launched]:
-    """Give the processes that nodes and commands run in, in the order of the file.
-
-    Raises `DocumentError` where nodes cannot share a process, or wait for each other.
-    """
-    everything = list(entries)
-    groups: dict[str, list[Entry]] = {}
-    for each in everything:
-        groups.setdefault(process_of(each), []).append(each)
-    for group in groups.values():
-        _check_group(group)
-    _check_circles(everything)
-    return [_launched(name, group, everything) for name, group in groups.items()]
-
-
-def process_of(entry: Entry) -> str:
-    """Give the name of the process that a node runs in."""
-    return entry.node.process or entry.name
-
-
-def as_process(launched: Launched) -> Process:
-    """Give what the supervisor runs: a command is itself, a node is run by robolink."""
-    argv, stdin = list(launched.command), b""
-    if len(launched.members) == 1 and not launched.entries[0].node.process:
-        [member] = launched.members
-        argv = [*PYTHON, "run", member.node, "--", *member.args]
-    elif launched.members:
-        argv, stdin = [*PYTHON, COMMAND], written(launched.members)
-    return Process(
-        launched.name,
-        argv,
-        env=launched.env,
-        interactive=launched.interactive,
-        input=stdin,
-        rules=launched.rules,
-        cpu=launched.cpu,
-        holds_interrupts=bool(launched.members),
-    )
-
-
-def arguments(entry: Entry) -> Iterator[str]:
-    """Give the arguments of a node's program: its own, then those for ROS."""
-    node = entry.node
-    yield from node.args
-    yield "--ros-args"
-    if node.name:
-        yield from ("-r", f"__node:={node.name}")
-    if node.namespace:
-        yield from ("-r", f"__ns:={node.namespace}")
-    for name, value in node.parameters.items():
-        yield from ("-p", f"{name}:={spell(value)}")
-    for match, replacement in node.remappings.items():
-        yield from ("-r", f"{match}:={replacement}")
-    if node.log_level:
-        yield from ("--log-level", node.log_level)
-
-
-def environment(entry: Entry) -> dict[str, str]:
-    """Give what is added to a node's environment: its workspace, and what the file says."""
-    home = {} if entry.home is None else {VARIABLE: str(entry.home)}
-    return {**home, **entry.node.env}
-
-
-def _launched(name: str, group: list[Entry], everything: list[Entry]) -> Launched:
-    first = group[0].node
-    held_by = dict.fromkeys(each for entry in group for each in awaited(entry, everything))
-    return Launched(
-        name,
-        tuple(group),
-        tuple(Member(each.name, each.source.spec, list(arguments(each))) for each in group if each.source is not None),
-        (*first.run, *first.args) if group[0].source is None else (),
-        environment(group[0]),
-        Rules(_restarts(first.respawn), first.on_exit, bool(held_by)),
-        tuple(held_by),
-        first.interactive,
-        first.cpu,
-    )
-
-
-def _restarts(respawn: Respawn) -> Restarts:
-    return Restarts(respawn.when, respawn.delay, respawn.delay_max, respawn.most, respawn.within)
-
-
-def _check_group(group: list[Entry]) -> None:
-    """Refuse a process that is called as a node is which has its own, and nodes that cannot share one."""
-    sharing = [each for each in group if each.node.process]
-    if sharing and len(sharing) < len(group):
-        reason = f"'{process_of(sharing[0])}' is what a node is called that has its own process: give another name"
-        raise sharing[0].error(["process"], reason)
-    for each in sharing:
-        _check_can_share(each)
-        _check_agrees(each, sharing[0])
-
-
-def _check_can_share(entry: Entry) -> None:
-    if entry.source is None:
-        raise entry.error(["process"], "a command is a process of its own: leave `process` out")
-    try:
-        reason = own_process_needed(entry.source)
-    except RobolinkError as error:
-        reason = str(error)
-    if reason:
-        raise entry.error(["node"], reason)
-
-
-def _check_agrees(entry: Entry, first: Entry) -> None:
-    for key in SHARED:
-        if getattr(entry.node, key) != getattr(first.node, key):
-            reason = f"'{first.name}' runs in the same process, and has another `{key}`: a process has only one"
-            raise entry.error([key], reason)
-    if entry.home != first.home:
-        reason = f"'{first.name}' runs in the same process, and is of another workspace: leave `process` out"
-        raise entry.error(["node"], reason)
-
-
-def _check_circles(entries: Sequence[Entry]) -> None:
-    """Refuse processes that wait for each other's nodes: none would ever start."""
-    waits: dict[str, dict[str, Entry]] = {}
-    process_by_node = {each.full_name: process_of(each) for each in entries}
-    for each in entries:
-        names = (target.node for target in each.node.start_after if target.node in process_by_node)
-        waits.setdefault(process_of(each), {}).update({process_by_node[name]: each for name in names})
-    try:
-        TopologicalSorter(waits).prepare()
-    except CycleError as error:
-        raise _circle_error(error.args[1][::-1], waits) from None
-
-
-def _circle_error(circle: list[str], waits: Mapping[str, Mapping[str, Entry]]) -> DocumentError:
-    """Make the error about processes each of which waits for the next one; the last is the first again."""
-    first = min(circle, key=list(waits).index)
-    at = circle.index(first)
-    circle = [*circle[at:], *circle[1 : at + 1]]
-    entry = waits[first][circle[1]]
-    if len(circle) == 2:
-        return entry.error(["start_after"], "it would wait for itself, or for a node of its own process")
-    return entry.error(["start_after"], f"nothing of it would ever start: {' waits for '.join(circle)}")

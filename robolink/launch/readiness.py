@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from robolink.exceptions import RobolinkError, WireError
-from robolink.launch.entry import Entry
+from robolink.launch.reading.entry import Entry
 from robolink.remapping import RemapKind, parse_remap_rule, remap_name
 
 if TYPE_CHECKING:
@@ -70,14 +70,16 @@ def _names_of(full_name: str, entries: Sequence[Entry]) -> tuple[str, ...]:
 
 
 def names_in(source: NodeSource) -> list[str]:
-    """Give the names that the code of a node gives to nodes, as far as they stand there."""
+    """Give the names that the code of a node gives to nodes, as far as they stand in its class, or else its file."""
     import ast
 
     try:
-        tree = ast.parse(source.path.read_bytes() if source.path is not None else b"")
+        tree: ast.AST = ast.parse(source.path.read_bytes() if source.path is not None else b"")
     except (OSError, SyntaxError, ValueError):
         return []
-    return [name for each in ast.walk(tree) if isinstance(each, ast.Call) and (name := _node_name(each))]
+    classes = (each for each in ast.iter_child_nodes(tree) if isinstance(each, ast.ClassDef))
+    its_own = next((each for each in classes if each.name == source.attribute), tree)
+    return [name for each in ast.walk(its_own) if isinstance(each, ast.Call) and (name := _node_name(each))]
 
 
 def _node_name(call: ast.Call) -> str:
@@ -89,6 +91,63 @@ def _node_name(call: ast.Call) -> str:
     named = next((each.value for each in call.keywords if each.arg == "node_name"), first)
     makes_one = called in ("__init__", "create_node") or called.endswith("Node")
     return named.value if makes_one and isinstance(named, ast.Constant) and isinstance(named.value, str) else ""
+
+
+class Readiness:
+    """Keeps account of what is announced of that which processes wait for; from any thread.
+
+    `held` says what each waits for, by its name. To be told of every node and end of the network, as
+    `Transport.watch` does; what has gone again is not there.
+    """
+
+    def __init__(self, held: Mapping[str, Sequence[Awaited]]) -> None:
+        self._held = {name: all_of_one for name, all_of_one in held.items() if all_of_one}
+        self._lock = threading.Lock()
+        self._wanted = {(each.kind, name) for all_of_one in held.values() for each in all_of_one for name in each.names}
+        self._there: Counter[tuple[str, str]] = Counter()
+
+    @property
+    def held(self) -> list[str]:
+        """The names of the processes that still wait."""
+        return list(self._held)
+
+    def knows(self, text: str) -> bool:
+        """Whether somebody waits for what a token announces."""
+        return _key(text) in self._wanted
+
+    def heard(self, text: str, alive: bool) -> list[str]:
+        """Hear of a token that came or went; give the processes for which all is there now, each once."""
+        key = _key(text)
+        if key not in self._wanted:
+            return []
+        with self._lock:
+            self._there[key] += 1 if alive else -1
+            ready = [name for name, all_of_one in self._held.items() if all(map(self._is_there, all_of_one))]
+            for name in ready:
+                del self._held[name]
+        return ready
+
+    def missing(self) -> dict[str, list[Awaited]]:
+        """Give what each process still waits for."""
+        with self._lock:
+            return {name: [each for each in held if not self._is_there(each)] for name, held in self._held.items()}
+
+    def _is_there(self, each: Awaited) -> bool:
+        return any(self._there[each.kind, name] > 0 for name in each.names)
+
+
+def _key(text: str) -> tuple[str, str]:
+    """Give what a token says that is there: its kind and full name; empty ones for what nobody can wait for."""
+    from robolink.wire import EndpointKind, NodeToken, parse_token
+
+    try:
+        token = parse_token(text)
+    except WireError:
+        return "", ""
+    if isinstance(token, NodeToken):
+        return "node", token.full_node_name
+    kinds = {EndpointKind.PUBLISHER: "topic", EndpointKind.SERVICE: "service"}
+    return kinds.get(token.kind, ""), token.name
 
 
 @contextlib.contextmanager
@@ -118,15 +177,12 @@ def waiting(
 
 
 class _Watch:
-    """Keeps account of what is announced of that which is waited for."""
+    """Looks at the network as long as something is held."""
 
     def __init__(self, held: Mapping[str, Sequence[Awaited]], release: Callable[[str], object]) -> None:
         self.over = threading.Event()
-        self._held = dict(held)
+        self._readiness = Readiness(held)
         self._release = release
-        self._lock = threading.Lock()
-        self._wanted = {(each.kind, name) for all_of_one in held.values() for each in all_of_one for name in each.names}
-        self._there: Counter[tuple[str, str]] = Counter()
 
     def run(self, say: Callable[[str], object], patience: float) -> None:
         """Watch until nothing is held, or it is over."""
@@ -138,52 +194,21 @@ class _Watch:
             domain = domain_id(os.environ)
             session = connect(os.environ.get("ROBOLINK_TRANSPORT") or "zenoh", domain)
         except (RobolinkError, ValueError) as error:
-            say(f"cannot look for what {', '.join(self._held)} waits for: {error}")
+            say(f"cannot look for what {', '.join(self._readiness.held)} waits for: {error}")
             return
         try:
-            session.watch(graph_pattern(domain), self.hear)
+            session.watch(graph_pattern(domain), self._hear)
             if not self.over.wait(patience):
-                self._tell(say)
+                for name, held in self._readiness.missing().items():
+                    say(f"{name} waits for {' and '.join(map(str, held))}")
                 self.over.wait()
         finally:
             session.close()
 
-    def hear(self, text: str, alive: bool) -> bool:
+    def _hear(self, text: str, alive: bool) -> bool:
         """Hear of a token that came or went; False for one that nobody waits for."""
-        key = _key(text)
-        if key not in self._wanted:
-            return False
-        with self._lock:
-            self._there[key] += 1 if alive else -1
-            ready = [name for name, all_of_one in self._held.items() if all(map(self._is_there, all_of_one))]
-            for name in ready:
-                del self._held[name]
-            is_over = not self._held
-        for name in ready:
+        for name in self._readiness.heard(text, alive):
             self._release(name)
-        if is_over:
+        if not self._readiness.held:
             self.over.set()
-        return True
-
-    def _is_there(self, each: Awaited) -> bool:
-        return any(self._there[each.kind, name] > 0 for name in each.names)
-
-    def _tell(self, say: Callable[[str], object]) -> None:
-        with self._lock:
-            missing = {name: [each for each in held if not self._is_there(each)] for name, held in self._held.items()}
-        for name, held in missing.items():
-            say(f"{name} waits for {' and '.join(map(str, held))}")
-
-
-def _key(text: str) -> tuple[str, str]:
-    """Give what a token says that is there: its kind and full name; empty ones for what nobody can wait for."""
-    from robolink.wire import EndpointKind, NodeToken, parse_token
-
-    try:
-        token = parse_token(text)
-    except WireError:
-        return "", ""
-    if isinstance(token, NodeToken):
-        return "node", token.full_node_name
-    kinds = {EndpointKind.PUBLISHER: "topic", EndpointKind.SERVICE: "service"}
-    return kinds.get(token.kind, ""), token.name
+        return self._readiness.knows(text)

@@ -125,7 +125,7 @@ class WriterSource:
             self.out.add(f"{name} = {converted}({path})")
             self._flush()
             self._align(size, "", known_to=1)
-            self._chunk(name, f"{size * kind.size}")
+            self._chunk(name, size * kind.size)
             return
         self.out.add(f"{name} = {stored}({path})")
         self.out.add(f"if type({name}) is not array or {name}.typecode != {field.code!r}: {name} = {converted}({path})")
@@ -167,9 +167,11 @@ class WriterSource:
             self.out.add(f"o = {self.phase}")
             self.phase = None
 
-    def _chunk(self, value: str, length: str) -> None:
+    def _chunk(self, value: str, length: str | int) -> None:
         self._part(value)
-        if self.phase is not None:
+        if self.phase is not None and isinstance(length, int):
+            self.phase = (self.phase + length) % 8
+        elif self.phase is not None:
             self.out.add(f"o = {self.phase} + {length} & 7")
             self.phase = None
         else:
@@ -195,10 +197,16 @@ class WriterSource:
             packer = padded(codes, self.phase, "<")
             self._part(f"{self.out.constant('S', packer.pack)}({values})")
             self.phase = (self.phase + packer.size) % 8
-        else:
-            table = self.out.constant("T", tuple((each.pack, each.size) for each in phases(codes, "<")))
-            self.out.add(f"pack, n = {table}[o]; o = o + n & 7")
-            self._part(f"pack({values})")
+            return
+        packers = phases(codes, "<")
+        ends = {(at + packer.size) % 8 for at, packer in enumerate(packers)}
+        if len(ends) == 1:  # behind eight bytes that are aligned, wherever they began
+            self._part(f"{self.out.constant('T', tuple(each.pack for each in packers))}[o]({values})")
+            self.phase = ends.pop()
+            return
+        table = self.out.constant("T", tuple((each.pack, each.size) for each in packers))
+        self.out.add(f"pack, n = {table}[o]; o = o + n & 7")
+        self._part(f"pack({values})")
 
 
 def _has_loops(cls: type[Message]) -> bool:

@@ -67,7 +67,7 @@ class Host:
         self._environments: dict[tuple[tuple[str, str], ...], dict[str, str]] = {}
         self._random = random.getstate()
         self._stamps = output.now
-        self._is_closed = False
+        self._is_closing = self._is_closed = False
         self.real_time_use: list[RealTimeUse] = []
         """What programs did by real time, each thing once: program, what, and where in its code."""
         real_time_use.install()
@@ -114,15 +114,16 @@ class Host:
         namespace: str = "",
         parameters: Mapping[str, Any] | None = None,
         remappings: Mapping[str, str] | None = None,
+        args: Sequence[str] = (),
         called: str = "",
     ) -> Any:
         """Start a program of one Node class, `called` so, or as the node or its class is; give the node.
 
-        Raises what the class raises, and then there is no such program; HostError when the node is still not made
-        after a minute, because it waits.
+        `args` are words of its command line, before those that robolink reads. Raises what the class raises, and then
+        there is no such program; HostError when the node is still not made after a minute, because it waits.
         """
         own = name or getattr(node_class, "__name__", "node")
-        argv = [own, "--ros-args", *_names(name, namespace)]
+        argv = [own, *args, "--ros-args", *_names(name, namespace)]
         for key, value in (parameters or {}).items():
             argv += ["-p", f"{key}:={spell(value)}"]
         for match, replacement in (remappings or {}).items():
@@ -144,12 +145,17 @@ class Host:
         return next(each for each in names if each not in self.programs)
 
     def _start(self, name: str, parts: Sequence[Part], env: Mapping[str, str]) -> Program:
+        self._check_open()
         before = self.programs.get(name)
         if before is not None and not before.is_over:
             raise HostError(f"{name} runs already")
         program = self.programs[name] = Program(self, name, parts, env, self._clock(name, self.time))
         self._begin_program(program)
         return program
+
+    def _check_open(self) -> None:
+        if self._is_closed:
+            raise HostError("this host is closed: nothing runs in it any more")
 
     def _begin_program(self, program: Program) -> None:
         program.prepare()
@@ -164,7 +170,8 @@ class Host:
     # Time
 
     def run(self, seconds: float) -> None:
-        """Let so many seconds pass."""
+        """Let so many seconds pass. Raises HostError for a host that is closed, as all that lets time pass does."""
+        self._check_open()
         if self.turns is not None:
             self.time.sleep(round(seconds * 1e9))
         else:
@@ -172,6 +179,7 @@ class Host:
 
     def run_until(self, condition: Callable[[], bool], within: float) -> bool:
         """Let time pass until `condition()`, which is asked after each callback; whether it came true in `within` s."""
+        self._check_open()
         return self.pace.run_until(condition, self.time.steady() + round(within * 1e9))
 
     def at(self, seconds: float, act: Callable[[], object]) -> None:
@@ -203,7 +211,9 @@ class Host:
 
     def restart(self, name: str) -> Program:
         """Start a program anew, once more with a session and arguments of its own; stop it first if it runs."""
+        self._check_open()
         program = self.stop(name)
+        program.time = self._clock(name, self.time)
         self._begin_program(program)
         return program
 
@@ -219,13 +229,14 @@ class Host:
 
     def close(self) -> None:
         """End all programs in order, and all threads of the host."""
-        if self._is_closed:
+        if self._is_closing:
             return
-        self._is_closed = True
+        self._is_closing = True
         try:
             for name in reversed(list(self.programs)):
                 self.stop(name)
         finally:
+            self._is_closed = True
             self.pace.close()
             real_time_use.uninstall()
             logging.set_time_source(self._stamps)

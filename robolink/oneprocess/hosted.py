@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any
 
@@ -37,7 +38,6 @@ class HostedContext(Context):
             self.program.argv if args is None else args, initialize_logging=initialize_logging, domain_id=domain_id
         )
         self._wanted = self.program.host.connect(self.program.name)
-        self.program.on_read()
 
     def _configure_logging(self) -> None:
         """Set the levels of loggers by name; the root's is that of this program's nodes, as they come."""
@@ -53,8 +53,19 @@ class HostedContext(Context):
             if not name and not get_logger_level(logger):
                 set_logger_level(logger, level)
 
+    def wait_until(self, is_there: Callable[[], bool], timeout_sec: float | None) -> bool:
+        """See `Context.wait_until`; who waits has read what there was to read at the start."""
+        self.program.on_read()
+        if timeout_sec is None or timeout_sec > 0:
+            return super().wait_until(is_there, timeout_sec)
+        if not is_there():
+            self.time.pass_on()
+        return is_there()
+
     def make_inbox(self, *, parked: bool = False) -> Inbox:
-        """Make what an executor of this context waits at."""
+        """Make what an executor of this context waits at; an executor comes when a script's nodes are made."""
+        if not parked and self.program.is_script:
+            self.program.on_read()
         turns = self.program.host.turns
         if turns is None:
             return Inbox()

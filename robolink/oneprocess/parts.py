@@ -5,7 +5,7 @@ from __future__ import annotations
 import _thread
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, Protocol
 
 from robolink.defaults import Defaults, use_defaults
@@ -99,6 +99,43 @@ class Runner:
             use_defaults(defaults)
         if shows and self.turns.surroundings.shown is not program:
             self.turns.surroundings.show(program)
+
+
+class Runners:
+    """The threads that take turns, but for whoever runs the host; and which of them the calling one is."""
+
+    def __init__(self) -> None:
+        self._all: list[Runner] = []
+        self._here = threading.local()
+
+    def __iter__(self) -> Iterator[Runner]:
+        return iter(self._all)
+
+    def add(self, runner: Runner) -> None:
+        """Have a thread take turns."""
+        self._all.append(runner)
+
+    def remove(self, runner: Runner) -> None:
+        """Have a thread take turns no more."""
+        self._all.remove(runner)
+
+    def belong(self, runner: Runner) -> None:
+        """Know the calling thread by this runner."""
+        self._here.runner = runner
+
+    def here(self) -> Runner | None:
+        """Give the calling thread, if it is known."""
+        found: Runner | None = getattr(self._here, "runner", None)
+        return found
+
+    def is_hosts(self) -> bool:
+        """Whether the calling thread is one of the host's, each of which is a program's main one in turn."""
+        runner = self.here()
+        return runner is not None and runner.is_host
+
+    def waiting(self, program: Program) -> list[Runner]:
+        """Give the threads in which code of a program waits."""
+        return [each for each in self._all if each.program is program and each.wait is not None]
 
 
 class HostedInbox(Inbox):

@@ -13,10 +13,17 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from robolink.arguments import parse_arguments
 from robolink.defaults import Defaults
-from robolink.exceptions import ExternalShutdownException, InterruptedByUser, RobolinkError, ROSInterruptException
+from robolink.exceptions import (
+    ExternalShutdownException,
+    InterruptedByUser,
+    NotInitializedException,
+    RobolinkError,
+    ROSInterruptException,
+)
 from robolink.executors import SingleThreadedExecutor
 from robolink.lacking import LackingNameError
 from robolink.logging import get_logger, set_logger_level
+from robolink.oneprocess.chance import stream
 from robolink.oneprocess.executor import HostedExecutor
 from robolink.oneprocess.hosted import HostedContext
 from robolink.oneprocess.loading import load
@@ -66,6 +73,7 @@ class Program:
     def __init__(self, host: Host, name: str, parts: Sequence[Part], env: Mapping[str, str], time: TimeBase) -> None:
         home = parts[0].home
         self.host, self.name, self.parts, self.time = host, name, parts, time
+        self.chance = stream(host.seed, name)
         self.env = host.shared({**({} if home is None else {VARIABLE: str(home)}), **env})
         self.main_module: ModuleType | None = None
         """What is ``__main__`` for a script."""
@@ -87,7 +95,7 @@ class Program:
         """Set once it was asked to end; for what sleeps in real time."""
         self.handlers: dict[int, Any] = {}
         """What it has given to `signal.signal`."""
-        self._is_script = self._is_ending = False
+        self.is_script = self._is_ending = False
         self.has_begun = False
         """Whether its nodes are made, or its script is over."""
 
@@ -111,7 +119,7 @@ class Program:
         """Be as before the first start."""
         self.state, self.error, self.returncode = "waiting", None, None
         self._made, self.contexts, self.executor = [], [], None
-        self._is_script = self._is_ending = False
+        self.is_script = self._is_ending = False
         self.handlers = {}
         self.interrupted = threading.Event()
         self.has_waited = self.has_begun = False
@@ -121,7 +129,7 @@ class Program:
         self.defaults.time = self.time
         turns = self.host.turns
         if turns is not None:
-            self.defaults.in_main_thread = turns.is_hosts
+            self.defaults.in_main_thread = turns.runners.is_hosts
 
     def begin(self) -> None:
         """Make its nodes, or run its script; called as its code is."""
@@ -171,7 +179,7 @@ class Program:
 
     def _run_script(self, script: Callable[[], Any]) -> None:
         check_needs_nothing(script)
-        self._is_script = True
+        self.is_script = True
         sys.exit(script())
 
     # The end
@@ -192,7 +200,7 @@ class Program:
 
     def _outcome(self, error: BaseException | None) -> int:
         """Give the exit code that Python, or `robolink run`, would give; tell of an error that nobody has told of."""
-        is_script = self._is_script
+        is_script = self.is_script
         if error is None:
             return 0
         if isinstance(error, SystemExit):
@@ -200,18 +208,22 @@ class Program:
                 return error.code or 0
             get_logger(self.name).error(str(error.code))
             return 1
-        if isinstance(error, _ENDS):
+        if isinstance(error, _ENDS) or (isinstance(error, NotInitializedException) and self._was_interrupted()):
             return INTERRUPTED if is_script else 0
         self.error = error
         if not getattr(error, "__robolink_logged__", False):
             get_logger("robolink").error(self._told(error))
         return 1
 
+    def _was_interrupted(self) -> bool:
+        """Whether it was asked to end, in whose midst it may have been making a node."""
+        return any(each.interrupted for each in self.contexts)
+
     def _told(self, error: BaseException) -> str:
         """Say what went wrong: what is robolink's in a line, what is the program's with its traceback."""
         if isinstance(error, RobolinkError) and not isinstance(error, LackingNameError):
             return f"{self.name}: {error}"
-        what = "raised" if self.has_begun or self._is_script else "raised while it was made"
+        what = "raised" if self.has_begun or self.is_script else "raised while it was made"
         text = "".join(traceback.format_exception(type(error), error, _of_the_user(error)))
         return f"{self.name} {what}:\n{text.rstrip()}"
 

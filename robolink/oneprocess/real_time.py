@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import heapq
 import itertools
 import os
@@ -10,12 +9,15 @@ import queue
 import sys
 import threading
 import time
+import weakref
 from collections.abc import Callable
+from concurrent.futures import thread as pools
 from typing import TYPE_CHECKING
 
 from robolink.defaults import use_defaults
 from robolink.oneprocess.parts import Killed
 from robolink.oneprocess.surroundings import set_environment
+from robolink.oneprocess.threads import end_thread
 from robolink.queues import get_within
 from robolink.timebase import SystemTime
 
@@ -24,6 +26,9 @@ if TYPE_CHECKING:
 
 LOOK_UP = 0.1
 """Seconds after which a wait ends by itself: on Windows Ctrl-C does not end one."""
+
+LAST_WAIT = 1.0
+"""Seconds that threads have to end once their programs have."""
 
 START_PATIENCE = 1.0
 """Seconds that a program has to read its command line, before the next one gets its own."""
@@ -40,6 +45,8 @@ class RealPace:
         self._heap: list[tuple[int, int, Callable[[], object]]] = []
         self._serial = itertools.count()
         self._threads: dict[Program, threading.Thread] = {}
+        self.threads: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
+        """What programs have started."""
         self._starting = threading.Lock()
 
     def begin(self, program: Program) -> None:
@@ -99,7 +106,7 @@ class RealPace:
         thread = self._threads.get(program)
         program.interrupted.set()
         if thread is not None and thread.is_alive() and thread is not threading.current_thread():
-            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident or 0), ctypes.py_object(Killed))
+            end_thread(thread)
 
     def end_daemons(self, program: Program) -> None:
         """Do nothing: Python ends no thread."""
@@ -109,6 +116,8 @@ class RealPace:
         self._incoming.put(None)
 
     def close(self) -> None:
-        """Wait a moment for the threads of programs to end."""
-        for thread in self._threads.values():
-            thread.join(1.0)
+        """Wait a moment for the threads of programs to end; what is left keeps this process from nothing."""
+        ends, queues = time.monotonic() + LAST_WAIT, vars(pools)["_threads_queues"]
+        for thread in (*self._threads.values(), *self.threads):
+            if queues.pop(thread, None) is None:  # else one of a pool, for which the interpreter would wait
+                thread.join(max(0.0, ends - time.monotonic()))

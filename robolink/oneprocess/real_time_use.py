@@ -9,6 +9,7 @@ gets what Python gives.
 from __future__ import annotations
 
 import _thread
+import math
 import queue
 import signal
 import sys
@@ -20,11 +21,14 @@ from typing import Any, NamedTuple
 
 from robolink.defaults import get_defaults
 from robolink.exceptions import InterruptedByUser
+from robolink.oneprocess import chance
 from robolink.oneprocess.parts import Runner
 from robolink.oneprocess.places import is_users, place_of
 from robolink.oneprocess.program import Program
-from robolink.oneprocess.threads import stay_beside, take_part
+from robolink.oneprocess.real_time import RealPace
+from robolink.oneprocess.threads import go_along, stay_beside, take_part
 from robolink.oneprocess.workers import Worker
+from robolink.timebase import TimeBase
 
 
 class RealTimeUse(NamedTuple):
@@ -76,6 +80,7 @@ def _replacements() -> list[tuple[Any, str, Any]]:
         (threading, "_time", _steady),
         (queue, "time", _steady),
         (signal, "signal", _handle),
+        *chance.replacements(),
     ]
 
 
@@ -113,7 +118,10 @@ def _sleep(seconds: float, /) -> None:
     if program is not None and is_users(caller.f_code.co_filename):
         _note(program, "time.sleep", caller)
         if seconds >= 0 and _runner(program) is not None:
-            program.time.sleep(round(seconds * 1e9))
+            if seconds:
+                program.time.sleep(math.ceil(seconds * 1e9))  # the rest of a span, however short, must come to its end
+            else:
+                program.time.pass_on()
             return
         if seconds >= 0 and program.defaults.in_main_thread():
             program.on_read()
@@ -173,6 +181,10 @@ def _start(thread: threading.Thread) -> None:
     caller = sys._getframe(1)
     if is_users(caller.f_code.co_filename):
         _note(program, "threading.Thread", caller)
+    pace = program.host.pace
+    if isinstance(pace, RealPace):
+        pace.threads.add(thread)
+        return go_along(thread, program, _real_start)
     runner = _runner(program)
     if runner is None:
         return _real_start(thread)
@@ -192,9 +204,7 @@ def _join(thread: threading.Thread, timeout: float | None = None) -> None:
     joined: Runner | None = getattr(thread, "_robolink_runner", None)
     if program is None or joined is None or _runner(program) is None:
         return _real_join(thread, timeout)
-    time = program.time
-    until = None if timeout is None else time.steady() + max(0, int(timeout * 1e9))
-    time.wait_until(lambda: joined.is_done, until)
+    _wait_until(program.time, lambda: joined.is_done, timeout)
     return _real_join(thread) if joined.is_done else None
 
 
@@ -208,12 +218,17 @@ def _wait(condition: Any, timeout: float | None = None) -> bool:
     told.acquire()
     condition._waiters.append(told)
     saved = condition._release_save()
-    time = program.time
-    until = None if timeout is None else time.steady() + max(0, int(timeout * 1e9))
     try:
-        time.wait_until(lambda: not told.locked(), until)
+        _wait_until(program.time, lambda: not told.locked(), timeout)
     finally:
         condition._acquire_restore(saved)
         if told.locked() and told in condition._waiters:
             condition._waiters.remove(told)
     return not told.locked()
+
+
+def _wait_until(time: TimeBase, holds: Callable[[], bool], seconds: float | None) -> None:
+    if seconds is not None and seconds <= 0:
+        time.pass_on()
+    else:
+        time.wait_until(holds, None if seconds is None else time.steady() + math.ceil(seconds * 1e9))

@@ -32,16 +32,16 @@ def run(entries: Sequence[Entry], *, duration: float | None = None) -> int:
         if each.command:
             reason = "a command needs a process of its own: launch without --in-process"
             raise each.entries[0].error(["run"], reason)
-    with Host(virtual=False) as host:
-        supervision = Supervision(host, launched, say=_say, ends=duration)
-        with _signals(host, supervision):
-            supervision.begin()
-            host.run_until(lambda: supervision.is_over, AGES)
-        return supervision.policy.code
+    host = Host(virtual=False)
+    supervision = Supervision(host, launched, say=_say, ends=duration)
+    with _signals(host, supervision), host:
+        supervision.begin()
+        host.run_until(lambda: supervision.is_over, AGES)
+    return supervision.policy.code
 
 
 def _say(text: str) -> None:
-    print(f"[launch] {text}", flush=True)  # noqa: T201 - it is for people
+    print(f"[launch] {text}\n", end="", flush=True)  # noqa: T201 - it is for people; in one go, as nodes print too
 
 
 @contextmanager

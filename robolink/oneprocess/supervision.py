@@ -7,15 +7,14 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from robolink.exceptions import WireError
+from robolink.launch.readiness import Readiness
 from robolink.supervisor.policy import Action, Ask, Policy, Say, Start
 from robolink.supervisor.rules import Step, described, is_orderly
 from robolink.transport.memory import MemoryTransport
-from robolink.wire import EndpointKind, NodeToken, graph_pattern, parse_token
+from robolink.wire import graph_pattern
 
 if TYPE_CHECKING:
-    from robolink.launch.command import Launched
-    from robolink.launch.readiness import Awaited
+    from robolink.launch.planning import Launched
     from robolink.oneprocess.host import Host
     from robolink.oneprocess.program import Program
 
@@ -51,7 +50,7 @@ class Supervision:
         """When the system came to its end."""
         self._struck: set[str] = set()
         self._spared: set[str] = set()
-        self._held = {each.name: list(each.held_by) for each in launched if each.held_by}
+        self._readiness = Readiness({each.name: each.held_by for each in launched})
         self._session: MemoryTransport | None = None
         host.on_exit.append(self._on_exit)
 
@@ -62,7 +61,7 @@ class Supervision:
 
     def begin(self) -> None:
         """Start all that waits for nothing else."""
-        if self._held:
+        if self._readiness.held:
             self._session = MemoryTransport(bus=self.host.bus)
             self._session.watch(graph_pattern(), self._on_token)
         self._do(self.policy.begin(self.host.now))
@@ -73,16 +72,20 @@ class Supervision:
         """Call `act()` when the host is so old."""
         self.host.at(seconds, act)
 
-    def crash(self, name: str, *, is_restarted: bool) -> None:
-        """Kill a program as a fault does. If whoever does so starts it again, its rules make nothing of this end."""
-        program = self.host.program(name)
-        if program.state != "running":
-            return
+    def crash(self, name: str, *, is_restarted: bool) -> bool:
+        """Kill a program as a fault does; whether it ran.
+
+        If whoever does so starts it again, its rules make nothing of this end.
+        """
+        program = self.host.programs.get(name)
+        if program is None or program.state != "running":
+            return False
         self.crashes[name] += 1
         self._struck.add(name)
         if is_restarted:
             self._spared.add(name)
         self.host.crash(name)
+        return True
 
     def spare(self, name: str) -> None:
         """Make nothing of the next end of a program: somebody wants it, and the others to go on."""
@@ -123,12 +126,8 @@ class Supervision:
             self._soon(lambda: self._do(self.policy.exited(name, code, self.host.now, cause)))
 
     def _on_token(self, text: str, alive: bool) -> None:
-        for name, awaited in list(self._held.items()):
-            if alive:
-                awaited[:] = [each for each in awaited if not _is_there(each, text)]
-            if not awaited:
-                del self._held[name]
-                self._soon(lambda name=name: self._do(self.policy.released(name, self.host.now)))  # type: ignore[misc]
+        for name in self._readiness.heard(text, alive):
+            self._soon(lambda name=name: self._do(self.policy.released(name, self.host.now)))  # type: ignore[misc]
 
     def _soon(self, act: Callable[[], None]) -> None:
         self.host.at(self.host.now, act)
@@ -166,15 +165,3 @@ class Supervision:
 def _cause(program: Program) -> str:
     error = program.error
     return "" if error is None else f"{type(error).__name__}: {error}".partition("\n")[0]
-
-
-def _is_there(awaited: Awaited, text: str) -> bool:
-    """Whether a token is that of what is waited for."""
-    try:
-        token = parse_token(text)
-    except WireError:
-        return False
-    if isinstance(token, NodeToken):
-        return awaited.kind == "node" and token.full_node_name in awaited.names
-    kind = {"topic": EndpointKind.PUBLISHER, "service": EndpointKind.SERVICE}.get(awaited.kind)
-    return token.kind is kind and token.name in awaited.names

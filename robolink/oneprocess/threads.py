@@ -1,8 +1,9 @@
-"""Threads that hosted programs start: they take turns with all others, so that a run is the same each time."""
+"""Threads that hosted programs start: in virtual time they take turns with all others, so that each run is the same."""
 
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import threading
 import traceback
 from collections import deque
@@ -14,6 +15,7 @@ from robolink.defaults import use_defaults
 from robolink.exceptions import ExternalShutdownException, ROSInterruptException
 from robolink.logging import get_logger
 from robolink.oneprocess.parts import Killed, Runner, Wait
+from robolink.oneprocess.places import frame_of, place_of
 
 if TYPE_CHECKING:
     from robolink.oneprocess.program import Program
@@ -32,10 +34,10 @@ def take_part(thread: threading.Thread, program: Program, start: Callable[[threa
     act = thread.run
 
     def run() -> None:
-        turns.belong(runner)
+        turns.runners.belong(runner)
         use_defaults(program.defaults)
         runner.park()
-        runner.wait = None
+        first.version, runner.wait = 1, None
         try:
             if first.error is None:
                 act()
@@ -49,7 +51,7 @@ def take_part(thread: threading.Thread, program: Program, start: Callable[[threa
             turns.leave(runner)
 
     thread.run = run  # type: ignore[method-assign]
-    turns.join_in(runner)
+    turns.runners.add(runner)
     turns.due.append(first)
     start(thread)
 
@@ -62,13 +64,40 @@ def stay_beside(thread: threading.Thread, program: Program, start: Callable[[thr
     act = thread.run
 
     def run() -> None:
-        turns.belong(runner)
+        turns.runners.belong(runner)
         use_defaults(program.defaults)
         act()
 
     thread.run = run  # type: ignore[method-assign]
     turns.beside.add(runner)
     start(thread)
+
+
+def go_along(thread: threading.Thread, program: Program, start: Callable[[threading.Thread], None]) -> None:
+    """Start a thread in real time: in its code, too, the default context is that of its program."""
+    act = thread.run
+
+    def run() -> None:
+        use_defaults(program.defaults)
+        with contextlib.suppress(*_QUIET):
+            act()
+
+    thread.run = run  # type: ignore[method-assign]
+    start(thread)
+
+
+def tell_of(runner: Runner) -> None:
+    """Tell of a program's thread that is still there, and would keep its process from ending."""
+    thread, program = runner.thread, runner.program
+    if thread is None or program is None or runner.is_host or runner.is_done or runner.is_daemon:
+        return
+    place = place_of(frame_of(runner)) or "an unknown place"
+    get_logger("robolink").warning(f"{program.name}: its thread {thread.name} goes on after its end, at {place}")
+
+
+def end_thread(thread: threading.Thread) -> None:
+    """Have a thread meet `Killed` where it is, as far as Python can: not within C."""
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident or 0), ctypes.py_object(Killed))
 
 
 class HostedPool(Executor):

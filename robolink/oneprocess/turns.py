@@ -12,22 +12,22 @@ import contextlib
 import heapq
 import itertools
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from robolink.defaults import get_defaults
 from robolink.exceptions import RobolinkError
-from robolink.logging import get_logger
 from robolink.oneprocess.beside import Beside
-from robolink.oneprocess.parts import HostedInbox, Job, Killed, Runner, Wait
-from robolink.oneprocess.places import frame_of, place_of, where_is, where_waits
+from robolink.oneprocess.parts import HostedInbox, Job, Killed, Runner, Runners, Wait
+from robolink.oneprocess.places import where_is, where_waits
 from robolink.oneprocess.surroundings import Surroundings
+from robolink.oneprocess.threads import end_thread, tell_of
 from robolink.oneprocess.workers import Worker
 
 if TYPE_CHECKING:
     from robolink.oneprocess.host_time import HostTime
-    from robolink.oneprocess.program import Program
     from robolink.timer import Timer
 
 ACTS, CALLBACKS, OUTSIDE = 0, 1, 2
@@ -35,6 +35,9 @@ ACTS, CALLBACKS, OUTSIDE = 0, 1, 2
 
 PATIENCE = 60.0
 """Real seconds that a program's code may take without waiting, before `HostError` tells of it."""
+
+INTERRUPT_PATIENCE = 5.0
+"""Real seconds after Ctrl-C in which a program's code must go on, before it is left to itself."""
 
 LAST_WAIT = 1.0
 """Real seconds in which a thread that is to end must have done so, before it is left to itself."""
@@ -73,11 +76,8 @@ class Turns:
         self._asking: Wait | None = None
         """The same, if it has a condition, or an error is to be told there."""
         self._spare: list[Runner] = []
-        self._workers: list[Worker] = []
-        self._runners: list[Runner] = []
-        """All threads that take turns, but for the outside."""
+        self.runners = Runners()
         self._foreign: deque[tuple[Wait, int | None]] = deque()
-        self._here = threading.local()
         self.patience = PATIENCE
         self._closing = False
 
@@ -95,7 +95,7 @@ class Turns:
 
     def runner(self) -> Runner | None:
         """Give the calling thread, if it takes turns."""
-        found: Runner | None = getattr(self._here, "runner", None)
+        found = self.runners.here()
         if found is None and self.holder is self.outside:
             return self.outside
         return found
@@ -154,10 +154,21 @@ class Turns:
             while not me.park(timeout=0.5):  # on Windows Ctrl-C does not break into a wait
                 continue
         except BaseException:  # Ctrl-C: leave when the turn has come back
-            assert me.wait is not None
-            self.failure = HostError("interrupted")
-            me.park(timeout=5.0)
+            self._call_back()
             raise
+
+    def _call_back(self) -> None:
+        """Have the turn outside again: as soon as it is handed on, or take it from code that does not go on."""
+        ends = time.monotonic() + INTERRUPT_PATIENCE
+        try:
+            self.fail(HostError("interrupted"))
+            is_back = False
+            while not is_back and time.monotonic() < ends:
+                is_back = self.holder is self.outside  # looked at first: what it is resumed by comes at once
+                is_back = self.outside.park(timeout=0.1) or is_back
+        finally:  # also when Ctrl-C comes once more
+            if (stuck := self.holder) is not self.outside:
+                self._take_turn(stuck, HostError(f"{_name_of(stuck)} did not go on after Ctrl-C: {where_is(stuck)}"))
 
     def _hand_to(self, turn: Any) -> None:
         """Let another thread go on: the one that waited, or one that does what is due."""
@@ -172,38 +183,21 @@ class Turns:
 
     def _new_worker(self) -> Runner:
         worker = Worker(self, self._work)
-        self._workers.append(worker)
-        self._runners.append(worker.runner)
+        self.runners.add(worker.runner)
         return worker.runner
 
     def _adopted(self) -> Runner:
         """Make a runner of a thread that the host knows nothing of: it runs beside the others."""
-        runner = self._here.runner = Runner(self)
+        runner = Runner(self)
         runner.free = True
+        self.runners.belong(runner)
         return runner
-
-    def waiting(self, program: Program) -> list[Runner]:
-        """Give the threads in which code of a program waits."""
-        return [each for each in self._runners if each.program is program and each.wait is not None]
-
-    def join_in(self, runner: Runner) -> None:
-        """Have a program's thread take turns."""
-        self._runners.append(runner)
-
-    def is_hosts(self) -> bool:
-        """Whether the calling thread is one of the host's, each of which is a program's main one in turn."""
-        runner: Runner | None = getattr(self._here, "runner", None)
-        return runner is not None and runner.is_host
-
-    def belong(self, runner: Runner) -> None:
-        """Know the calling thread by this runner."""
-        self._here.runner = runner
 
     # Going on
 
     def _work(self, me: Runner) -> None:
         """Do what is due; hand on to threads that waited, and be spare then."""
-        self.belong(me)
+        self.runners.belong(me)
         me.park()
         while not self._closing:
             turn = self._do_turns(me, me.turn)
@@ -232,7 +226,7 @@ class Turns:
         """Whether this thread is to end: the host is closed, or the turn was taken from it."""
         me.killed = self._closing
         if me.free:
-            self._runners.remove(me)
+            self.runners.remove(me)
         return self._closing or me.free
 
     # What blocks
@@ -244,7 +238,7 @@ class Turns:
 
     def pass_over(self, blocked: Runner) -> bool:
         """Take the turn from a thread that seems to wait for another one of its program; False if there is none."""
-        others = (each for each in self._runners if each.program is blocked.program and each is not blocked)
+        others = (each for each in self.runners if each.program is blocked.program and each is not blocked)
         if blocked.program is None or not any(not each.is_done and not each.is_idle for each in others):
             return False
         self.beside.add(blocked)
@@ -254,16 +248,24 @@ class Turns:
     def give_up(self, stuck: Runner) -> None:
         """Tell whoever runs the host of a thread that does not go on, and leave that one to itself."""
         stuck.free = True
-        name = "the host" if stuck.program is None else stuck.program.name
-        wait = self._watch
-        if wait is not None:
-            text = f"{name} has kept all others waiting for {self.patience:g} s of real time: {where_is(stuck)}"
-            wait.error = HostError(text)
-            self._watch = self._asking = None
-            self.holder = self.outside
-            if stuck.program is not None:
-                stuck.program.give_up(wait.error)
+        if (wait := self._watch) is not None:
+            what = f"has kept all others waiting for {self.patience:g} s of real time"
+            wait.error = HostError(f"{_name_of(stuck)} {what}: {where_is(stuck)}")
+            self._take_turn(stuck, wait.error)
             self.outside.resume()
+
+    def tell_of_standstill(self, last: Runner) -> None:
+        """Tell whoever runs the host that somebody always has something to do, so that time never goes on."""
+        text = f"time has stood still for {self.patience:g} s of real time: somebody always has something to do"
+        self.fail(HostError(f"{text}, just now {_name_of(last)}"))
+
+    def _take_turn(self, stuck: Runner, error: HostError) -> None:
+        """Take the turn outside, from a thread that goes on by itself; its program counts as crashed."""
+        stuck.free = True
+        self._watch = self._asking = self.failure = None
+        self.holder = self.outside
+        if stuck.program is not None:
+            stuck.program.give_up(error)
 
     def _is_news(self) -> bool:
         """Whether threads that take no turns have brought something to do."""
@@ -276,7 +278,7 @@ class Turns:
 
     def leave(self, me: Runner) -> None:
         """Hand on for good: this thread ends, and has no time to look who is next: somebody may join it."""
-        self._runners.remove(me)
+        self.runners.remove(me)
         if not self._closing and not me.free:
             self._hand_to(Job(None, lambda: None))
 
@@ -326,7 +328,8 @@ class Turns:
         """When nothing is due: look at conditions, then jump to the next moment; give what is to do, if it is known."""
         if self._foreign:
             self._take_in_foreign()
-        self.due.extend(itertools.islice(filter(Wait.is_over, self._waits), 1))
+        if self._waits:
+            self.due.extend(itertools.islice(filter(Wait.is_over, self._waits), 1))
         if self.due or (self.beside and self.beside.go_on(self._is_news)):
             return None
         heap = self.heap
@@ -356,7 +359,7 @@ class Turns:
     def _take_in_foreign(self) -> None:
         for _ in range(len(self._foreign)):
             wait, until = self._foreign.popleft()
-            if wait.runner in self._runners:  # the turn was taken from it, and it is back
+            if wait.runner in self.runners:  # the turn was taken from it, and it is back
                 self.beside.remove(wait.runner)
             self._note(wait, until)
 
@@ -364,7 +367,7 @@ class Turns:
         """Tell whoever runs the host that it would wait for ever; but one that is free may still bring something."""
         if self.beside:
             return
-        waiting = [each for each in self._runners if each.wait is not None and each.program is not None]
+        waiting = (each for each in self.runners if each.wait is not None and each.program is not None)
         where = "".join(f"; {where_waits(each)}" for each in waiting)
         error = HostError(f"all programs wait for ever, and nothing is to come{where}")
         if self._watch is None:
@@ -376,9 +379,9 @@ class Turns:
     def close(self) -> None:
         """End all threads of the host; whoever waits meets `Killed`."""
         self._closing = True
-        runners = list(self._runners)
+        runners = list(self.runners)
         for runner in runners:
-            self._tell_of(runner)
+            tell_of(runner)
             if runner.wait is not None:
                 runner.wait.error = Killed()
             runner.killed = True
@@ -387,12 +390,10 @@ class Turns:
                 runner.resume()
             if runner.thread is not None:
                 _real_join(runner.thread, LAST_WAIT)
+                if runner.is_host and runner.thread.is_alive():
+                    end_thread(runner.thread)
         self.surroundings.close()
 
-    def _tell_of(self, runner: Runner) -> None:
-        """Tell of a program's thread that is still there, and would keep its process from ending."""
-        thread, program = runner.thread, runner.program
-        if thread is None or program is None or runner.is_host or runner.is_done or runner.is_daemon:
-            return
-        place = place_of(frame_of(runner)) or "an unknown place"
-        get_logger("robolink").warning(f"{program.name}: its thread {thread.name} goes on after its end, at {place}")
+
+def _name_of(runner: Runner) -> str:
+    return "the host" if runner.program is None else runner.program.name

@@ -47,7 +47,7 @@ class VirtualPace:
 
     def break_in(self, program: Program, error: BaseException | None) -> None:
         """Let what waits of a program's code look around; raise the error where its main thread waits."""
-        for runner in self.turns.waiting(program):
+        for runner in self.turns.runners.waiting(program):
             assert runner.wait is not None
             if runner.is_host and runner.wait.inbox is None:
                 if error is None:
@@ -59,11 +59,11 @@ class VirtualPace:
 
     def unwind(self, program: Program) -> None:
         """Have what waits of a program's code end where it waits."""
-        self._kill(self.turns.waiting(program))
+        self._kill(self.turns.runners.waiting(program))
 
     def end_daemons(self, program: Program) -> None:
         """Have those threads end that do not keep a program from ending."""
-        self._kill(each for each in self.turns.waiting(program) if each.is_daemon)
+        self._kill(each for each in self.turns.runners.waiting(program) if each.is_daemon)
 
     def _kill(self, runners: Iterable[Runner]) -> None:
         for runner in runners:

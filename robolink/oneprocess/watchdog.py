@@ -24,7 +24,7 @@ BLOCKED = 0.5
 
 
 class Watchdog(threading.Thread):
-    """Has a host give up a thread that does not go on for `turns.patience` real seconds."""
+    """Has a host give up a thread that does not go on for `turns.patience` real seconds, or time that does not."""
 
     def __init__(self, turns: Turns) -> None:
         super().__init__(name="robolink host's watchdog", daemon=True)
@@ -34,8 +34,8 @@ class Watchdog(threading.Thread):
     def run(self) -> None:
         """Look until told to stop."""
         seen: tuple[Runner | None, int] = (None, -1)
-        since = still = 0.0
-        spot = (0, 0)
+        since = still = moved = 0.0
+        spot, moment = (0, 0), -1
         while not self._over.wait(LOOK):
             now, found = time.monotonic(), self._turns.at_work()
             here = spot_of(found[0])
@@ -43,10 +43,14 @@ class Watchdog(threading.Thread):
                 since = now
             if found != seen or here != spot:
                 seen, still, spot = found, now, here
+            if found[0] is None or moment != self._turns.time.now():
+                moved, moment = now, self._turns.time.now()
             if found[0] is None:
                 continue
             if now - since >= self._turns.patience:
                 self._turns.give_up(found[0])
+            elif now - moved >= self._turns.patience:
+                self._turns.tell_of_standstill(found[0])
             elif now - still >= BLOCKED:
                 self._turns.pass_over(found[0])
 

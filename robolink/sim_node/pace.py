@@ -36,6 +36,10 @@ class Pace:
         if not self.rtf:
             return self._next_of_left(), 0.0
         late = int((now - self.start) * self.rtf) // self.dt - self._done
+        if late <= self.turn:  # as nearly always
+            self._done += late
+            self.behind = False
+            return late, 0.0
         most = max(self.turn, int(BACKLOG * 1e9 * self.rtf) // self.dt)
         given_up = max(0, late - most) * self.dt
         self.start += int(given_up / self.rtf)

@@ -14,7 +14,8 @@ from robolink.task import Future
 class Runner:
     """Makes the steps of a simulation when they are due, a few in a turn, so that all other callbacks have theirs.
 
-    `steady` is the clock that it follows, and `rtf` how many times real time it runs, 0 as fast as it goes.
+    `steady` is the clock that it follows, and `rtf` how many times real time it runs, 0 as fast as it goes: in
+    virtual time, which does so by itself, that is 1.
     """
 
     def __init__(self, node: Node, simulation: Simulation, rtf: float) -> None:
@@ -62,6 +63,8 @@ class Runner:
 
     def _new_pace(self, rtf: float, left: int | None = None) -> Pace:
         self._meter.restart()
+        if not rtf and left is None and self._node.context.time.virtual:
+            rtf = 1.0  # virtual time goes as fast as it can: a world that ran ahead of it would leave no time to others
         return Pace(self._now(), self.simulation.world.dt_ns, rtf, left)
 
     def _set_off(self, rtf: float, left: int | None = None) -> None:

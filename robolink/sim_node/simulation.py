@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from robolink.exceptions import NotFoundError, shown
 from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.node import Node
 from robolink.qos import DurabilityPolicy, QoSProfile
-from robolink.sim import Pose, Robot, World, WorldDescription
+from robolink.sim import Pose, Reading, Robot, World, WorldDescription
 from robolink.sim.description import RobotDescription
 from robolink.sim_node.messages import time_message
 from robolink.sim_node.robot_commands import RobotCommands
@@ -54,22 +55,27 @@ class Simulation:
 
     def step(self) -> None:
         """Make one step, and publish what is new after it."""
-        world, robots = self.world, self.robots
+        world = self.world
         for each in self._wheeled:
             each.step()
         world.step()
-        stamp, step = time_message(self.now), world.steps
-        if self._clock is not None:
-            self._clock.publish(Clock(clock=stamp))
-        for robot, sensor, value in world.readings():
-            robots[robot.name].publish_reading(sensor, value, stamp)
-        if step % self._state_steps == 0:
-            moved = [each.publish_state(step, stamp) for each in robots.values()]
-            if transforms := [found for found in moved if found is not None]:
-                self._tf.publish(TFMessage(transforms=transforms))
+        step, readings = world.steps, world.readings()
+        if self._clock is not None or readings or step % self._state_steps == 0:
+            self._publish(step, readings)
         if world.contacts != self._contacts:
             self._contacts = world.contacts
             self._warn_of_contacts()
+
+    def _publish(self, step: int, readings: Sequence[Reading]) -> None:
+        stamp = time_message(self.now)
+        if self._clock is not None:
+            self._clock.publish(Clock(clock=stamp))
+        for robot, sensor, value in readings:
+            self.robots[robot.name].publish_reading(sensor, value, stamp)
+        if step % self._state_steps == 0:
+            moved = [each.publish_state(step, stamp) for each in self.robots.values()]
+            if transforms := [found for found in moved if found is not None]:
+                self._tf.publish(TFMessage(transforms=transforms))
 
     def reset(self) -> None:
         """Begin anew: every robot of the world file is where it started, others are gone, and time goes on."""

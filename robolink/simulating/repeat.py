@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from contextlib import suppress
 
 import msgspec
 
 from robolink.simulating.result import SimulationResult
 
 ROBOLINK = (sys.executable, "-m", "robolink")
+INTERRUPTED = (130, -signal.SIGINT)
+"""The exit codes of a process that Ctrl-C has ended."""
+
+PATIENCE = 1.0
+"""Seconds of real time that processes have to end by themselves."""
 
 
 class SeedRun(msgspec.Struct, frozen=True):
@@ -21,6 +29,8 @@ class SeedRun(msgspec.Struct, frozen=True):
     seed: int
     result: SimulationResult | None = None
     error: str = ""
+    interrupted: bool = False
+    """Whether Ctrl-C reached its process, too."""
 
     @property
     def failures(self) -> list[str]:
@@ -37,19 +47,25 @@ def run_seeds(
 ) -> list[SeedRun]:
     """Run `robolink WORDS`, which are to end with a result in JSON, for each seed; give what came of them, in order.
 
-    `workers` run at a time. `on_done` is told of each as it ends. When this is interrupted, no process is left.
+    `workers` run at a time. `on_done` is told of each as it ends. Ctrl-C ends this early, with what has come until
+    then; no process is left.
     """
     running = _Running()
+    started: list[Future[SeedRun]] = []
+    runs: dict[Future[SeedRun], SeedRun] = {}
     with ThreadPoolExecutor(max_workers=workers) as pool:
         try:
-            started = [pool.submit(running.run, seed, [*ROBOLINK, *words(seed)]) for seed in seeds]
+            started += [pool.submit(running.run, seed, [*ROBOLINK, *words(seed)]) for seed in seeds]
             for each in as_completed(started):
-                on_done(each.result())
-        except BaseException:
+                if not (run := each.result()).interrupted:
+                    runs[each] = run
+                    on_done(run)
+        except BaseException as error:
             running.end()
             pool.shutdown(wait=True, cancel_futures=True)
-            raise
-    return [each.result() for each in started]
+            if not isinstance(error, KeyboardInterrupt):
+                raise
+    return [runs[each] for each in started if each in runs]
 
 
 class _Running:
@@ -74,14 +90,20 @@ class _Running:
         return _outcome(seed, process.returncode, out, err)
 
     def end(self) -> None:
-        """Kill all that run, and start no more."""
+        """Start no more; kill all that run, unless a Ctrl-C that reached them too has them end in order."""
         with self._lock:
             self._ended = True
-            for each in self._processes:
-                each.kill()
+            running = list(self._processes)
+        deadline = time.monotonic() + PATIENCE
+        for each in running:
+            with suppress(subprocess.TimeoutExpired):
+                each.wait(max(0.0, deadline - time.monotonic()))
+            each.kill()
 
 
 def _outcome(seed: int, code: int, out: bytes, err: bytes) -> SeedRun:
+    if code in INTERRUPTED:
+        return SeedRun(seed, error="interrupted", interrupted=True)
     lines = out.splitlines()
     try:
         return SeedRun(seed, msgspec.json.decode(lines[-1] if lines else b"", type=SimulationResult))

@@ -54,6 +54,8 @@ class SimulationResult(msgspec.Struct, frozen=True, kw_only=True):
     errors: int = 0
     """Lines that were logged as errors."""
     warnings: list[str] = []
+    interrupted: bool = False
+    """Whether Ctrl-C ended it before its time."""
     failures: list[str] = []
     """Why the run counts as failed; none if it does not."""
     hash: str

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
-from typing import NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import msgspec
 
@@ -21,15 +21,17 @@ from robolink.oneprocess import Host, Program
 from robolink.oneprocess.supervision import Supervision
 from robolink.oneprocess.trace import Trace
 from robolink.qos import QoSProfile
-from robolink.sim import Robot
 from robolink.simulating.result import ProgramResult, RobotResult, SimulationResult
 from robolink.simulating.robots import robots_of
 from robolink.simulating.settings import numpy_seeded, seeded
 from robolink.timebase import TimeBase
 from robolink.transport.base import Outlet
 
-SLICE = 10**9
-"""Nanoseconds that are simulated before somebody is told how far it is."""
+if TYPE_CHECKING:
+    from robolink.sim import Robot
+
+PARTS, LEAST = 200, 10**9
+"""In how many parts a run is made, each of so many nanoseconds or more; after each somebody is told how far it is."""
 
 
 class Watching(NamedTuple):
@@ -49,7 +51,7 @@ def simulate(
     faults: FaultsDescription | None = None,
     watching: Watching | None = None,
 ) -> SimulationResult:
-    """Run a system for `duration` simulated seconds, or until it ends; give what has come of it.
+    """Run a system for `duration` simulated seconds, or until it ends or Ctrl-C; give what has come of it.
 
     The same entries, seed and faults give the same bytes. A `seed` that is given, here or in the faults, is that of
     the faults, of Python's and numpy's generators, and of every node with a parameter `seed` that has no other value.
@@ -115,6 +117,7 @@ class _Run:
         for each in launched:
             self.injector.introduce(each.name, [entry.name for entry in each.entries])
         self.injector.have(faults)
+        self._interrupted = False
 
     def _session(self, program: str) -> FaultyTransport:
         return _Session(self.injector.network, program, self.trace)
@@ -135,10 +138,11 @@ class _Run:
             real_seconds=round(real_seconds, 3),
             messages=self.trace.messages,
             bytes=self.trace.bytes,
-            robots=[_of_robot(each) for each in robots_of(nodes)],
+            robots=[_of_robot(name, robot) for name, robot in robots_of(nodes)],
             programs=[self._program(each) for each in self.host.programs.values()],
             faults=network.reports,
-            warnings=network.unmet(),
+            warnings=self._warnings(seconds, duration),
+            interrupted=self._interrupted,
             hash=self.trace.hexdigest(),
         )
         self.supervision.end()
@@ -146,16 +150,27 @@ class _Run:
         return msgspec.structs.replace(result, failures=self.supervision.failures, real_time=real_time)
 
     def _pass(self, duration: float) -> float:
-        """Let time pass until the end; give its seconds."""
-        self.supervision.begin()
-        clock = self.host.time
-        begin, left = clock.now(), round(duration * 1e9)
-        while left > 0 and not self.supervision.is_over:
-            clock.sleep(min(left, SLICE))
-            left = begin + round(duration * 1e9) - clock.now()
-            self._told.time((clock.now() - begin) / 1e9)
+        """Let time pass until the end, or until Ctrl-C; give its seconds."""
+        try:
+            self._go_on(round(duration * 1e9))
+        except KeyboardInterrupt:
+            self._interrupted = True
+            return round(self.host.now, 3)
         ended_at = self.supervision.ended_at
         return duration if ended_at is None else ended_at
+
+    def _go_on(self, left: int) -> None:
+        self.supervision.begin()
+        clock = self.host.time
+        end, part = clock.now() + left, max(LEAST, left // PARTS)
+        while left > 0 and not self.supervision.is_over:
+            clock.sleep(min(left, part))
+            left = end - clock.now()
+            self._told.time(self.host.now)
+
+    def _warnings(self, seconds: float, duration: float) -> list[str]:
+        interrupted = [f"interrupted at {seconds:g} of {duration:g} s"] if self._interrupted else []
+        return [*interrupted, *self.injector.unmet()]
 
     def _program(self, program: Program) -> ProgramResult:
         crashes = self.supervision.crashes[program.name]
@@ -164,6 +179,6 @@ class _Run:
         return ProgramResult(program.name, program.state, crashes, max(0, program.lives - 1), text)
 
 
-def _of_robot(robot: Robot) -> RobotResult:
+def _of_robot(name: str, robot: Robot) -> RobotResult:
     pose = robot.pose
-    return RobotResult(robot.name, robot.driven, robot.contacts, pose.x, pose.y, pose.theta)
+    return RobotResult(name, robot.driven, robot.contacts, pose.x, pose.y, pose.theta)

@@ -1,9 +1,8 @@
 """Run several programs as one system: start, print, decide, stop; it knows no nodes.
 
-`process` runs one, `printer` is the only place that prints, `policy` (with `rules`) the only one that decides,
-`supervisor` joins them. What is told goes through `telling` to the printer, to `logs` and, as `events`, to `notifier`;
-`causes` finds why a program ended, `summary` says it at the end. `lifeline` and `guardian` see to it that nothing
-stays behind when the supervisor itself is killed.
+`policy`, by `rules`, decides what starts and stops and knows neither processes nor the time. `supervisor` does what it
+says: with `processes`, one program each and what sees to it that none stays behind, and with `telling`, the terminal,
+log files and `events` for programs. Other shells ask at its `door`; `watching` looks at files, CPU and memory.
 
 Names are imported when they are first used: a node's process wants the lifeline, and nothing of a launcher's.
 """
@@ -14,11 +13,11 @@ from robolink.lacking import lazily
 
 if TYPE_CHECKING:
     from robolink.supervisor.events import Event, Status
-    from robolink.supervisor.lifeline import watch_lifeline
-    from robolink.supervisor.logs import RunLogs
-    from robolink.supervisor.process import Process, ProcessStartError
+    from robolink.supervisor.processes.lifeline import watch_lifeline
+    from robolink.supervisor.processes.process import Process, ProcessStartError
     from robolink.supervisor.rules import Restarts, Rules
     from robolink.supervisor.supervisor import Supervisor
+    from robolink.supervisor.telling.logs import RunLogs
 
 __all__ = [
     "Event",
@@ -34,14 +33,14 @@ __all__ = [
 
 _HOMES = {
     "Event": "events",
-    "Process": "process",
-    "ProcessStartError": "process",
+    "Process": "processes.process",
+    "ProcessStartError": "processes.process",
     "Restarts": "rules",
     "Rules": "rules",
-    "RunLogs": "logs",
+    "RunLogs": "telling.logs",
     "Status": "events",
     "Supervisor": "supervisor",
-    "watch_lifeline": "lifeline",
+    "watch_lifeline": "processes.lifeline",
 }
 
 __getattr__, __dir__ = lazily(__name__, _HOMES, ())

@@ -79,15 +79,15 @@ class Tracked:
 class Policy:
     """Runs a system until a process ends whose end is not to be ignored, none is left, or somebody wants an end.
 
-    `ends` is when the system ends by itself. On the way to its end, processes are asked harder every `patience`
-    seconds. Call `begin` first; do what each call returns, in that order.
+    `ends` is when the system ends by itself; it may still be set before `begin`. On the way to its end, processes are
+    asked harder every `patience` seconds. Call `begin` first; do what each call returns, in that order.
     """
 
     def __init__(self, rules: Mapping[str, Rules], *, ends: float | None = None, patience: float = 5.0) -> None:
         self.processes = {name: _tracked(name, each) for name, each in rules.items()}
         self.step: Step | None = None
         """How hard the whole system has been asked to stop."""
-        self._ends = ends
+        self.ends = ends
         self._patience = patience
         self._code: int | None = None
         self._is_requested = False
@@ -114,7 +114,7 @@ class Policy:
         if self.step is not None:
             return self._asked + self._patience
         due = [each.due for each in self.processes.values() if each.due is not None]
-        return min(due if self._ends is None else [*due, self._ends], default=None)
+        return min(due if self.ends is None else [*due, self.ends], default=None)
 
     @property
     def code(self) -> int:
@@ -154,7 +154,7 @@ class Policy:
             return [*told, *self._start(each, now)]
         if self.is_over:
             self._code = exit_code(returncode) if told else 0
-        return told or [Say(f"{name} has stopped")]
+        return [*(told or [Say(f"{name} has stopped")]), *self._only_held(now)]
 
     def interrupted(self, now: float, *, in_hurry: bool = True) -> list[Action]:
         """The user wants an end, or, when it is on its way already and they are in a hurry, a quicker one."""
@@ -170,7 +170,7 @@ class Policy:
             return []
         if self.step is not None:
             return [self._late(*self.alive), *self._harder(now)]
-        if self._ends is not None and now >= self._ends:
+        if self.ends is not None and now >= self.ends:
             self._is_requested = True
             return self._harder(now)
         due = [each for each in self.processes.values() if each.due is not None and each.due <= now]
@@ -183,15 +183,20 @@ class Policy:
     def restart(self, name: str, now: float) -> list[Action]:
         """Somebody wants a process anew: it is stopped in order first if it runs. That is no failure of its."""
         each = self.processes[name]
-        if self.step is not None:
-            return [Say(f"{name} is not restarted: the system is stopping")]
-        if each.state == "held":
-            return [Say(f"{name} is not started yet: it waits for something else")]
+        if why_not := self.why_not_restarted(name):
+            return [Say(f"{name} is not restarted: {why_not}")]
         each.streak, each.respawned = 0, []
         if not each.is_alive:
             return [Say(f"starting {name}"), *self._start(each, now)]
         each.is_restart = True
         return [] if each.step is not None else [Say(f"restarting {name}"), *self._one_harder(each, now)]
+
+    def why_not_restarted(self, name: str) -> str:
+        """Say why `restart` would do nothing now; '' if it would."""
+        if self.step is not None:
+            return "the system is stopping"
+        is_held = self.processes[name].state == "held"
+        return "it is not started yet, since it waits for something else" if is_held else ""
 
     def stop_one(self, name: str, now: float) -> list[Action]:
         """Somebody wants one process to stop, and the others to go on."""
@@ -199,7 +204,7 @@ class Policy:
         each.is_restart = False
         if each.state in ("held", "waiting") and self.step is None:
             _move(each, "stopped", now)
-            return [Say(f"{name} is not started")]
+            return [Say(f"{name} is not started"), *self._only_held(now)]
         if each.state != "running" or self.step is not None:
             return []
         return [Say(f"stopping {name}"), *self._one_harder(each, now)]
@@ -226,7 +231,7 @@ class Policy:
             how += f"{mark} given up after {rule.most} starts within {rule.within:g} s"
         if each.rules.on_exit == "ignore":
             self._code = exit_code(code) if self.is_over else None
-            return [Say(how), *self._only_held()]
+            return [Say(how), *self._only_held(now)]
         self._code = exit_code(code)
         return [Say(how), *self._harder(now)]
 
@@ -236,12 +241,31 @@ class Policy:
         self._code = self._code or exit_code(returncode)
         return [Say(how)]
 
-    def _only_held(self) -> list[Action]:
-        """Say so when all that is left waits for something that may never come."""
+    def _only_held(self, now: float) -> list[Action]:
+        """Say so when all that is left waits for something that may never come; end when it never will."""
         left = [each for each in self.processes.values() if each.state not in ("ended", "stopped")]
         if not left or any(each.state != "held" for each in left):
             return []
-        return [Say(f"nothing runs any more; not started yet: {', '.join(each.name for each in left)}")]
+        vain = {each.name: gone for each in left if (gone := self._ended_for(each))}
+        if len(vain) < len(left):
+            return [Say(f"nothing runs any more; not started yet: {', '.join(each.name for each in left)}")]
+        self._code = 1
+        told = "; ".join(f"{name} waits for {gone}, which has ended" for name, gone in vain.items())
+        return [Say(f"nothing runs any more, and {told}"), *self._harder(now)]
+
+    def _ended_for(self, held: Tracked) -> str:
+        """Give the process that has ended and that a held one, or one that this waits for, waits for; '' for none."""
+        seen, asked = set[str](), [held.name]
+        while asked:
+            name = asked.pop(0)
+            each = self.processes.get(name)
+            if each is None or name in seen:
+                continue
+            if each.state == "ended":
+                return name
+            seen.add(name)
+            asked += sorted(each.rules.awaits) if each.state == "held" else []
+        return ""
 
     def _harder(self, now: float) -> list[Action]:
         """Ask all that run to stop, but none again as it was asked before: that might disturb its orderly end."""

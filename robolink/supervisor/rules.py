@@ -47,11 +47,15 @@ class Restarts:
 
 @dataclass(frozen=True)
 class Rules:
-    """What a launcher does about one process; `held`: it starts only when it is released."""
+    """What a launcher does about one process; `held`: it starts only when it is released.
+
+    `awaits` are the processes without which it never will be; it may wait for other things besides.
+    """
 
     respawn: Restarts = field(default_factory=Restarts)
     on_exit: OnExit = "shutdown"
     held: bool = False
+    awaits: frozenset[str] = frozenset()
 
 
 def exit_code(returncode: int) -> int:

@@ -7,7 +7,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, closing, contextmanager
 from functools import partial
 from pathlib import Path
@@ -16,16 +16,16 @@ from typing import TextIO, TypeAlias
 
 from robolink.exceptions import NotFoundError
 from robolink.queues import get_within
-from robolink.supervisor.affinity import set_affinity
 from robolink.supervisor.events import Status
-from robolink.supervisor.guardian import Guardian
-from robolink.supervisor.lifeline import Lifeline
-from robolink.supervisor.logs import RunLogs
-from robolink.supervisor.notifier import OnEvent
 from robolink.supervisor.policy import Action, Ask, Policy, Say, Start
-from robolink.supervisor.process import Child, Process, ProcessStartError
+from robolink.supervisor.processes.affinity import set_affinity
+from robolink.supervisor.processes.guardian import Guardian
+from robolink.supervisor.processes.lifeline import Lifeline
+from robolink.supervisor.processes.process import Child, Process, ProcessStartError
 from robolink.supervisor.rules import Step
-from robolink.supervisor.telling import Teller
+from robolink.supervisor.telling.logs import RunLogs
+from robolink.supervisor.telling.notifier import OnEvent
+from robolink.supervisor.telling.teller import Teller
 
 _LEFT_BEHIND = 1.0
 """Seconds between SIGTERM and SIGKILL for processes that still run when we have to leave."""
@@ -49,6 +49,8 @@ class Supervisor:
     `run` may be called from any thread, before and while it runs.
 
     >>> Supervisor([Process("hello", [sys.executable, "-c", "print('hi')"])]).run()
+    [hello] hi
+    [launch] hello has ended
     0
     """
 
@@ -71,15 +73,14 @@ class Supervisor:
         self._start_child = start
         self._children: dict[str, Child] = {}
         self._events: queue.SimpleQueue[_Event] = queue.SimpleQueue()
-        self._make_policy = partial(Policy, {each.name: each.rules for each in processes}, patience=patience)
-        self._policy = self._make_policy()
+        self._policy = Policy({each.name: each.rules for each in processes}, patience=patience)
         self._lock = threading.Lock()  # held whenever the policy is asked
         self._has_begun = False
         self.leavings: list[Path] = []
-        """Files to remove if we should be killed: to be filled before `run`."""
+        """Files to remove if we should be killed: to be filled before `run`, or on the way into what is beside it."""
 
-    def run(self, duration: float | None = None) -> int:
-        """Run the system, for at most `duration` seconds; give its exit code.
+    def run(self, duration: float | None = None, beside: Iterable[AbstractContextManager[object]] = ()) -> int:
+        """Run the system, for at most `duration` seconds; give its exit code. It runs inside all that is `beside` it.
 
         That is the code of the process whose end was the system's (128 + N when signal N killed it): the first that
         ends, but for those whose rules start them again or ignore their end; or the last of all. It is 0 when all
@@ -88,7 +89,9 @@ class Supervisor:
         goes straight to the next step. Raises `ProcessStartError`, after stopping what had been started.
         """
         with ExitStack() as stack:
-            stack.enter_context(self.hears_signals())
+            stack.enter_context(_signals(self._interrupted, self._paused, self._events.put))
+            for each in beside:
+                stack.enter_context(each)
             self._teller = stack.enter_context(closing(self._make_teller()))
             self._lifeline = stack.enter_context(closing(Lifeline()))
             self._guardian = stack.enter_context(closing(Guardian(self._lifeline.mark, leavings=self.leavings)))
@@ -103,10 +106,6 @@ class Supervisor:
             self._teller.ended(self._policy.code, self._policy.alive)
         return self._policy.code
 
-    def hears_signals(self) -> AbstractContextManager[None]:
-        """Note signals for `run` already, which hears them itself: for what is to be put in order after them, too."""
-        return _signals(self._interrupted, self._paused, self._events.put)
-
     def stop(self) -> None:
         """Ask for an end of the whole system."""
         self._events.put(self._interrupted)
@@ -114,6 +113,11 @@ class Supervisor:
     def restart(self, name: str) -> None:
         """Stop one process in order and start it again; if it does not run, start it. Raises NotFoundError."""
         self._put_about(name, lambda now: self._policy.restart(name, now))
+
+    def why_not_restarted(self, name: str) -> str:
+        """Say why `restart` would do nothing now; '' if it would."""
+        with self._lock:
+            return self._policy.why_not_restarted(name)
 
     def stop_one(self, name: str) -> None:
         """Stop one process in order; the others go on, if there are any. Raises NotFoundError."""
@@ -147,13 +151,18 @@ class Supervisor:
 
     def _make_teller(self) -> Teller:
         return Teller(
-            list(self._processes), self._output, logs=self._logs, on_event=self._on_event, on_broken=self.stop
+            list(self._processes), self._output, logs=self._logs, on_event=self._on_event, on_broken=self._unread
         )
+
+    def _unread(self, reason: str) -> None:
+        """Nobody reads the output any more: that ends a system, as it ends any program in a pipe."""
+        self.say(f"nobody reads the output any more: {reason}")
+        self.stop()
 
     def _begin(self, duration: float | None) -> list[Action]:
         now = self._clock()
         with self._lock:
-            self._policy = self._make_policy(ends=None if duration is None else now + duration)
+            self._policy.ends = None if duration is None else now + duration
             return self._policy.begin(now)
 
     def _next_event(self) -> _Event:

@@ -3,6 +3,7 @@
 ExpectationError (AssertionError)      something did not come, or came that must not
 └─ NodeFailure                         a program of the system failed
 OnlyInMemoryError (NotImplementedError) processes cannot do what programs in memory can
+ClosedError (RuntimeError)             something was asked of a system that is over
 """
 
 from __future__ import annotations
@@ -27,6 +28,10 @@ class NodeFailure(ExpectationError):  # noqa: N818 - it is what has happened, an
 
 class OnlyInMemoryError(RobolinkError, NotImplementedError):
     """Something was asked of processes that only programs in memory can do; pytest skips the test with the reason."""
+
+
+class ClosedError(RobolinkError, RuntimeError):
+    """Something was asked of a system that is over."""
 
 
 class Ends(NamedTuple):
@@ -77,6 +82,12 @@ def nothing_came(
         listen = "listens" if len(ends.taken) == 1 else "listen"
         return f"nobody publishes {name} [{', '.join(ends.types)}], to which {_and(ends.taken)} {listen} {when}"
     return no_such("topic", name, known, when)
+
+
+def too_early(name: str, earlier: int) -> str:
+    """Say that messages came before they were expected; '' of none."""
+    does = "does" if earlier == 1 else "do"
+    return f"; {earlier} came before and {does} not count: begin messages('{name}') before" if earlier else ""
 
 
 def no_such(kind: str, name: str, known: Iterable[tuple[str, str]], when: str) -> str:

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar
+
+import msgspec
 
 from robolink.faults.description import ClockFault, Crash, MessageFault, Partition
+from robolink.faults.file import mistakes_of
+from robolink.faults.patterns import mistake_in
+from robolink.testing.stage import Named
 
 if TYPE_CHECKING:
     from robolink.faults import FaultReport
     from robolink.faults.injector import Fault
 
-Names: TypeAlias = str | Sequence[str]
-"""One name or several; `*` stands for any letters of one token of a name, `**` for any number of tokens."""
+F = TypeVar("F", MessageFault, Partition, Crash, ClockFault)
+
+Names: TypeAlias = str | Named | Sequence[str | Named]
+"""One name or several, or nodes; `*` stands for any letters of one token of a name, `**` for any number of tokens."""
 
 
-class Injector(Protocol):
-    """What makes faults happen."""
+class Striking(Protocol):
+    """Has faults strike the programs of a system."""
 
     def now(self) -> float:
         """Give the seconds of the run."""
@@ -37,11 +44,12 @@ class Faults:
 
     They lie between programs: what a program says to itself never travels. `sender` and `receiver` are nodes, any when
     not given. With `service`, the name is that of a service, whose requests and answers are meant. What a test looks at
-    (`expect`, `messages`) is what was published: faults strike later, on the way to each node.
+    (`expect`, `messages`) is what was published: faults strike later, on the way to each node. A value that cannot be
+    raises ValueError.
     """
 
-    def __init__(self, injector: Injector) -> None:
-        self._injector = injector
+    def __init__(self, striking: Striking) -> None:
+        self._striking = striking
 
     def lose(
         self,
@@ -56,7 +64,7 @@ class Faults:
     ) -> FaultReport | None:
         """Lose this share of the messages of a topic; with `burst`, in runs of so many on average."""
         way = self._way(topic, service, sender, receiver, during)
-        return self._injector.add(MessageFault(**way, loss=share, burst=burst))
+        return self._striking.add(_checked(MessageFault(**way, loss=share, burst=burst)))
 
     def delay(
         self,
@@ -75,7 +83,7 @@ class Faults:
         They keep their order unless `reorder`.
         """
         way = self._way(topic, service, sender, receiver, during)
-        return self._injector.add(MessageFault(**way, latency=seconds, jitter=jitter, reorder=reorder))
+        return self._striking.add(_checked(MessageFault(**way, latency=seconds, jitter=jitter, reorder=reorder)))
 
     def duplicate(
         self,
@@ -89,7 +97,7 @@ class Faults:
     ) -> FaultReport | None:
         """Have this share of the messages of a topic come twice."""
         way = self._way(topic, service, sender, receiver, during)
-        return self._injector.add(MessageFault(**way, duplication=share))
+        return self._striking.add(_checked(MessageFault(**way, duplication=share)))
 
     def partition(self, *groups: Names, during: float | None = None) -> FaultReport | None:
         """Part nodes: those of different groups do not reach each other.
@@ -97,37 +105,80 @@ class Faults:
         Of one group alone, all other nodes are the second.
         """
         between = [_given(each) for each in groups]
+        if not between:
+            raise ValueError("partition: expected a group of nodes or several, got none")
         if len(between) == 1:
             between.append("**")
-        return self._injector.add(Partition(between=[*between], **self._times(during)))
+        return self._striking.add(_checked(Partition(between=[*between], **self._times(during))))
 
-    def crash(self, node: str, *, after: float = 0.0, restart_after: float | None = None) -> None:
+    def crash(self, node: str | Named, *, after: float = 0.0, restart_after: float | None = None) -> None:
         """Kill a node's program `after` so many seconds, and start it again `restart_after` so many more."""
-        self._injector.add(Crash(node=node, at=self._injector.now() + after, restart_after=restart_after))
+        if not after >= 0:
+            raise ValueError(f"after: expected seconds, 0 or more, got {after!r}")
+        at = self._striking.now() + after
+        self._striking.add(_checked(Crash(node=_name_of(node), at=at, restart_after=restart_after)))
 
     def skew(self, node: Names, seconds: float = 0.0, *, drift: float = 0.0) -> None:
         """Give nodes that start from now on a clock that is ahead by so many seconds, and gains `drift` per second."""
-        self._injector.add(ClockFault(node=_given(node), offset=seconds, drift=drift))
+        self._striking.add(_checked(ClockFault(node=_given(node), offset=seconds, drift=drift)))
 
     def read(self, path: str | PathLike[str]) -> None:
         """Have all that a file of faults says, as `robolink simulate --faults` does; its times begin with the system.
 
         Raises DocumentError with `file:line:column`.
         """
-        self._injector.read(path)
+        self._striking.read(path)
 
     def clear(self) -> None:
         """Have messages come again as they should. What is on its way still arrives when it would have."""
-        self._injector.clear()
+        self._striking.clear()
 
     def _way(self, name: Names, service: bool, sender: Names, receiver: Names, during: float | None) -> dict[str, Any]:
         kind = "service" if service else "topic"
         return {kind: _given(name), "from_": _given(sender), "to": _given(receiver), **self._times(during)}
 
     def _times(self, during: float | None) -> dict[str, Any]:
-        now = self._injector.now()
+        if during is not None and not during > 0:
+            raise ValueError(f"during: expected seconds, more than 0, got {during!r}")
+        now = self._striking.now()
         return {"after": now, "until": None if during is None else now + during}
 
 
 def _given(names: Names) -> str | list[str]:
-    return names if isinstance(names, str) else list(names)
+    if isinstance(names, (list, tuple)):
+        return [_name_of(each) for each in names]
+    return _name_of(names)
+
+
+def _name_of(given: Any) -> str:
+    if isinstance(given, Named) and not isinstance(given, type):
+        return given.get_fully_qualified_name()
+    if isinstance(given, str):
+        return given
+    raise TypeError(f"expected a name or several, got {given!r}")
+
+
+def _checked(fault: F) -> F:
+    """Give a fault, since it can be: as strict as a file of faults, but one of no effect is none. Raises ValueError."""
+    __tracebackhide__ = True
+    told: dict[str, Any] = msgspec.to_builtins(fault)
+    try:
+        msgspec.convert(told, type(fault))
+    except msgspec.ValidationError as error:
+        what, _, key = str(error).replace("`", "").partition(" - at $.")
+        expected = what.partition(", got")[0].replace("Expected", "expected")
+        raise ValueError(f"{key}: {expected}, got {told.get(key)!r}") from None
+    for key, mistake in mistakes_of(fault) if isinstance(fault, MessageFault) else ():
+        if key:
+            raise ValueError(f"{key}: {mistake}")
+    for mistake in filter(None, map(mistake_in, _names_in(told))):
+        raise ValueError(mistake)
+    return fault
+
+
+def _names_in(told: Any) -> Iterable[str]:
+    if isinstance(told, str):
+        yield told
+    elif isinstance(told, (list, dict)):
+        for each in told.values() if isinstance(told, dict) else told:
+            yield from _names_in(each)

@@ -5,27 +5,26 @@ from __future__ import annotations
 import inspect
 import re
 import traceback
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
-from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from robolink import logging
-from robolink.faults import FaultReport, Injector, read_faults
-from robolink.faults.injector import Fault
 from robolink.launch import processes
 from robolink.message import type_hash
 from robolink.node import Node
 from robolink.oneprocess import Host, Program
-from robolink.oneprocess.host_time import HostTime
+from robolink.oneprocess.places import is_users
 from robolink.oneprocess.supervision import Supervision
 from robolink.simulating.settings import numpy_seeded, seeded
 from robolink.supervisor.rules import Step, is_orderly
 from robolink.testing.faults import Faults
 from robolink.testing.launching import entry_of
-from robolink.testing.stage import Failure, Wanted
+from robolink.testing.stage import Failure, Named, Wanted, full
+from robolink.testing.strikes import Strikes
 from robolink.transport.memory import MemoryTransport
 from robolink.workspace.interfaces import WORKSPACE_TYPES
 
@@ -58,8 +57,8 @@ class OneProcess:
         self.expected: set[str] = set()
         with ExitStack() as stack:
             self.host = stack.enter_context(Host(seed=seed, connect=self._connect, clock=self._clock))
-            self.injector = Injector(self.host.bus, cast(HostTime, self.host.time), _Programs(self), seed=seed)
-            self.faults = Faults(_Struck(self.host, self.injector))
+            self.strikes = Strikes(self, seed)
+            self.faults = Faults(self.strikes)
             self.host.on_exit.append(self._on_exit)
             logging.add_handler(self.logs.append)
             stack.callback(logging.remove_handler, self.logs.append)
@@ -75,10 +74,10 @@ class OneProcess:
     # The host is made first: it asks for both only once a program starts.
 
     def _connect(self, program: str) -> Transport:
-        return self.injector.connect(program)
+        return self.strikes.injector.connect(program)
 
     def _clock(self, program: str, time: TimeBase) -> TimeBase:
-        return self.injector.clock(program, time)
+        return self.strikes.injector.clock(program, time)
 
     def now_ns(self) -> int:
         """Give the virtual time."""
@@ -108,15 +107,18 @@ class OneProcess:
 
     def _started_class(self, node_class: type[Node], wanted: Wanted) -> Any:
         called = self._free_name(wanted.namespace, wanted.name or _name_in(node_class) or node_class.__name__)
-        self.injector.introduce(called, [called])
-        return self.host.start_node(
+        self.strikes.injector.introduce(called, [called])
+        node = self.host.start_node(
             node_class,
             name=wanted.name,
             namespace=wanted.namespace,
             parameters=wanted.parameters,
             remappings=wanted.remappings,
+            args=wanted.args,
             called=called,
         )
+        self.strikes.tell_of_right_clock(called, node.get_fully_qualified_name().strip("/"))
+        return node
 
     def _free_name(self, namespace: str, name: str) -> str:
         """Give a name for a program that no other has."""
@@ -140,7 +142,7 @@ class OneProcess:
         self.run_until(lambda: False, 0.0)
 
     def _introduce(self, launched: Launched) -> None:
-        self.injector.introduce(launched.name, (entry.name for entry in launched.entries))
+        self.strikes.injector.introduce(launched.name, (entry.name for entry in launched.entries))
 
     def _members(self, launched: Launched) -> tuple[Member, ...]:
         return tuple(map(self._seeded, launched.members))
@@ -187,14 +189,20 @@ class OneProcess:
     @property
     def programs(self) -> list[str]:
         """The names of all programs, ended ones too."""
-        return [_called(each) for name, each in self.host.programs.items() if name != self._own]
+        programs = [each for name, each in self.host.programs.items() if name != self._own]
+        shown = Counter(map(_called, programs))
+        return [each.name if shown[_called(each)] > 1 else _called(each) for each in programs]
 
-    def program_of(self, node: str) -> str:
+    def program_of(self, node: str | Named) -> str:
         """Give the program of a node, or of the only one of this name in any namespace. Raises NotFoundError."""
-        wanted, names = node.strip("/"), self.injector.network.programs.items()
+        of_it = [] if isinstance(node, str) else [each for each, it in self.host.programs.items() if node in it.nodes]
+        if of_it:
+            return of_it[0]
+        node = full(node)
+        wanted, names = node.strip("/"), self.strikes.injector.network.programs.items()
         found = [program for program, of_one in names if any(each.endswith(f"/{wanted}") for each in of_one)]
         is_short = len(found) == 1 and not any(wanted in of_one for _, of_one in names)
-        return found[0] if is_short else self.injector.program_of(node)
+        return found[0] if is_short else self.strikes.injector.program_of(node)
 
     def _on_exit(self, program: Program) -> None:
         code = program.returncode or 0
@@ -214,6 +222,11 @@ class OneProcess:
         """Give all nodes."""
         return [node for program in self.host.programs.values() for node in program.nodes]
 
+    def nodes_beside(self, started: Any) -> list[Node]:
+        """Give the nodes of a program, or of that of a node."""
+        program = started if isinstance(started, Program) else self.host.program(self.program_of(started))
+        return program.nodes
+
     def class_of(self, topic: Topic) -> type[Message] | None:
         """Give the message class of a publisher."""
         for node in self.nodes():
@@ -229,7 +242,7 @@ class OneProcess:
 
     def fault_reports(self) -> list[str]:
         """Tell what each fault of messages has done."""
-        return [str(each) for each in self.injector.network.reports]
+        return [str(each) for each in self.strikes.injector.network.reports]
 
     def close(self) -> None:
         """End all programs."""
@@ -237,9 +250,14 @@ class OneProcess:
 
 
 def _name_in(node_class: type[Node]) -> str:
-    """Give the name that the code of a class gives its nodes, if it stands there: faults may name it beforehand."""
+    """Give the name that the code of a class gives its nodes, if it stands there: programs are called so.
+
+    A wrong clock must be known by it before there is a node: a context has its time from when it is made on, and the
+    node gives its name only then. All other faults learn names as nodes are announced.
+    """
     try:
-        found = re.search(r"""__init__\(\s*(?:node_name=)?["'](\w+)["']""", inspect.getsource(node_class))
+        source = inspect.getsource(node_class.__init__)  # Python parses a whole file to find that of a class
+        found = re.search(r"""__init__\(\s*(?:node_name=)?["'](\w+)["']""", source)
     except (OSError, TypeError):
         return ""
     return found[1] if found else ""
@@ -256,56 +274,7 @@ def _why(program: Program) -> str:
     error = program.error
     if error is None:
         return f"it ended with exit code {program.returncode}"
-    last = traceback.extract_tb(error.__traceback__)[-1:]
+    frames = traceback.extract_tb(error.__traceback__)
+    last = ([each for each in frames if is_users(each.filename)] or frames)[-1:]
     place = f" ({Path(last[0].filename).name}:{last[0].lineno})" if last else ""
     return f"{type(error).__name__}: {error}{place}"
-
-
-class _Programs:
-    """The programs of a system, as faults crash and restart them: by the rules of the launch file that they are of."""
-
-    def __init__(self, stage: OneProcess) -> None:
-        self._stage = stage
-
-    def at(self, seconds: float, act: Callable[[], object]) -> None:
-        """Call `act()` when the run is so old."""
-        self._stage.host.at(seconds, act)
-
-    def crash(self, name: str, *, is_restarted: bool) -> None:
-        """End a program at once; its rules count unless the fault starts it again."""
-        stage = self._stage
-        stage.expected.add(name)
-        supervision = stage.supervision_of(name)
-        if supervision is None:
-            stage.host.crash(name)
-        else:
-            supervision.crash(name, is_restarted=is_restarted)
-        stage.expected.discard(name)
-
-    def restart(self, name: str) -> None:
-        """Start a program anew."""
-        supervision = self._stage.supervision_of(name)
-        (self._stage.host if supervision is None else supervision).restart(name)
-
-
-class _Struck:
-    """Has faults strike the programs of a host."""
-
-    def __init__(self, host: Host, injector: Injector) -> None:
-        self._host, self._injector = host, injector
-
-    def now(self) -> float:
-        """Give the seconds of the run."""
-        return self._host.now
-
-    def add(self, fault: Fault) -> FaultReport | None:
-        """Have a fault from now on."""
-        return self._injector.add(fault)
-
-    def read(self, path: str | PathLike[str]) -> None:
-        """Have all that a file of faults says."""
-        self._injector.have(read_faults(path).value)
-
-    def clear(self) -> None:
-        """Have no faults of messages and connections any more."""
-        self._injector.network.clear()

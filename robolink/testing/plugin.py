@@ -6,19 +6,24 @@ for one of the fixtures, and a project's own fixtures of the same names go first
 
 from __future__ import annotations
 
+import os
 import random
 import zlib
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterable, Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 if TYPE_CHECKING:
+    from types import TracebackType
+
     from robolink.node import Node
     from robolink.testing.clock import SystemClock
     from robolink.testing.system import System
 
 SEEDS = 100_000
+MOST_SEED = 2**32 - 1
 RANDOM = "random"
 TRANSPORTS = ("memory", "zenoh")
 
@@ -26,12 +31,12 @@ TRANSPORTS = ("memory", "zenoh")
 def _seed(text: str) -> int | str:
     if text == RANDOM:
         return text
-    if text.isascii() and text.isdecimal():
+    if text.isascii() and text.isdecimal() and int(text) <= MOST_SEED:
         return int(text)
     raise ValueError(text)
 
 
-_seed.__name__ = f"whole number, or '{RANDOM}'"  # how argparse calls what it expected
+_seed.__name__ = f"whole number up to {MOST_SEED}, or '{RANDOM}'"  # how argparse calls what it expected
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -63,6 +68,16 @@ def _seed_for(item: pytest.Item) -> int:
     return random.randrange(SEEDS) if asked == RANDOM else zlib.crc32(item.name.encode()) % SEEDS
 
 
+def _name_from_here(item: pytest.Item) -> str:
+    """Give how a test is called in the folder where pytest was: its own name for it begins at the project's root."""
+    _, colons, inside = item.nodeid.partition("::")
+    try:
+        file = os.path.relpath(item.path, item.config.invocation_params.dir)
+    except ValueError:  # on another drive of Windows
+        return item.nodeid
+    return Path(file).as_posix() + colons + inside
+
+
 @pytest.fixture
 def system(request: pytest.FixtureRequest) -> Iterator[System]:
     """Give a system without nodes, for this test alone; at its end nothing of it is left."""
@@ -71,9 +86,11 @@ def system(request: pytest.FixtureRequest) -> Iterator[System]:
     item = request.node
     seed, transport = _seed_for(item), request.config.getoption("--robolink-transport")
     where = "" if transport == TRANSPORTS[0] else f" --robolink-transport {transport}"
-    with System(seed=seed, transport=transport, replay=f"pytest '{item.nodeid}' --robolink-seed {seed}{where}") as made:
+    replay = f"pytest '{_name_from_here(item)}' --robolink-seed {seed}{where}"
+    with System(seed=seed, transport=transport, replay=replay) as made:
         item.stash[_SYSTEM] = made
         yield made
+        made.check()
 
 
 @pytest.fixture
@@ -94,16 +111,47 @@ def virtual_time(system: System) -> SystemClock:
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[Any]) -> Generator[None, Any, None]:
     """Add to a failed test what its system was doing; skip one that asks processes for what they cannot do."""
     made = item.stash.get(_SYSTEM, None)
-    if made is None or call.excinfo is None or call.when != "call":
-        yield
+    if made is not None and call.excinfo is not None and not item.config.getoption("fulltrace"):
+        _leave_out_ways(call.excinfo.value)
+    report: pytest.TestReport = (yield).get_result()
+    if made is None or call.excinfo is None:  # of unittest's tests pytest says only now what they raised
         return
     from robolink.testing.expectations import ExpectationError, OnlyInMemoryError
 
     error = call.excinfo.value
     if isinstance(error, OnlyInMemoryError):
-        call.excinfo = pytest.CallInfo.from_call(lambda: pytest.skip(str(error)), "call").excinfo
-    report: pytest.TestReport = (yield).get_result()
-    if report.skipped:
+        report.outcome = "skipped"
         report.longrepr = (str(item.path), item.location[1] or 0, f"Skipped: {error}")
-    if report.failed and not isinstance(error, ExpectationError):  # which says so itself
-        report.sections.append(("robolink", made.story()))
+    elif report.failed and not isinstance(error, ExpectationError):  # which says so itself
+        report.sections.append(("robolink", made.story.whole()))
+
+
+_ROBOLINK = Path(__file__).parents[1]
+_WAYS = (_ROBOLINK / "testing", _ROBOLINK / "oneprocess")
+"""What stands between a test and its nodes' code, and says nothing to either."""
+
+
+def _leave_out_ways(error: BaseException) -> None:
+    """Leave robolink's own ways out of what is shown of an error; of one that says what is wrong, also its place."""
+    from robolink.exceptions import RobolinkError
+
+    step = error.__traceback__
+    while step is not None:
+        after = step.tb_next
+        while after is not None and _is_in(_WAYS, after):
+            after = after.tb_next
+        if isinstance(error, RobolinkError) and not any(not _is_in((_ROBOLINK,), each) for each in _steps(after)):
+            after = None
+        step.tb_next = after
+        step = after
+
+
+def _steps(step: TracebackType | None) -> Iterator[TracebackType]:
+    while step is not None:
+        yield step
+        step = step.tb_next
+
+
+def _is_in(folders: Iterable[Path], step: TracebackType) -> bool:
+    file = Path(step.tb_frame.f_code.co_filename)
+    return any(file.is_relative_to(each) for each in folders)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import queue
 import time
+from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from os import PathLike
@@ -16,32 +17,60 @@ from robolink.exceptions import NotFoundError
 from robolink.executors import SingleThreadedExecutor
 from robolink.faults.injector import Fault
 from robolink.interfaces.rcl_interfaces.msg import Log
+from robolink.interfaces.rcl_interfaces.srv import ListParameters
 from robolink.logging import LoggingSeverity, Record
 from robolink.node import Node
 from robolink.qos import qos_profile_rosout_default
-from robolink.testing.domains import free_domain
 from robolink.testing.expectations import NodeFailure, OnlyInMemoryError
 from robolink.testing.faults import Faults
 from robolink.testing.launching import entry_of
-from robolink.testing.remote import Launch, RemoteNode
-from robolink.testing.stage import Failure, Startable, Wanted
+from robolink.testing.stage import Failure, Named, Wanted, full
+from robolink.testing.supervisor_thread import Launch
+from robolink.transport.free_domain import free_domain
 from robolink.transport.zenoh import ZenohTransport
-from robolink.wire import NodeToken
+from robolink.wire import NodeToken, graph_pattern
 
 if TYPE_CHECKING:
     from robolink.launch import Entry
     from robolink.message import Message
     from robolink.supervisor.events import Exited
+    from robolink.task import Future
     from robolink.testing.recorder import Topic
     from robolink.transport import Transport
 
 NETWORK = "localhost"
 UP_WITHIN = 30.0
 """Seconds in which a node that is started must be announced."""
+ANSWERS_WITHIN = 5.0
+"""Seconds that a node which is announced has to be made and to answer."""
 DOWN_WITHIN = 20.0
 """Seconds in which a process that is to end has ended: it is killed before."""
+UNKNOWN_WITHIN = 5.0
+"""Seconds in which the others learn that a process has ended."""
 SLICE = 0.02
 """Seconds after which a wait looks whether what it waits for has come."""
+
+
+class RemoteNode:
+    """A node in another process, by its name: what it does is seen by topics, services and log lines.
+
+    `beside` are the full names of all nodes that its program had when it was announced.
+    """
+
+    def __init__(self, program: str, full_name: str, beside: Sequence[str]) -> None:
+        self.program, self.beside, self._full_name = program, beside, full_name
+
+    def get_fully_qualified_name(self) -> str:
+        """Give namespace and name."""
+        return self._full_name
+
+    def get_name(self) -> str:
+        """Give the node's name."""
+        return self._full_name.rpartition("/")[2]
+
+    def get_namespace(self) -> str:
+        """Give the node's namespace, with its leading slash."""
+        return self._full_name.rpartition("/")[0] or "/"
 
 
 class Processes:
@@ -52,7 +81,7 @@ class Processes:
     def __init__(self) -> None:
         self.failures: list[Failure] = []
         self.logs: list[Record] = []
-        self.faults = Faults(_NoInjector())
+        self.faults = Faults(_NoFaults())
         self._launches: list[Launch] = []
         self._exits: queue.SimpleQueue[Exited] = queue.SimpleQueue()
         self._expected: set[int | None] = set()
@@ -80,7 +109,7 @@ class Processes:
     # Programs
 
     def start(self, wanted: Wanted) -> RemoteNode:
-        """Start a node, and wait until it is announced. Raises NodeFailure when it ends before."""
+        """Start a node, and wait until it is made. Raises NodeFailure when it ends before."""
         __tracebackhide__ = True
         called = self._free_name(wanted)
         before = set(self.node.context.graph.nodes())
@@ -90,12 +119,12 @@ class Processes:
     def _free_name(self, wanted: Wanted) -> str:
         """Find a name for a program: that of its node, if it is given one."""
         own = wanted.name or (wanted.what.__name__ if isinstance(wanted.what, type) else Path(wanted.what).stem)
-        name, taken = f"{wanted.namespace.strip('/')}/{own}".lstrip("/"), self.programs
+        name, taken = f"{wanted.namespace.strip('/')}/{own}".lstrip("/"), self._all_names()
         names = (name if number == 1 else f"{name}_{number}" for number in range(1, len(taken) + 2))
         return next(each for each in names if each not in taken)
 
     def launch(self, entries: Sequence[Entry]) -> None:
-        """Start what a launch file says, and wait until every node is announced that waits for nothing."""
+        """Start what a launch file says, and wait until every node is made that waits for nothing."""
         __tracebackhide__ = True
         before = set(self.node.context.graph.nodes())
         launch = Launch(entries, self.domain, NETWORK, self._exits.put)
@@ -105,16 +134,18 @@ class Processes:
     def _begin(self, launch: Launch) -> None:
         self._launches.append(launch)
         launch.begin()
+        if launch.waits:
+            self.node.context.transport.watch(graph_pattern(self.domain), launch.hear)
 
     def _node(self, program: str, before: set[NodeToken]) -> RemoteNode:
         __tracebackhide__ = True
         found = [each.full_node_name for each in self._announced(before, program)]
         name = next((each for each in found if each == f"/{program}"), found[0])
         self._shown[program] = name.strip("/")
-        return RemoteNode(program, name)
+        return RemoteNode(program, name, found)
 
     def _announced(self, before: set[NodeToken], who: str, how_many: Callable[[], int] = lambda: 1) -> list[NodeToken]:
-        """Wait for so many nodes that were not there before. Raises NodeFailure when a program ends first."""
+        """Wait until so many nodes that were not there before are made. Raises NodeFailure if a program ends first."""
         __tracebackhide__ = True
         graph, failed = self.node.context.graph, len(self.failures)
         found: list[NodeToken] = []
@@ -125,10 +156,33 @@ class Processes:
 
         if not self.run_until(are_there, UP_WITHIN):
             raise NodeFailure(f"{who}: not every node was announced within {UP_WITHIN:g} s")
+        self._answered(found, lambda: len(self.failures) > failed)
         if len(self.failures) > failed:
             failure = self.failures.pop()
             raise NodeFailure(f"{failure.program} failed at its start: {failure.why}")
         return found
+
+    def _answered(self, nodes: Sequence[NodeToken], has_ended: Callable[[], bool]) -> None:
+        """Wait until nodes answer at their parameter services: those are announced while a node is still made.
+
+        A script may have nodes that never spin: one that does not answer in a while is taken for made.
+        """
+        names = {each.full_node_name for each in nodes}
+        clients = [self.node.create_client(ListParameters, f"{each}/list_parameters") for each in names]
+        open_calls = dict.fromkeys(clients)
+        answers: list[Future[ListParameters.Response]] = []
+
+        def all_answer() -> bool:
+            for each in [one for one in open_calls if one.service_is_ready()]:
+                del open_calls[each]
+                answers.append(each.call_async(ListParameters.Request()))
+            return has_ended() or (not open_calls and all(each.done() for each in answers))
+
+        try:
+            self.run_until(all_answer, ANSWERS_WITHIN)
+        finally:
+            for each in clients:
+                self.node.destroy_client(each)
 
     def stop(self, program: str) -> None:
         """End a program in order."""
@@ -146,18 +200,35 @@ class Processes:
         return self._node(program, before)
 
     def _end(self, program: str, act: Callable[[Launch], object]) -> None:
+        """Have a program end, and wait until it has and its node is announced no more."""
         launch = self._launch_of(program)
-        self._expected.add(launch.pid(program))
+        pid, before = launch.pid(program), self._count_of(program)
+        self._expected.add(pid)
         act(launch)
-        self.run_until(lambda: launch.pid(program) is None, DOWN_WITHIN)
+        if pid is not None:
+            self.run_until(lambda: launch.pid(program) is None, DOWN_WITHIN)
+            self.run_until(lambda: not before or self._count_of(program) < before, UNKNOWN_WITHIN)
+
+    def _count_of(self, program: str) -> int:
+        """Count the nodes that are called as that of a program."""
+        name = "/" + self._shown.get(program, program)
+        return sum(each.full_node_name == name for each in self.node.context.graph.nodes())
 
     @property
     def programs(self) -> list[str]:
-        """The names of all programs, ended ones too."""
-        return list(dict.fromkeys(self._shown.get(name, name) for launch in self._launches for name in launch.names))
+        """The names of all programs, ended ones too: that of the node where it is one program's alone."""
+        shown = {name: self._shown.get(name, name) for name in self._all_names()}
+        times = Counter(shown.values())
+        return [name if times[node] > 1 else node for name, node in shown.items()]
 
-    def program_of(self, node: str) -> str:
-        """Give the program of this name, or the only one of this name in any namespace. Raises NotFoundError."""
+    def _all_names(self) -> list[str]:
+        return [name for launch in self._launches for name in launch.names]
+
+    def program_of(self, node: str | Named) -> str:
+        """Give a node's program, or that of this name, in any namespace if it is the only one. Raises NotFoundError."""
+        if isinstance(node, RemoteNode):
+            return node.program
+        node = full(node)
         wanted, known = node.strip("/"), self.programs
         found = [each for each in known if each == wanted] or [each for each in known if each.endswith(f"/{wanted}")]
         if len(found) != 1:
@@ -174,8 +245,6 @@ class Processes:
         deadline = time.monotonic() + within
         while True:
             self._take_exits()
-            for launch in self._launches:
-                launch.release_what_may_start(self.node.context.graph)
             if condition():
                 return True
             left = deadline - time.monotonic()
@@ -195,6 +264,11 @@ class Processes:
     def nodes(self) -> list[Node]:
         """Give the test's own node: all others live elsewhere."""
         return [self.node]
+
+    def nodes_beside(self, started: RemoteNode) -> Sequence[str]:
+        """Give the names of the nodes of a node's program that are there."""
+        there = {each.full_node_name for each in self.node.context.graph.nodes()}
+        return [each for each in started.beside if each in there]
 
     def class_of(self, topic: Topic) -> type[Message] | None:
         """Give nothing: the class must be installed, or asked of the node."""
@@ -222,7 +296,7 @@ class Processes:
         self._stack.close()
 
 
-def _spec(what: Startable) -> str:
+def _spec(what: type[Node] | str | Path) -> str:
     """Give how `robolink run` finds it. Raises OnlyInMemoryError for a class that no file gives."""
     if not isinstance(what, type):
         return str(what)
@@ -239,7 +313,7 @@ def _severity(level: int) -> LoggingSeverity:
         return LoggingSeverity.UNSET
 
 
-class _NoInjector:
+class _NoFaults:
     """Refuses faults: between real processes there is nothing that could lose a message on purpose."""
 
     def now(self) -> float:

@@ -54,13 +54,20 @@ class Topic:
 class Recorder:
     """Hears all that is published on a domain, from the moment when its publisher is announced.
 
-    `transport` is a session of its own, `now` the time in nanoseconds that each message is noted with.
+    `transport` is a session of its own, `now` the time in nanoseconds that each message is noted with. `on_first` is
+    called with each topic when its first message comes.
     """
 
-    def __init__(self, transport: Transport, domain: int, now: Callable[[], int]) -> None:
+    def __init__(
+        self,
+        transport: Transport,
+        domain: int,
+        now: Callable[[], int],
+        on_first: Callable[[Topic], object] = lambda topic: None,
+    ) -> None:
         self.topics: dict[str, Topic] = {}
         """By key: two publishers of one topic may differ in type."""
-        self._transport, self._now = transport, now
+        self._transport, self._now, self._on_first = transport, now, on_first
         self._senders: dict[bytes, str] = {}
         self._numbers = itertools.count()
         self._ears: list[Ear] = []
@@ -137,6 +144,8 @@ class Recorder:
         now, number, keep = self._now, self._numbers.__next__, topic.kept.append
 
         def note(arrived: Any) -> None:
+            if not topic.count:
+                self._on_first(topic)
             topic.count += 1
             keep(Heard(now(), arrived, number()))
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Protocol
 
-from robolink.exceptions import NotFoundError
+from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticArray
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.plane import pose_of
@@ -23,6 +23,14 @@ DIAGNOSTICS = "/diagnostics"
 """Where a world tells, each second, how many things were run into."""
 _JUMP = 3.0
 """How many times farther away than its speed allows a robot must be to have been put there."""
+
+
+class NoRobotError(NotFoundError):
+    """There is no robot at all, or none that could be meant without a name."""
+
+    def __init__(self, text: str) -> None:
+        self.kind, self.name = "robot", ""
+        RobolinkError.__init__(self, text)
 
 
 class SimulatedRobot(Protocol):
@@ -47,16 +55,18 @@ class SimulatedRobot(Protocol):
         """How many things it has run into since the beginning."""
 
 
-def chosen(robots: Iterable[SimulatedRobot], name: str | None) -> SimulatedRobot:
+def chosen(robots: Iterable[tuple[str, SimulatedRobot]], name: str | None) -> SimulatedRobot:
     """Give the robot of a name, or the only one. Raises NotFoundError."""
-    found = {each.name: each for each in robots}
+    found = dict(robots)
     if name is None and len(found) == 1:
         return next(iter(found.values()))
     if name in found:
         return found[name]
     if not found:
-        raise NotFoundError("robot", name or "", (), "this system: no simulated world has begun in it")
-    raise NotFoundError("robot", name or "", found, f"the world, which has {', '.join(found)}")
+        raise NoRobotError("this system has no robot: no simulated world has begun in it")
+    if name is None:
+        raise NoRobotError(f"which robot? The world has {', '.join(found)}: give a name")
+    raise NotFoundError("robot", name, found, f"the world, which has {', '.join(found)}")
 
 
 class RobotElsewhere:
@@ -68,7 +78,7 @@ class RobotElsewhere:
     """How many things all robots of its world have run into: what is told each second."""
 
     def __init__(self, topic: str) -> None:
-        self.name = topic.split("/")[-2] or "robot"
+        self.name = topic.removesuffix(TRUTH).strip("/") or "robot"
         self._last: Odometry | None = None
 
     @property

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 if TYPE_CHECKING:
-    from robolink.launch.entries import Entry
+    from robolink.launch.reading.entries import Entry
     from robolink.logging import Record
     from robolink.message import Message
     from robolink.node import Node
@@ -15,14 +17,47 @@ if TYPE_CHECKING:
     from robolink.testing.recorder import Topic
     from robolink.transport import Transport
 
-Startable: TypeAlias = "type[Node] | str | Path"
-"""A Node class, what `robolink run` finds by this name, or a file."""
+Startable: TypeAlias = "type[Node] | Callable[[], object] | str | Path"
+"""A Node class, what `robolink run` finds by this name, a file, or a main() of one."""
+
+
+@runtime_checkable
+class Named(Protocol):
+    """A node, or what stands for it."""
+
+    def get_fully_qualified_name(self) -> str:
+        """Give namespace and name."""
+
+
+def full(node: str | Named) -> str:
+    """Spell the name of a node with its leading slash. Raises TypeError for what is no node."""
+    __tracebackhide__ = True
+    if isinstance(node, str):
+        return f"/{node.strip('/')}"
+    if isinstance(node, Named) and not isinstance(node, type):
+        return node.get_fully_qualified_name()
+    raise TypeError(f"expected a node or its name, got {node!r}")
+
+
+def startable(what: Any) -> type[Node] | str | Path:
+    """Give what can be started: a class, or how `robolink run` finds it. Raises TypeError."""
+    __tracebackhide__ = True
+    from robolink.node import Node
+
+    if isinstance(what, (str, PathLike)) or (isinstance(what, type) and issubclass(what, Node)):
+        return what if isinstance(what, (str, type)) else Path(what)
+    if inspect.isfunction(what) and what.__qualname__.isidentifier():
+        return f"{inspect.getsourcefile(what)}:{what.__name__}"
+    takes = "start takes a Node class, a name or a file"
+    if isinstance(what, Named) and not isinstance(what, type):
+        raise TypeError(f"{takes}, and makes the node: give {type(what).__name__}, not a node that is made already")
+    raise TypeError(f"{takes}, or a main() of one, not {what!r}")
 
 
 class Wanted(NamedTuple):
     """A node to start, and what it is told at its start."""
 
-    what: Startable
+    what: type[Node] | str | Path
     name: str = ""
     namespace: str = ""
     parameters: Mapping[str, Any] = {}
@@ -76,13 +111,16 @@ class Stage(Protocol):
 
     @property
     def programs(self) -> list[str]:
-        """The names of all programs, ended ones too."""
+        """The names of all programs, ended ones too: that of the node where it is one program's alone."""
 
-    def program_of(self, node: str) -> str:
-        """Give the program in which a node of this name runs. Raises NotFoundError."""
+    def program_of(self, node: str | Named) -> str:
+        """Give the program of a node, or that in which one of this name runs. Raises NotFoundError."""
 
     def run_until(self, condition: Callable[[], bool], within: float) -> bool:
         """Let time pass until the condition holds, so many seconds at most; whether it holds."""
+
+    def nodes_beside(self, started: Any) -> Sequence[str | Named]:
+        """Give the nodes that what `start` gave is one of: those of its program; none before it has made them."""
 
     def nodes(self) -> list[Node]:
         """Give the nodes that live in this process, the test's own included."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from robolink.exceptions import RobolinkError, shown
-from robolink.testing.values import WIDTH, short
+from robolink.message.one_line import WIDTH, short
 
 if TYPE_CHECKING:
     from robolink.logging import Record

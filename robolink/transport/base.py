@@ -7,6 +7,7 @@ what Zenoh's threads do down to one C call.
 
 from __future__ import annotations
 
+import functools
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
@@ -22,6 +23,10 @@ class Sample(NamedTuple):
 
     payload: bytes
     attachment: bytes
+
+
+make_sample: Callable[[tuple[bytes, bytes]], Sample] = functools.partial(tuple.__new__, Sample)
+"""Half the time of Sample(), whose `__new__` is Python: for what is run once a message."""
 
 
 class Handle(Protocol):

@@ -18,7 +18,7 @@ from typing import Any
 
 from robolink.exceptions import TransportClosedError
 from robolink.qos import DurabilityPolicy, QoSProfile, resolved
-from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport
+from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample
 
 
 class Bus:
@@ -178,11 +178,15 @@ class _Outlet(_Declared):
         with self.bus.lock:
             if not self.open:
                 raise TransportClosedError(f"the publisher of {self.key} has been closed")
-            sample = Sample(payload, attachment)
+            listening = self.bus.subscriptions.get(self.key, ())
+            if not (listening or self.kept.maxlen):
+                return
+            sample = make_sample((payload, attachment))
             if self.kept.maxlen:
                 self.kept.append((self.bus.next_order(), sample))
-            for subscription in self.bus.subscriptions.get(self.key, ()):
-                subscription.give(sample)
+            for each in listening:
+                if each.open:  # no sink before it has closed this one
+                    each.sink(sample)
 
     @property
     def matched(self) -> bool:
@@ -204,10 +208,6 @@ class _Subscription(_Declared):
     def _catch_up(self, depth: int) -> None:
         kept = [each for outlet in self.bus.outlets.get(self.key, ()) for each in list(outlet.kept)[-depth:]]
         for _, sample in sorted(kept, key=itemgetter(0)):
-            self.give(sample)
-
-    def give(self, sample: Sample) -> None:
-        if self.open:
             self.sink(sample)
 
     def leave(self) -> None:

@@ -22,7 +22,7 @@ from robolink.queues import get_within
 from robolink.transport import lifetime, network
 from robolink.transport import zenoh_declare as declare
 from robolink.transport import zenoh_handles as handles
-from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport
+from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample
 
 QUIET = 0.03
 """Seconds without news after which no more peers are expected."""
@@ -46,7 +46,6 @@ REUNION = network.SOUGHT_EVERY + 0.05
 """Seconds in which those that are left of an earlier holder of the rendezvous port find the new one."""
 
 _ZenohSample = zenoh.Sample
-_sample = functools.partial(tuple.__new__, Sample)  # half the time of Sample(), whose __new__ is Python
 
 
 class ZenohTransport(Transport):
@@ -118,7 +117,7 @@ class ZenohTransport(Transport):
         kind = type(arrived)
         if kind is _ZenohSample:  # the usual case first, and without calls: this is run once a message
             attachment = arrived.attachment
-            return _sample((arrived.payload.to_bytes(), b"" if attachment is None else attachment.to_bytes()))
+            return make_sample((arrived.payload.to_bytes(), b"" if attachment is None else attachment.to_bytes()))
         if kind is Sample:
             own: Sample = arrived
             return own

@@ -93,19 +93,19 @@ def read_input() -> str:
     """Read standard input to its end. Raises DocumentError for what is no text, and for too much."""
     raw = b"" if sys.stdin is None else sys.stdin.buffer.read(LONGEST_INPUT + 1)
     if len(raw) > LONGEST_INPUT:
-        raise DocumentError(f"{INPUT}: more than {LONGEST_INPUT // 2**20} MiB")
+        raise DocumentError(f"more than {LONGEST_INPUT // 2**20} MiB", INPUT)
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw[: error.start].count(b"\n") + 1
-        raise DocumentError(f"{INPUT}:{line}: not UTF-8 text") from None
+        raise DocumentError("not UTF-8 text", INPUT, line) from None
 
 
 def documents_of(text: str) -> Iterator[Any]:
     """Read each document of a YAML stream that is not empty. Raises DocumentError, also when there is none."""
     parts = [each for each in _RULE.split(text) if each.strip()]
     if not parts:
-        raise DocumentError(f"{INPUT}: there is nothing to publish in it")
+        raise DocumentError("there is nothing to publish in it", INPUT)
     for number, each in enumerate(parts, start=1):
         yield parse(each.removeprefix("\n"), name=INPUT if len(parts) == 1 else f"{INPUT}, document {number}")
 

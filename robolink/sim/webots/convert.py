@@ -172,7 +172,7 @@ def _placed(path: str, message: str, things: list[Standing], robots: Sequence[No
     message = re.sub(r"walls\[\d+\]", "the walls of the arena", message)
     node = _origin(path, things, robots)
     if node is None:
-        return DocumentError(f"{name}:1:1: {path.removeprefix('$.')}: {message}")
+        return DocumentError(f"{path.removeprefix('$.')}: {message}", name, 1, 1)
     return node.error(f"{node.called}: {message}")
 
 

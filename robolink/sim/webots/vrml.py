@@ -54,7 +54,7 @@ class Source:
         """Make an error (to raise) about what stands at `offset`."""
         line = self.text.count("\n", 0, offset) + 1
         column = offset - self.text.rfind("\n", 0, offset)
-        return DocumentError(f"{self.name}:{line}:{column}: {shown(message, 300)}")
+        return DocumentError(shown(message, 300), self.name, line, column)
 
 
 class Field:
@@ -163,7 +163,7 @@ def parse(text: str, name: str) -> list[Node]:
     """
     source = Source(text, name)
     if len(source.text) > LONGEST:
-        raise DocumentError(f"{name}: longer than {LONGEST // 2**20} MiB")
+        raise DocumentError(f"longer than {LONGEST // 2**20} MiB", name)
     _check_header(source)
     return _Parser(source).nodes()
 

@@ -1,0 +1,112 @@
+"""Draw a system as text: its nodes, and the topics, services and actions between them, in Mermaid or Graphviz's DOT."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+from robolink.launch.looking.look import Look
+from robolink.launch.looking.uses import Kind, Use, uses_of
+from robolink.launch.reading.entry import Entry
+
+
+class Channel(NamedTuple):
+    """A topic, service or action that is drawn."""
+
+    kind: Kind
+    name: str
+    type: str
+
+
+class Arrow(NamedTuple):
+    """From a node to what it publishes or calls, or from there to whom it reaches."""
+
+    node: str
+    channel: Channel
+    leaves: bool
+    """Whether it leaves the node."""
+
+
+class Graph(NamedTuple):
+    """What is drawn: full names of nodes in the order of the file, the rest sorted."""
+
+    nodes: list[str]
+    channels: list[Channel]
+    arrows: list[Arrow]
+
+
+def drawn(entries: Iterable[Entry], looks: Mapping[str, Look], format_: str = "mermaid") -> str:
+    """Draw what was seen of the nodes of a launch file."""
+    graph = graph_of(entries, looks)
+    return (_dot if format_ == "dot" else _mermaid)(graph)
+
+
+def graph_of(entries: Iterable[Entry], looks: Mapping[str, Look]) -> Graph:
+    """Give what there is to draw. A node that nothing was seen of stands alone; a service is there if it is called."""
+    nodes: dict[str, None] = {}
+    uses: list[Use] = []
+    for entry in entries:
+        look = looks.get(entry.name, Look())
+        nodes.update(dict.fromkeys(look.nodes or [entry.full_name]))
+        uses += uses_of(look)
+    called = {each.name for each in uses if not each.offers}
+    arrows = {_arrow(each) for each in uses if each.kind == "topic" or each.name in called}
+    return Graph(list(nodes), sorted({each.channel for each in arrows}), sorted(arrows))
+
+
+def _arrow(use: Use) -> Arrow:
+    leaves = use.offers if use.kind == "topic" else not use.offers
+    return Arrow(use.node, Channel(use.kind, use.name, use.type), leaves)
+
+
+_MERMAID = {"topic": '(["{}"])', "service": '{{{{"{}"}}}}', "action": '[["{}"]]'}
+
+
+def _mermaid(graph: Graph) -> str:
+    ids: dict[str | Channel, str] = {name: f"n{number}" for number, name in enumerate(graph.nodes)}
+    ids |= {each: f"p{number}" for number, each in enumerate(graph.channels)}
+    lines = ["flowchart LR"]
+    lines += [f'    {ids[each]}["{_html(each)}"]' for each in graph.nodes]
+    for each in graph.channels:
+        label = f"{_html(each.name)}<br/>{_html(each.type)}"
+        lines.append(f"    {ids[each]}{_MERMAID[each.kind].format(label)}")
+    for node, channel, leaves in graph.arrows:
+        ends = (ids[node], ids[channel]) if leaves else (ids[channel], ids[node])
+        lines.append(f"    {ends[0]} {'-->' if channel.kind == 'topic' else '-.->'} {ends[1]}")
+    return _text(lines)
+
+
+def _html(text: str) -> str:
+    for character, spelled in (("&", "&amp;"), ('"', "&quot;"), ("<", "&lt;"), (">", "&gt;"), ("\n", " ")):
+        text = text.replace(character, spelled)
+    return text
+
+
+_SHAPES = {"topic": "ellipse", "service": "hexagon", "action": "component"}
+
+
+def _dot(graph: Graph) -> str:
+    lines = ["digraph system {", "    rankdir=LR;"]
+    lines += [f"    {_quoted(f'node {each}')} [label={_quoted(each)}, shape=box];" for each in graph.nodes]
+    for each in graph.channels:
+        label = _quoted(f"{each.name}\n{each.type}")
+        lines.append(f"    {_quoted(_id(each))} [label={label}, shape={_SHAPES[each.kind]}];")
+    for node, channel, leaves in graph.arrows:
+        ends = [_quoted(f"node {node}"), _quoted(_id(channel))]
+        style = "" if channel.kind == "topic" else " [style=dashed]"
+        lines.append(f"    {' -> '.join(ends if leaves else ends[::-1])}{style};")
+    return _text([*lines, "}"])
+
+
+def _id(channel: Channel) -> str:
+    """Give what tells a topic from others: two nodes may use one name with two types."""
+    return " ".join(channel)
+
+
+def _quoted(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+    return f'"{escaped}"'
+
+
+def _text(lines: Sequence[str]) -> str:
+    return "\n".join(lines) + "\n"

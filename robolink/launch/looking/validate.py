@@ -1,0 +1,189 @@
+"""Find what is wrong with a system without starting it: what a launch file says, held against what its nodes are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import msgspec
+
+from robolink.exceptions import DocumentError, nearest
+from robolink.expand_topic_name import expand_topic_name
+from robolink.launch.looking.look import Look, looks_of
+from robolink.launch.looking.uses import Use, uses_of
+from robolink.launch.planning import core_errors, processes
+from robolink.launch.readiness import awaited
+from robolink.launch.reading.entry import Entry
+from robolink.remapping import parse_remap_rule
+
+
+class Report(NamedTuple):
+    """What was found."""
+
+    mistakes: list[DocumentError]
+    notes: list[str]
+    """What could not be looked into, and why."""
+
+
+class Found(msgspec.Struct):
+    """A mistake as programs read it; lines and columns count from 1."""
+
+    file: str
+    line: int
+    column: int
+    message: str
+
+
+def validate(entries: Sequence[Entry]) -> Report:
+    """Check a system: every node is made, in another process; the texts of mistakes begin with file:line:column.
+
+    Raises `DocumentError` for what keeps it from being started at all, whatever its nodes are.
+    """
+    processes(entries)
+    return judged(entries, looks_of(entries))
+
+
+def judged(entries: Sequence[Entry], looks: Mapping[str, Look]) -> Report:
+    """Check a system by what was seen of its nodes."""
+    notes = [f"{each.name} was not looked into: {reason}" for each in entries if (reason := _unseen(each, looks))]
+    mistakes = [*core_errors(entries), *_load_errors(entries, looks)]
+    for each in entries:
+        mistakes += _parameter_errors(each, looks.get(each.name, Look()))
+    mistakes += _wide_errors(entries, looks)
+    mistakes += _remapping_errors(entries, looks)
+    mistakes += _type_errors(entries, looks)
+    for each in entries:
+        for mistake, text in _waiting(each, entries, looks):
+            if mistake:
+                mistakes.append(each.error(["start_after"], text))
+            else:
+                notes.append(text)
+    once = {str(each): each for each in mistakes}  # copies of a node are wrong in the same place
+    return Report(list(once.values()), list(dict.fromkeys(notes)))
+
+
+def found(error: DocumentError) -> Found:
+    """Give what an error says, for a program."""
+    return Found(error.file, error.line, error.column, error.message)
+
+
+def _unseen(entry: Entry, looks: Mapping[str, Look]) -> str:
+    look = looks.get(entry.name)
+    if look is None:
+        return "it is a command"
+    return look.unseen or (look.error if entry.node.interactive else "")
+
+
+def _is_known(look: Look) -> bool:
+    """Whether all is known of a node: what it has not now it will never have."""
+    return not (look.error or look.unseen or look.is_open)
+
+
+def _load_errors(entries: Iterable[Entry], looks: Mapping[str, Look]) -> Iterator[DocumentError]:
+    for each in entries:
+        look = looks.get(each.name)
+        if look is not None and look.error and not each.node.interactive:
+            yield each.error(["node"], f"'{each.name}' cannot be started: {look.error}")
+
+
+# Parameters
+
+
+def _parameter_errors(entry: Entry, look: Look) -> Iterator[DocumentError]:
+    for name in entry.node.parameters:
+        if name in look.refused:
+            yield entry.error(["parameters", name], look.refused[name])
+        elif name not in look.declared and name not in entry.wide and entry.source is not None and _is_known(look):
+            reason = f"'{entry.name}' declares no parameter '{name}'{nearest(name, look.declared)}"
+            yield entry.error(["parameters", name], reason, key=True)
+
+
+def _wide_errors(entries: Sequence[Entry], looks: Mapping[str, Look]) -> Iterator[DocumentError]:
+    """What was given to several nodes one of them must know."""
+    for wide in sorted({name for each in entries for name in each.wide}):
+        concerned = [each for each in entries if wide in each.wide]
+        seen = [looks.get(each.name, Look(unseen="a command")) for each in concerned]
+        if all(map(_is_known, seen)) and not any(wide in each.declared for each in seen):
+            declared = {name for each in seen for name in each.declared}
+            reason = f"no node that gets it declares a parameter '{wide}'{nearest(wide, declared)}"
+            yield concerned[0].error(["parameters", wide], reason, key=True)
+
+
+# Remappings
+
+
+def _remapping_errors(entries: Iterable[Entry], looks: Mapping[str, Look]) -> Iterator[DocumentError]:
+    """A rule that a group says, or copies of a node have, is right when it renames something for one of them."""
+    errors: dict[tuple[str, int, int], DocumentError] = {}
+    useful: set[tuple[str, int, int]] = set()
+    for each in entries:
+        look = looks.get(each.name)
+        for match, replacement in each.node.remappings.items():
+            said = each.error(["remappings", match], "", key=True)
+            place = (said.file, said.line, said.column)
+            if look is None or not _is_known(look) or _renames(f"{match}:={replacement}", look):
+                useful.add(place)
+                continue
+            names = {end.name for end in look.ends} | {end.name.rpartition("/")[2] for end in look.ends}
+            names |= each.node.remappings.keys() - {match}  # what the others rename is no longer called so
+            reason = f"'{each.name}' has nothing that is called '{match}'{nearest(match, names)}"
+            errors[place] = each.error(["remappings", match], reason, key=True)
+    yield from (error for place, error in errors.items() if place not in useful)
+
+
+def _renames(rule: str, look: Look) -> bool:
+    """Whether something of a node has the new name that a rule gives."""
+    parsed = parse_remap_rule(rule)
+    if not parsed.match:  # of the node itself
+        return True
+    names = {each.name.partition("/_action/")[0] for each in look.ends} | {each.name for each in look.ends}
+    for full_name in look.nodes:
+        namespace, _, name = full_name.rpartition("/")
+        if expand_topic_name(parsed.replacement, name, namespace or "/") in names:
+            return True
+    return False
+
+
+# Types
+
+
+def _type_errors(entries: Iterable[Entry], looks: Mapping[str, Look]) -> Iterator[DocumentError]:
+    """Whoever publishes or serves is right; else the first."""
+    users: dict[tuple[str, str], list[tuple[Entry, Use]]] = {}
+    for entry in entries:
+        for use in uses_of(looks.get(entry.name, Look())):
+            users.setdefault((use.kind, use.name), []).append((entry, use))
+    for (kind, name), all_of_one in users.items():
+        first, right = next((each for each in all_of_one if each[1].offers), all_of_one[0])
+        for entry, use in all_of_one:
+            if (use.type, use.hash) != (right.type, right.hash):
+                what = f"another {use.type}" if use.type == right.type else f"{right.type}"
+                reason = (
+                    f"'{entry.name}' {use.verb} {kind} {name} as {use.type}, but '{first.name}' {right.verb} {what}"
+                )
+                yield entry.error(["node"], reason)
+
+
+# What is waited for
+
+
+def _waiting(entry: Entry, entries: Sequence[Entry], looks: Mapping[str, Look]) -> Iterator[tuple[bool, str]]:
+    """Tell what nobody of this system offers: a mistake where it is nearly what somebody does, else somebody else may.
+
+    Nothing is told where a node was not looked into: it may be that one.
+    """
+    if any(each.name not in looks or not _is_known(looks[each.name]) for each in entries):
+        return
+    others = [look for name, look in looks.items() if name != entry.name]
+    for each in awaited(entry, entries):
+        text = f"'{entry.name}' waits for {each.kind} {each.names[0]}, which"
+        if each.kind == "node":
+            nodes = looks[each.names[0].removeprefix("/")].nodes
+            if not set(nodes) & set(each.names):
+                yield True, f"{text} is announced as {' and '.join(nodes) or 'nothing'}: give it a `name`"
+            continue
+        offers = "MP" if each.kind == "topic" else "SS"
+        offered = {end.name for look in others for end in look.ends if end.kind == offers}
+        if offered.isdisjoint(each.names):
+            near = nearest(each.names[0], offered)
+            yield bool(near), f"{text} no other node of this system has{near}"

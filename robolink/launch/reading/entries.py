@@ -1,0 +1,190 @@
+"""Read a launch file: all that it and the files that it includes come to."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from dataclasses import replace as replaced
+from pathlib import Path, PurePath
+from types import MappingProxyType
+from typing import Any
+
+from msgspec.structs import replace
+
+from robolink.exceptions import DocumentError
+from robolink.launch.reading import lookup
+from robolink.launch.reading.arguments import read_given, values_of
+from robolink.launch.reading.around import Around
+from robolink.launch.reading.checks import check_node, check_shared, check_terminal, check_words
+from robolink.launch.reading.conditions import decided, is_wanted
+from robolink.launch.reading.description import GroupDescription, IncludeDescription, NodeDescription
+from robolink.launch.reading.drafts import Draft, entries_of
+from robolink.launch.reading.entry import Entry
+from robolink.launch.reading.file import LaunchFile
+from robolink.launch.reading.keys import check_keys
+from robolink.launch.reading.parameters import given_in
+from robolink.launch.reading.part import Part, Place, copies
+from robolink.launch.reading.substitution import Step, Values
+from robolink.workspace import Folder, NodeSource
+
+__all__ = ["Entry", "read_launch_file"]
+
+MOST_PARTS = 100_000
+"""Copies of nodes, groups and includes: files that include others could fill the memory otherwise."""
+
+_HELD = ("nodes", "include", "groups")
+_NOTHING: Mapping[str, str] = MappingProxyType({})
+
+
+def read_launch_file(
+    path: str | os.PathLike[str],
+    given: Mapping[str, str] = _NOTHING,
+    *,
+    workspace: Folder = None,
+    text: str | None = None,
+) -> list[Entry]:
+    """Read a launch file (or `text` in its place): every node and command to start, with nothing left open.
+
+    `given` are arguments as people type them, by name. Nodes are looked up in the launch file's own workspace, or,
+    when it came with robolink, in the user's, which is `workspace` or the nearest. The list is empty when conditions
+    leave nothing to start. Raises `DocumentError` with `file:line:column` for all that is wrong in the file, and
+    `NotFoundError` for a `workspace` that is no folder.
+    """
+    file = LaunchFile(Path(path), text)
+    reading = _Reading(workspace)
+    drafts = list(reading.file(file, values_of(file, read_given(given)), Around()))
+    entries = entries_of(drafts, reading.off)
+    check_terminal(entries)
+    return entries
+
+
+@dataclass(frozen=True)
+class _Scope:
+    """The file that is being read, where its nodes are looked up, and the files around it.
+
+    `is_off` where nothing is to be started: of what is read there only the names count, and mistakes do not.
+    """
+
+    file: LaunchFile
+    home: Path | None
+    chain: tuple[Path, ...]
+    is_off: bool = False
+
+
+class _Reading:
+    """The walk through a launch file and all that it includes."""
+
+    def __init__(self, workspace: Folder) -> None:
+        self._workspace = workspace
+        self._parts = 0
+        self.off: set[str] = set()
+        """The full names of nodes that conditions leave out, as far as they can be told."""
+        self._sources: dict[tuple[str, Path | None, Path], NodeSource] = {}
+
+    def file(self, file: LaunchFile, values: Values, around: Around, asker: _Scope | None = None) -> Iterator[Draft]:
+        """Yield what a file comes to; `asker` is the one that includes it."""
+        check_keys(file)
+        file.value(file.data.get("description", ""), str, ["description"])
+        home = lookup.home_of(file.path, self._workspace)
+        chain = (*(asker.chain if asker else ()), file.path.resolve())
+        scope = _Scope(file, home, chain, asker is not None and asker.is_off)
+        yield from self._held(scope, file.data, [], values, around)
+
+    def _held(
+        self, scope: _Scope, data: Mapping[str, Any], steps: Sequence[Step], values: Values, around: Around
+    ) -> Iterator[Draft]:
+        """Yield the nodes, what is included, and the groups, in the order in which these three are written."""
+        held = {key: scope.file.value(data[key], list[dict[str, Any]], [*steps, key]) for key in data if key in _HELD}
+        if not any(held.values()):
+            raise scope.file.error([*steps, *list(held)[:1]], "there is nothing to start")
+        for key, each in held.items():
+            for index, said in enumerate(each):
+                with self._forgiving(scope):
+                    for part in copies(scope.file, [*steps, key, index], said, values):
+                        self._count(part)
+                        yield from self._part(key, scope, part, around)
+
+    def _part(self, key: str, scope: _Scope, part: Part, around: Around) -> Iterator[Draft]:
+        """Yield what one part comes to; of what is switched off, note the names."""
+        read = {"nodes": self._node, "include": self._include, "groups": self._group}
+        if not scope.is_off and is_wanted(part):
+            yield from read[key](scope, part, around)
+            return
+        off = replaced(scope, is_off=True)
+        with self._forgiving(off):
+            if key == "nodes":
+                namespace = around.inside(part, part.value("namespace", str, ""))
+                self.off.update(f"{namespace}/{name}" for name in _names_of(part))
+            else:
+                list(read[key](off, part, around))
+
+    @contextmanager
+    def _forgiving(self, scope: _Scope) -> Iterator[None]:
+        """Let mistakes pass where nothing is to be started: that may be for another computer, with other files."""
+        try:
+            yield
+        except DocumentError:
+            if not scope.is_off or self._parts > MOST_PARTS:
+                raise
+
+    def _node(self, scope: _Scope, part: Part, around: Around) -> Iterator[Draft]:
+        check_words(part)
+        has_keyboard = decided(part, "interactive", default=False)
+        said: NodeDescription = replace(part.read(NodeDescription), interactive=has_keyboard)
+        check_node(part, said)
+        whole = around.with_node(part, said)
+        own = given_in(part, scope.home) if "parameters" in part else []
+        if said.node:
+            yield Draft(part, said, whole, own, self._source(scope, part, said.node), scope.home, chain=scope.chain)
+            return
+        path = whole.env["PATH"].value if "PATH" in whole.env else None
+        command = lookup.command_of(list(map(str, said.run)), path)
+        if command is None:
+            raise part.error(["run", 0], lookup.why_no_command(str(said.run[0])))
+        yield Draft(part, said, whole, own, None, scope.home, command, scope.chain)
+
+    def _group(self, scope: _Scope, part: Part, around: Around) -> Iterator[Draft]:
+        check_words(part)
+        said: GroupDescription = part.read(GroupDescription, without=_HELD)
+        check_shared(part, said)
+        inner = around.within(part, said, scope.home)
+        yield from self._held(scope, part.written, part.steps, part.values, inner)
+
+    def _include(self, scope: _Scope, part: Part, around: Around) -> Iterator[Draft]:
+        said: IncludeDescription = part.read(IncludeDescription)
+        namespace = around.inside(part, said.namespace)
+        try:
+            path = lookup.included_file(said.file, scope.home, scope.file.folder)
+        except lookup.NOT_FOUND as error:
+            raise part.error(["file"], lookup.reason_of(error)) from None
+        if path.resolve() in scope.chain:
+            names = [each.name for each in scope.chain[scope.chain.index(path.resolve()) :]]
+            raise part.error(["file"], f"a file cannot include itself: {' -> '.join([*names, path.name])}")
+        file = LaunchFile(path, above=scope.file.mentioned(part.steps))
+        values = values_of(file, part.values_in("arguments"), Place(part))
+        yield from self.file(file, values, around.moved_to(namespace), scope)
+
+    def _source(self, scope: _Scope, part: Part, name: str) -> NodeSource:
+        """Find a node, once for all its copies."""
+        asked = (name, scope.home, scope.file.folder)
+        if asked not in self._sources:
+            try:
+                self._sources[asked] = lookup.source_of(*asked)
+            except lookup.NOT_FOUND as error:
+                raise part.error(["node"], lookup.reason_of(error)) from None
+        return self._sources[asked]
+
+    def _count(self, part: Part) -> None:
+        self._parts += 1
+        if self._parts > MOST_PARTS:
+            raise part.error([], f"more than {MOST_PARTS} nodes, groups and includes")
+
+
+def _names_of(part: Part) -> list[str]:
+    """Give what a node may be called, without looking for it: its `name`, or that of its file, class or executable."""
+    name: str = part.value("name", str, "")
+    spec: str = part.value("node", str, "")
+    file, _, attribute = spec.rpartition(":") if ".py:" in spec else (spec, "", "")
+    return [name] if name else [PurePath(file.rpartition(" ")[2]).stem, attribute]

@@ -1,0 +1,82 @@
+"""A launch file's text: its data, and errors that say where in it something is wrong."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from robolink.exceptions import DocumentError
+from robolink.launch.reading.slips import hint, slips
+from robolink.launch.reading.substitution import Step
+from robolink.yamlfile import read_text
+from robolink.yamlmistakes import Reader
+
+_LONGEST_CHAIN = 100
+
+
+class LaunchFile:
+    """A YAML file that was read, or `text` in its place.
+
+    `data` is what it says as plain data, `folder` where it stands. `above` says which files included it, nearest
+    first: `lap.yaml:3, fleet.yaml:7`. Raises `DocumentError`, as all its methods do, when the text is no YAML.
+    """
+
+    def __init__(self, path: Path, text: str | None = None, above: str = "") -> None:
+        self.path, self._above = path, above
+        try:
+            text = read_text(path) if text is None else text
+            self._reader = _reader(text, str(path))
+        except DocumentError as error:
+            raise self._told(_with_hint(error, text)) from None
+        self.data: dict[str, Any] = self.value(self._reader.data, dict[str, Any], [])
+        for steps, message in slips(self.data, self._reader.spelled):
+            raise self.error(steps, message)
+
+    @property
+    def folder(self) -> Path:
+        """The folder in which it stands."""
+        return self.path.parent
+
+    def error(self, steps: Sequence[Step], message: str, *, key: bool = False) -> DocumentError:
+        """Make an error (to raise) about what stands at these steps, or at the nearest of them that is there."""
+        return self._told(self._reader.error(steps, message, key=key))
+
+    def value(self, data: Any, type_: Any, steps: Sequence[Step]) -> Any:
+        """Make a value of a type out of data that stands, or is written otherwise, at these steps."""
+        try:
+            return self._reader.convert(data, type_)
+        except msgspec.ValidationError as error:
+            raise self._told(self._reader.explained(data, type_, error, steps)) from None
+
+    def written(self, steps: Sequence[Step]) -> str | None:
+        """Give the value that stands there letter by letter, such as `012`; None if it is no single value."""
+        return self._reader.written(steps)
+
+    def mentioned(self, steps: Sequence[Step]) -> str:
+        """Say where something stands for an error in another file, and which files are above: `lap.yaml:3`."""
+        place = f"{self.path.name}:{self._reader.line(steps)}"
+        whole = f"{place}, {self._above}" if self._above else place
+        return whole if len(whole) <= _LONGEST_CHAIN else place
+
+    def _told(self, error: DocumentError) -> DocumentError:
+        return _longer(error, f" (included in {self._above})") if self._above else error
+
+
+@functools.lru_cache(maxsize=8)
+def _reader(text: str, name: str) -> Reader:
+    """Read a text; a file that is included for each of a hundred robots is parsed once."""
+    return Reader(text, name)
+
+
+def _with_hint(error: DocumentError, text: str | None) -> DocumentError:
+    """Give an error about a text that is no YAML, with what is probably the reason."""
+    said = hint(text, error.line) if text is not None and error.line else ""
+    return _longer(error, f": {said}") if said else error
+
+
+def _longer(error: DocumentError, more: str) -> DocumentError:
+    return type(error)(error.message + more, error.file, error.line, error.column)

@@ -1,0 +1,119 @@
+"""Keys that a launch file cannot have, and what was probably meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import msgspec
+
+from robolink.exceptions import nearest, shown
+from robolink.launch.reading.description import GroupDescription, IncludeDescription, LaunchDescription, NodeDescription
+from robolink.launch.reading.file import LaunchFile
+from robolink.launch.reading.substitution import Step
+
+
+class _Kind(NamedTuple):
+    """What a mapping is, the keys that it may have, and other names under which these are known elsewhere."""
+
+    title: str
+    struct: type[msgspec.Struct]
+    others: dict[str, str]
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        return self.struct.__struct_encode_fields__
+
+
+_PACKAGE = "`node: PACKAGE EXECUTABLE`, or `node: NAME`"
+_SHARED = {
+    "param": "`parameters`",
+    "params": "`parameters`",
+    "parameter": "`parameters`",
+    "remap": "`remappings: {from: to}`",
+    "remaps": "`remappings: {from: to}`",
+    "ns": "`namespace`",
+    "environment": "`env`",
+    "set_env": "`env`",
+    "depends_on": "`start_after`",
+    "wait_for": "`start_after`",
+    "restart": "`respawn`",
+    "container": "`process`, the same for all nodes that share one",
+    "when": "`if`",
+    "condition": "`if`",
+    "delay": "nothing waits for a time: `start_after` names what must be there",
+    "respawn_delay": "`respawn: {delay: SECONDS}`",
+    "respawn_max_retries": "`respawn: {most: N, within: SECONDS}`",
+}
+_NODE_OTHERS = {
+    **_SHARED,
+    "package": _PACKAGE,
+    "pkg": _PACKAGE,
+    "executable": "`node: NAME`, or `run: [program, ...]`",
+    "exec": "`node: NAME`, or `run: [program, ...]`",
+    "plugin": "`node: FILE.py:Class`, with `process` for nodes that share one",
+    "arguments": "`args`",
+    "ros_arguments": "`parameters`, `remappings` and `log_level`",
+    "cmd": "`run: [program, ...]`",
+    "command": "`run: [program, ...]`",
+    "stdin": "`interactive: true`",
+    "affinity": "`cpu`",
+    "output": "leave it out: output is shown and written to the log folder",
+    "prefix": "`run: [program, ...]`, the whole command",
+    "emulate_tty": "leave it out: output is line-buffered as it is",
+}
+_TOP_OTHERS = {
+    "launch": "at the top stand `arguments`, `nodes`, `include` and `groups`",
+    "node": "`nodes`, a list",
+    "group": "`groups`, a list",
+    "includes": "`include`, a list",
+    "arg": "`arguments: {name: default}`",
+    "args": "`arguments: {name: default}`",
+}
+_TOP = _Kind("a launch file", LaunchDescription, _TOP_OTHERS)
+_NODE = _Kind("a node", NodeDescription, _NODE_OTHERS)
+_GROUP = _Kind("a group", GroupDescription, {**_SHARED, "node": "`nodes`, a list", "group": "`groups`, a list"})
+_AROUND = "a group around the include can say it"
+_INCLUDE_OTHERS = {
+    **dict.fromkeys(("parameters", "remappings", "env", "process", "start_after", "respawn", "on_exit"), _AROUND),
+    "path": "`file`",
+    "args": "`arguments`",
+    "ns": "`namespace`",
+}
+_INCLUDE = _Kind("an include", IncludeDescription, _INCLUDE_OTHERS)
+_KINDS = (_NODE, _GROUP, _INCLUDE, _TOP)
+_PARTS = {"nodes": _NODE, "include": _INCLUDE, "groups": _GROUP}
+"""What the mappings are that a launch file and a group list under these keys."""
+
+
+def check_keys(file: LaunchFile) -> None:
+    """Refuse keys that mean nothing, everywhere in a file, also in what is not to be started this time.
+
+    Raises `DocumentError` with the key that is the nearest, or with what its name stands for in other launch files.
+    """
+    for steps, key, kind in _unknown(file.data, _TOP, []):
+        raise file.error([*steps, key], f"unknown key '{shown(key)}'{_meant(key, kind)}", key=True)
+
+
+def _unknown(data: Any, kind: _Kind, steps: list[Step]) -> Iterator[tuple[list[Step], str, _Kind]]:
+    """Yield the unknown keys of a mapping of some kind and of those within; what is no mapping has none."""
+    if not isinstance(data, dict):
+        return
+    for key, value in data.items():
+        if key not in kind.keys:
+            yield steps, key, kind
+        elif kind in (_TOP, _GROUP) and key in _PARTS and isinstance(value, list):
+            for index, each in enumerate(value):
+                yield from _unknown(each, _PARTS[key], [*steps, key, index])
+
+
+def _meant(key: str, kind: _Kind) -> str:
+    if key in kind.others:
+        instead = kind.others[key]
+        return f": write {instead}" if instead.startswith("`") else f": {instead}"
+    if key.startswith("-"):
+        return f": write '- {key[1:]}', with a space"
+    if near := nearest(key, kind.keys):
+        return near
+    owners = [each.title for each in _KINDS if each is not kind and key in each.keys]
+    return f": it is said of {' or '.join(owners)}, not of {kind.title}" if owners else f" in {kind.title}"

@@ -1,0 +1,182 @@
+"""Where the launch files, nodes and other files are that somebody types or that a launch file names."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from robolink.exceptions import NotFoundError, RobolinkError, nearest
+from robolink.workspace import (
+    Folder,
+    NodeSource,
+    built_in_workspace,
+    canonical,
+    executable,
+    executables,
+    find_launch,
+    find_node,
+    find_package,
+    find_ros_node,
+    list_packages,
+    user_workspace,
+    workspace_of,
+)
+from robolink.workspace.find import YAML
+
+LAUNCH_FOLDER = "launch"
+"""Where a ROS 2 package has its launch files."""
+
+WHERE_PROGRAMS_ARE = "a name is looked up on the PATH, a path from the working directory ({here} is the file's folder)"
+_OURS = {
+    "robolink": (sys.executable, "-m", "robolink"),
+    "python": (sys.executable,),
+    "python3": (sys.executable,),
+}
+
+NOT_FOUND = (NotFoundError, OSError, ValueError, RuntimeError)
+"""What looking for a file raises: it is not there, or what is asked for can be no file's name."""
+
+_PROGRAMS = {".py": "a Python program", ".xml": "XML"}
+
+
+class LaunchKindError(RobolinkError, ValueError):
+    """A launch file that ROS 2 reads and robolink does not."""
+
+
+def find(names: Sequence[str], *, workspace: Folder = None) -> Path:
+    """Find a launch file by its name or path, or by a package and the file's name in it.
+
+    Raises `NotFoundError` with the nearest name, and `LaunchKindError` for one that is no YAML.
+    """
+    _check_kind(names[-1])
+    if len(names) == 1:
+        return find_launch(names[0], workspace=workspace)
+    package, name = names
+    folder = find_package(package, workspace=workspace)
+    if folder is None:
+        known = list_packages(workspace=workspace)
+        raise NotFoundError("package", package, known, "the workspace (an argument is given as NAME:=VALUE)")
+    return _in_package(folder, package, name)
+
+
+def _check_kind(name: str) -> None:
+    kind = _PROGRAMS.get(Path(name).suffix)
+    if kind is not None:
+        raise LaunchKindError(
+            f"{name} is {kind}, and robolink launches YAML: list its nodes in a .yaml file, as in `nodes: [node: NAME]`"
+        )
+
+
+def _in_package(folder: Path, package: str, name: str) -> Path:
+    """Find a file in a package: `robot`, `robot.yaml` and `robot.launch.yaml` are the same."""
+    there = [each for each in sorted((folder / LAUNCH_FOLDER).glob("*")) if each.suffix in YAML]
+    for each in there:
+        if name in (each.name, each.stem, each.stem.removesuffix(".launch")):
+            return each
+    for suffix in (".py", ".xml"):
+        for end in ("", suffix, f".launch{suffix}"):
+            if (file := folder / LAUNCH_FOLDER / f"{name}{end}").is_file():
+                _check_kind(file.name)
+    names = [each.name for each in there]
+    raise NotFoundError("launch file", name, names, f"package {package}, which has {', '.join(names) or 'none'}")
+
+
+def reason_of(error: Exception) -> str:
+    """Say why something was not found."""
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)
+
+
+def home_of(path: Path, workspace: Folder) -> Path | None:
+    """Give the workspace in which a launch file's nodes, worlds and files are looked up first.
+
+    Its own or, when it came with robolink, the user's. Raises `NotFoundError` when that is named and no folder.
+    """
+    own = workspace_of(path.parent)
+    return user_workspace(workspace) if own is None or own == built_in_workspace() else own
+
+
+def source_of(name: str, home: Path | None, folder: Path) -> NodeSource:
+    """Find a node; a file is looked for from the launch file's `folder`, or from the workspace.
+
+    Two words are a package and an executable of it, as `robolink run` takes them. Raises `NotFoundError` with the
+    nearest name.
+    """
+    file, colon, attribute = name.rpartition(":") if ".py:" in name else (name, "", "")
+    found = _first_file(each / Path(file).expanduser() for each in _around(folder, home))
+    if found is not None and file.endswith(".py"):
+        return NodeSource(found.stem, found.resolve(), attribute if colon else "")
+    package, _, its_name = name.partition(" ")
+    if its_name and canonical(package).isidentifier() and not file.endswith(".py"):
+        return _executable(package, its_name.strip(), home)
+    return find_node(name, workspace=home)
+
+
+def _executable(package: str, name: str, home: Path | None) -> NodeSource:
+    folder = find_package(package, workspace=home)
+    source = find_ros_node(package, name) if folder is None else executable(folder, name)
+    if source is not None:
+        return source
+    if folder is None:
+        raise NotFoundError("package", package, list_packages(workspace=home), "the workspace")
+    raise NotFoundError("executable", name, executables(folder), f"package {package}")
+
+
+def included_file(name: str, home: Path | None, folder: Path) -> Path:
+    """Find a launch file that another one in `folder` includes.
+
+    It is looked for beside that one, with or without `.yaml`, as a path from the workspace, and by name. Raises
+    `NotFoundError` with the nearest name.
+    """
+    path = Path(name).expanduser()
+    beside_it = (folder / path.with_name(f"{path.name}{suffix}") for suffix in YAML if path.name)
+    found = _first_file([folder / path, *beside_it, *(each / path for each in _around(folder, home)[1:])])
+    if found is not None:
+        return found
+    try:
+        return find_launch(name, workspace=home)
+    except NotFoundError as error:
+        beside = [text for each in folder.glob("*") if each.suffix in YAML for text in (each.name, each.stem)]
+        raise (NotFoundError("launch file", name, beside) if nearest(name, beside) else error) from None
+
+
+def parameter_file(name: str, home: Path | None, folder: Path) -> Path:
+    """Find a parameter file: from the launch file's `folder`, or from the workspace.
+
+    Raises `NotFoundError` with the nearest name beside it.
+    """
+    path = Path(name).expanduser()
+    folders = _around(folder, home)
+    found = _first_file(each / path for each in folders)
+    if found is None:
+        beside = (str(path.with_name(each.name)) for each in (folder / path).parent.glob("*") if each.suffix in YAML)
+        raise NotFoundError("file", name, beside, " or ".join(map(str, folders)))
+    return found
+
+
+def command_of(run: Sequence[str], path: str | None) -> list[str] | None:
+    """Give how a command is started, None if there is no such program; `path` is its PATH, or None for ours.
+
+    `robolink` and `python` are those of this process where the PATH has none.
+    """
+    if shutil.which(run[0], path=path) is not None:
+        return list(run)
+    ours = _OURS.get(run[0])
+    return None if ours is None else [*ours, *run[1:]]
+
+
+def _around(folder: Path, home: Path | None) -> list[Path]:
+    """Give the folders from which a launch file names files, wherever it is launched: its own, its workspace's."""
+    return [folder] if home is None else [folder, home]
+
+
+def why_no_command(program: str) -> str:
+    """Say why `command_of` finds no such program."""
+    if sys.platform != "win32" and Path(program).name != program and Path(program).is_file():
+        return f"'{program}' may not be executed: chmod +x it"
+    return f"no program '{program}' is found: {WHERE_PROGRAMS_ARE}"
+
+
+def _first_file(candidates: Iterable[Path]) -> Path | None:
+    return next((each for each in candidates if each.is_file()), None)

@@ -1,0 +1,78 @@
+"""What `start_after` names: nodes of the system, topics, services, by their full names."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from typing import NamedTuple
+
+from robolink.exceptions import NameValidationException, nearest, shown
+from robolink.expand_topic_name import expand_topic_name
+from robolink.launch.reading.around import Placed
+from robolink.launch.reading.description import StartAfter
+from robolink.validate_topic_name import validate_topic_name
+
+
+class Known(NamedTuple):
+    """The full names of all that a system has."""
+
+    nodes: Collection[str]
+    commands: Collection[str]
+    off: Collection[str]
+    """What its conditions leave out this time."""
+
+
+def resolved(awaited: Iterable[Placed], name: str, known: Known) -> Iterator[StartAfter]:
+    """Yield what a node or command waits for, with full names; `name` is its own full name.
+
+    A node is looked for in the namespace of who waits, then in those around it; one that is switched off is not waited
+    for. Raises `DocumentError` for a node that there is not, and for what is no name.
+    """
+    namespace, _, own = name.rpartition("/")
+    for each in awaited:
+        said = StartAfter(node=each.value) if isinstance(each.value, str) else each.value
+        if bool(said.node) + bool(said.topic) + bool(said.service) != 1:
+            raise each.place.error("expected one of `node`, `topic` and `service` (several are given as a list)")
+        if said.node:
+            yield from _node(each, said.node, namespace, known)
+        elif said.topic:
+            yield StartAfter(topic=_expanded(each, "topic", said.topic, own, namespace))
+        else:
+            yield StartAfter(service=_expanded(each, "service", said.service, own, namespace))
+
+
+def _node(each: Placed, name: str, namespace: str, known: Known) -> Iterator[StartAfter]:
+    candidates = [name] if name.startswith("/") else [f"{above}/{name}" for above in _and_above(namespace)]
+    found = next((full for full in candidates if full in known.nodes), None)
+    if found is not None:
+        yield StartAfter(node=found)
+        return
+    steps = [] if isinstance(each.value, str) else ["node"]
+    if any(full in known.commands for full in candidates):
+        raise each.place.error(f"'{shown(name)}' is a command, of which nothing tells that it is up", steps)
+    if not any(full in known.off for full in candidates):
+        near = _nearest(name, namespace, known.nodes)
+        raise each.place.error(f"no node of this system is called '{shown(name)}'{near}", steps)
+
+
+def _nearest(name: str, namespace: str, nodes: Collection[str]) -> str:
+    """Suggest the node that was probably meant, by a name that finds it."""
+    around = [f"{above}/" for above in _and_above(namespace)]
+    short = {full: full.removeprefix(next(each for each in around if full.startswith(each))) for full in nodes}
+    elsewhere = [each for full, each in short.items() if full.endswith(f"/{name}")]
+    return nearest(name, short.values()) if not elsewhere else f" (did you mean '{elsewhere[0]}'?)"
+
+
+def _and_above(namespace: str) -> Iterator[str]:
+    """Yield a namespace and those around it: /a/b, /a and the root, which is ''."""
+    while namespace:
+        yield namespace
+        namespace = namespace.rpartition("/")[0]
+    yield ""
+
+
+def _expanded(each: Placed, kind: str, name: str, own: str, namespace: str) -> str:
+    try:
+        validate_topic_name(name, is_service=kind == "service")
+        return expand_topic_name(name, own, namespace or "/")
+    except NameValidationException as error:
+        raise each.place.error(f"'{shown(error.name)}' {error.error_msg}", [kind]) from None

@@ -1,0 +1,156 @@
+"""Put values in the place of `{name}` in what a launch file says."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, TypeAlias
+
+from robolink.exceptions import RobolinkError, nearest, shown
+from robolink.yamlfile import spell
+
+Step: TypeAlias = "str | int"
+Renamed: TypeAlias = "dict[tuple[Step, ...], str]"
+"""Keys that a substitution changed: the steps to what each became, the last one filled in, and how it is written."""
+
+HERE = "here"
+NUMBER = "i"
+ENVIRONMENT = "env:"
+
+_BRACES = re.compile(r"\{\{|\}\}|\{([^{}]*)\}|[{}]")
+_IN_BRACES = re.compile(r"\{([^{}]*)\}")
+_NAME = re.compile(r"[^\W\d]\w*|env:.*", re.DOTALL)
+_MOST_SHOWN = 6
+_ROS = re.compile(r"\$\((var|find-pkg-share)\s+'?([\w-]+)'?\)")
+_ROS_MEANS = {
+    "var": "write {{{0}}}, and `{0}` under `arguments`",
+    "find-pkg-share": "write a path, which begins in this file's folder or in the workspace",
+}
+
+
+class SubstitutionError(RobolinkError, ValueError):
+    """A `{name}` stands for nothing; `steps` lead to it, to the key of a mapping if `is_key`."""
+
+    def __init__(self, reason: str, steps: Sequence[Step], is_key: bool) -> None:
+        super().__init__(reason)
+        self.steps, self.is_key = steps, is_key
+
+
+class Value(NamedTuple):
+    """What a name stands for: plain data, and how it reads within a text, which is how somebody wrote it."""
+
+    data: Any
+    text: str
+
+    @classmethod
+    def of(cls, data: Any) -> Value:
+        """Make a value that nobody has written, or that has come from elsewhere."""
+        return cls(data, data if isinstance(data, str) else spell(data))
+
+
+class Values:
+    """What may stand in braces: names, and `env:NAME` for a variable of the environment."""
+
+    def __init__(self, named: Mapping[str, Value], environment: Mapping[str, str] = os.environ) -> None:
+        self._named, self._environment = named, environment
+
+    def joined_by(self, more: Mapping[str, Value]) -> Values:
+        """Give these and more; the new ones count where a name is the same."""
+        return Values({**self._named, **more}, self._environment)
+
+    def get(self, name: str) -> Value | None:
+        """Give what a name stands for, None if nothing."""
+        if name.startswith(ENVIRONMENT):
+            text = self._environment.get(name.removeprefix(ENVIRONMENT).strip())
+            return None if text is None else Value(text, text)
+        return self._named.get(name)
+
+    def why_not(self, name: str) -> str:
+        """Say why a name stands for nothing, and what would help."""
+        if name.startswith(ENVIRONMENT):
+            variable = name.removeprefix(ENVIRONMENT).strip()
+            return f"the environment has no '{shown(variable)}'{nearest(variable, self._environment)}"
+        reason = f"nothing is called '{{{shown(name)}}}' here"
+        if name == NUMBER:
+            return f"{reason}: only what has a `count` is numbered"
+        if name in self._environment:
+            return f"{reason}: for the environment's write {{{ENVIRONMENT}{name}}}"
+        known = [f"{{{each}}}" for each in self._named]
+        only = f", only {', '.join(known)}" if len(known) <= _MOST_SHOWN else ""
+        return f"{reason}{nearest(name, self._named) or only}; '{{{{' and '}}}}' are braces"
+
+
+def filled(
+    data: Any, values: Values, steps: Sequence[Step], *, as_text: bool = False, renamed: Renamed | None = None
+) -> Any:
+    """Give plain data with each `{name}` in its texts and keys replaced.
+
+    A text that is nothing but `{name}` becomes the value itself, so that a number stays one, unless only texts can
+    stand there. Braces around anything but a name stay as they are, so that JSON need not be written otherwise; in a
+    text with `{{` somewhere, `{{` and `}}` are braces and all others stand for something.
+    `steps` lead to the data, for the SubstitutionError that is raised for an unknown name. Keys that become others
+    are noted in `renamed`.
+    """
+    if isinstance(data, str):
+        return _filled_text(data, values, steps, is_key=False, as_text=as_text)
+    if isinstance(data, list):
+        each = enumerate(data)
+        return [filled(item, values, [*steps, at], as_text=as_text, renamed=renamed) for at, item in each]
+    if isinstance(data, dict):
+        return _filled_mapping(data, values, steps, as_text, renamed)
+    return data
+
+
+def is_null(data: Any, values: Values) -> bool:
+    """Say whether a text is nothing but a `{name}` that stands for null."""
+    whole = _IN_BRACES.fullmatch(data) if isinstance(data, str) else None
+    value = values.get(whole[1].strip()) if whole and _is_name(whole[1]) else None
+    return value is not None and value.data is None
+
+
+def _filled_mapping(
+    data: dict[str, Any], values: Values, steps: Sequence[Step], as_text: bool, renamed: Renamed | None
+) -> dict[str, Any]:
+    result: dict[str, Any] = {}
+    for key, value in data.items():
+        name = _filled_text(key, values, [*steps, key], is_key=True, as_text=True)
+        if name in result:
+            raise SubstitutionError(f"another key is '{shown(name)}', too", [*steps, key], is_key=True)
+        if name != key and renamed is not None:
+            at = (*steps, name)
+            renamed[at] = key
+        result[name] = filled(value, values, [*steps, key], as_text=as_text, renamed=renamed)
+    return result
+
+
+def _filled_text(text: str, values: Values, steps: Sequence[Step], *, is_key: bool, as_text: bool) -> Any:
+    if "$(" in text and (theirs := _ROS.search(text)):
+        instead = _ROS_MEANS[theirs[1]].format(theirs[2])
+        raise SubstitutionError(f"`{theirs[0]}` is ROS 2's: {instead}", steps, is_key)
+    if "{" not in text and "}" not in text:
+        return text
+    has_pairs = "{{" in text
+
+    def value_of(name: str) -> Value:
+        value = values.get(name)
+        if value is None:
+            raise SubstitutionError(values.why_not(name), steps, is_key)
+        return value
+
+    def replaced(match: re.Match[str]) -> str:
+        braces, name = match[0], match[1]
+        if name is None and len(braces) == 2:
+            return braces[0]
+        if name is None:
+            raise SubstitutionError(f"a lone '{braces}': write '{braces * 2}' for one", steps, is_key)
+        return value_of(name.strip()).text if has_pairs or _is_name(name) else braces
+
+    whole = _IN_BRACES.fullmatch(text)
+    if whole and _is_name(whole[1]) and not as_text:
+        return value_of(whole[1].strip()).data
+    return (_BRACES if has_pairs else _IN_BRACES).sub(replaced, text)
+
+
+def _is_name(text: str) -> bool:
+    return _NAME.fullmatch(text.strip()) is not None

@@ -1,0 +1,152 @@
+"""Kill process groups when the supervisor that runs them is itself killed.
+
+A lifeline only helps with programs that watch it. So, where there are process groups, the supervisor also
+starts this file as a small program, tells it through a pipe which groups there are, and when the pipe ends with
+groups left, this waits a moment for an orderly end and kills them. A process that was just being started when the
+supervisor was killed is known by the mark of its lifeline, where the system shows environments (Linux).
+
+As that program this file runs by its path, in a Python that finds neither our package nor any other that is installed
+(`-I -S`: it begins in a third of the time). So all that it does then, `signal_group` and `is_alive` too, stands here
+and needs nothing but the standard library.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import sys
+import time
+from collections.abc import Iterable
+from pathlib import Path
+from subprocess import DEVNULL, PIPE, Popen
+
+PATIENCE = 2.5
+"""Seconds; longer than a lifeline's, so that programs that watch theirs can end in order."""
+_BEGINNING = 0.2
+"""Seconds in which a process that was just being started is one of its own."""
+_IN_ORDER = b".\n"
+"""What the supervisor says last, unless it is killed."""
+
+
+class Guardian:
+    """The supervisor's side; does nothing where there are no process groups (Windows).
+
+    `leavings` are files that it removes when the supervisor has been killed.
+    """
+
+    def __init__(self, mark: str = "", patience: float = PATIENCE, leavings: Iterable[Path] = ()) -> None:
+        self._process: Popen[bytes] | None = None
+        if sys.platform != "win32":
+            from robolink.supervisor.processes.lifeline import VARIABLE  # the guardian itself can import none of ours
+
+            # a launcher that was launched by another has that one's mark, and its guardian must outlive it
+            environ = {name: value for name, value in os.environ.items() if name != VARIABLE}
+            command = [sys.executable, "-I", "-S", __file__, str(patience), mark, *map(str, leavings)]
+            self._process = Popen(
+                command, bufsize=0, stdin=PIPE, stdout=DEVNULL, stderr=DEVNULL, start_new_session=True, env=environ
+            )
+
+    def guard(self, group: int) -> None:
+        """From now on, kill this group should we be gone."""
+        self._tell(b"+%d\n" % group)
+
+    def release(self, group: int) -> None:
+        """Forget a group that is no more."""
+        self._tell(b"-%d\n" % group)
+
+    def close(self) -> None:
+        """End the guardian; it kills the groups that it still guards."""
+        if self._process is not None and self._process.stdin is not None:
+            self._tell(_IN_ORDER)
+            self._process.stdin.close()
+            if sys.platform != "win32":
+                self._process.send_signal(signal.SIGCONT)  # somebody may have paused it
+            self._process.wait()
+
+    def _tell(self, line: bytes) -> None:
+        if self._process is None or self._process.stdin is None:
+            return
+        try:
+            self._process.stdin.write(line)
+        except BrokenPipeError:  # somebody killed it; lifelines still hold
+            return
+
+
+def remaining(lines: Iterable[bytes]) -> set[int]:
+    """Give the groups that are guarded after `+group` and `-group` lines; a line cut short does not count."""
+    groups: set[int] = set()
+    for line in lines:
+        if line.endswith(b"\n") and line != _IN_ORDER:
+            group = int(line[1:])
+            (groups.add if line.startswith(b"+") else groups.discard)(group)
+    return groups
+
+
+def remove(leavings: Iterable[str]) -> None:
+    """Remove files, as far as they are there."""
+    for each in leavings:
+        with contextlib.suppress(OSError):
+            Path(each).unlink()
+
+
+def kill_after(groups: Iterable[int], patience: float, mark: str = "") -> None:
+    """Kill the groups that still have a process `patience` seconds from now, and those with the mark."""
+    if sys.platform != "win32":
+        deadline = time.monotonic() + patience
+        left = set(groups)
+        if mark:
+            time.sleep(_BEGINNING)
+            left |= marked(mark)
+        while left and time.monotonic() < deadline:
+            time.sleep(0.05)
+            left = {group for group in left if is_alive(group)}
+        for group in left | marked(mark):
+            signal_group(group, signal.SIGKILL)
+
+
+def marked(mark: str) -> set[int]:
+    """Give the groups of the processes that were started with a lifeline of this mark, as far as the system tells."""
+    groups: set[int] = set()
+    for path in Path("/proc").glob("[0-9]*/environ") if mark else ():
+        try:
+            found = f":{mark}\0".encode() in path.read_bytes()
+        except OSError:  # another user's, or gone
+            continue
+        fields = _stat(path.with_name("stat")) if found else []
+        groups.update(int(each) for each in fields[2:3])
+    return groups
+
+
+def signal_group(group: int, number: int) -> bool:
+    """Send a signal (0: none) to a process group; say whether there is one."""
+    if sys.platform != "win32":
+        try:
+            os.killpg(group, number)
+        except (ProcessLookupError, PermissionError):  # macOS says the latter of a group of zombies
+            return False
+    return sys.platform != "win32"
+
+
+def is_alive(group: int) -> bool:
+    """Whether a process group has a process that is more than a zombie, which nobody may ever collect."""
+    if not signal_group(group, 0):
+        return False
+    stats = [_stat(each) for each in Path("/proc").glob("[0-9]*/stat")]
+    return not stats or any(fields[2] == str(group) and fields[0] not in "ZX" for fields in stats if fields)
+
+
+def _stat(path: Path) -> list[str]:
+    """Give the fields of a /proc/PID/stat behind the command: state, parent, group ...; none if it has gone."""
+    try:
+        return path.read_text(errors="replace").rpartition(")")[2].split()
+    except OSError:
+        return []
+
+
+if __name__ == "__main__":
+    told = list(sys.stdin.buffer)
+    was_killed = told[-1:] != [_IN_ORDER]
+    if was_killed:
+        remove(sys.argv[3:])
+    kill_after(remaining(told), float(sys.argv[1]), sys.argv[2] if was_killed else "")

@@ -1,0 +1,64 @@
+"""Print the lines of many processes, whole, prefixed with their names and coloured."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+from collections.abc import Iterable
+from typing import TextIO
+
+from robolink.supervisor.telling.courier import Courier, Troubles
+from robolink.supervisor.telling.writer import Writer
+
+_COLOURS = ("36", "33", "32", "35", "34", "96", "93", "92", "95", "94")
+OWN_NAME = "launch"
+
+
+class Printer:
+    """Writes from a thread of its own, so that a terminal that stands still holds up no decision."""
+
+    def __init__(self, output: TextIO, names: Iterable[str], troubles: Troubles | None = None) -> None:
+        self._prefixes = prefixes([*names, OWN_NAME], wants_colour(output))
+        writer = Writer(output)
+        self._courier: Courier[bytes] = Courier(
+            lambda lines: writer.write(b"".join(lines)), troubles or Troubles(), name="printer"
+        )
+
+    def line(self, name: str, line: bytes) -> None:
+        """Print one line of a process, as it is; waits while too much waits."""
+        whole = self._prefixes[name] + line.rstrip(b"\r\n") + b"\n"
+        self._courier.put(whole, len(whole))
+
+    def say(self, text: str) -> None:
+        """Print a line of our own; never waits: rather the line is lost."""
+        whole = self._prefixes[OWN_NAME] + text.encode(errors="replace") + b"\n"
+        self._courier.put_own(whole, len(whole))
+
+    def close(self, timeout: float = 1.0) -> None:
+        """Print what waits, for at most `timeout` seconds."""
+        self._courier.close(timeout)
+
+
+def complain(text: str) -> None:
+    """Print a line of our own on stderr, if anybody reads that."""
+    with contextlib.suppress(OSError, ValueError, AttributeError):  # closed; or there is none
+        sys.stderr.write(f"[{OWN_NAME}] {text}\n")
+        sys.stderr.flush()
+
+
+def wants_colour(output: TextIO) -> bool:
+    """Whether colours make sense there: a terminal, and NO_COLOR is not set."""
+    knows_colours = sys.platform != "win32" or "WT_SESSION" in os.environ or "TERM" in os.environ
+    return output.isatty() and knows_colours and not os.environ.get("NO_COLOR")
+
+
+def prefixes(names: Iterable[str], has_colour: bool) -> dict[str, bytes]:
+    """Give each name its prefix: `[name] `, in a colour of its own as far as they go."""
+    plain = {name: f"[{name}]" for name in names}
+    if not has_colour:
+        return {name: f"{prefix} ".encode() for name, prefix in plain.items()}
+    coloured = {}
+    for index, (name, prefix) in enumerate(plain.items()):
+        coloured[name] = f"\x1b[{_COLOURS[index % len(_COLOURS)]}m{prefix}\x1b[0m ".encode()
+    return coloured

@@ -1,0 +1,145 @@
+"""Start a process anew when a file that it is made of is saved: what `launch --watch` does."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import TypeAlias
+
+from robolink.supervisor.watching.imports import Imports, parse
+
+Stamp: TypeAlias = "tuple[int, int, int] | None"
+"""What changes when a file is saved: when it was written, its size, which file it is; None while there is none."""
+
+
+class Changes:
+    """Tells which files were saved between looks.
+
+    A file counts once it stands still from one look to the next: an editor may be half way through writing it, or have
+    moved it aside to put a new one in its place.
+    """
+
+    def __init__(self, stamp: Callable[[Path], Stamp] | None = None) -> None:
+        self._stamp = stamp or stamp_of
+        self._known: dict[Path, Stamp] = {}
+        self._seen: dict[Path, Stamp] = {}
+
+    def follow(self, paths: Iterable[Path]) -> None:
+        """Look at these files as well from now on; what they are now is nothing new."""
+        for path in paths:
+            if path not in self._known:
+                self._known[path] = self._seen[path] = self._stamp(path)
+
+    def look(self) -> set[Path]:
+        """Give the files that were saved and stand still now."""
+        saved = set()
+        for path, known in self._known.items():
+            stamp = self._stamp(path)
+            if stamp is not None and stamp != known and stamp == self._seen[path]:
+                saved.add(path)
+            self._seen[path] = stamp
+        for path in saved:
+            self._known[path] = self._seen[path]
+        return saved
+
+
+def stamp_of(path: Path) -> Stamp:
+    """Give what changes when a file is saved."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino
+
+
+class Watch:
+    """Calls `restart` with the name of each process one of whose files was saved, inside a `with`.
+
+    `files` are the Python files of each process; what these import, from their folder or from `roots`, counts as well.
+    A file that is no Python holds the restart up until it is one again; where and why is said. A change of one of
+    `settings`, which are read only when the whole system is started, is said too. A thread looks every so many seconds.
+    """
+
+    def __init__(
+        self,
+        files: Mapping[str, Sequence[Path]],
+        *,
+        restart: Callable[[str], object],
+        say: Callable[[str], object],
+        roots: Iterable[Path] = (),
+        settings: Iterable[Path] = (),
+        every: float = 0.5,
+        changes: Changes | None = None,
+    ) -> None:
+        self._files = files
+        self._restart, self._say = restart, say
+        self._imports = Imports(roots)
+        self._settings = set(settings)
+        self._broken: dict[Path, str] = {}
+        self._every = every
+        self._changes = changes or Changes()
+        self._made_of = self._gathered()
+        self._closed = threading.Event()
+        self._thread = threading.Thread(target=self._work, name="watch", daemon=True)
+
+    def __enter__(self) -> Watch:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._closed.set()
+        self._thread.join(1.0)
+
+    def _work(self) -> None:
+        while not self._closed.wait(self._every):
+            self.look()
+
+    def look(self) -> None:
+        """Look once, and do what there is to do."""
+        saved = self._changes.look()
+        for path in sorted(saved & self._settings):
+            self._say(f"{path} has changed: that counts when the system is started anew")
+        concerned = {name: made_of for name, made_of in self._made_of.items() if made_of & saved}
+        if not concerned:
+            return
+        for path in sorted(saved.intersection(set().union(*concerned.values()))):
+            self._read(path)
+        self._made_of = self._gathered()
+        self._decide(list(concerned))
+
+    def _read(self, path: Path) -> None:
+        """Find out whether a Python file that was saved is one again."""
+        self._imports.forget(path)
+        try:
+            parse(path)
+        except OSError as error:
+            self._broken[path] = f"{path}: {error.strerror or error}"
+        except SyntaxError as error:
+            self._broken[path] = f"{path}:{error.lineno or 1}:{error.offset or 1}: {error.msg}"
+        else:
+            self._broken.pop(path, None)
+            self._say(f"{path} was saved")
+
+    def _decide(self, names: list[str]) -> None:
+        """Start anew what is whole; say once for each file that is not what waits for it."""
+        waiting: dict[Path, list[str]] = {}
+        for name in names:
+            broken = sorted(self._made_of[name] & self._broken.keys())
+            if broken:
+                waiting.setdefault(broken[0], []).append(name)
+            else:
+                self._restart(name)
+        for path, held in waiting.items():
+            self._say(f"{self._broken[path]}: not restarted until that is mended: {', '.join(held)}")
+
+    def _gathered(self) -> dict[str, set[Path]]:
+        """Give all files that each process is made of, and follow them."""
+        made_of = {
+            name: {file for path in paths for file in self._imports.of(path)} for name, paths in self._files.items()
+        }
+        self._changes.follow(self._settings.union(*made_of.values()))
+        return made_of

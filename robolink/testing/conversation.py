@@ -1,0 +1,53 @@
+"""What a test says to its system and hears of it: topics that it publishes, and lists that fill with messages."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from robolink.message import Message
+    from robolink.node import Node
+    from robolink.publisher import Publisher
+    from robolink.qos import QoSProfile
+    from robolink.testing.recorder import Ear
+    from robolink.testing.story import Story
+
+
+class Conversation:
+    """What the test's own node publishes, and what is kept for the test from when it asked."""
+
+    def __init__(self, node: Node, story: Story) -> None:
+        self._node, self._story = node, story
+        self._kept: list[tuple[Ear, list[Any], type[Message] | None]] = []
+        self._publishers: dict[tuple[str, type[Message]], Publisher[Any]] = {}
+
+    def publish(self, topic: str, message: Message, qos: QoSProfile | int) -> None:
+        """Publish a message. Raises TypeError for what is none."""
+        __tracebackhide__ = True
+        if not isinstance(topic, str) or isinstance(message, type) or not hasattr(message, "__ros_fields__"):
+            raise TypeError(f"publish takes a topic and a message, got {topic!r} and {message!r}")
+        key = (self._node.resolve_topic_name(topic), type(message))
+        if key not in self._publishers:
+            self._publishers[key] = self._node.create_publisher(type(message), key[0], qos)
+        self._publishers[key].publish(message)
+
+    def keep(self, topic: str, given: type[Message] | None) -> list[Any]:
+        """Give a list that fills, at each `hear`, with what is published from now on; of this class, if it is given."""
+        heard: list[Any] = []
+        self._kept.append((self._story.recorder.listen(self._node.resolve_topic_name(topic)), heard, given))
+        self.hear()
+        return heard
+
+    def hear(self) -> None:
+        """Put what has come into the lists."""
+        for ear, heard, given in self._kept:
+            heard.extend(self._story.decoded(topic, payload, given) for topic, payload in ear.take())
+
+    @property
+    def topics(self) -> list[str]:
+        """The topics that are kept, then those that the test publishes."""
+        return [*(ear.name for ear, _, _ in self._kept), *(name for name, _ in self._publishers)]
+
+    def close(self) -> None:
+        """Hear no more."""
+        self._kept.clear()

@@ -1,0 +1,153 @@
+"""Waits for what a test expects of its system, and says what there was instead when it did not come."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar, cast
+
+from robolink.testing.expectations import ExpectationError, named, no_such, seconds, span
+
+if TYPE_CHECKING:
+    from robolink.logging import Record
+    from robolink.message import Message
+    from robolink.task import Future
+    from robolink.testing.conversation import Conversation
+    from robolink.testing.stage import Stage
+    from robolink.testing.story import Story
+
+T = TypeVar("T")
+
+Predicate = Callable[[Any], object]
+
+
+class Expecting:
+    """Waits in a system; `run_until(condition, within)` lets its time pass. Each raises ExpectationError in the end."""
+
+    def __init__(
+        self,
+        stage: Stage,
+        story: Story,
+        conversation: Conversation,
+        run_until: Callable[[Callable[[], bool], float], bool],
+    ) -> None:
+        self._stage, self._story, self._conversation, self._run_until = stage, story, conversation, run_until
+        self._read_logs = 0
+
+    # Messages
+
+    def message(self, topic: str, predicate: Predicate | None, within: float, given: type[Message] | None) -> Any:
+        """Give the first message that fulfils a condition, or any; it is of the class `given`, if there is one."""
+        __tracebackhide__ = True
+        name, begin = self._stage.node.resolve_topic_name(topic), self._story.time
+        met, tried = self._met(name, predicate, within, given)
+        if not met:
+            headline = self._story.why_nothing_came(name, tried, span(begin, begin + within), named(predicate))
+            raise ExpectationError(self._story.told(headline, self._concerned(name)))
+        return met[0]
+
+    def no_message(self, topic: str, predicate: Predicate | None, during: float, given: type[Message] | None) -> None:
+        """Let time pass in which no message may fulfil a condition, or none may come at all."""
+        __tracebackhide__ = True
+        name = self._stage.node.resolve_topic_name(topic)
+        met, _ = self._met(name, predicate, during, given)
+        if met:
+            which = f"that fulfils {named(predicate) or 'the condition'}" if predicate else "at all"
+            headline = f"a message came on {name} at {seconds(self._story.time)}, where none {which} was expected"
+            raise ExpectationError(self._story.told(headline, self._concerned(name)))
+
+    def _met(
+        self, name: str, predicate: Predicate | None, within: float, given: type[Message] | None
+    ) -> tuple[list[Any], int]:
+        """Wait for a message that fulfils a condition: give it, if it came, and how many were looked at."""
+        __tracebackhide__ = True
+        if isinstance(predicate, type):
+            raise TypeError(f"{predicate.__name__} is no condition: give it as type={predicate.__name__}")
+        met: list[Any] = []
+        tried = 0
+        with self._story.recorder.listening(name) as ear:
+
+            def came() -> bool:
+                nonlocal tried
+                for topic, payload in ear.take():
+                    message = self._story.decoded(topic, payload, given)
+                    tried += 1
+                    if predicate is None or predicate(message):
+                        met.append(message)
+                        return True
+                return False
+
+            self._run_until(came, within)
+        return met, tried
+
+    def _concerned(self, name: str) -> list[str]:
+        """Give a topic, what those hear that publish it, and what the test itself hears and says."""
+        heard = self._story.graph.heard_by_publishers_of(name)
+        return list(dict.fromkeys([name, *heard, *self._conversation.topics]))
+
+    # Anything else
+
+    def condition(self, condition: Callable[[], object], within: float) -> None:
+        """Wait until a condition holds, which may look at what is kept."""
+        __tracebackhide__ = True
+        begin = self._story.time
+
+        def holds() -> bool:
+            self._conversation.hear()
+            return bool(condition())
+
+        if not self._run_until(holds, within):
+            what = named(condition) or "what was waited for"
+            headline = f"{what} did not come true {span(begin, begin + within)}"
+            raise ExpectationError(self._story.told(headline, dict.fromkeys(self._conversation.topics)))
+
+    def result(self, future: Future[T], within: float) -> T:
+        """Give the result of a future, or raise what it holds."""
+        __tracebackhide__ = True
+        begin = self._story.time
+        if not self._run_until(lambda: future.done() or future.cancelled(), within):
+            raise ExpectationError(self._story.told(f"the future was not done {span(begin, begin + within)}"))
+        return cast(T, future.result())
+
+    def log_line(self, words: str, within: float) -> Record:
+        """Give the next line of the log with these words, behind the one that was given last."""
+        __tracebackhide__ = True
+        begin, first = self._story.time, self._read_logs
+        found: list[Record] = []
+        lines = self._stage.logs
+
+        def came() -> bool:
+            while self._read_logs < len(lines) and not found:
+                line = lines[self._read_logs]
+                self._read_logs += 1
+                if words in line.message:
+                    found.append(line)
+            return bool(found)
+
+        if not self._run_until(came, within):
+            self._read_logs = first
+            headline = f"nobody logged '{words}' {span(begin, begin + within)}"
+            raise ExpectationError(self._story.told(headline, all_logs=True))
+        return found[0]
+
+    def answer(self, kind: type[Any], name: str, request: Any, within: float) -> Any:
+        """Give what a service answers."""
+        __tracebackhide__ = True
+        node = self._stage.node
+        full, begin = node.resolve_service_name(name), self._story.time
+        client = node.create_client(kind, name)
+        try:
+            if not self._run_until(client.service_is_ready, within):
+                raise ExpectationError(self._story.told(self._no_service(full, kind, span(begin, begin + within))))
+            future = client.call_async(kind.Request() if request is None else request)
+            if not self._run_until(future.done, within):
+                raise ExpectationError(self._story.told(f"{full} did not answer {span(begin, self._story.time)}"))
+            return future.result()
+        finally:
+            node.destroy_client(client)
+
+    def _no_service(self, name: str, kind: type[Any], when: str) -> str:
+        known = self._story.graph.services()
+        there = known.get(name)
+        if there is not None:
+            return f"{name} has the type {there}, not {kind.__ros_type__}"
+        return no_such("service", name, known.items(), when)

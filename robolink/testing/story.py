@@ -1,0 +1,107 @@
+"""The story of a system under test: what was published, by whom, what went wrong, and how to see it again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from robolink.testing.expectations import ExpectationError, Told, nothing_came, seconds, too_early
+from robolink.testing.graph_view import EVERYBODYS_TOPICS, GraphView
+from robolink.testing.recorder import Recorder, Topic
+from robolink.testing.timeline import MOST_LOGS, MOST_OF_ONE, MOST_OF_OTHERS, Moment, logs_of, messages_of
+
+if TYPE_CHECKING:
+    from robolink.message import Message
+    from robolink.testing.stage import Failure, Stage
+
+
+class Story:
+    """What is known of the system on a stage, and what a test is told of it when something did not come true.
+
+    `replay` is what should be typed to see it again.
+    """
+
+    def __init__(self, stage: Stage, replay: str) -> None:
+        self._stage, self._replay = stage, replay
+        self._classes: dict[str, type[Message]] = {}
+        self.graph = GraphView(stage.node)
+        self.recorder = Recorder(stage.session(), stage.domain, stage.now_ns, self._learn)
+        """What was last published on each topic."""
+
+    @property
+    def time(self) -> float:
+        """Seconds since the beginning of the system."""
+        return self._since(self._stage.now_ns())
+
+    def _since(self, time_ns: int) -> float:
+        return (time_ns - self._stage.begin_ns) / 1e9
+
+    # What messages are
+
+    def decoded(self, topic: Topic, payload: bytes, given: type[Message] | None = None) -> Any:
+        """Give a message of a topic; its class is the publishers' own, unless it is given.
+
+        Raises ExpectationError for a class that is not the topic's, and TypeLookupError when nobody knows the class.
+        """
+        from robolink.serialization import deserialize_message
+
+        return deserialize_message(payload, self._class_of(topic) if given is None else _checked(given, topic))
+
+    def _learn(self, topic: Topic) -> None:
+        """Remember the class of a topic while its publisher is there: later nobody may know it."""
+        found = self._stage.class_of(topic)
+        if found is not None:
+            self._classes[topic.key] = found
+
+    def _class_of(self, topic: Topic) -> type[Message]:
+        found = self._classes.get(topic.key)
+        if found is None:
+            found = self._stage.class_of(topic) or self._looked_up(topic)
+            self._classes[topic.key] = found
+        return found
+
+    def _looked_up(self, topic: Topic) -> type[Message]:
+        from robolink.type_lookup import type_of
+
+        return type_of(self._stage.node.context, topic.token)
+
+    # What is told
+
+    def whole(self) -> str:
+        """Tell what was last published on each topic, what was logged, what failed, and how to replay it."""
+        topics = [each.name for each in self.recorder.topics.values() if each.name not in EVERYBODYS_TOPICS]
+        return self.told(f"the system after {self.time:.3f} s", topics)
+
+    def told(self, headline: str, topics: Iterable[str] = (), *, all_logs: bool = False) -> str:
+        """Put together what a test is told: the first topic is what it is about."""
+        stage = self._stage
+        moments = [
+            each
+            for number, name in enumerate(topics)
+            for topic in self.recorder.named(name)
+            for each in messages_of(self.recorder, topic, self._class_of, MOST_OF_OTHERS if number else MOST_OF_ONE)
+        ]
+        moments += logs_of(stage.logs, MOST_LOGS, all_logs)
+        moments += [Moment(each.time_ns, "failed", each.program, each.why) for each in stage.failures]
+        return str(Told(headline, stage.begin_ns, moments, stage.fault_reports(), stage.real_time_use(), self._replay))
+
+    def told_of(self, failures: Iterable[Failure]) -> str:
+        """Tell which programs failed, when and why."""
+        lines = (f"{each.program} failed at {seconds(self._since(each.time_ns))}: {each.why}" for each in failures)
+        return self.told("\n".join(lines))
+
+    def why_nothing_came(self, topic: str, tried: int, when: str, condition: str) -> str:
+        """Say why no message came that fulfils a condition: `tried` is how many were looked at."""
+        known = self.graph.topics().items()
+        why = nothing_came(topic, self.graph.ends(topic), known, tried, when, condition)
+        before = 0 if tried else sum(each.count for each in self.recorder.named(topic))
+        return why + too_early(topic, before)
+
+
+def _checked(given: type[Message], topic: Topic) -> type[Message]:
+    from robolink.message import type_hash
+
+    if type_hash(given) != topic.type_hash:
+        there = topic.type_name + (" of another definition" if given.__ros_type__ == topic.type_name else "")
+        raise ExpectationError(f"{topic.name} has the type {there}, not {given.__ros_type__}")
+    return given

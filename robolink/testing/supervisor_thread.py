@@ -1,0 +1,132 @@
+"""A supervisor on a thread, which runs the processes of one launch under test."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from robolink.exceptions import RobolinkError
+from robolink.launch.planning import Launched, as_process, processes
+from robolink.launch.readiness import Readiness
+from robolink.supervisor import Process, Supervisor
+from robolink.supervisor.events import Event, Exited, Status
+from robolink.supervisor.rules import Rules
+
+if TYPE_CHECKING:
+    from robolink.launch import Entry
+
+TOLD_WITHIN = 5.0
+"""Seconds in which a supervisor does what it is asked to."""
+
+
+class Launch:
+    """The processes of one launch file, or of one node that was started `alone` and is called so, under a supervisor.
+
+    That has a thread. `on_exit` is called, on another one, with each process that ends.
+    """
+
+    def __init__(
+        self, entries: Sequence[Entry], domain: int, network: str, on_exit: Callable[[Exited], object], alone: str = ""
+    ) -> None:
+        launched = processes(entries)
+        self._launched = {alone: replace(launched[0], name=alone)} if alone else {each.name: each for each in launched}
+        self.names = list(self._launched)
+        self._readiness = Readiness({each.name: each.held_by for each in self._launched.values()})
+        self._env = {
+            "ROBOLINK_TRANSPORT": "zenoh",
+            "ROBOLINK_NETWORK": network,
+            "ROS_DOMAIN_ID": str(domain),
+        }
+        self._on_exit, self._alone = on_exit, bool(alone)
+        self._start_anew(list(self._launched.values()))
+
+    def _start_anew(self, launched: Sequence[Launched]) -> None:
+        mine = [self._process(each) for each in launched]
+        self.supervisor = Supervisor(mine, output=sys.stderr, on_event=self._on_event)
+        self.thread = threading.Thread(target=self._run, name="system under test", daemon=True)
+
+    def _process(self, launched: Launched) -> Process:
+        made = as_process(launched)
+        rules = Rules(on_exit="ignore") if self._alone else made.rules
+        return replace(made, env={**made.env, **self._env}, rules=rules)
+
+    def begin(self) -> None:
+        """Start the processes."""
+        self.thread.start()
+
+    def _run(self) -> None:
+        try:
+            self.supervisor.run()
+        except RobolinkError as error:
+            for name in self.names:
+                self._on_exit(Exited(name, 0, 127, "could not be started", str(error), 0.0))
+
+    def _on_event(self, event: Event) -> None:
+        if isinstance(event, Exited):
+            self._on_exit(event)
+
+    def awaited_nodes(self) -> int:
+        """Say how many nodes are to be announced: those of the processes that run and wait for nothing."""
+        running = {each.name for each in self.supervisor.status() if each.state in ("waiting", "running")}
+        return sum(len(each.members) for name, each in self._launched.items() if name in running)
+
+    def pid(self, name: str) -> int | None:
+        """Give the number of a process that runs."""
+        return self._status(name).pid
+
+    def _status(self, name: str) -> Status:
+        return next(each for each in self.supervisor.status() if each.name == name)
+
+    def stop(self, name: str) -> None:
+        """Have a process end in order; the others go on."""
+        self.supervisor.stop_one(name)
+
+    def kill(self, name: str) -> None:
+        """Kill a process and all that it has started, as hard as it goes; the others go on.
+
+        The supervisor is told before that it shall end, since else the launch file's rules would follow; meanwhile it
+        stands still, so that it has no last words.
+        """
+        pid = self.pid(name)
+        if pid is None:
+            return
+        if sys.platform != "win32":
+            os.killpg(pid, signal.SIGSTOP)
+        self.supervisor.stop_one(name)
+        deadline = time.monotonic() + TOLD_WITHIN
+        while self._status(name).state == "running" and time.monotonic() < deadline:
+            time.sleep(0.001)
+        with suppress(ProcessLookupError):
+            if sys.platform == "win32":
+                os.kill(pid, signal.SIGTERM)
+            else:
+                os.killpg(pid, signal.SIGKILL)
+
+    def restart(self, name: str) -> None:
+        """Start a process anew; one whose system has ended with it gets a system of its own."""
+        if all(each.pid is None for each in self.supervisor.status()):
+            self.thread.join(TOLD_WITHIN)
+        if self.thread.is_alive():
+            self.supervisor.restart(name)
+            return
+        self._alone = True
+        self._start_anew([self._launched[name]])
+        self.begin()
+
+    @property
+    def waits(self) -> bool:
+        """Whether something of it waits for something else."""
+        return bool(self._readiness.held)
+
+    def hear(self, text: str, alive: bool) -> bool:
+        """Hear of a token that came or went, and start what may start now; False for one that nothing waits for."""
+        for name in self._readiness.heard(text, alive):
+            self.supervisor.release(name)
+        return self._readiness.knows(text)
