@@ -33,6 +33,8 @@ from robolink.parameter import (
 from robolink.parameter_callbacks import ParameterCallbacks, Parameters, listed
 from robolink.parameter_rules import (
     EMPTY_LIST,
+    WrittenParameter,
+    as_declared,
     check_names,
     describing,
     first_fitting,
@@ -75,6 +77,8 @@ class NodeParameters(ParameterCallbacks):
         self._declared_so_far_: set[str] = set()
         """The names of all that was ever declared, also of what was refused or is no longer there."""
         self._parameter_overrides = dict(overrides)
+        self._wished_parameters_: Mapping[str, Any] = {}
+        """Values that go before default ones, where nobody has given another and the declaration lets them through."""
         self._allow_undeclared_parameters = allow_undeclared
         self._init_parameter_callbacks_()
         self._parameters_lock_ = threading.Lock()
@@ -153,8 +157,19 @@ class NodeParameters(ParameterCallbacks):
         if taken:
             raise ParameterAlreadyDeclaredException(taken)
         for parameter, descriptor in declarations:
-            self._declare_one_(parameter, descriptor)
+            is_given = parameter.name in self._parameter_overrides
+            if is_given or not self._declare_as_wished_(parameter, descriptor):
+                self._declare_one_(parameter, descriptor)
         return [self._parameters.get(parameter.name, parameter) for parameter, _ in declarations]
+
+    def _declare_as_wished_(self, parameter: Parameter[Any], descriptor: ParameterDescriptor) -> bool:
+        """Declare a parameter with what is wished for it, if that is of its type and nothing refuses it."""
+        if parameter.name not in self._wished_parameters_:
+            return False
+        wish = WrittenParameter(parameter.name, value=self._wished_parameters_[parameter.name])
+        wished = as_declared(wish, descriptor)
+        fits = parameter.type_ in (Parameter.Type.NOT_SET, wished.type_)
+        return fits and self._apply_([wished], descriptor).successful
 
     def _declare_one_(self, parameter: Parameter[Any], descriptor: ParameterDescriptor) -> None:
         result = self._apply_([parameter], descriptor)

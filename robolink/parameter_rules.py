@@ -100,13 +100,13 @@ def _first_value(
     name: str, value: Any, descriptor: ParameterDescriptor, override: Parameter[Any] | None
 ) -> Parameter[Any]:
     if override is not None:
-        return _as_declared(override, descriptor)
+        return as_declared(override, descriptor)
     if isinstance(value, ParameterValue):
         raise ValueError(f"parameter '{name}': a ParameterValue is no default value, and no override is given")
     return Parameter(name) if isinstance(value, Type) else _parameter(name, value)
 
 
-def _as_declared(override: Parameter[Any], descriptor: ParameterDescriptor) -> Parameter[Any]:
+def as_declared(override: Parameter[Any], descriptor: ParameterDescriptor) -> Parameter[Any]:
     """Read an override as its declaration has it: an empty list does not say of what, nor 1 whether it is a double."""
     if isinstance(override, WrittenParameter):
         override = override.as_type(Type.NOT_SET if descriptor.dynamic_typing else Type(descriptor.type))

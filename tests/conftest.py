@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gc
 import os
+import signal
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,6 +20,7 @@ from hypothesis import HealthCheck, settings
 from robolink import Context, VirtualTime, logging, try_shutdown
 from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.impl.log_output import Record, output
+from robolink.oneprocess.kept import process_as_before
 from robolink.transport import zenoh
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.transport.zenoh import ZenohTransport
@@ -37,7 +39,12 @@ THEIR_FILES = pytest.StashKey[set[Path]]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Keep what launched systems print out of the user's home."""
+    """Keep what launched systems print out of the user's home, and have Ctrl-C do what it does in a terminal.
+
+    A shell starts what it runs in the background with SIGINT ignored, and all that it starts in turn.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     folder = tempfile.TemporaryDirectory(prefix="robolink-logs-", ignore_cleanup_errors=True)
     config.add_cleanup(folder.cleanup)
     os.environ["ROBOLINK_LOG_DIR"] = folder.name
@@ -127,9 +134,10 @@ def patient_looks(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(autouse=True)
 def _as_before() -> Iterator[None]:
-    """End the default context, the signal handlers and what was set about logging."""
+    """End the default context, the signal handlers, what was set about logging, and what was changed of the process."""
     console, now = output.console, output.now
-    yield
+    with process_as_before():
+        yield
     try_shutdown(uninstall_handlers=True)
     output.console, output.now = console, now
     logging.clear_config()

@@ -15,7 +15,6 @@ import contextlib
 import os
 import random
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -26,8 +25,8 @@ from pathlib import Path
 import psutil
 
 from robolink.supervisor.telling.logs import KEPT_RUNS
+from robolink.transport.free_domain import free_domain, is_free
 from robolink.transport.network import FIRST_PORT
-from tests.domains import free_domain
 
 NODES = 5
 PATIENCE = 30.0
@@ -167,7 +166,8 @@ class Soak:
     def _check_files(self, *, was_killed: bool) -> None:
         zombies = [each for each in psutil.Process().children() if each.status() == psutil.STATUS_ZOMBIE]
         assert not zombies, f"zombies are left: {zombies}"
-        assert is_free(FIRST_PORT + self.domain), "somebody listens at the rendezvous port"
+        port = FIRST_PORT + self.domain
+        assert is_free(port), f"somebody listens at the rendezvous port {port}: {listeners(port)}"
         for name in ("tmp", "home"):
             assert not list((self.folder / name).iterdir()), f"{name}: {list((self.folder / name).iterdir())}"
         word = [each for each in (self.folder / "run").rglob("*") if not each.is_dir()]
@@ -232,15 +232,10 @@ KINDS: dict[str, Callable[[Soak, subprocess.Popen[bytes]], None]] = {
 """The ways in which a round ends, by name."""
 
 
-def is_free(port: int) -> bool:
-    """Whether nobody listens there; connections that have ended do not count."""
-    with socket.socket() as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind(("127.0.0.1", port))
-        except OSError:
-            return False
-    return True
+def listeners(port: int) -> list[str]:
+    """Say who listens there."""
+    found = [each.pid for each in psutil.net_connections("tcp") if each.laddr and each.laddr.port == port]
+    return [_described(psutil.Process(each)) if each else "nobody who could be named" for each in found]
 
 
 def forgotten_memory() -> set[str]:

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import logging as python_logging
+import os
 import random
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,6 +21,7 @@ from robolink.launch.together import Member
 from robolink.oneprocess import Host, HostError
 from robolink.timebase import SkewedTime
 from robolink.transport.memory import MemoryTransport
+from robolink.workspace.interfaces import WORKSPACE_TYPES
 from tests.hosts import Counter, Listener
 
 
@@ -333,3 +339,86 @@ def test_nothing_runs_in_a_host_that_is_closed(virtual: bool) -> None:
         with pytest.raises(HostError, match="this host is closed"):
             ask()
     host.close()
+
+
+CARELESS = """
+import logging, os, sys
+from robolink import Node
+
+class Careless(Node):
+    def __init__(self):
+        super().__init__("careless")
+        os.chdir(os.sep)
+        os.environ.update(CARELESS="1", CHANGED="by it")
+        os.environ.pop("TAKEN")
+        sys.stdout = sys.stderr = None
+        sys.path.insert(0, "careless")
+        logging.disable(logging.ERROR)
+        logging.getLogger("careless").setLevel(logging.ERROR)
+        logging.getLogger().setLevel(logging.DEBUG)
+"""
+
+
+@pytest.mark.parametrize("virtual", [True, False])
+def test_what_nodes_change_of_the_process_ends_with_the_host(
+    virtual: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CHANGED", "as it was")
+    monkeypatch.setenv("TAKEN", "not yet")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "careless.py").write_text(CARELESS)
+
+    def seen() -> list[Any]:
+        levels = [python_logging.getLogger(name).level for name in ("", "careless")]
+        streams = sys.stdout, sys.stderr
+        return [Path.cwd(), dict(os.environ), streams, [*sys.path], python_logging.root.manager.disable, levels]
+
+    before = seen()
+    with Host(virtual=virtual) as host:
+        program = host.start("careless", [Member("careless", str(tmp_path / "careless.py"), [])])
+        assert host.run_until(lambda: program.has_begun, 10.0)
+        assert program.error is None
+        assert all(one != other for one, other in zip(before, seen(), strict=True))
+    assert seen() == before
+
+
+def test_types_of_a_workspace_that_a_host_has_used_are_forgotten(tmp_path: Path) -> None:
+    package = tmp_path / "interfaces" / "robolink_interfaces" / "srv"
+    package.mkdir(parents=True)
+    (package / "Spawn.srv").write_text("string who\n---\nbool ok\n")
+    (tmp_path / "nodes").mkdir()
+    (tmp_path / "nodes" / "idle.py").write_text("from robolink import Node\n\nclass Idle(Node):\n    pass\n")
+    before = WORKSPACE_TYPES.get("robolink_interfaces", "srv", "Spawn")
+    with Host() as host:
+        host.start("idle", [Member("idle", str(tmp_path / "nodes" / "idle.py"), [])])
+        assert WORKSPACE_TYPES.get("robolink_interfaces", "srv", "Spawn") is not before
+    assert WORKSPACE_TYPES.get("robolink_interfaces", "srv", "Spawn") is before
+
+
+def test_ctrl_c_while_the_turn_is_handed_on(host: Host, monkeypatch: pytest.MonkeyPatch) -> None:
+    counter, turns = host.start_node(Counter), host.the_turns
+    hand_to = turns._hand_to
+
+    def interrupted(turn: Any) -> None:
+        monkeypatch.undo()
+        hand_to(turn)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(turns, "_hand_to", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        host.run(1.0)
+    assert turns.holder is turns.outside
+    host.run(1.0)
+    assert counter.count >= 10
+
+
+def test_a_process_that_a_node_starts_is_noted(host: Host) -> None:
+    class Starter(Node):
+        def __init__(self) -> None:
+            super().__init__("starter")
+            subprocess.run([sys.executable, "-c", ""], check=True)
+
+    host.start_node(Starter)
+    (use,) = (each for each in host.real_time_use if each.what == "subprocess.Popen")
+    assert use.program == "Starter"
+    assert use.place.startswith(f"{__file__}:")

@@ -56,6 +56,13 @@ def test_a_run_is_the_same_twice_and_another_seed_is_another_run(folder: Path) -
     assert 60 < first.messages["/heard"] < 100
 
 
+def test_the_domain_of_the_shell_changes_nothing(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    one = simulated(folder)
+    monkeypatch.setenv("ROS_DOMAIN_ID", "8")
+    assert simulated(folder).hash == one.hash
+
+
 def test_whoever_watches_changes_nothing(folder: Path) -> None:
     times: list[float] = []
     watched = simulated(folder, duration=3.5, watching=Watching(time=times.append))
@@ -251,6 +258,55 @@ def test_chance_of_the_operating_system_is_the_seeds(folder: Path) -> None:
 def test_a_seed_that_a_node_was_given_stays(folder: Path) -> None:
     seeds = [simulated(folder, "fixed", seed=seed).bytes["/seed"] for seed in (5, 6)]
     assert seeds[0] == seeds[1]
+
+
+CHOOSY = """
+'Has a seed that is not just a whole number, but of the kind that it is told.'
+
+from robolink import Node
+from robolink.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor, SetParametersResult
+from robolink.interfaces.std_msgs.msg import String
+
+KINDS = {
+    "text": ("as it is",),
+    "dynamic": ("as it is", ParameterDescriptor(dynamic_typing=True)),
+    "range": (3, ParameterDescriptor(integer_range=[IntegerRange(from_value=0, to_value=9, step=1)])),
+    "refused": (3,),
+    "flag": (False,),
+    "double": (0.5,),
+    "whole": (3,),
+}
+
+
+class Choosy(Node):
+    def __init__(self, **options):
+        super().__init__("choosy", **options)
+        kind = self.declare_parameter("kind", "").value
+        if kind == "refused":
+            self.add_on_set_parameters_callback(lambda given: SetParametersResult(successful=given[0].value < 9))
+        self.get_logger().warning(repr(self.declare_parameter("seed", *KINDS[kind]).value))
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "value"),
+    [
+        ("text", "'as it is'"),
+        ("dynamic", "'as it is'"),
+        ("range", "3"),
+        ("refused", "3"),
+        ("flag", "False"),
+        ("double", "4711.0"),
+        ("whole", "4711"),
+    ],
+)
+def test_a_seed_yields_where_a_node_wants_no_such(folder: Path, kind: str, value: str) -> None:
+    (folder / "nodes" / "choosy.py").write_text(CHOOSY)
+    (folder / "configs" / "chooses.yaml").write_text(f"nodes:\n  - {{node: choosy, parameters: {{kind: {kind}}}}}\n")
+    logs: list[Record] = []
+    result = simulated(folder, "chooses", duration=0.1, seed=4711, watching=Watching(log=logs.append))
+    assert result.failures == []
+    assert [each.message for each in logs if each.severity >= logging.LoggingSeverity.WARN] == [value]
 
 
 def test_a_seed_in_the_faults_is_everybodys(folder: Path) -> None:

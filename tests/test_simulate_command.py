@@ -195,3 +195,54 @@ def test_many_seeds_as_json(folder: Path, capsys: pytest.CaptureFixture[str]) ->
     summary = json.loads(capsys.readouterr().out.splitlines()[-1])
     assert (summary["seeds"], summary["failed"], len(summary["hash"])) == (2, [], 64)
     assert [each["seed"] for each in summary["results"]] == [0, 1]
+
+
+THREADS = ["OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"]
+ENVIRONED = '''
+"""Fails with what stands in its environment."""
+
+import os
+
+from robolink import Node
+
+
+class Environed(Node):
+    def __init__(self, **options):
+        super().__init__("environed", **options)
+        raise ValueError(" ".join(f"{name}={os.environ.get(name)}" for name in (THREADS)))
+'''
+
+
+@pytest.mark.parametrize(("given", "threads"), [({}, "1111"), ({"OMP_NUM_THREADS": "3"}, "1131")])
+@pytest.mark.parametrize("many", [[], ["--repeat", "1"]])
+def test_algebra_has_one_thread_unless_somebody_says_more(
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    given: dict[str, str],
+    threads: str,
+    many: list[str],
+) -> None:
+    for name in (*THREADS, "PYTHONHASHSEED"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in given.items():
+        monkeypatch.setenv(name, value)
+    names = [*THREADS, "PYTHONHASHSEED"]
+    (folder / "nodes" / "environed.py").write_text(ENVIRONED.replace("(THREADS)", repr(names)))
+    (folder / "configs" / "environed.yaml").write_text("nodes:\n  - {node: environed}\n")
+    assert main(["simulate", "environed", "--duration", "1", *many]) == 1
+    expected = [*threads, "0" if many else "None"]
+    assert " ".join(f"{name}={value}" for name, value in zip(names, expected, strict=True)) in capsys.readouterr().out
+
+
+def test_numpy_is_imported_after_its_threads_are_counted(folder: Path) -> None:
+    code = (
+        "import sys, robolink.cli.simulate as command\n"
+        "count = command._compute_in_one_thread\n"
+        "def counted():\n    assert 'numpy' not in sys.modules; print('counted'); count()\n"
+        "command._compute_in_one_thread = counted\n"
+        "from robolink.cli import main; sys.exit(main(['simulate', 'talk', '--duration', '0.1']))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("counted\n")

@@ -503,6 +503,19 @@ def test_a_launch_file_with_arguments_parameters_and_faults(tested: System, tmp_
         tested.robot("robt")
 
 
+def test_robots_of_two_worlds_are_called_by_their_namespaces(tested: System) -> None:
+    tested.start("world", namespace="one", parameters={"world": "empty_room"})
+    one = tested.robot()
+    assert tested.robot("robot") is tested.robot("one/robot") is one
+    tested.start("world", namespace="two", parameters={"world": "empty_room"})
+    assert tested.robot("one/robot") is one
+    assert tested.robot("/two/robot") is not one
+    with pytest.raises(NotFoundError, match=r"which robot 'robot'\? There are one/robot, two/robot: give a whole name"):
+        tested.robot("robot")
+    with pytest.raises(NotFoundError, match=r"which robot\? The world has one/robot, two/robot: give a name"):
+        tested.robot()
+
+
 def test_what_is_not_there_is_named(tested: System, tmp_path: Path) -> None:
     with pytest.raises(NotFoundError, match="did you mean 'follow'"):
         tested.launch("folow")

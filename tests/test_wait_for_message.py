@@ -39,7 +39,7 @@ def test_the_first_message_is_what_comes(context: Context, spun: bool) -> None:
     spinner = threading.Thread(target=executor.spin if spun else lambda: None)
     spinner.start()
     thread = publish_when_wanted(talker, context)
-    found, message = wait_for_message(Int32, node, "topic", time_to_wait=PATIENCE)
+    found, message = wait_for_message(Int32, node, "topic", qos_profile=10, time_to_wait=PATIENCE)
     thread.join(PATIENCE)
     executor.shutdown()
     spinner.join(PATIENCE)

@@ -85,7 +85,7 @@ def launch(
     ] = False,
     watch: Annotated[bool, typer.Option("--watch", help="Start a node again when its file is saved.")] = False,
 ) -> None:
-    """Run a system of nodes until the first of them ends, Ctrl-C, or for a while.
+    """Run a system of nodes until the first of them ends, Ctrl-C, or for a while: `launch follow --duration 60`.
 
     `launch stop [NAME]` and `launch restart [NAME] NODE` are for what runs in another shell; --status shows the names.
     A launch file that is called stop or restart is launched by its path.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from contextlib import nullcontext, redirect_stdout
@@ -26,6 +27,9 @@ LONG = 2.0
 
 INTERRUPTED = 130
 """The exit code of what Ctrl-C has ended."""
+
+ALGEBRA = ["OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"]
+"""What libraries that numpy computes with take their number of threads from."""
 
 FAIL_ON = ["contact", "error", "real-time"]
 
@@ -59,7 +63,7 @@ def simulate(
         list[str],
         typer.Argument(
             metavar="NAME|FILE [ARG:=VALUE]...",
-            help="A launch file, with its arguments.",
+            help="A launch file, by name, by path, or by package and name; and its arguments.",
             autocompletion=complete.launch_words,
             show_default=False,
         ),
@@ -107,14 +111,27 @@ def simulate(
 ) -> None:
     """Run a system of nodes in virtual time, as fast as it goes; end with a summary and a hash of all it published.
 
+    Ten minutes of a robot with a bad network: `simulate follow --duration 600 --faults radio`.
+
     The exit code is 1 when a node crashes or ends with an error, other than by a fault. Ctrl-C ends with the summary so
     far, and exit code 130.
     """
+    _compute_in_one_thread()
     asked = Asked(words, duration, settings or [], faults, workspace, fail_on or [])
     if repeat:
         first = seed or 0
         raise typer.Exit(_repeat(ctx, asked, range(first, first + repeat), as_json))
     raise typer.Exit(_once(ctx, asked, seed, as_json, verbose))
+
+
+def _compute_in_one_thread() -> None:
+    """Have what numpy computes with keep to one thread, here and in processes of seeds, unless somebody said more.
+
+    Several may give other bits on a computer with another number of cores, and take longer to start. To be called
+    before numpy is imported.
+    """
+    for name in ALGEBRA:
+        os.environ.setdefault(name, "1")
 
 
 def _once(ctx: typer.Context, asked: Asked, seed: int | None, as_json: bool, verbose: bool) -> int:

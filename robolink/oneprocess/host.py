@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 from robolink import compat, logging
@@ -13,6 +14,7 @@ from robolink.exceptions import NotFoundError
 from robolink.impl.log_output import output
 from robolink.launch.together import Member
 from robolink.oneprocess import real_time_use
+from robolink.oneprocess.kept import process_as_before
 from robolink.oneprocess.program import Part, Program
 from robolink.oneprocess.real_time import RealPace
 from robolink.oneprocess.real_time_use import RealTimeUse
@@ -67,7 +69,11 @@ class Host:
         self._environments: dict[tuple[tuple[str, str], ...], dict[str, str]] = {}
         self._random = random.getstate()
         self._stamps = output.now
+        self._kept = ExitStack()
+        self._kept.enter_context(process_as_before())
         self._is_closing = self._is_closed = False
+        self.wishes: dict[str, Any] = {}
+        """Values by parameter, for nodes started by name or file that declare it, have no other, and let it through."""
         self.real_time_use: list[RealTimeUse] = []
         """What programs did by real time, each thing once: program, what, and where in its code."""
         real_time_use.install()
@@ -241,6 +247,7 @@ class Host:
             real_time_use.uninstall()
             logging.set_time_source(self._stamps)
             random.setstate(self._random)
+            self._kept.close()
 
     def __enter__(self) -> Host:
         return self

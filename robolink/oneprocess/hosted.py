@@ -48,6 +48,7 @@ class HostedContext(Context):
     def track_node(self, node: Any) -> None:
         """Remember a node, to destroy it when the context ends."""
         super().track_node(node)
+        node._wished_parameters_ = self.program.wishes
         logger = node.get_logger().name
         for name, level in self.arguments.log_levels:
             if not name and not get_logger_level(logger):

@@ -51,6 +51,11 @@ def spot_of(runner: Runner | None) -> tuple[int, int]:
     return (0, 0) if frame is None else (id(frame), frame.f_lasti)
 
 
+def name_of(runner: Runner) -> str:
+    """Give the name of the program whose code a thread runs."""
+    return "the host" if runner.program is None else runner.program.name
+
+
 def where_is(runner: Runner) -> str:
     """Say at which line of the program's own code a thread is."""
     return f"it is at {place_of(frame_of(runner)) or 'an unknown place'}"

@@ -57,6 +57,11 @@ class Part:
         return load(self._found, program) if isinstance(self._found, NodeSource) else self._found
 
     @property
+    def is_found(self) -> bool:
+        """Whether it was found by a name or a file."""
+        return isinstance(self._found, NodeSource)
+
+    @property
     def home(self) -> Path | None:
         """The workspace in which what it looks up by name is found."""
         path = self._found.path if isinstance(self._found, NodeSource) else None
@@ -109,6 +114,11 @@ class Program:
         """Its nodes, as they were made: also those of a script."""
         tracked = (node for context in self.contexts for node in context._nodes.values())
         return list({id(node): node for node in (*self._made, *tracked)}.values())
+
+    @property
+    def wishes(self) -> Mapping[str, Any]:
+        """Give the host's wishes for parameters of its nodes; none for a class that somebody starts as it is."""
+        return self.host.wishes if self.parts[0].is_found else {}
 
     @property
     def is_over(self) -> bool:

@@ -1,5 +1,7 @@
 """What hosted programs do by the computer's own time: `time.sleep`, threads. It is noted, and taken as virtual time.
 
+Another process that they start is noted, too, but goes by its own time.
+
 While there is a host, some functions of Python's are replaced by ones that look who calls. For a hosted program
 `time.sleep` and the clocks of `time` are the host's, a thread that it starts takes turns with all others, and so does
 who waits at a `threading.Condition` (and so at an Event, a Queue, a Semaphore ...) or joins a thread. Everybody else
@@ -12,6 +14,7 @@ import _thread
 import math
 import queue
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -42,7 +45,7 @@ class RealTimeUse(NamedTuple):
 _CLOCKS = ("time", "time_ns", "monotonic", "monotonic_ns", "perf_counter", "perf_counter_ns")
 _real = {name: getattr(time, name) for name in (*_CLOCKS, "sleep")}
 _real_start, _real_join, _real_wait = threading.Thread.start, threading.Thread.join, threading.Condition.wait
-_real_handle = signal.signal
+_real_handle, _real_popen = signal.signal, subprocess.Popen.__init__
 _before: list[tuple[Any, str, Any]] = []
 _hosts = 0
 _counting = threading.Lock()
@@ -80,6 +83,7 @@ def _replacements() -> list[tuple[Any, str, Any]]:
         (threading, "_time", _steady),
         (queue, "time", _steady),
         (signal, "signal", _handle),
+        (subprocess.Popen, "__init__", _popen),
         *chance.replacements(),
     ]
 
@@ -197,6 +201,16 @@ def _start(thread: threading.Thread) -> None:
         return join(thread, program, _real_start)
     finally:
         runner.is_real = False
+
+
+def _popen(process: Any, *args: Any, **options: Any) -> None:
+    program: Program | None = get_defaults().program
+    caller: types.FrameType | None = sys._getframe(1)
+    while caller is not None and caller.f_code.co_filename == subprocess.__file__:  # within subprocess.run, say
+        caller = caller.f_back
+    if program is not None and caller is not None and is_users(caller.f_code.co_filename):
+        _note(program, "subprocess.Popen", caller)
+    _real_popen(process, *args, **options)
 
 
 def _join(thread: threading.Thread, timeout: float | None = None) -> None:

@@ -21,7 +21,7 @@ from robolink.defaults import get_defaults
 from robolink.exceptions import RobolinkError
 from robolink.oneprocess.beside import Beside
 from robolink.oneprocess.parts import HostedInbox, Job, Killed, Runner, Runners, Wait
-from robolink.oneprocess.places import where_is, where_waits
+from robolink.oneprocess.places import name_of, where_is, where_waits
 from robolink.oneprocess.surroundings import Surroundings
 from robolink.oneprocess.threads import end_thread, tell_of
 from robolink.oneprocess.workers import Worker
@@ -141,17 +141,19 @@ class Turns:
         turn = self._pick()
         if turn is wait:
             return
-        self._hand_to(turn)
-        self._park(me)
+        if me is self.outside:
+            self._go_on_with(turn)
+        else:
+            self._hand_to(turn)
+            me.park()
         if self.surroundings.shown is not me.program:
             self.surroundings.show(me.program)
 
-    def _park(self, me: Runner) -> None:
-        if me is not self.outside:
-            me.park()
-            return
+    def _go_on_with(self, turn: Any) -> None:
+        """Hand on the turn from outside, and have it back; Ctrl-C breaks in anywhere."""
         try:
-            while not me.park(timeout=0.5):  # on Windows Ctrl-C does not break into a wait
+            self._hand_to(turn)
+            while not self.outside.park(timeout=0.5):  # on Windows Ctrl-C does not break into a wait
                 continue
         except BaseException:  # Ctrl-C: leave when the turn has come back
             self._call_back()
@@ -168,7 +170,8 @@ class Turns:
                 is_back = self.outside.park(timeout=0.1) or is_back
         finally:  # also when Ctrl-C comes once more
             if (stuck := self.holder) is not self.outside:
-                self._take_turn(stuck, HostError(f"{_name_of(stuck)} did not go on after Ctrl-C: {where_is(stuck)}"))
+                self._take_turn(stuck, HostError(f"{name_of(stuck)} did not go on after Ctrl-C: {where_is(stuck)}"))
+            self._watch = self._asking = self.failure = None  # the next wait has nothing to do with it
 
     def _hand_to(self, turn: Any) -> None:
         """Let another thread go on: the one that waited, or one that does what is due."""
@@ -250,14 +253,14 @@ class Turns:
         stuck.free = True
         if (wait := self._watch) is not None:
             what = f"has kept all others waiting for {self.patience:g} s of real time"
-            wait.error = HostError(f"{_name_of(stuck)} {what}: {where_is(stuck)}")
+            wait.error = HostError(f"{name_of(stuck)} {what}: {where_is(stuck)}")
             self._take_turn(stuck, wait.error)
             self.outside.resume()
 
     def tell_of_standstill(self, last: Runner) -> None:
         """Tell whoever runs the host that somebody always has something to do, so that time never goes on."""
         text = f"time has stood still for {self.patience:g} s of real time: somebody always has something to do"
-        self.fail(HostError(f"{text}, just now {_name_of(last)}"))
+        self.fail(HostError(f"{text}, just now {name_of(last)}"))
 
     def _take_turn(self, stuck: Runner, error: HostError) -> None:
         """Take the turn outside, from a thread that goes on by itself; its program counts as crashed."""
@@ -393,7 +396,3 @@ class Turns:
                 if runner.is_host and runner.thread.is_alive():
                     end_thread(runner.thread)
         self.surroundings.close()
-
-
-def _name_of(runner: Runner) -> str:
-    return "the host" if runner.program is None else runner.program.name

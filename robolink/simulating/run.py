@@ -15,7 +15,6 @@ from robolink.faults import FaultsDescription, FaultyNetwork, FaultyTransport, I
 from robolink.faults.network import Timetable
 from robolink.impl.log_output import output
 from robolink.launch import Entry, Launched, processes
-from robolink.launch.together import Member
 from robolink.logging import LoggingSeverity, Record
 from robolink.oneprocess import Host, Program
 from robolink.oneprocess.supervision import Supervision
@@ -23,7 +22,7 @@ from robolink.oneprocess.trace import Trace
 from robolink.qos import QoSProfile
 from robolink.simulating.result import ProgramResult, RobotResult, SimulationResult
 from robolink.simulating.robots import robots_of
-from robolink.simulating.settings import numpy_seeded, seeded
+from robolink.simulating.settings import numpy_seeded
 from robolink.timebase import TimeBase
 from robolink.transport.base import Outlet
 
@@ -32,6 +31,8 @@ if TYPE_CHECKING:
 
 PARTS, LEAST = 200, 10**9
 """In how many parts a run is made, each of so many nanoseconds or more; after each somebody is told how far it is."""
+_SAME_EVERYWHERE = {"ROS_DOMAIN_ID": "0"}
+"""What a shell may say and no run may depend on: a publisher's identity is made of its domain, among others."""
 
 
 class Watching(NamedTuple):
@@ -61,19 +62,16 @@ def simulate(
     told = watching or Watching()
     with ExitStack() as stack:
         stack.enter_context(numpy_seeded(seed or 0))
-        launched = _programs(entries, stack.enter_context(seeded(seed)))
+        nodes = [each for each in processes(entries) if each.members]
+        launched = [replace(each, env={**_SAME_EVERYWHERE, **each.env}) for each in nodes]
         errors = stack.enter_context(_console(told.log))
         run = _Run(launched, faults or FaultsDescription(), seed or 0, told)
+        run.host.wishes = {} if seed is None else {"seed": seed}
         stack.callback(run.host.close)
         result = run.result(duration)
     commands = [each.name for each in entries if each.source is None]
     warnings = [f"{each} is left out: a command knows no virtual time" for each in commands]
     return msgspec.structs.replace(result, file=name, errors=len(errors), warnings=[*warnings, *result.warnings])
-
-
-def _programs(entries: Sequence[Entry], seeded_member: Callable[[Member], Member]) -> list[Launched]:
-    found = [each for each in processes(entries) if each.members]
-    return [replace(each, members=tuple(map(seeded_member, each.members))) for each in found]
 
 
 @contextmanager

@@ -1,23 +1,19 @@
-"""Change what a launch file says before it is run: parameters of its nodes, and the seed of all chance."""
+"""Change what a launch file says before it is run: parameters of its nodes; and the seed of numpy's chance."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import msgspec
 
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.launch import Entry
-from robolink.launch.together import Member
 from robolink.parameter_file import parse_parameter_value
 
 ASSIGN = ":="
-_ROS = "--ros-args"
 
 
 class SettingError(RobolinkError, ValueError):
@@ -78,25 +74,3 @@ def numpy_seeded(seed: int) -> Iterator[None]:
         yield
     finally:
         np.random.set_state(before)
-
-
-@contextmanager
-def seeded(seed: int | None) -> Iterator[Callable[[Member], Member]]:
-    """Give what has a member know the seed, as a parameter `seed` that it may declare and that nobody has given it.
-
-    It stands in a parameter file for all nodes: nobody is told that a node does not declare it. None changes nothing.
-    """
-    if seed is None:
-        yield lambda member: member
-        return
-    with TemporaryDirectory(prefix="robolink-seed-") as folder:
-        file = Path(folder, "seed.yaml")
-        file.write_text(f"/**: {{ros__parameters: {{seed: {seed}}}}}\n", encoding="utf-8")
-        yield lambda member: msgspec.structs.replace(member, args=_with_file(member.args, file))
-
-
-def _with_file(args: Sequence[str], file: Path) -> list[str]:
-    """Put a parameter file in front of what else is said to ROS, which then counts more."""
-    before = args.index(_ROS) + 1 if _ROS in args else len(args)
-    opened = [] if _ROS in args else [_ROS]
-    return [*args[:before], *opened, "--params-file", str(file), *args[before:]]

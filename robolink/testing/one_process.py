@@ -8,7 +8,6 @@ import traceback
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,18 +18,16 @@ from robolink.node import Node
 from robolink.oneprocess import Host, Program
 from robolink.oneprocess.places import is_users
 from robolink.oneprocess.supervision import Supervision
-from robolink.simulating.settings import numpy_seeded, seeded
+from robolink.simulating.settings import numpy_seeded
 from robolink.supervisor.rules import Step, is_orderly
 from robolink.testing.faults import Faults
 from robolink.testing.launching import entry_of
 from robolink.testing.stage import Failure, Named, Wanted, full
 from robolink.testing.strikes import Strikes
 from robolink.transport.memory import MemoryTransport
-from robolink.workspace.interfaces import WORKSPACE_TYPES
 
 if TYPE_CHECKING:
     from robolink.launch import Entry, Launched
-    from robolink.launch.together import Member
     from robolink.logging import Record
     from robolink.message import Message
     from robolink.testing.recorder import Topic
@@ -63,8 +60,7 @@ class OneProcess:
             logging.add_handler(self.logs.append)
             stack.callback(logging.remove_handler, self.logs.append)
             stack.enter_context(numpy_seeded(seed))
-            stack.enter_context(WORKSPACE_TYPES.forgetting())
-            self._seeded = stack.enter_context(seeded(seed))
+            self.host.wishes = {"seed": seed}
             self.begin_ns = self.now_ns()
             self.node: Node = self.host.start_node(Tester)
             self._own = next(iter(self.host.programs))
@@ -97,7 +93,7 @@ class OneProcess:
                 return self._started_class(wanted.what, wanted)
             (launched,) = processes(entry_of(str(wanted.what), wanted))
             self._introduce(launched)
-            program = self.host.start(launched.name, self._members(launched), env=launched.env)
+            program = self.host.start(launched.name, launched.members, env=launched.env)
             if program.error is not None:
                 raise program.error
         except BaseException:
@@ -128,7 +124,7 @@ class OneProcess:
 
     def launch(self, entries: Sequence[Entry]) -> None:
         """Start what a launch file says, by its rules; commands are left out."""
-        launched = [replace(each, members=self._members(each)) for each in processes(entries)]
+        launched = processes(entries)
         for each in launched:
             self._introduce(each)
         for each in launched:
@@ -143,9 +139,6 @@ class OneProcess:
 
     def _introduce(self, launched: Launched) -> None:
         self.strikes.injector.introduce(launched.name, (entry.name for entry in launched.entries))
-
-    def _members(self, launched: Launched) -> tuple[Member, ...]:
-        return tuple(map(self._seeded, launched.members))
 
     def _node_of(self, program: Program) -> Any:
         """Give the node of a program, once it has made it; of one that makes none at once, the program."""

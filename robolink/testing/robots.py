@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Protocol
 
 from robolink.exceptions import NotFoundError, RobolinkError
@@ -56,17 +56,26 @@ class SimulatedRobot(Protocol):
 
 
 def chosen(robots: Iterable[tuple[str, SimulatedRobot]], name: str | None) -> SimulatedRobot:
-    """Give the robot of a name, or the only one. Raises NotFoundError."""
-    found = dict(robots)
-    if name is None and len(found) == 1:
-        return next(iter(found.values()))
-    if name in found:
-        return found[name]
+    """Give the robot of a name, as `robots_of` gives it, or the only one. Raises NotFoundError."""
+    found = list(robots)
+    names = [each for each, _ in found]
     if not found:
         raise NoRobotError("this system has no robot: no simulated world has begun in it")
+    meant = found if name is None else _called(found, name)
+    if len(meant) == 1:
+        return meant[0][1]
     if name is None:
-        raise NoRobotError(f"which robot? The world has {', '.join(found)}: give a name")
-    raise NotFoundError("robot", name, found, f"the world, which has {', '.join(found)}")
+        raise NoRobotError(f"which robot? The world has {', '.join(names)}: give a name")
+    if meant:
+        several = ", ".join(each for each, _ in meant)
+        raise NoRobotError(f"which robot '{name}'? There are {several}: give a whole name")
+    raise NotFoundError("robot", name, names, f"the world, which has {', '.join(names)}")
+
+
+def _called(robots: Sequence[tuple[str, SimulatedRobot]], name: str) -> list[tuple[str, SimulatedRobot]]:
+    """Give the robots of a name; where none has it as a whole, those of all worlds that have it in their namespace."""
+    exact = [each for each in robots if each[0] == name.strip("/")]
+    return exact or [each for each in robots if each[0].endswith(f"/{name}")]
 
 
 class RobotElsewhere:

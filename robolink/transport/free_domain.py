@@ -26,15 +26,16 @@ def free_domain() -> Iterator[int]:
                 mark.bind(("127.0.0.1", FIRST_PORT + domain))
             except OSError:
                 continue
-            if _is_free(FIRST_PORT + domain):
+            if is_free(FIRST_PORT + domain):
                 yield domain
                 return
     raise TransportError(f"all domains from 1 to {HIGHEST} are in use on this machine")
 
 
-def _is_free(port: int) -> bool:
+def is_free(port: int) -> bool:
+    """Whether nobody listens on a port of this machine; connections that have ended do not count."""
     with socket.socket() as probe:
-        if os.name != "nt":  # else connections that have ended keep the port for a minute
+        if os.name != "nt":  # there it would let two listen
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             probe.bind(("127.0.0.1", port))
