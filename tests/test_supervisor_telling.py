@@ -60,6 +60,23 @@ def test_why_a_program_ended(output: str, text: str) -> None:
     assert cause.text == text
 
 
+def test_what_a_ctrl_c_has_led_to_has_that_as_its_cause() -> None:
+    cause = Cause()
+    for line in (
+        "Traceback (most recent call last):",
+        '  File "functools.py", line 972, in __set_name__',
+        "KeyboardInterrupt",
+        "",
+        "The above exception was the direct cause of the following exception:",
+        "",
+        "Traceback (most recent call last):",
+        '  File "platform.py", line 778, in <module>',
+        "RuntimeError: Error calling __set_name__",
+    ):
+        cause.line(line.encode() + b"\n")
+    assert cause.text == "KeyboardInterrupt"
+
+
 @given(st.lists(st.binary(max_size=50) | st.sampled_from([line.encode() for line in TRACEBACK.splitlines()])))
 def test_any_output_has_a_cause_of_one_printable_line_or_none(lines: list[bytes]) -> None:
     cause = Cause()

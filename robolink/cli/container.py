@@ -27,12 +27,12 @@ def run(members: Sequence[Member]) -> int:
 
     They end together: with the first callback that raises, with `shutdown`, Ctrl-C or SIGTERM.
     """
-    terminated = runner.prepare()
     sources = [find_node(each.node) for each in members]
     if sources:
         runner.settle(sources[0], None)
     runner.take_names()
     runner.pass_over_imports()
+    terminated = runner.prepare()
     return runner.outcome(lambda: _spin(members, sources), terminated)
 
 

@@ -68,11 +68,11 @@ def run(asked: Asked, ros_args: list[str], workspace: str | None) -> int:
     when it lets the interrupt pass, it is 130 or 143, as shells count. An exception in the user's code is shown
     with its traceback, from the user's code on, and gives 1.
     """
-    terminated = prepare()
     source, args = found(asked, workspace)
     settle(source, workspace)
     take_names()
     pass_over_imports()
+    terminated = prepare()  # so late: a Ctrl-C that a launcher held back may break into no import of ours
     sys.argv = [str(source.path or source.name), *args, *ros_args]
     return outcome(lambda: _start(source, args), terminated)
 

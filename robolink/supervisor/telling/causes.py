@@ -14,6 +14,11 @@ _GROUP = re.compile(r"^\s*[+|][ -]")
 """What stands before the lines of an exception group."""
 _FRAME = re.compile(r'^\s+File ".*", line \d+(, in .*)?$')
 _HEADER = "Traceback (most recent call last):"
+_CHAINS = (
+    "The above exception was the direct cause of the following exception:",
+    "During handling of the above exception, another exception occurred:",
+)
+_INTERRUPTED = "KeyboardInterrupt"
 _FATAL = ("Fatal Python error: ", "terminate called ")
 """How a fatal error of Python and an exception of C++ begin."""
 _OWN = "robolink: "
@@ -21,12 +26,15 @@ _OWN = "robolink: "
 
 
 class Cause:
-    """Reads a program's output line by line; `text` is then the cause of its end, or empty."""
+    """Reads a program's output line by line; `text` is then the cause of its end, or empty.
+
+    What a Ctrl-C has led to has that as its cause: breaking into an import, it may come out as any other error.
+    """
 
     def __init__(self) -> None:
         self._found = ""
         self._age = 0
-        self._is_in_traceback = False
+        self._is_in_traceback = self._is_led_to = False
 
     @property
     def text(self) -> str:
@@ -43,6 +51,8 @@ class Cause:
             self._traceback(text)
         elif text.endswith(_HEADER) or _FRAME.match(text):
             self._is_in_traceback = True
+        elif text in _CHAINS:
+            self._is_led_to = self._found == _INTERRUPTED
         elif text.startswith(_OWN):
             self._note(text.removeprefix(_OWN))
         elif text.startswith(_FATAL):
@@ -58,4 +68,5 @@ class Cause:
             self._note(plain)
 
     def _note(self, text: str) -> None:
-        self._found, self._age = shown(text, _LONGEST), 0
+        self._found, self._age = _INTERRUPTED if self._is_led_to else shown(text, _LONGEST), 0
+        self._is_led_to = False
