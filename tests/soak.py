@@ -167,7 +167,8 @@ class Soak:
         zombies = [each for each in psutil.Process().children() if each.status() == psutil.STATUS_ZOMBIE]
         assert not zombies, f"zombies are left: {zombies}"
         port = FIRST_PORT + self.domain
-        assert is_free(port), f"somebody listens at the rendezvous port {port}: {listeners(port)}"
+        # A killed process lets go of its sockets a moment after it is seen no more.
+        self._wait(lambda: is_free(port), f"somebody listens at the rendezvous port {port}")
         for name in ("tmp", "home"):
             assert not list((self.folder / name).iterdir()), f"{name}: {list((self.folder / name).iterdir())}"
         word = [each for each in (self.folder / "run").rglob("*") if not each.is_dir()]
@@ -230,12 +231,6 @@ KINDS: dict[str, Callable[[Soak, subprocess.Popen[bytes]], None]] = {
     )
 }
 """The ways in which a round ends, by name."""
-
-
-def listeners(port: int) -> list[str]:
-    """Say who listens there."""
-    found = [each.pid for each in psutil.net_connections("tcp") if each.laddr and each.laddr.port == port]
-    return [_described(psutil.Process(each)) if each else "nobody who could be named" for each in found]
 
 
 def forgotten_memory() -> set[str]:
