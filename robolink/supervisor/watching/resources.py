@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import os
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from types import TracebackType
 from typing import NamedTuple, TypeAlias
 
 import psutil
 
 from robolink.supervisor.events import Status
+from robolink.supervisor.watching.repeating import Repeating
 
 _SHOWN = 6
 """So many processes are named in a line of figures."""
@@ -118,33 +117,23 @@ def _taken(pid: int) -> tuple[Identity, Taken] | None:
         return None
 
 
-class Figures:
+class Figures(Repeating):
     """Says every so many seconds, inside a `with`, what the processes of a launcher use: for `launch FILE --top`."""
 
     def __init__(
         self, status: Callable[[], Sequence[Status]], say: Callable[[str], object], *, every: float = 5.0
     ) -> None:
-        self._status, self._say, self._every = status, say, every
+        self._status, self._say = status, say
         self._meter = Meter()
-        self._closed = threading.Event()
-        self._thread = threading.Thread(target=self._work, name="figures", daemon=True)
+        super().__init__("figures", every, first=min(every, _FIRST))
 
     def __enter__(self) -> Figures:
-        self._thread.start()
-        return self
+        self.measured()  # CPU is counted from here on
+        return super().__enter__()
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._closed.set()
-        self._thread.join(1.0)
-
-    def _work(self) -> None:
-        self.measured()
-        pause = min(self._every, _FIRST)
-        while not self._closed.wait(pause):
-            self._say(line_of_figures(self.measured()))
-            pause = self._every
+    def look(self) -> None:
+        """Say what all use since the look before."""
+        self._say(line_of_figures(self.measured()))
 
     def measured(self) -> dict[str, Usage]:
         """Give what each process uses since the look before, by name."""

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from types import TracebackType
 from typing import TypeAlias
 
 from robolink.supervisor.watching.imports import Imports, parse
+from robolink.supervisor.watching.repeating import Repeating
 
 Stamp: TypeAlias = "tuple[int, int, int] | None"
 """What changes when a file is saved: when it was written, its size, which file it is; None while there is none."""
@@ -54,7 +53,7 @@ def stamp_of(path: Path) -> Stamp:
     return found.st_mtime_ns, found.st_size, found.st_ino
 
 
-class Watch:
+class Watch(Repeating):
     """Calls `restart` with the name of each process one of whose files was saved, inside a `with`.
 
     `files` are the Python files of each process; what these import, from their folder or from `roots`, counts as well.
@@ -78,25 +77,9 @@ class Watch:
         self._imports = Imports(roots)
         self._settings = set(settings)
         self._broken: dict[Path, str] = {}
-        self._every = every
         self._changes = changes or Changes()
         self._made_of = self._gathered()
-        self._closed = threading.Event()
-        self._thread = threading.Thread(target=self._work, name="watch", daemon=True)
-
-    def __enter__(self) -> Watch:
-        self._thread.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._closed.set()
-        self._thread.join(1.0)
-
-    def _work(self) -> None:
-        while not self._closed.wait(self._every):
-            self.look()
+        super().__init__("watch", every)
 
     def look(self) -> None:
         """Look once, and do what there is to do."""
