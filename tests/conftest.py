@@ -25,6 +25,7 @@ from robolink.transport import zenoh
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.transport.zenoh import ZenohTransport
 from tests.domains import free_domain
+from tests.launchers import RUNTIME_VARIABLE, new_runtime_folder
 from tests.long_runs import LongRun
 from tests.transports import Network
 
@@ -39,7 +40,7 @@ THEIR_FILES = pytest.StashKey[set[Path]]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Keep what launched systems print out of the user's home, and have Ctrl-C do what it does in a terminal.
+    """Keep what is launched out of the user's home and apart from their own launchers; have Ctrl-C as in a terminal.
 
     A shell starts what it runs in the background with SIGINT ignored, and all that it starts in turn.
     """
@@ -48,6 +49,9 @@ def pytest_configure(config: pytest.Config) -> None:
     folder = tempfile.TemporaryDirectory(prefix="robolink-logs-", ignore_cleanup_errors=True)
     config.add_cleanup(folder.cleanup)
     os.environ["ROBOLINK_LOG_DIR"] = folder.name
+    runtime = new_runtime_folder()
+    config.add_cleanup(runtime.cleanup)
+    os.environ[RUNTIME_VARIABLE] = runtime.name
 
 
 def runs_long(item: pytest.Item) -> bool:

@@ -17,14 +17,20 @@ import pytest
 
 from robolink.supervisor.events import Status
 
-VARIABLE = "LOCALAPPDATA" if sys.platform == "win32" else "XDG_RUNTIME_DIR"
+RUNTIME_VARIABLE = "LOCALAPPDATA" if sys.platform == "win32" else "XDG_RUNTIME_DIR"
+
+
+def new_runtime_folder() -> tempfile.TemporaryDirectory[str]:
+    """Make a folder in which launchers leave word; pytest's own are too long for a socket's path."""
+    place = None if sys.platform == "win32" else "/tmp"
+    return tempfile.TemporaryDirectory(prefix="rl", dir=place, ignore_cleanup_errors=True)
 
 
 @contextmanager
 def own_runtime_folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A folder in which only this test's launchers leave word; pytest's own are too long for a socket's path."""
-    with tempfile.TemporaryDirectory(prefix="rl", dir=None if sys.platform == "win32" else "/tmp") as folder:
-        monkeypatch.setenv(VARIABLE, folder)
+    """A folder in which only this test's launchers leave word."""
+    with new_runtime_folder() as folder:
+        monkeypatch.setenv(RUNTIME_VARIABLE, folder)
         yield Path(folder)
 
 
@@ -82,7 +88,7 @@ def files_in(folder: Path) -> list[str]:
 @contextmanager
 def launcher_elsewhere(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
     """A launcher in another process, which listens; it is killed in the end."""
-    environ = {**os.environ, VARIABLE: str(folder), "PYTHONPATH": str(Path(__file__).parents[1])}
+    environ = {**os.environ, RUNTIME_VARIABLE: str(folder), "PYTHONPATH": str(Path(__file__).parents[1])}
     command = [sys.executable, "-c", LAUNCHER]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environ) as process:
         assert process.stdout is not None

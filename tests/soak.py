@@ -87,7 +87,7 @@ class Soak:
                 KINDS[kind](self, launcher)
                 self._wait(lambda: launcher.poll() is not None, "the launcher has not ended")
                 self._wait(lambda: not self.processes(), "processes are left")
-                self._check_files(was_killed=launcher.returncode == -9)
+                self._check_files(launcher)
                 self._check_code(kind, launcher.returncode)
             except AssertionError as error:
                 said = (self.folder / "output").read_text(errors="replace")
@@ -155,6 +155,10 @@ class Soak:
                     found.append(process)
         return found
 
+    def words(self) -> list[Path]:
+        """The files that launchers have left to be found by."""
+        return list((self.folder / "run").glob("robolink/launch-*"))
+
     def _of(self, word: str) -> list[psutil.Process]:
         found = []
         for process in self.processes():
@@ -163,7 +167,7 @@ class Soak:
                     found.append(process)
         return found
 
-    def _check_files(self, *, was_killed: bool) -> None:
+    def _check_files(self, launcher: subprocess.Popen[bytes]) -> None:
         zombies = [each for each in psutil.Process().children() if each.status() == psutil.STATUS_ZOMBIE]
         assert not zombies, f"zombies are left: {zombies}"
         port = FIRST_PORT + self.domain
@@ -171,9 +175,9 @@ class Soak:
         self._wait(lambda: is_free(port), f"somebody listens at the rendezvous port {port}")
         for name in ("tmp", "home"):
             assert not list((self.folder / name).iterdir()), f"{name}: {list((self.folder / name).iterdir())}"
-        word = [each for each in (self.folder / "run").rglob("*") if not each.is_dir()]
-        # One that is killed cannot take back its word; the next launcher does, and so does `launch --status`.
-        assert was_killed or not word, f"a word of launchers is left: {word}"
+        # One that is killed cannot take back its word; the next one that lives long enough does.
+        word = [each for each in self.words() if each.name.startswith(f"launch-{launcher.pid}-")]
+        assert launcher.returncode == -9 or not word, f"a word of the launcher is left: {word}"
         runs = [each for each in (self.folder / "logs").iterdir() if not each.is_symlink()]
         assert len(runs) <= KEPT_RUNS, f"logs of {len(runs)} runs"
         # What a session leaves there the next one sweeps.
@@ -267,6 +271,8 @@ def main() -> None:
             kind = chosen.choice(list(KINDS))
             kinds[kind] += 1
             soak.round(kind)
+        soak.round("stop")
+        assert not soak.words(), f"what killed launchers had left was not cleared: {soak.words()}"
         memory = len(forgotten_memory())
     counts = ", ".join(f"{kind} {count}" for kind, count in kinds.items())
     print(f"nothing is left after {arguments.rounds} rounds ({counts}); {memory} files in shared memory")  # noqa: T201

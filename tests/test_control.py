@@ -202,13 +202,35 @@ def test_what_was_left_half_written_is_cleared_once_it_is_old(
     folder: Path, launched: Control, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ours = files_in(folder)
-    for name in ("launch-1-a.part", "launch-2-b.json", "launch-3-c.sock"):
-        (runtime_folder() / name).write_text('{"pid": "what?"')
+    for name in ("a.part", "b.json", "c.sock"):
+        (runtime_folder() / f"launch-{os.getpid()}-{name}").write_text('{"pid": "what?"')
     assert len(running()) == 1
     assert len(files_in(folder)) == len(ours) + 3  # perhaps it is just being written
     monkeypatch.setattr(runtime, "_UNFINISHED", -1.0)
     assert len(running()) == 1
     assert files_in(folder) == ours
+
+
+def test_what_the_killed_left_half_written_is_cleared_at_once(folder: Path, launched: Control) -> None:
+    ours = files_in(folder)
+    for name in (f"launch-{0x7FFFFFF0}-a.part", f"launch-{0x7FFFFFF0}-b.sock", "launch-²-c.sock", "launch-no-d.json"):
+        (runtime_folder() / name).write_text("")
+    assert len(running()) == 1
+    assert files_in(folder) == ours
+
+
+@pytest.mark.parametrize("removed", range(3))
+def test_whoever_is_killed_as_it_clears_leaves_what_can_be_cleared(folder: Path, removed: int) -> None:
+    place = new_place(runtime_folder())
+    for each in runtime.files_at(place):
+        each.touch()
+    killed = Registration(0x7FFFFFF0, "killed", "", str(place.with_suffix(".sock")), "", 0.0)
+    register(place.with_name("launch"), killed)
+    place.with_name("launch.json").replace(place.with_suffix(".json"))
+    for each in runtime.files_at(place)[:removed]:
+        each.unlink()
+    asking.clear_away()
+    assert files_in(folder) == []
 
 
 # --- strangers ------------------------------------------------------------------------------------------------

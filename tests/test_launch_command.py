@@ -62,7 +62,6 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "configs" / "talk.yaml").write_text(SYSTEM)
     (tmp_path / "configs" / "none.yaml").write_text("nodes: [node: talker]\n")
     monkeypatch.setenv("ROBOLINK_LOG_DIR", str(tmp_path / "log"))
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     monkeypatch.delenv(VARIABLE, raising=False)
     monkeypatch.chdir(tmp_path)
     return tmp_path.resolve()

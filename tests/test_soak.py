@@ -31,7 +31,7 @@ def test_nothing_is_left_after(soak: Soak, kind: str) -> None:
 def test_and_the_next_start_clears_what_the_killed_could_not(soak: Soak) -> None:
     soak.round("kill_launcher_and_guardian")
     soak.round("stop")
-    assert not [each for each in (soak.folder / "run").rglob("*") if not each.is_dir()]
+    assert not soak.words()
 
 
 def test_the_soak_sees_memory_that_nobody_has(tmp_path: Path) -> None:

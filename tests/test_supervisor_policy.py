@@ -460,6 +460,15 @@ def test_an_interrupt_that_nobody_catches_is_an_orderly_end_only_when_it_was_ask
     assert said == Say("a ended with exit code 1: KeyboardInterrupt")
 
 
+def test_a_python_that_is_interrupted_before_it_has_begun_ends_in_order() -> None:
+    cause = "Fatal Python error: init_import_site: Failed to import the site module"
+    policy = two()
+    replay(policy, [(1, "interrupt")])
+    assert policy.exited("a", 1, 2, cause) == []
+    [said, *_] = two().exited("a", 1, 2, cause)
+    assert said == Say(f"a ended with exit code 1: {cause}")
+
+
 def test_windows_ends_a_process_with_code_1_when_it_is_told_to(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not is_orderly(1, TERMINATE)
     monkeypatch.setattr("sys.platform", "win32")

@@ -34,6 +34,7 @@ Current thread 0x01 (most recent call first):
 
 Extension modules: numpy (total: 1)
 """
+NOT_BEGUN = "Fatal Python error: init_sys_streams: can't initialize sys standard streams"
 CAUSES = [
     ("all is well\n", ""),
     (TRACEBACK + "ZeroDivisionError: division by zero\n", "ZeroDivisionError: division by zero"),
@@ -49,6 +50,10 @@ CAUSES = [
     ("terminate called after throwing an instance of 'E'\n  what():  no such thing\n", "no such thing"),
     ("robolink: no world named 'labb' (did you mean 'lab'?)\n", "no world named 'labb' (did you mean 'lab'?)"),
     ("Traceback (most recent call last):\n", ""),
+    ("KeyboardInterrupt\n", "KeyboardInterrupt"),
+    (NOT_BEGUN + "\nPython runtime state: initialized\nKeyboardInterrupt\n\nCurrent thread\n", "KeyboardInterrupt"),
+    (NOT_BEGUN + "\n" + TRACEBACK + "KeyboardInterrupt\n", "KeyboardInterrupt"),
+    (NOT_BEGUN + "\n" + TRACEBACK + "TypeError: expected a message argument\n", NOT_BEGUN),
 ]
 
 

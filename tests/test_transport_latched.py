@@ -1,12 +1,18 @@
-"""Latched topics over Zenoh: publishers that end while their own process receives do not bring it to a halt."""
+"""Threads inside Zenoh: neither publishers that end while their own process receives nor its exit stumble on them."""
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 
 import pytest
 
+from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.transport import lifetime
+from robolink.transport.zenoh import ZenohTransport
 from tests.programs import Program
+
+LATCHED = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 CHURN = """
     import sys, threading
@@ -43,3 +49,18 @@ def test_latched_publishers_come_and_go_while_messages_arrive(tmp_path: Path, do
     """Zenoh locks an advanced subscriber while it calls: what it calls must not need Python's lock."""
     with Program(tmp_path, CHURN, domain, str(domain)) as program:
         assert program.line() == "done"
+
+
+def test_the_exit_waits_for_every_thread_that_is_inside_zenoh(domain: int) -> None:
+    """Python's end aborts a process when one of them comes back during it."""
+    before = set(threading.enumerate())
+    transport = ZenohTransport(domain)
+    transport.watch("@ros2_lv/**", lambda token, alive: None)
+    transport.subscribe("0/chatter/std_msgs::msg::dds_::String_/TypeHashNotSupported", LATCHED, lambda arrived: None)
+    started = set(threading.enumerate()) - before
+    assert len(started) == 2
+    assert started <= set(lifetime._unfinished)
+    transport.close()
+    for thread in started:
+        thread.join(30.0)
+        assert not thread.is_alive()

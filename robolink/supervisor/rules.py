@@ -94,9 +94,10 @@ _WINDOWS_ENDS = {
 def is_orderly(returncode: int, step: Step, cause: str = "") -> bool:
     """Whether a process that had been asked to stop, as hard as `step`, ended as one that obeys.
 
-    One that lets a KeyboardInterrupt pass does so too: Python, say, that is interrupted while it starts.
+    One that lets a KeyboardInterrupt pass does so too, and a Python that is interrupted before it has begun: it may
+    make any error of that.
     """
     obeyed = {0, 128 + signal.SIGINT, 128 + signal.SIGTERM}
     if sys.platform == "win32":
         obeyed |= {_CONTROL_C_EXIT, 1} if step >= Step.TERMINATE else {_CONTROL_C_EXIT}
-    return exit_code(returncode) in obeyed or cause == "KeyboardInterrupt"
+    return exit_code(returncode) in obeyed or cause.startswith(("KeyboardInterrupt", "Fatal Python error: init_"))

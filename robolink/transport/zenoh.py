@@ -96,7 +96,7 @@ class ZenohTransport(Transport):
     def watch(self, pattern: str, on_change: Callable[[str, bool], object]) -> Handle:
         """Call `on_change(token, alive)` for each token that matches `pattern`, on a thread of its own."""
         changes = handles.Changes(on_change)
-        subscriber = self._try(pattern, declare.declare_watch, pattern, zenoh.handlers.Callback(changes))
+        subscriber = self._try(pattern, declare.declare_watch, pattern, changes)
         return handles.ZenohWatch(self._holdings, subscriber, changes)
 
     def tokens(self, pattern: str) -> list[str]:
@@ -106,7 +106,7 @@ class ZenohTransport(Transport):
         """
         time.sleep(max(0.0, self._met_at - time.monotonic()))
         arrived: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        subscriber = self._try(pattern, declare.declare_watch, pattern, declare.direct(arrived.put))
+        subscriber = self._try(pattern, declare.declare_look, pattern, arrived.put)
         try:
             return sorted(_settled(arrived, functools.partial(self._try, pattern, declare.ask, pattern), self._peers))
         finally:

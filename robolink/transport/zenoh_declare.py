@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import sys
 import threading
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -15,7 +16,7 @@ from robolink.transport import lifetime
 from robolink.transport.base import Sink
 
 MOST_BETWEEN = 1 << 16
-"""Samples of a latched topic that wait for their thread; when there are more, Zenoh waits."""
+"""Samples of a latched topic, or news of tokens, that wait for their thread; when there are more, Zenoh waits."""
 
 FOR_EVER = 1e9
 """Seconds, 31 years: time is up to whoever waits for an answer."""
@@ -67,17 +68,28 @@ def declare_subscriber(session: zenoh.Session, key: str, gate: Sink, qos: QoSPro
         recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if reliable else None,
         subscriber_detection=True,
     )
-    thread = threading.Thread(target=_hand_on, args=(subscriber.handler, gate), name="robolink latched", daemon=True)
-    lifetime.outlive(thread)
-    thread.start()
+    _follow(subscriber.handler, gate, "robolink latched")
     return subscriber
 
 
-def _hand_on(channel: Any, gate: Sink) -> None:
-    """Give what arrives to the gate until the subscriber is gone."""
+def _follow(channel: Any, sink: Sink, name: str) -> None:
+    """Give what arrives to the sink, on a thread of its own, until what the channel is of is gone.
+
+    Zenoh would start such a thread too, but nobody could wait for that one, and it aborts a process whose interpreter
+    ends before it has.
+    """
+    thread = threading.Thread(target=_hand_on, args=(channel, sink), name=name, daemon=True)
+    lifetime.outlive(thread)
+    thread.start()
+
+
+def _hand_on(channel: Any, sink: Sink) -> None:
     with contextlib.suppress(zenoh.ZError):
         for sample in channel:
-            gate(sample)
+            try:
+                sink(sample)
+            except Exception:  # noqa: BLE001 - one that is lost must not lose those behind it
+                sys.excepthook(*sys.exc_info())
 
 
 def declare_server(session: zenoh.Session, key: str, gate: Sink) -> Any:
@@ -108,8 +120,19 @@ def declare_token(session: zenoh.Session, token: str) -> Any:
     return session.liveliness().declare_token(token)
 
 
-def declare_watch(session: zenoh.Session, pattern: str, handler: Any) -> Any:
-    """See tokens come and go, those already there first."""
+def declare_watch(session: zenoh.Session, pattern: str, changed: Sink) -> Any:
+    """See tokens come and go, those already there first; `changed` is called on a thread of its own."""
+    watch = _declare_tokens(session, pattern, zenoh.handlers.FifoChannel(MOST_BETWEEN))
+    _follow(watch.handler, changed, "robolink watch")
+    return watch
+
+
+def declare_look(session: zenoh.Session, pattern: str, arrived: Sink) -> Any:
+    """See tokens as `declare_watch` does; `arrived`, which should be C, is called on Zenoh's thread."""
+    return _declare_tokens(session, pattern, direct(arrived))
+
+
+def _declare_tokens(session: zenoh.Session, pattern: str, handler: Any) -> Any:
     return session.liveliness().declare_subscriber(pattern, handler, history=True)
 
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from robolink.exceptions import RobolinkError, shown
-from robolink.supervisor.door.runtime import Registration, registrations, runtime_folder, unregister
+from robolink.supervisor.door.runtime import Registration, has_process, registrations, runtime_folder, unregister
 from robolink.supervisor.door.talk import Answer, Line, Question, connect
 
 ANSWER_WITHIN = 3.0
@@ -139,18 +137,3 @@ def clear_away() -> None:
 
 def _registered() -> list[Launcher]:
     return [Launcher(place, registration) for place, registration in registrations(runtime_folder())]
-
-
-def has_process(pid: int) -> bool:
-    """Whether there is a process of this number."""
-    if sys.platform == "win32":
-        import psutil
-
-        return psutil.pid_exists(pid)
-    try:
-        os.kill(pid, 0)
-    except (ProcessLookupError, OverflowError):
-        return False
-    except PermissionError:
-        return True
-    return True

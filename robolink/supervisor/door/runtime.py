@@ -104,8 +104,11 @@ def register(place: Path, registration: Registration) -> None:
 
 
 def files_at(place: Path) -> list[Path]:
-    """Give the files that a launcher may leave there."""
-    return [place.with_suffix(suffix) for suffix in (".json", ".part", ".sock")]
+    """Give the files that a launcher may leave there, in the order to remove them.
+
+    The word itself is last: whoever is killed on the way leaves what the next launcher finds, and clears.
+    """
+    return [place.with_suffix(suffix) for suffix in (".sock", ".part", ".json")]
 
 
 def unregister(place: Path) -> None:
@@ -118,7 +121,7 @@ def unregister(place: Path) -> None:
 def registrations(folder: Path) -> Iterator[tuple[Path, Registration]]:
     """Give each launcher that has left word, with its place: whether it still runs only asking it can tell.
 
-    What others have left behind unfinished is cleared.
+    What those have left behind who were killed before they had left word is cleared.
     """
     found = {each.with_suffix("") for each in folder.glob(f"{_BEGIN}*")}
     for place in sorted(found):
@@ -126,8 +129,14 @@ def registrations(folder: Path) -> Iterator[tuple[Path, Registration]]:
             text = place.with_suffix(".json").read_bytes()
             yield place, msgspec.json.decode(text, type=Registration)
         except (OSError, msgspec.DecodeError, UnicodeDecodeError):
-            if _age(place) > _UNFINISHED:
+            if not _has_owner(place) or _age(place) > _UNFINISHED:
                 unregister(place)
+
+
+def _has_owner(place: Path) -> bool:
+    """Whether there is a process of the number that stands in a place's name."""
+    pid = place.name.removeprefix(_BEGIN).partition("-")[0]
+    return pid.isdecimal() and has_process(int(pid))
 
 
 def _age(place: Path) -> float:
@@ -139,3 +148,18 @@ def _age(place: Path) -> float:
         except OSError:
             continue
     return time.time() - max(times) if times else 0.0
+
+
+def has_process(pid: int) -> bool:
+    """Whether there is a process of this number."""
+    if sys.platform == "win32":
+        import psutil
+
+        return psutil.pid_exists(pid)
+    try:
+        os.kill(pid, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        return True
+    return True

@@ -24,7 +24,7 @@ from robolink.supervisor.rules import Rules, Step
 
 _LONGEST_LINE = 1 << 20
 """Bytes; a longer line is printed in pieces."""
-_LAST_WORDS = 0.3
+_LAST_WORDS = 1.0
 """Seconds that the output of a process may go on behind its end, in the pipe or from its own children."""
 _LEFT_BEHIND = 1.0
 """Seconds that processes have which outlive the one that started them, between SIGTERM and SIGKILL."""

@@ -21,6 +21,8 @@ _CHAINS = (
 _INTERRUPTED = "KeyboardInterrupt"
 _FATAL = ("Fatal Python error: ", "terminate called ")
 """How a fatal error of Python and an exception of C++ begin."""
+_NOT_BEGUN = "Fatal Python error: init_"
+"""How the end of a Python begins that never came to its program; a Ctrl-C at that time comes out as any error."""
 _OWN = "robolink: "
 """How a command of robolink tells of an error before it ends."""
 
@@ -55,7 +57,7 @@ class Cause:
             self._is_led_to = self._found == _INTERRUPTED
         elif text.startswith(_OWN):
             self._note(text.removeprefix(_OWN))
-        elif text.startswith(_FATAL):
+        elif text.startswith(_FATAL) or text == _INTERRUPTED:  # without a traceback, as early as that
             self._note(text)
         elif text.startswith("  what():"):
             self._note(text.partition(":")[2].strip())
@@ -68,5 +70,7 @@ class Cause:
             self._note(plain)
 
     def _note(self, text: str) -> None:
+        if self.text.startswith(_NOT_BEGUN) and text != _INTERRUPTED:
+            return
         self._found, self._age = _INTERRUPTED if self._is_led_to else shown(text, _LONGEST), 0
         self._is_led_to = False
