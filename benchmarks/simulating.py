@@ -125,7 +125,7 @@ def main() -> None:
     show("follow", [run(each, "follow", "--duration", "600") for each in pythons], 6.0)
     with tempfile.TemporaryDirectory() as folder:
         for name, text in (("loop.py", NODES), ("loop.yaml", LAUNCH), ("faults.yaml", FAULTS)):
-            Path(folder, name).write_text(text)
+            Path(folder, name).write_text(text, encoding="utf-8")
         words = ("./loop.yaml", "--faults", "./faults.yaml", "--duration", "3600", "--seed", "3")
         show("loop", [run(each, *words, folder=folder) for each in pythons], 4.0)
 

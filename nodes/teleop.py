@@ -213,14 +213,15 @@ class PosixKeyboard:
     """A terminal as Linux and macOS have it."""
 
     def __init__(self, terminal: int) -> None:
-        import termios
-        import tty
-
-        if in_background(terminal):
-            raise NoTerminalError("teleop reads keys from its terminal, and it runs there in the background")
         self._terminal = terminal
-        self._found = termios.tcgetattr(terminal)
-        tty.setcbreak(terminal)
+        if sys.platform != "win32":
+            import termios
+            import tty
+
+            if in_background(terminal):
+                raise NoTerminalError("teleop reads keys from its terminal, and it runs there in the background")
+            self._found = termios.tcgetattr(terminal)
+            tty.setcbreak(terminal)
 
     def read(self) -> str:
         """Give what has been typed since the last call."""
@@ -232,20 +233,19 @@ class PosixKeyboard:
 
     def close(self) -> None:
         """Leave the terminal as it was found."""
-        import termios
+        if sys.platform != "win32":
+            import termios
 
-        try:
-            termios.tcsetattr(self._terminal, termios.TCSADRAIN, self._found)
-        except termios.error:
-            return  # the terminal is gone
+            with contextlib.suppress(termios.error):  # the terminal is gone
+                termios.tcsetattr(self._terminal, termios.TCSADRAIN, self._found)
 
 
 def in_background(terminal: int) -> bool:
     """Say whether the shell has put this process into the background, where it may not touch the terminal."""
-    try:
-        return os.tcgetpgrp(terminal) != os.getpgrp()
-    except OSError:
-        return False  # it is not the terminal that controls this process
+    if sys.platform != "win32":
+        with contextlib.suppress(OSError):  # it is not the terminal that controls this process
+            return os.tcgetpgrp(terminal) != os.getpgrp()
+    return False
 
 
 class WindowsKeyboard:
@@ -257,8 +257,9 @@ class WindowsKeyboard:
         if sys.platform == "win32":
             import msvcrt
 
+            # An arrow is two: the second waits in a buffer into which `kbhit` looks for `getch`, not for `getwch`.
             while msvcrt.kbhit():
-                text += msvcrt.getwch()
+                text += msvcrt.getch().decode("latin-1")
         return text
 
     def close(self) -> None:

@@ -14,7 +14,7 @@ from robolink.impl.logging_severity import (
     get_logging_severity_from_string,
 )
 from robolink.parameter_overrides import Override, Value, overrides_for
-from robolink.remapping import RemapKind, RemapRule, parse_remap_rule, remap_name, remap_node
+from robolink.remapping import RemapKind, RemapRule, parse_remap_rule, remap_node
 
 
 class InvalidROSArgsError(RobolinkError, ValueError):
@@ -58,14 +58,6 @@ class Arguments:
     def namespace(self, default: str, node_name: str) -> str:
         """Give the namespace of a node, whose name is already remapped, that would live in `default`."""
         return remap_node(self.remap_rules, RemapKind.NAMESPACE, node_name) or default
-
-    def remap_topic(self, full_name: str, node_name: str, namespace: str) -> str:
-        """Give the new full name of a node's topic; the same where no rule fits."""
-        return remap_name(self.remap_rules, RemapKind.TOPIC, full_name, node_name, namespace)
-
-    def remap_service(self, full_name: str, node_name: str, namespace: str) -> str:
-        """Give the new full name of a node's service; the same where no rule fits."""
-        return remap_name(self.remap_rules, RemapKind.SERVICE, full_name, node_name, namespace)
 
     def overrides_for(self, full_node_name: str) -> dict[str, Value]:
         """Give the parameters that a node such as `/arm/driver` gets, by name; later arguments win."""

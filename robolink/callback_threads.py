@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any
 from robolink.callback_groups import CallbackGroup
 from robolink.entity import Entity
 from robolink.executor_queue import earlier
-from robolink.inbox import A_WHILE, Inbox
-from robolink.queues import get_within
+from robolink.inbox import Inbox
+from robolink.queues import A_WHILE, get_within
 from robolink.task import Future
 
 if TYPE_CHECKING:

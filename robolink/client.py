@@ -7,9 +7,8 @@ import queue
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup
-from robolink.clock import Clock
 from robolink.endpoint import Endpoint, Owner
-from robolink.entity import ANY_TIME, NOTHING, Entity, Receiver
+from robolink.entity import ANY_TIME, NOTHING, Entity
 from robolink.exceptions import (
     DecodeError,
     ExternalShutdownException,
@@ -23,7 +22,7 @@ from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, encoder, service_type
 from robolink.qos import QoSProfile
-from robolink.service_introspection import Introspection, introspect
+from robolink.service_introspection import ServiceEnd
 from robolink.service_introspection import ServiceIntrospectionState as ServiceIntrospectionState
 from robolink.task import Future
 from robolink.transport.base import Handle
@@ -55,7 +54,7 @@ class _Call:
         self.client.deliver((self, arrived))
 
 
-class Client(Receiver):
+class Client(ServiceEnd):
     """Asks one service; made by `Node.create_client`."""
 
     serves = quick = True
@@ -84,8 +83,6 @@ class Client(Receiver):
         self.malformed = 0
         """How many answers could not be read."""
         self._silent = False
-        self.introspection: Introspection | None = None
-        """Tells of requests and responses, once `configure_introspection` has been asked for it."""
         self._endpoint.announce()
         self._context.on_shutdown(self._release)
 
@@ -306,27 +303,6 @@ class Client(Receiver):
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait until somebody serves; whether so within `timeout_sec` seconds. The end of the context ends it."""
         return self._context.wait_until(self.service_is_ready, timeout_sec)
-
-    def configure_introspection(
-        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
-    ) -> None:
-        """Publish on SERVICE/_service_event, from now on, what is asked and what is answered; nothing for OFF.
-
-        `clock` gives the stamps. Raises TypeError for what is no state.
-        """
-        self.introspection = introspect(
-            self.introspection, self._endpoint, self.srv_type, clock, service_event_qos_profile, introspection_state
-        )
-
-    @property
-    def service_name(self) -> str:
-        """The service's fully qualified name."""
-        return self.srv_name
-
-    @property
-    def logger_name(self) -> str:
-        """The name of the logger that belongs to the node."""
-        return self._endpoint.logger_name
 
     def destroy(self) -> None:
         """Ask no more. Safe to call twice."""

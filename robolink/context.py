@@ -48,6 +48,9 @@ class Context:
     already; `time` is the system's time by default, or a VirtualTime.
     """
 
+    executor_type: type[SingleThreadedExecutor] | None = None
+    """What a `SingleThreadedExecutor` of this context is, if that is another class."""
+
     def __new__(cls, *_: object, **__: object) -> Context:
         """Make one of the kind that the program has whose code this is: see `robolink.oneprocess`."""
         own = get_defaults().context_type if cls is Context else None
@@ -97,12 +100,15 @@ class Context:
 
     def _configure_logging(self) -> None:
         from robolink import logging
+        from robolink.impl.log_output import Console
 
         logging.initialize()
         if self.time.virtual and not self.time.hosted:
             logging.set_time_source(self.time.now)
         for name, level in self.arguments.log_levels:
             logging.set_logger_level(name, level)
+        if self.arguments.stdout_logs is not None:
+            logging.set_console_handler(Console() if self.arguments.stdout_logs else None)
 
     # What nodes share
 
@@ -146,11 +152,6 @@ class Context:
     def make_inbox(self, *, parked: bool = False) -> Inbox:
         """Make what an executor of this context waits at; `parked` for what waits while no executor has it."""
         return Inbox()
-
-    @property
-    def executor_type(self) -> type[SingleThreadedExecutor] | None:
-        """What a `SingleThreadedExecutor` of this context is, if that is another class."""
-        return None
 
     def make_pool(self, size: int) -> Executor:
         """Make the threads in which callbacks of a multi-threaded executor run."""

@@ -10,6 +10,7 @@ RobolinkError
 ├─ TransportError (ConnectionError)      the network below
 │   └─ TransportClosedError              used after close
 ├─ NotFoundError (LookupError)           a node, config, type or topic that is not there
+│   └─ AmbiguousNameError                several that a short name may mean
 └─ rclpy's own, by their own names
 """
 
@@ -69,6 +70,14 @@ class NotFoundError(RobolinkError, LookupError):
         self.kind, self.name = kind, name
         place = f" in {where}" if where else ""
         super().__init__(f"no {kind} named '{name}'{place}{nearest(name, known)}")
+
+
+class AmbiguousNameError(NotFoundError):
+    """Something was asked for by a short name that several have; the text gives their whole names."""
+
+    def __init__(self, kind: str, name: str, meant: Iterable[str]) -> None:
+        self.kind, self.name = kind, name
+        RobolinkError.__init__(self, f"which {kind} '{name}'? There are {', '.join(meant)}: give a whole name")
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

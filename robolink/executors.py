@@ -19,7 +19,7 @@ from robolink.executor_running import ShutdownException as ShutdownException
 from robolink.executor_running import TimeoutException as TimeoutException
 from robolink.executor_running import TimeoutObject as TimeoutObject
 from robolink.executor_running import await_or_execute as await_or_execute
-from robolink.inbox import A_WHILE
+from robolink.queues import A_WHILE
 from robolink.task import Future, Task
 from robolink.utilities import get_default_context
 
@@ -332,8 +332,12 @@ class MultiThreadedExecutor(Executor):
             raise threads.failures.popleft()  # before more is begun
         if threads.free > 0:
             return super()._take(wanted)
-        may = _serves_or_is_quick if threads.can_serve() else _is_quick
-        return super()._take(lambda entity: may(entity) and (wanted is None or wanted(entity)))
+        serves = threads.can_serve()
+
+        def may(entity: Entity) -> bool:
+            return (entity.quick or (serves and entity.serves)) and (wanted is None or wanted(entity))
+
+        return super()._take(may)
 
     def _take_at_once(self, arrival: Any, wanted: Callable[[Entity], bool] | None = None) -> Taken | None:
         if self._threads.free > 0:
@@ -392,11 +396,3 @@ class MultiThreadedExecutor(Executor):
 
 def _serves(entity: Entity) -> bool:
     return entity.serves
-
-
-def _is_quick(entity: Entity) -> bool:
-    return entity.quick
-
-
-def _serves_or_is_quick(entity: Entity) -> bool:
-    return entity.serves or entity.quick

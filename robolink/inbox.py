@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import functools
 import queue
-import sys
 import threading
 import weakref
 from collections import deque
@@ -21,10 +20,7 @@ from typing import Any, Protocol
 
 import msgspec
 
-from robolink.queues import get_within
-
-A_WHILE = 0.1 if sys.platform == "win32" else 0.5
-"""Seconds of one wait at the most: on Windows Ctrl-C does not break into a wait, only between two of them."""
+from robolink.queues import A_WHILE, get_within
 
 
 class Target(Protocol):

@@ -6,8 +6,10 @@ A rule is a pattern of what must not be, so that every complaint knows the index
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import NamedTuple
+
+from robolink.exceptions import AmbiguousNameError, NotFoundError, nearest
 
 MAX_NODE_NAME = 255
 MAX_TOPIC_NAME = 247
@@ -88,6 +90,44 @@ def absolute_namespace(namespace: str) -> str:
 def join(namespace: str, name: str) -> str:
     """Put a relative name into an absolute namespace: ('/', 'a') is '/a', ('/ns', 'a') is '/ns/a'."""
     return f"{namespace.rstrip('/')}/{name}"
+
+
+def meant(name: str, known: Iterable[str]) -> list[str]:
+    """Give the full names that a name means: the one that it is, else all whose last part it is, in any namespace.
+
+    A slash in front makes no difference, neither to the name nor to those that are known.
+
+    >>> meant("odom", ["/odom", "/ada/odom"]), meant("scan", ["ada/scan", "bob/scan", "scans"])
+    (['/odom'], ['ada/scan', 'bob/scan'])
+    """
+    full, bare = list(known), name.strip("/")
+    return [each for each in full if each.strip("/") == bare] or [each for each in full if each.endswith(f"/{bare}")]
+
+
+def the_one(kind: str, name: str, known: Iterable[str], where: str = "") -> str:
+    """Give the only full name that a name means.
+
+    Raises `NotFoundError` with the nearest where nothing is called so, `AmbiguousNameError` where several things are.
+    """
+    full = list(known)
+    found = meant(name, full)
+    if not found:
+        raise NotFoundError(kind, name, full, where)
+    if len(found) > 1:
+        raise AmbiguousNameError(kind, name, found)
+    return found[0]
+
+
+def near(name: str, known: Iterable[str]) -> str:
+    """Give `` (did you mean ...?)``: a name with the same last part in another namespace goes before similar letters.
+
+    >>> near("/odom", ["/ada/odom", "/odor"])
+    " (did you mean '/ada/odom'?)"
+    """
+    full = list(known)
+    last = name.rpartition("/")[2]
+    elsewhere = next((each for each in full if each.rpartition("/")[2] == last), "")
+    return f" (did you mean '{elsewhere}'?)" if elsewhere else nearest(name, full)
 
 
 def spelled(text: str, fallback: str, longest: int = 60) -> str:

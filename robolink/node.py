@@ -361,6 +361,13 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
         self._announced_.close()
         self._context.untrack_node(self)
 
+    if not TYPE_CHECKING:  # or every attribute would be one of mypy's
+
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_") and "_context" not in vars(self):
+                raise AttributeError(f"{type(self).__name__} is no node yet: call super().__init__('NAME') first")
+            return super().__getattribute__(name)  # which says what Python says
+
     def __enter__(self) -> Node:
         return self
 

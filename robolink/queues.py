@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import queue
+import sys
 from typing import TypeVar
+
+A_WHILE = 0.1 if sys.platform == "win32" else 0.5
+"""Seconds of one wait at the most: on Windows Ctrl-C does not break into a wait, only between two of them."""
 
 T = TypeVar("T")
 

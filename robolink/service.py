@@ -8,15 +8,13 @@ from collections.abc import Callable, Coroutine
 from typing import Any, NamedTuple
 
 from robolink.callback_groups import CallbackGroup
-from robolink.clock import Clock
 from robolink.endpoint import Endpoint, Owner
-from robolink.entity import Receiver
 from robolink.exceptions import DecodeError, WireError
 from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, encoder, service_type
 from robolink.qos import QoSProfile
-from robolink.service_introspection import Introspection, introspect
+from robolink.service_introspection import ServiceEnd
 from robolink.service_introspection import ServiceIntrospectionState as ServiceIntrospectionState
 from robolink.transport.base import Query
 from robolink.wire import EndpointKind, pack_attachment, unpack_attachment
@@ -33,7 +31,7 @@ class RequestHeader(NamedTuple):
     client_gid: bytes
 
 
-class Service(Receiver):
+class Service(ServiceEnd):
     """Answers requests of one type under one name; made by `Node.create_service`."""
 
     serves = True
@@ -54,8 +52,6 @@ class Service(Receiver):
         self.qos_profile = qos_profile
         self.malformed = 0
         """How many requests could not be decoded."""
-        self.introspection: Introspection | None = None
-        """Tells of requests and responses, once `configure_introspection` has been asked for it."""
         self._endpoint = Endpoint(owner, EndpointKind.SERVICE, srv_name, srv_type, qos_profile)
         self._transport = self._endpoint.transport
         self._handles = [self._transport.serve(self._endpoint.key, self.sink)]
@@ -142,27 +138,6 @@ class Service(Receiver):
                 f"{self.srv_name}: refused a request that is no {self._endpoint.type_name}: {error}"
                 " (the next ones are only counted)"
             )
-
-    def configure_introspection(
-        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
-    ) -> None:
-        """Publish on SERVICE/_service_event, from now on, what is asked and what is answered; nothing for OFF.
-
-        `clock` gives the stamps. Raises TypeError for what is no state.
-        """
-        self.introspection = introspect(
-            self.introspection, self._endpoint, self.srv_type, clock, service_event_qos_profile, introspection_state
-        )
-
-    @property
-    def service_name(self) -> str:
-        """The service's fully qualified name."""
-        return self.srv_name
-
-    @property
-    def logger_name(self) -> str:
-        """The name of the logger that belongs to the node."""
-        return self._endpoint.logger_name
 
     def destroy(self) -> None:
         """Serve no more; whoever waits is told so. Safe to call twice."""

@@ -1,4 +1,4 @@
-"""Service introspection: what a service and its clients say to each other, told on SERVICE/_service_event."""
+"""Service introspection: what a service and its clients say to each other, told on SERVICE/_service_event by either."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from enum import IntEnum
 
 from robolink.clock import Clock
 from robolink.endpoint import Endpoint
+from robolink.entity import Receiver
 from robolink.exceptions import InvalidHandle
 from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.message import Message, Service
@@ -55,24 +56,41 @@ class Introspection:
         self._publisher.destroy()
 
 
-def introspect(
-    now: Introspection | None,
-    endpoint: Endpoint,
-    srv_type: type[Service],
-    clock: Clock,
-    qos: QoSProfile,
-    state: ServiceIntrospectionState,
-) -> Introspection | None:
-    """Give what is to tell of a service or client from now on, None for OFF; `now` is what has told until now.
+class ServiceEnd(Receiver):
+    """What a service and a client are alike in: a service's type and name, and that they can tell what is said."""
 
-    The quality of service is that of the first call, as in rcl. Raises TypeError for what is no state.
-    """
-    if not isinstance(state, ServiceIntrospectionState):
-        raise TypeError(f"introspection_state: expected a ServiceIntrospectionState, got {state!r}")
-    if state is ServiceIntrospectionState.OFF:
-        if now is not None:
+    srv_type: type[Service]
+    srv_name: str
+    _endpoint: Endpoint
+
+    introspection: Introspection | None = None
+    """Tells of requests and responses, once `configure_introspection` has been asked for it."""
+
+    def configure_introspection(
+        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Publish on SERVICE/_service_event, from now on, what is asked and what is answered; nothing for OFF.
+
+        `clock` gives the stamps. The quality of service is that of the first call, as in rcl. Raises TypeError for
+        what is no state.
+        """
+        if not isinstance(introspection_state, ServiceIntrospectionState):
+            raise TypeError(f"introspection_state: expected a ServiceIntrospectionState, got {introspection_state!r}")
+        now = self.introspection
+        if introspection_state is not ServiceIntrospectionState.OFF:
+            now = now or Introspection(self._endpoint, self.srv_type, clock, service_event_qos_profile)
+            now.clock, now.contents = clock, introspection_state is ServiceIntrospectionState.CONTENTS
+            self.introspection = now
+        elif now is not None:
+            self.introspection = None
             now.close()
-        return None
-    told = now or Introspection(endpoint, srv_type, clock, qos)
-    told.clock, told.contents = clock, state is ServiceIntrospectionState.CONTENTS
-    return told
+
+    @property
+    def service_name(self) -> str:
+        """The service's fully qualified name."""
+        return self.srv_name
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the logger that belongs to the node."""
+        return self._endpoint.logger_name

@@ -45,7 +45,8 @@ def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions
     for flag, numbers in _NUMBERS.items():
         for number in numbers:
             if flag in options and number not in _before:
-                _before[number] = signal.signal(number, _on_signal)
+                _before[number] = signal.getsignal(number)  # first: the handler needs it from the moment it is set
+                signal.signal(number, _on_signal)
     if options:
         _end_quietly()
 
@@ -102,7 +103,7 @@ def _end_quietly() -> None:
 
     def on_error(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         if _received and issubclass(kind, _ENDS):
-            raise SystemExit(128 + _received)
+            raise SystemExit(128 + (signal.SIGTERM if _received == signal.SIGTERM else signal.SIGINT))
         show(kind, error, trace)
 
     def on_error_in_thread(args: threading.ExceptHookArgs) -> None:

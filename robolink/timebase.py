@@ -9,7 +9,8 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
-from robolink.queues import get_within
+from robolink import systemclock
+from robolink.queues import A_WHILE, get_within
 
 if TYPE_CHECKING:
     from robolink.inbox import Inbox
@@ -56,14 +57,17 @@ class SystemTime:
     """The computer's clocks."""
 
     virtual = hosted = False
-    now = staticmethod(time.time_ns)
-    steady = staticmethod(time.monotonic_ns)
+    now = staticmethod(systemclock.now)
+    steady = staticmethod(systemclock.steady)
+
+    def __init__(self) -> None:
+        systemclock.make_waits_exact()
 
     def wait(self, inbox: Inbox, until: int | None) -> Any:
         """Wait until something arrives, and give it undelivered, or until steady time is `until`; or less long."""
         if until is None:
             return inbox.wait(None)
-        return inbox.wait(max(0.0, (until - time.monotonic_ns()) / 1e9))
+        return inbox.wait(max(0.0, (until - self.steady()) / 1e9))
 
     def sleep(self, nanoseconds: int) -> None:
         """Let so much time pass."""
@@ -71,11 +75,17 @@ class SystemTime:
 
     def take(self, source: queue.SimpleQueue[Any], until: int | None) -> Any:
         """Take the oldest of a queue; wait for one until steady time is `until`. Raises queue.Empty."""
-        return source.get() if until is None else get_within(source, (until - time.monotonic_ns()) / 1e9)
+        while True:
+            left = A_WHILE if until is None else min(A_WHILE, (until - self.steady()) / 1e9)
+            try:
+                return get_within(source, left)
+            except queue.Empty:
+                if until is not None and self.steady() >= until:
+                    raise
 
     def wait_until(self, holds: Callable[[], bool], until: int | None) -> None:
         """Ask again and again."""
-        while not holds() and (until is None or time.monotonic_ns() < until):
+        while not holds() and (until is None or self.steady() < until):
             time.sleep(POLL)
 
     def pass_on(self) -> None:

@@ -11,7 +11,7 @@ from robolink.clock import Clock, ROSClock
 from robolink.clock_type import ClockType
 from robolink.entity import NOTHING, Entity
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser, InvalidHandle, ROSInterruptException
-from robolink.inbox import A_WHILE
+from robolink.queues import A_WHILE
 from robolink.task import Future
 from robolink.time import Time
 

@@ -14,9 +14,17 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]
     """Give True for a name that can be expanded.
 
     Raises `InvalidTopicNameException` with the index of the bad character (`InvalidServiceNameException` when
-    `is_service`). The expanded name may still be too long: see `validate_full_topic_name`.
+    `is_service`), and TypeError for what is no text. The expanded name may still be too long: see
+    `validate_full_topic_name`.
     """
+    _check_is_text(name)
     problem = find_problem(name, TOPIC_NAME_RULES)
     if problem is None:
         return True
     raise (InvalidServiceNameException if is_service else InvalidTopicNameException)(name, *problem)
+
+
+def _check_is_text(name: object) -> None:
+    if not isinstance(name, str):
+        hint = " (the type comes first)" if isinstance(name, type) else ""
+        raise TypeError(f"the name must be a str, not {name!r}{hint}")

@@ -28,10 +28,13 @@ PATIENT = """
 import sys
 from robolink import type_lookup
 from robolink.cli import main
+from robolink.cli.action import goal
 from robolink.cli.service import call
 from robolink.cli.topic import silence
+from robolink.transport import zenoh
 
-type_lookup.ANSWER_WITHIN = call.PATIENCE = silence.PATIENCE = 20.0
+type_lookup.ANSWER_WITHIN = call.PATIENCE = silence.PATIENCE = goal.PATIENCE = goal.CANCELED_WITHIN = 20.0
+zenoh.PATIENCE, zenoh.LONGEST, zenoh.LINK_WITHIN = 5.0, 30.0, 30.0
 sys.exit(main())
 """
 """The command, told that the machine is busy: no answer comes too late, and a wait of a second needs no explanation."""

@@ -15,9 +15,13 @@ from typing import Any
 
 import pytest
 
+from robolink.supervisor.door import asking
 from robolink.supervisor.events import Status
 
+PATIENCE = 30.0
 RUNTIME_VARIABLE = "LOCALAPPDATA" if sys.platform == "win32" else "XDG_RUNTIME_DIR"
+
+posix_only = pytest.mark.skipif(sys.platform == "win32", reason="modes, owners and SIGSTOP are POSIX's")
 
 
 def new_runtime_folder() -> tempfile.TemporaryDirectory[str]:
@@ -41,6 +45,7 @@ class FakeSupervisor:
         now = time.time()
         self.nodes = [Status(name, None, "running", 0, None, now - 90.0) for name in names]
         self.restarted: list[str] = []
+        self.stopped_ones: list[str] = []
         self.why_not = ""
         self.said: list[str] = []
         self.leavings: list[Path] = []
@@ -53,6 +58,17 @@ class FakeSupervisor:
         self.restarted.append(name)
 
     def why_not_restarted(self, name: str) -> str:
+        return self.why_not
+
+    def stop_one(self, name: str) -> None:
+        """Note it, and have the process be stopped at once."""
+        self.stopped_ones.append(name)
+        self.nodes = [self._stopped(each) if each.name == name else each for each in self.nodes]
+
+    def _stopped(self, each: Status) -> Status:
+        return Status(each.name, None, "stopped", each.restarts, -2, time.time())
+
+    def why_not_stopped(self, name: str) -> str:
         return self.why_not
 
     def stop(self) -> None:
@@ -78,6 +94,12 @@ with Control(supervisor, name="elsewhere"):
     sys.stdin.read()
 """
 """A program that can be asked until its standard input ends, or it is killed."""
+
+
+def the_only() -> asking.Launcher:
+    """The launcher that runs."""
+    (launcher,) = asking.running()
+    return launcher
 
 
 def files_in(folder: Path) -> list[str]:

@@ -79,6 +79,8 @@ class Sdk:
     def _follow(self) -> None:
         assert self._process.stdout
         for line in self._process.stdout:
+            if not line.endswith("\n"):  # it was killed as it wrote
+                break
             said = json.loads(line)
             if "message" in said:
                 self.messages.put((said["topic"], said["message"]))

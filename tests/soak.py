@@ -179,10 +179,10 @@ class Soak:
         word = [each for each in self.words() if each.name.startswith(f"launch-{launcher.pid}-")]
         assert launcher.returncode == -9 or not word, f"a word of the launcher is left: {word}"
         runs = [each for each in (self.folder / "logs").iterdir() if not each.is_symlink()]
-        assert len(runs) <= KEPT_RUNS, f"logs of {len(runs)} runs"
-        # What a session leaves there the next one sweeps.
-        forgotten = forgotten_memory()
-        assert len(forgotten) <= self._shared_memory + 4 * NODES, f"shared memory is left: {forgotten}"
+        assert launcher.returncode < 0 or len(runs) <= KEPT_RUNS, f"logs of {len(runs)} runs"
+        # What a session leaves there the next one sweeps; what others on this machine have just made is mapped soon.
+        most = self._shared_memory + 4 * NODES
+        self._wait(lambda: len(forgotten_memory()) <= most, "shared memory is left")
 
     def _check_code(self, kind: str, code: int) -> None:
         """A launcher that stops on request says that all went well; one crash at the end would be its exit code."""
@@ -246,7 +246,7 @@ def forgotten_memory() -> set[str]:
         with contextlib.suppress(OSError):
             mapped = path.read_text(errors="replace")
             files = {each for each in files if f"/dev/shm/{each}" not in mapped}
-    return files
+    return {each for each in files if (_SHARED_MEMORY / each).exists()}
 
 
 def _described(process: psutil.Process) -> str:

@@ -110,8 +110,8 @@ def test_pub_drives_the_robot_of_launch_teleop_until_it_is_killed() -> None:
         assert there.speed == pytest.approx(0.0)
         pub = "pub", "/cmd_vel", "Twist", "{linear: {x: 0.3}}", "-r", "10"
         with Command(domain, *pub) as driver:
-            driving = witness.wait(lambda each: math.dist(each[1:3], there[1:3]) > 0.3)
-            assert driving.speed == pytest.approx(0.3, abs=0.01)
+            witness.wait(lambda each: math.dist(each[1:3], there[1:3]) > 0.3)
+            assert max(each.speed for each in witness.samples) == pytest.approx(0.3, abs=0.01)
             driver.kill()
         witness.wait(lambda each: abs(each.speed) < 1e-3)
         assert len(teleop.left()) >= 3 or not Path("/proc/self/environ").exists()
@@ -132,11 +132,10 @@ def test_keys_drive_the_robot_of_launch_teleop() -> None:
     ):
         teleop.wait_for("drive with w a s d")
         there = witness.wait(lambda each: True)
-        for _ in range(20):
+        while math.dist(witness.samples[-1][1:3], there[1:3]) <= 0.3:  # or else pytest gives up
             teleop.press("w")
             witness.go_on(0.1)
-        assert witness.samples[-1].speed == pytest.approx(0.3, abs=0.01)
-        assert math.dist(witness.samples[-1][1:3], there[1:3]) > 0.3
+        assert max(each.speed for each in witness.samples) == pytest.approx(0.3, abs=0.01)
         witness.wait(lambda each: abs(each.speed) < 1e-3)
         teleop.press("\x03")
         teleop.wait_for("code 0")

@@ -21,7 +21,7 @@ from robolink.cli import complete, main
 from robolink.cli.action import goal, names
 from robolink.interfaces.example_interfaces.action import Fibonacci
 from robolink.message import Action, Message, float64, type_name
-from tests.commands import Command
+from tests.commands import BUSY_ROBOLINK, Command
 from tests.programs import Program
 from tests.seen_by_commands import a_node_that_commands_see, made, press_ctrl_c, spinning, when_said
 
@@ -434,19 +434,20 @@ SERVER = """
 def test_goals_cross_from_process_to_process(domain: int, tmp_path: Path) -> None:
     with Program(tmp_path, SERVER, domain) as server:
         assert server.line() == "ready"
-        with Command(domain, "action", "send_goal", "/fibonacci", "Fibonacci", "{order: 3}", "-f") as sender:
+        send = "action", "send_goal", "/fibonacci", "--timeout", "30", "-f"
+        with Command(domain, *send, "Fibonacci", "{order: 3}", program=BUSY_ROBOLINK) as sender:
             assert sender.end() == 0
         text = "\n".join(each.text for each in sender.lines)
         assert "Feedback:\n    sequence:\n- 0\n- 1\n- 1\n" in text
         assert text.endswith("Goal finished with status: SUCCEEDED")
-        with Command(domain, "action", "send_goal", "/fibonacci", "{order: -1}", "-f") as sender:
+        with Command(domain, *send, "{order: -1}", program=BUSY_ROBOLINK) as sender:
             sender.wait_for("Feedback:")
             sender.interrupt()
             assert server.line() == "canceled"
             assert sender.end() == 130
         assert sender.lines[-1].text == "Goal canceled."
         assert not sender.errors
-        with Command(domain, "action", "send_goal", "/fibonacci", "{order: -1}", "-f") as sender:
+        with Command(domain, *send, "{order: -1}", program=BUSY_ROBOLINK) as sender:
             sender.wait_for("Feedback:")
             server.kill()
             assert sender.end() == 1

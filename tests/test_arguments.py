@@ -18,6 +18,7 @@ from robolink.arguments import (
 )
 from robolink.exceptions import RobolinkError
 from robolink.logging import LoggingSeverity
+from robolink.remapping import RemapKind, resolve_name
 
 
 def ros(line: str) -> Arguments:
@@ -34,8 +35,8 @@ def test_nothing_said_changes_nothing() -> None:
     assert arguments == Arguments(unparsed=("program", "-r", "a:=b", "--", "x"))
     assert arguments.node_name("talker") == "talker"
     assert arguments.namespace("/ns", "talker") == "/ns"
-    assert arguments.remap_topic("/scan", "talker", "/ns") == "/scan"
-    assert arguments.remap_service("/add", "talker", "/ns") == "/add"
+    assert resolve_name(arguments.remap_rules, RemapKind.TOPIC, "/scan", "talker", "/ns") == "/scan"
+    assert resolve_name(arguments.remap_rules, RemapKind.SERVICE, "/add", "talker", "/ns") == "/add"
     assert arguments.overrides_for("/ns/talker") == {}
     assert (arguments.rosout_logs, arguments.stdout_logs, arguments.enclave) == (None, None, None)
 
@@ -50,12 +51,12 @@ def test_ros_arguments_end_at_two_dashes_and_may_come_again() -> None:
 
 
 def test_topics_and_services_are_remapped() -> None:
-    arguments = ros("-r scan:=lidar/scan --remap rosservice://~/reset:=/reset -r other:odom:=/odom")
-    assert arguments.remap_topic("/ns/scan", "talker", "/ns") == "/ns/lidar/scan"
-    assert arguments.remap_service("/ns/talker/reset", "talker", "/ns") == "/reset"
-    assert arguments.remap_topic("/ns/talker/reset", "talker", "/ns") == "/ns/talker/reset"
-    assert arguments.remap_topic("/ns/odom", "talker", "/ns") == "/ns/odom"
-    assert arguments.remap_topic("/ns/odom", "other", "/ns") == "/odom"
+    rules = ros("-r scan:=lidar/scan --remap rosservice://~/reset:=/reset -r other:odom:=/odom").remap_rules
+    assert resolve_name(rules, RemapKind.TOPIC, "/ns/scan", "talker", "/ns") == "/ns/lidar/scan"
+    assert resolve_name(rules, RemapKind.SERVICE, "/ns/talker/reset", "talker", "/ns") == "/reset"
+    assert resolve_name(rules, RemapKind.TOPIC, "/ns/talker/reset", "talker", "/ns") == "/ns/talker/reset"
+    assert resolve_name(rules, RemapKind.TOPIC, "/ns/odom", "talker", "/ns") == "/ns/odom"
+    assert resolve_name(rules, RemapKind.TOPIC, "/ns/odom", "other", "/ns") == "/odom"
 
 
 def test_parameters_are_for_all_nodes_or_for_one() -> None:
@@ -110,8 +111,8 @@ def test_log_settings_are_read() -> None:
 def test_a_nodes_own_arguments_go_over_the_programs() -> None:
     program = ros("-r a:=b -r c:=d -p x:=1 -p y:=1 -e /e --disable-rosout-logs -- prog")
     both = ros("-r a:=z -p x:=2 --enable-rosout-logs").over(program)
-    assert both.remap_topic("/a", "n", "/") == "/z"
-    assert both.remap_topic("/c", "n", "/") == "/d"
+    assert resolve_name(both.remap_rules, RemapKind.TOPIC, "/a", "n", "/") == "/z"
+    assert resolve_name(both.remap_rules, RemapKind.TOPIC, "/c", "n", "/") == "/d"
     assert both.overrides_for("/n") == {"x": 2, "y": 1}
     assert (both.enclave, both.rosout_logs, both.stdout_logs, both.unparsed) == ("/e", True, None, ())
 

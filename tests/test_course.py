@@ -20,7 +20,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.commands import Command
+from tests.commands import BUSY_ROBOLINK, Command
 from tests.domains import free_domain
 from tests.witness import Watched, watched
 
@@ -172,7 +172,7 @@ def test_the_first_node_counts(scenes: Mapping[str, Scene], workspace: Path) -> 
     with free_domain() as domain, Command(domain, *run, merged=True, folder=workspace) as node:
         node.wait_for("[primeiro_node]: Primeiro Node inicializado!")
         node.wait_for("Contador: 1")
-        with Command(domain, *node_list) as listed:
+        with Command(domain, *node_list, program=BUSY_ROBOLINK) as listed:
             assert listed.end() == 0
             assert [line.text for line in listed.lines] == ["/primeiro_node"]
         node.wait_for("Contador: 2")

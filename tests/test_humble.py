@@ -198,8 +198,8 @@ def test_a_service_answers_it(peer: Peer, make_context: Callable[..., Context]) 
     def got_one() -> bool:
         key = peer.key(EndpointKind.CLIENT)
         peer.session.call(key, encode(SetBool.Request(data=True)), asked, answers.put)
-        executor.spin_once(timeout_sec=0.05)
-        arrived = answers.get(timeout=PATIENCE)
+        spin_until(executor, lambda: not answers.empty())
+        arrived = answers.get()
         first.extend([arrived] if arrived is not None else [])
         return bool(first)
 

@@ -15,8 +15,10 @@ from robolink.arguments import parse_arguments
 from robolink.exceptions import DocumentError
 from robolink.impl.logging_severity import LoggingSeverity
 from robolink.launch import plan, together
-from robolink.launch.planning import core_errors
+from robolink.launch.planning import core_errors, processes
 from robolink.launch.reading.entries import read_launch_file
+from robolink.launch.reading.entry import Entry
+from robolink.remapping import RemapKind, resolve_name
 from robolink.supervisor import Process
 from robolink.supervisor.rules import Restarts, Rules
 from robolink.workspace import VARIABLE, built_in_workspace
@@ -68,7 +70,8 @@ nodes:
     arguments = parse_arguments(list(second.argv))
     assert arguments.node_name("mine") == "left"
     assert arguments.namespace("/", "left") == "/robot1"
-    assert arguments.remap_topic("/robot1/scan", "left", "/robot1") == "/robot1/lidar/scan"
+    scan = resolve_name(arguments.remap_rules, RemapKind.TOPIC, "/robot1/scan", "left", "/robot1")
+    assert scan == "/robot1/lidar/scan"
     assert arguments.log_levels == (("", LoggingSeverity.DEBUG),)
     assert arguments.overrides_for("/robot1/left") == {
         "gains.p": 1.0,
@@ -102,7 +105,7 @@ nodes:
     arguments = parse_arguments(list(second.argv))
     assert arguments.node_name("mine") == "n1"
     assert arguments.namespace("/", "n1") == "/r1"
-    assert arguments.remap_topic("/r1/scan", "n1", "/r1") == "/lidar_1"
+    assert resolve_name(arguments.remap_rules, RemapKind.TOPIC, "/r1/scan", "n1", "/r1") == "/lidar_1"
     assert arguments.overrides_for("/r1/n1") == {
         "id": 1,
         "label": "no 1 of {i}",
@@ -336,3 +339,37 @@ def test_nodes_of_two_workspaces_share_no_process(home: Path, tmp_path_factory: 
     (other / "configs" / "its.yaml").write_text("nodes: [{node: its, process: p}]")
     with pytest.raises(DocumentError, match=r"its.yaml:1:16: .*'mine' runs in the same process, and is of another"):
         planned(home, f"nodes: [{{node: mine, process: p}}]\ninclude: [file: '{other}/configs/its.yaml']")
+
+
+def test_a_large_system_is_planned_without_comparing_each_node_with_all_others(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = "nodes: [{node: world}, {node: mine, name: 'n{i}', count: 200, start_after: world}]"
+    entries = read_launch_file(home / "configs" / "lap.yaml", {}, text=text)
+    asked: list[str] = []
+
+    def full_name(entry: Entry) -> str:
+        asked.append(entry.name)
+        return f"/{entry.name}"
+
+    monkeypatch.setattr(Entry, "full_name", property(full_name))
+    assert [each.rules.awaits for each in processes(entries)[1:]] == [frozenset({"world"})] * 200
+    assert len(asked) < 10 * len(entries)
+
+
+def test_arguments_for_which_no_command_line_has_room_come_as_input(home: Path) -> None:
+    text = "<robot/>" * 40_000
+    long, keyboard, short = planned(
+        home,
+        f"""
+nodes:
+- {{node: "mine:main", parameters: {{description: {text}}}}}
+- {{node: mine, name: keyboard, interactive: true, parameters: {{description: {text}}}}}
+- {{node: mine, name: short}}
+""",
+    )
+    assert long.argv == [sys.executable, "-m", "robolink", "run-together"]
+    [member] = together.read(long.input)
+    assert member.args == ["--ros-args", "-p", f"description:={spell(text)}"]
+    assert keyboard.input == short.input == b"", "it reads the keyboard"
+    assert short.argv[3] == "run"

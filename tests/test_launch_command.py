@@ -113,10 +113,11 @@ BAD = [
     (("talk", "loud:=1", "wrd:=x"), 1, "{home}/configs/talk.yaml:3:3: arguments.wrd: no argument is called 'wrd'"),
     (("talk", "loud:=1", "word:=x"), 1, "{home}/configs/talk.yaml:3:9: arguments.word: 'word' is one of hello, bye"),
     (("tlk",), 1, "no launch file named 'tlk' in {home} or robolink itself (did you mean 'talk'?)"),
+    (("talker",), 1, "'talker' is a node, and no launch file: robolink run talker"),
     (("robot.launch.py",), 1, "robot.launch.py is a Python program, and robolink launches YAML: list its nodes in a"),
     (("robot.launch.xml",), 1, "robot.launch.xml is XML, and robolink launches YAML"),
-    (("stop", "a", "b"), 2, "ask what? stop [NAME] or restart [NAME] NODE, with the name that --status shows (see"),
-    (("restart",), 2, "ask what? stop [NAME] or restart [NAME] NODE, with the name that --status shows (see"),
+    (("stop", "a", "b", "c"), 2, "ask what? stop [NAME] [NODE] or restart [NAME] NODE, with the names that --status"),
+    (("restart",), 2, "ask what? stop [NAME] [NODE] or restart [NAME] NODE, with the names that --status shows (see"),
     (("talk", "--graph=png"), 2, "Invalid value for '--graph': 'png' is none of mermaid, dot (see"),
     (("none", "--graph", "svg"), 2, "--graph draws mermaid or dot, not 'svg' (see"),
     (("--graph", "nne"), 1, "no launch file named 'nne' in {home} or robolink itself (did you mean 'none'?)"),
@@ -182,7 +183,7 @@ def test_a_launch_file_is_validated(home: Path, capsys: Captured) -> None:
 def test_a_launch_file_that_cannot_be_read_has_a_mistake(home: Path, capsys: Captured) -> None:
     (home / "configs" / "none.yaml").write_text("nods: []")
     code, out, err = said(capsys, "none", "--validate")
-    assert (code, err) == (1, "")
+    assert (code, err) == (1, "robolink: no node was looked into: that comes when its file is right\n")
     assert out.startswith(f"{home}/configs/none.yaml:1:1: nods: unknown key 'nods'")
     assert json.loads(said(capsys, "none", "--validate", "--json")[1])["mistakes"][0]["line"] == 1
 
@@ -225,6 +226,7 @@ ASKED = [
     (("--status", "--top", "talk", "--json"), ("top", "talk", True)),
     (("stop",), ("stop",)),
     (("stop", "talk"), ("stop", "talk")),
+    (("stop", "talk", "talker"), ("stop_one", "talker", "talk")),
     (("restart", "r0/talker"), ("restart", "r0/talker")),
     (("restart", "talk", "talker"), ("restart", "talker", "talk")),
 ]
@@ -233,7 +235,7 @@ ASKED = [
 @pytest.mark.parametrize(("args", "call"), ASKED)
 def test_what_runs_elsewhere_is_asked(monkeypatch: pytest.MonkeyPatch, args: tuple[str, ...], call: Any) -> None:
     calls: list[tuple[Any, ...]] = []
-    for name in ("status", "top", "stop", "restart"):
+    for name in ("status", "top", "stop", "stop_one", "restart"):
 
         def note(*words: str, name: str = name, **named: bool) -> None:
             calls.append((name, *words, *named.values()))

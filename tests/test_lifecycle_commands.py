@@ -13,7 +13,7 @@ from robolink.cli import main
 from robolink.cli.lifecycle import ask
 from robolink.interfaces.lifecycle_msgs.srv import GetState
 from robolink.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
-from tests.commands import Command
+from tests.commands import BUSY_ROBOLINK, Command
 from tests.programs import Program
 from tests.seen_by_commands import a_node_that_commands_see, spinning
 
@@ -187,7 +187,7 @@ def test_a_process_is_configured_from_another(tmp_path: Path, domain: int) -> No
     with Program(tmp_path, PROGRAM, domain) as program:
         assert program.line() == "up"
         for words, said in ((["nodes"], "/camera"), (["set", "/camera", "configure"], "Transitioning successful")):
-            with Command(domain, "lifecycle", *words) as command:
+            with Command(domain, "lifecycle", *words, program=BUSY_ROBOLINK) as command:
                 assert command.end() == 0
             assert [each.text for each in command.lines] == [said]
         program.interrupt()

@@ -14,12 +14,13 @@ from typing import Any
 
 import pytest
 
-from robolink import logging
+from robolink import Context, logging
 from robolink.duration import Duration
 from robolink.impl.log_output import Console, Record, output
 from robolink.impl.rcutils_logger import RcutilsLogger, internal_files
 from robolink.logging import LoggingSeverity
 from robolink.time import Time
+from robolink.transport.memory import Bus, MemoryTransport
 
 SECOND = 1_000_000_000
 
@@ -330,3 +331,14 @@ def test_a_line_that_is_off_costs_next_to_nothing() -> None:
 def test_the_standard_library_stays_reachable() -> None:
     assert stdlib_logging.getLogger("x").name == "x"
     assert logging.get_logger("x").__class__ is RcutilsLogger
+
+
+def test_a_command_line_may_silence_the_console(capfd: pytest.CaptureFixture[str], bus: Bus) -> None:
+    for flag, text in (("--disable-stdout-logs", "one"), ("--enable-stdout-logs", "two")):
+        context = Context(transport=MemoryTransport(bus=bus))
+        context.init(["--ros-args", flag])
+        with context:
+            logging.get_logger("here").info(text)
+    printed = capfd.readouterr().err
+    assert "one" not in printed
+    assert "two" in printed

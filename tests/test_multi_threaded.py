@@ -191,6 +191,7 @@ def test_an_interrupt_is_told(node: Node, context: Context, two: MultiThreadedEx
 
 
 def test_shutdown_waits_for_callbacks_but_not_too_long(context: Context) -> None:
+    before = set(threading.enumerate())
     executor, node = MultiThreadedExecutor(num_threads=2, context=context), Node("node", context=context)
     executor.add_node(node)
     begun, go_on, ended = threading.Event(), threading.Event(), threading.Event()
@@ -209,7 +210,7 @@ def test_shutdown_waits_for_callbacks_but_not_too_long(context: Context) -> None
     threading.Timer(0.01, go_on.set).start()
     assert executor.shutdown()
     assert ended.is_set()
-    assert not [each for each in threading.enumerate() if each.name.startswith("robolink callbacks")]
+    assert not [each for each in set(threading.enumerate()) - before if each.name.startswith("robolink callbacks")]
 
 
 def test_a_callback_may_shut_its_executor_down(node: Node, two: MultiThreadedExecutor) -> None:

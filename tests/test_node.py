@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -49,6 +50,35 @@ def test_bad_names_leave_nothing_behind(bus: Bus, context: Context) -> None:
     with pytest.raises(InvalidROSArgsError, match="'1st'"):
         Node("node", cli_args=["--ros-args", "-r", "__node:=1st"], context=context)
     assert not bus.tokens
+
+
+def test_a_node_that_has_not_called_its_base_class_is_told_to(context: Context) -> None:
+    class Early(Node):
+        def __init__(self) -> None:
+            self.create_publisher(Int32, "count", 10)
+            super().__init__("early", context=context)
+
+    class Never(Node):
+        def __init__(self) -> None:
+            pass
+
+    report = r"call super\(\).__init__\('NAME'\) first"
+    with pytest.raises(AttributeError, match=f"Early is no node yet: {report}"):
+        Early()
+    executor = SingleThreadedExecutor(context=context)
+    with pytest.raises(AttributeError, match=f"Never is no node yet: {report}"):
+        executor.add_node(Never())
+    with pytest.raises(AttributeError, match="'Node' object has no attribute '_create'"):
+        getattr(Node("made", context=context), "_create")  # noqa: B009 - mypy would see it
+
+
+def test_a_type_where_the_name_should_be_is_told(node: Node) -> None:
+    name: Any = "count"
+    kind: Any = Int32
+    with pytest.raises(TypeError, match=r"the name must be a str, not <class .*Int32'> \(the type comes first\)"):
+        node.create_publisher(name, kind, 10)
+    with pytest.raises(TypeError, match=r"the name must be a str, not 3$"):
+        node.create_client(Trigger, 3)  # type: ignore[arg-type]
 
 
 def test_bad_topics_services_and_types_leave_nothing_behind(bus: Bus, node: Node) -> None:

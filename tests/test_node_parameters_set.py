@@ -295,7 +295,7 @@ def test_callbacks_run_outside_any_lock_and_may_set_and_remove(make: Make) -> No
             node.remove_on_set_parameters_callback(on_set)
             other = threading.Thread(target=also, args=("b",), daemon=True)
             other.start()
-            other.join(5)
+            other.join(30)
             return SetParametersResult(successful=not other.is_alive(), reason="locked")
         return OK
 
@@ -341,13 +341,13 @@ def test_threads_lose_nothing_and_see_whole_steps(make: Make) -> None:
     start, torn = threading.Barrier(4), list[Any]()
 
     def write(label: str) -> None:
-        start.wait(5)
+        start.wait(30)
         for number in range(100):
             node.set_parameters([made(f"{label}.{number}", number)])
             node.set_parameters_atomically([made("x", number), made("y", number)])
 
     def read() -> None:
-        start.wait(5)
+        start.wait(30)
         while any(writer.is_alive() for writer in writers):
             x, y = node.get_parameters(["x", "y"])
             if x.value != y.value:

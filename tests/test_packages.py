@@ -146,7 +146,7 @@ def test_executables_of_ros_2s_own_packages_that_robolink_has(top: Path) -> None
     assert source.path == built_in_workspace() / "nodes/static_transform_publisher.py"
     assert args == ["--x", "1"]
     assert asked("teleop_twist_keyboard", "teleop_twist_keyboard")[0].name == "teleop"
-    with pytest.raises(NotFoundError, match="no node named 'tf2_ros'"):
+    with pytest.raises(NotFoundError, match="no node or package named 'tf2_ros'"):
         asked("tf2_ros", "tf2_echo")
     own = write_package(top / "src", "tf2_ros", {"static_transform_publisher.py": ""})
     assert asked("tf2_ros", "static_transform_publisher")[0].path == own / "tf2_ros/static_transform_publisher.py"
@@ -183,7 +183,9 @@ def test_two_words_are_a_package_and_its_executable_only_if_both_are_there(top: 
         (["robolink", "wrold"], "no executable named 'wrold' in package robolink (did you mean 'world'?)"),
         (["pkg_b", "--", "run"], "pkg_b is a package: say which of its executables, run"),
         (["pkg_interfaces", "x"], "no node named 'pkg_interfaces' in {top} or robolink itself"),
-        (["pkg_c", "first"], "no node named 'pkg_c' in {top} or robolink itself"),
+        (["pkg_c", "first"], "no node or package named 'pkg_c' in {top} (did you mean 'pkg_b'?)"),
+        (["wrold", "first"], "no node or package named 'wrold' in {top} (did you mean 'world'?)"),
+        (["wrold"], "no node named 'wrold' in {top} or robolink itself (did you mean 'world'?)"),
         (
             ["first"],
             (
@@ -198,6 +200,18 @@ def test_what_is_not_there_is_one_line(
 ) -> None:
     assert main(["run", *words]) == 1
     assert capsys.readouterr().err == f"robolink: {report.format(top=top)}\n"
+
+
+def test_a_package_outside_of_a_workspace_is_told_where_it_would_be(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "pkg_a", "first"]) == 1
+    assert capsys.readouterr().err == (
+        "robolink: no node or package named 'pkg_a': this folder is in no workspace; go to the one with its src/, "
+        "or name it with --workspace\n"
+    )
 
 
 def test_a_console_script_without_its_file_is_told_so(top: Path) -> None:

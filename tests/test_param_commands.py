@@ -26,7 +26,7 @@ from robolink.interfaces.rcl_interfaces.msg import (
 from robolink.interfaces.rcl_interfaces.srv import SetParameters
 from robolink.parameter import parameter_value_to_python
 from robolink.parameter_file import parse_parameter_file
-from tests.commands import Command
+from tests.commands import BUSY_ROBOLINK, Command
 from tests.programs import Program
 from tests.seen_by_commands import a_node_that_commands_see, spinning
 
@@ -456,7 +456,7 @@ PROGRAM = """
 def test_a_process_sets_a_parameter_of_another(tmp_path: Path, domain: int) -> None:
     with Program(tmp_path, PROGRAM, domain) as program:
         assert program.line() == "ready"
-        with Command(domain, "param", "set", "/driver", "speed", "2") as command:
+        with Command(domain, "param", "set", "/driver", "speed", "2", program=BUSY_ROBOLINK) as command:
             assert command.end() == 0
             assert [each.text for each in command.lines] == ["Set parameter successful"]
         assert program.line() == "2.0"

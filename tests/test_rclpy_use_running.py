@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import threading
 from typing import Any
 
@@ -9,7 +10,7 @@ import pytest
 
 import robolink as rclpy
 from robolink import Context, Future, Node
-from robolink.callback_groups import ReentrantCallbackGroup
+from robolink.callback_groups import MutuallyExclusiveCallbackGroup
 from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.signals import SignalHandlerOptions
@@ -139,20 +140,21 @@ def test_a_pool_of_threads_runs_callbacks_side_by_side(context: Context) -> None
     node, executor = Node("node", context=context), MultiThreadedExecutor(num_threads=2, context=context)
     both, met = threading.Barrier(2), threading.Event()
 
-    def meet() -> None:
+    def meet(index: int) -> None:
+        timers[index].cancel()
         both.wait(30)
         met.set()
 
-    timers = [node.create_timer(0.001, meet, callback_group=ReentrantCallbackGroup()) for _ in range(2)]
+    timers = [
+        node.create_timer(0.001, functools.partial(meet, index), callback_group=MutuallyExclusiveCallbackGroup())
+        for index in range(2)
+    ]
     executor.add_node(node)
     thread = threading.Thread(target=executor.spin)
     thread.start()
     executor.wake()
     assert met.wait(30)
-    for timer in timers:
-        timer.cancel()
     context.shutdown()
-    both.abort()
     thread.join(30)
     assert not thread.is_alive()
 

@@ -20,7 +20,7 @@ from robolink.qos import qos_profile_services_default, qos_profile_system_defaul
 from robolink.service import Service
 from robolink.service_introspection import ServiceIntrospectionState
 from tests.seen_by_commands import a_node_that_commands_see, made, press_ctrl_c, when_said
-from tests.spins import done, spin_for
+from tests.spins import done, spin_for, spin_until
 
 Captured = pytest.CaptureFixture[str]
 SENT, RECEIVED = ServiceEventInfo.REQUEST_SENT, ServiceEventInfo.REQUEST_RECEIVED
@@ -126,7 +126,7 @@ def test_a_blocking_call_is_told_too(context: Context) -> None:
     rest = SingleThreadedExecutor(context=context)
     for node in list(context._nodes.values()):
         rest.add_node(node)
-    spin_for(rest, 0.1)
+    spin_until(rest, lambda: len(arm.events) >= 2)
     assert kinds(arm.events) == [SENT, GOT]
 
 

@@ -133,7 +133,7 @@ def test_arguments_and_parameters_are_given(folder: Path, capsys: pytest.Capture
         (["tolk"], " or robolink itself (did you mean 'talk'?)", 1),
         (["talk", "--faults", "ruogh"], "no faults file named 'ruogh' in ", 1),
         (["talk", "--set", "taker.x:=1"], "no node named 'taker' in the launch file (did you mean 'talker'?)", 1),
-        (["talk", "--set", "talker.x"], "--set: expected NODE.PARAMETER:=VALUE, got 'talker.x'", 1),
+        (["talk", "--set", "talker.x"], "--set: expected NODE.PARAMETER:=VALUE, got 'talker.x' (see 'robolink ", 2),
         (["talk", "--set", "talker.x:=[1"], "--set talker.x:1:3: expected ',' or ']'", 1),
         (["talk", "--duration", "nan"], "'--duration': expected 0 to 1e+09 seconds, got nan", 2),
         (["talk", "--duration", "-1"], "'--duration': expected 0 to 1e+09 seconds, got -1", 2),

@@ -63,7 +63,8 @@ def test_the_slots_name_the_fields_in_order_and_can_be_looked_up() -> None:
 
 
 def test_a_field_that_is_not_there_is_named_with_those_that_are() -> None:
-    with pytest.raises(AttributeError, match=r"geometry_msgs/msg/Twist has no field 'liner', only linear, angular"):
+    report = r"geometry_msgs/msg/Twist has no field 'liner' \(did you mean 'linear'\?\), only linear, angular"
+    with pytest.raises(AttributeError, match=report):
         getattr(Twist(), "liner")  # noqa: B009 - mypy would see it
     with pytest.raises(AttributeError, match="_liner"):
         getattr(Twist(), "_liner")  # noqa: B009

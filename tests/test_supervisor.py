@@ -115,6 +115,12 @@ def test_a_script_of_which_nobody_knows_what_runs_it_is_told_of(text: str, tmp_p
 
 
 @posix_only
+def test_what_has_too_long_arguments_is_told_what_to_do() -> None:
+    with pytest.raises(ProcessStartError, match=r"cannot start a \(.*\): it is given more than .* in a file"):
+        run(Process("a", [sys.executable, "-c", "", "x" * 3_000_000]))
+
+
+@posix_only
 def test_a_process_that_ignores_the_interrupt_is_terminated(tmp_path: Path) -> None:
     deaf = tmp_path / "deaf"
     stubborn = python("b", IGNORES + there(deaf) + FOR_EVER)
@@ -265,8 +271,9 @@ def test_ctrl_c_stops_all_in_order_with_one_interrupt_each() -> None:
 
 
 @posix_only
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
-def test_other_signals_stop_in_order_too(number: int) -> None:
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_other_signals_stop_in_order_too(name: str) -> None:
+    number = signal.Signals[name]
     heeded = f"import signal\nsignal.signal({int(number)}, signal.SIG_DFL)\n"  # the tests may run under nohup
     with launched({"a": FOR_EVER}, first=heeded) as launcher:
         launcher.wait_for("ready")
@@ -337,8 +344,9 @@ def test_a_watching_program_ends_in_order_when_the_launcher_is_killed(tmp_path: 
         assert wait_until((tmp_path / "orderly").exists)
 
 
-@posix_only
 def test_ctrl_z_pauses_all_and_fg_lets_them_go_on() -> None:
+    if sys.platform == "win32":
+        pytest.skip("signals and terminals are POSIX's")
     with launched({"a": "say('pid', os.getpid())\n" + FOR_EVER}, first="import os; os.setpgrp()\n") as launcher:
         child = int(launcher.wait_for("pid"))
         launcher.wait_for("ready")
@@ -363,8 +371,9 @@ def test_a_process_that_stands_still_is_let_go_on_to_obey() -> None:
         assert has_obeyed
 
 
-@posix_only
 def test_a_terminal_is_as_before_after_a_process_that_was_killed() -> None:
+    if sys.platform == "win32":
+        pytest.skip("signals and terminals are POSIX's")
     import termios
 
     keys = "import tty; tty.setraw(0); say('raw'); os.kill(os.getpid(), signal.SIGKILL)"
@@ -379,8 +388,9 @@ def test_a_terminal_is_as_before_after_a_process_that_was_killed() -> None:
         os.close(theirs)
 
 
-@posix_only
 def test_an_interactive_process_has_the_terminal() -> None:
+    if sys.platform == "win32":
+        pytest.skip("signals and terminals are POSIX's")
     teleop = """
         def count(*args):
             say("interrupted")
@@ -430,8 +440,9 @@ def test_a_guardian_outlives_the_launcher_that_launched_its_own(monkeypatch: pyt
             assert not marked(outer.mark)
 
 
-@posix_only
 def test_an_end_waits_for_no_guardian_that_stands_still() -> None:
+    if sys.platform == "win32":
+        pytest.skip("signals and terminals are POSIX's")
     guardian = Guardian()
     assert guardian._process is not None
     guardian._process.send_signal(signal.SIGSTOP)

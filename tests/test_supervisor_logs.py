@@ -93,6 +93,8 @@ def test_old_runs_are_removed_but_nothing_else_and_none_that_goes_on(tmp_path: P
         make_run(tmp_path, f"{year}-01-01_00-00-00_follow")
     make_run(tmp_path, "2000-01-01-00-00-00-123456-host-4711")  # a run of ROS 2's launch
     (tmp_path / "2000-01-01_00-00-00_mine").mkdir()
+    (tmp_path / "2000-01-01_00-00-00_mine" / "notes.txt").touch()
+    (tmp_path / "2000-01-02_00-00-00_killed").mkdir()  # as it was made
     goes_on = opened(tmp_path)
     folder_of(goes_on).rename(tmp_path / "1999-01-01_00-00-00_long")
     remove_old_runs(tmp_path, 3)

@@ -153,7 +153,7 @@ def test_a_process_that_fails_is_started_again_until_it_is_given_up() -> None:
         [Start("a")],
         [Say("a was killed by SIGSEGV: starting it again in 4 s (2 of 2 within 60 s)")],
         [Start("a")],
-        [Say("a ended with exit code 3: given up after 2 starts within 60 s"), *asked("b", step=INTERRUPT)],
+        [Say("a ended with exit code 3: given up after 2 new starts within 60 s"), *asked("b", step=INTERRUPT)],
     ]
     assert policy.code == 3
     assert policy.processes["a"].restarts == 2
@@ -194,7 +194,9 @@ def test_a_delay_beyond_the_greatest_is_kept() -> None:
 def test_given_up_is_an_end_like_others_to_be_ignored_or_not() -> None:
     policy = two(Rules(RESPAWNED.respawn, on_exit="ignore"))
     replay(policy, [(1, ("a", 1)), (3, None), (4, ("a", 1)), (8, None)])
-    assert replay(policy, [(9, ("a", 1))]) == [[Say("a ended with exit code 1: given up after 2 starts within 60 s")]]
+    assert replay(policy, [(9, ("a", 1))]) == [
+        [Say("a ended with exit code 1: given up after 2 new starts within 60 s")]
+    ]
     assert not policy.is_over
 
 

@@ -85,8 +85,8 @@ def test_a_process_that_fails_is_started_again_and_given_up(tmp_path: Path) -> N
     told = "a ended with exit code 1: KeyError: 'no'"
     assert lines == [
         f"{told}; starting it again in 0 s (1 of 2 within 60 s)",
-        f"{told}; starting it again in 0 s (2 of 2 within 60 s)",
-        f"{told}; given up after 2 starts within 60 s",
+        "a ended with exit code 1 as before: starting it again in 0 s (2 of 2 within 60 s)",
+        "a ended with exit code 1 as before: given up after 2 new starts within 60 s",
         f"summary: {told} (failed 3 times, started again 2 times)",
     ]
 

@@ -172,6 +172,7 @@ def test_without_a_terminal_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
 
 if sys.platform != "win32":
     import pty
+    import select
     import termios
 
     def test_a_terminal_gives_keys_at_once_and_is_given_back() -> None:
@@ -182,6 +183,7 @@ if sys.platform != "win32":
             assert not termios.tcgetattr(terminal)[3] & (termios.ECHO | termios.ICANON)
             assert keyboard.read() == ""
             os.write(controller, b"w\x1b[A")
+            assert select.select([terminal], [], [], 30.0)[0]  # the kernel takes its time to hand them on
             assert keyboard.read() == "w\x1b[A"
             keyboard.close()
             assert termios.tcgetattr(terminal) == found

@@ -10,8 +10,8 @@ import sys
 import numpy  # noqa: F401
 import pytest
 
-import robolink.testing.one_process
-import robolink.testing.processes
+import robolink.testing.one_process  # noqa: F401
+import robolink.testing.processes  # noqa: F401
 import robolink.testing.system  # noqa: F401
 
 pytest_plugins = ["pytester"]
@@ -365,3 +365,11 @@ def test_waits_in_vain(system):
             "*/count  /counter  data=*",
         ]
     )
+
+
+def test_whoever_cannot_import_rclpys_names_is_told_how(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(test_a="from std_msgs.msg import String", test_b="import rclpy", test_c="import nowhere")
+    result = pytester.runpytest_subprocess("-p", "no:cacheprovider", "-p", "no:xdist")
+    advice = "`import robolink.compat` first, here or in conftest.py, and std_msgs is robolink's"
+    assert advice in result.stdout.str()
+    assert result.stdout.str().count("import robolink.compat") == 2

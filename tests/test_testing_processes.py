@@ -80,8 +80,8 @@ def test_a_launch_file_as_processes(tmp_path: Path, mark: str) -> None:
             system.stop("wrld")
     system.close()
     for each in set(threading.enumerate()) - threads:
-        each.join(10.0)  # one of Zenoh's may be about to end
-    assert set(threading.enumerate()) == threads
+        each.join(PATIENCE)  # one of Zenoh's may be about to end
+    assert set(threading.enumerate()) <= threads
     assert left(mark) == []
 
 

@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink import Node
-from robolink.cli import main, session
+from robolink.cli import main, output
 from robolink.cli.tf import echo, monitor, tree, watch
 from robolink.cli.tf.watch import Seen
 from robolink.interfaces.tf2_msgs.msg import TFMessage
@@ -95,7 +95,7 @@ def test_echo_as_json_goes_on_at_a_rate(
 ) -> None:
     again(transform("map", "base", place=(2, 0, 0)))
     count = iter(range(3))
-    original = session.say_json
+    original = output.say_json
 
     def speak(value: Any) -> None:
         original(value)
@@ -224,7 +224,7 @@ def test_monitor_of_a_chain(
 
 def test_monitor_as_json(again: Callable[..., None], monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
     again(transform("odom", "base"))
-    original = session.say_json
+    original = output.say_json
 
     def speak(value: Any) -> None:
         original(value)

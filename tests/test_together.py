@@ -283,6 +283,29 @@ def test_the_one_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     assert errors.count("\n") == 1
 
 
+def test_one_alone_is_run_as_a_command_line_would_that_had_room_for_it(tmp_path: Path) -> None:
+    """A robot's description is longer than the 131,072 bytes that Linux grants an argument."""
+    script = tmp_path / "script.py"
+    script.write_text(SCRIPT)
+    text = "<robot/>" * 40_000
+    member = Member("script", str(script), ["--fast", "--ros-args", "-p", f"description:='{text}'"])
+    assert outcome(tmp_path, together.written([member])) == (3, ["['--fast']", str(len(text))], "")
+
+
+SCRIPT = """
+import sys
+import rclpy
+
+def main():
+    rclpy.init()
+    node = rclpy.create_node('script')
+    print(sys.argv[1:2])
+    print(len(node.declare_parameter('description', '').value))
+    rclpy.shutdown()
+    return 3
+"""
+
+
 def test_nonsense_on_standard_input_is_one_line(tmp_path: Path) -> None:
     assert outcome(tmp_path, b"[1]") == (
         1,

@@ -93,7 +93,6 @@ def test_hz_loses_nothing_and_its_rate_is_that_of_the_arrivals(
     for each in found:
         assert each["min"] <= 1 / each["rate"] <= each["max"]
     assert found[1]["window"] == found[0]["new"] + found[1]["new"] - 1
-    assert found[1]["rate"] > 50
     assert (meter.errors, listener.errors) == ([], [])
 
 

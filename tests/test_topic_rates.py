@@ -117,7 +117,7 @@ def test_a_moment_is_that_of_the_arrival_however_late_it_is_taken(node: Node) ->
     clock, release, taken = Ticks(), threading.Event(), []
 
     def take(content: Any, at: int) -> None:
-        release.wait(5)
+        release.wait(30)
         taken.append(at)
 
     publisher = node.create_publisher(Int32, "/x", 10)

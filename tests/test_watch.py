@@ -244,6 +244,21 @@ def test_all_that_import_a_file_are_restarted(launched: Launched, folder: Path) 
     assert launched.restarted == ["follow", "other", "late"], "what is imported now counts from now on"
 
 
+def test_a_module_that_is_saved_after_what_imports_it(launched: Launched, folder: Path) -> None:
+    watch = launched.watch(other=["nodes/other.py"])
+    (folder / "nodes/other.py").write_text("import os\nimport coming\nfrom shapes.square import Square\n")
+    look(watch)
+    assert launched.restarted == ["other"]
+    for path in ("coming.py", "shapes/square.py", "coming.py"):
+        launched.restarted.clear()
+        (folder / "nodes" / path).write_text(f"size = {len(launched.said)}\n")
+        look(watch)
+        assert launched.restarted == ["other"], path
+    (folder / "nodes/os.py").write_text("")
+    look(watch)
+    assert launched.restarted == ["other"], "Python has an os of its own"
+
+
 def test_two_files_at_once_are_one_restart(launched: Launched, folder: Path) -> None:
     watch = launched.watch(follow=["nodes/follow.py"])
     (folder / "nodes/follow.py").write_text("import helpers\n")
@@ -305,9 +320,10 @@ def test_a_launch_file_that_changes_is_told_of(launched: Launched, folder: Path)
 
 
 def test_a_thread_looks_meanwhile_and_ends(launched: Launched, folder: Path) -> None:
-    before = threading.active_count()
+    before, saved = set(threading.enumerate()), folder / "saved"
+    saved.write_text("x = 1\n")
     with launched.watch(other=["nodes/other.py"], every=0.01):
-        (folder / "nodes/other.py").write_text("x = 1\n")
+        saved.replace(folder / "nodes/other.py")  # at once: half a save that stands still would count too
         assert launched.happened.wait(PATIENCE)
-    assert threading.active_count() == before
+    assert set(threading.enumerate()) <= before
     assert launched.restarted == ["other"]

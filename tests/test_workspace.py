@@ -182,6 +182,13 @@ def test_unknown_launch_files_and_worlds_too(write: Write) -> None:
             find_world(name)
 
 
+@pytest.mark.parametrize("name", ["careful", "carefull", "carefull.py"])
+def test_a_file_in_the_working_directory_is_near_too(name: str, write: Write) -> None:
+    write("careful.py")
+    with pytest.raises(NotFoundError, match=r"did you mean 'careful\.py'"):
+        find_node(name)
+
+
 # --- loading --------------------------------------------------------------------------------------------------
 
 

@@ -105,7 +105,7 @@ def imported(node: ast.ImportFrom) -> set[str]:
 
 def described_module(path: Path) -> dict[str, object]:
     """Give what a module has."""
-    tree = ast.parse(path.read_text())
+    tree = ast.parse(path.read_text(encoding="utf-8"))
     functions, _ = methods(tree.body)
     functions = {name: text for name, text in functions.items() if is_public(name)}
     classes, names = {}, targets(tree.body)

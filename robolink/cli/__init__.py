@@ -9,6 +9,7 @@ import sys
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from robolink.cli.interrupts import not_lost
 from robolink.exceptions import NameValidationException, RobolinkError
 
 if TYPE_CHECKING:
@@ -31,14 +32,20 @@ def main(args: Sequence[str] | None = None) -> int:
     if args is None:
         _open_closed_streams()
         _write_any_letter()
+        with not_lost():
+            return _main(given, ends_here=True)
+    return _main(given, ends_here=False)
+
+
+def _main(given: list[str], *, ends_here: bool) -> int:
     if os.environ.get(COMPLETION):
         code = _complete(given)
-        if args is None:
+        if ends_here:
             _end(code)
         return code
     try:
         code = _outcome(given)
-        if args is None and _has_open_looks():
+        if ends_here and _has_open_looks():
             _end(code)
         return code
     finally:

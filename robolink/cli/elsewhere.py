@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from robolink.cli.session import is_hidden
+from robolink.cli.announced import is_hidden
 from robolink.exceptions import RobolinkError, nearest, shown
 from robolink.wire import EndpointKind, EndpointToken, graph_pattern, parse_token
 

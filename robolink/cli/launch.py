@@ -87,8 +87,8 @@ def launch(
 ) -> None:
     """Run a system of nodes until the first of them ends, Ctrl-C, or for a while: `launch follow --duration 60`.
 
-    `launch stop [NAME]` and `launch restart [NAME] NODE` are for what runs in another shell; --status shows the names.
-    A launch file that is called stop or restart is launched by its path.
+    `launch stop [NAME] [NODE]` and `launch restart [NAME] NODE` are for what runs in another shell; --status shows the
+    names. A launch file that is called stop or restart is launched by its path.
     """
     given = words or []
     options = Options(duration, workspace or None, json, in_process, top, watch)
@@ -132,8 +132,10 @@ def _ask(ctx: typer.Context, words: Sequence[str], options: Options, status: boo
         running.restart(rest[-1], *rest[:-1])
     elif what == "stop" and len(rest) <= 1:
         running.stop(*rest)
+    elif what == "stop" and len(rest) == 2:
+        running.stop_one(rest[1], rest[0])
     else:
-        ctx.fail("ask what? stop [NAME] or restart [NAME] NODE, with the name that --status shows")
+        ctx.fail("ask what? stop [NAME] [NODE] or restart [NAME] NODE, with the names that --status shows")
 
 
 def _show_arguments(asked: LaunchFile, as_json: bool) -> None:
@@ -158,14 +160,13 @@ def _show_arguments(asked: LaunchFile, as_json: bool) -> None:
 
 
 def _validate(asked: LaunchFile, options: Options) -> int:
-    from robolink.exceptions import DocumentError
     from robolink.launch.looking.validate import Report, found, validate
-    from robolink.launch.reading.entries import read_launch_file
+    from robolink.launch.reading.entries import read_with_mistakes
 
-    try:
-        report = validate(read_launch_file(asked.path, asked.given, workspace=options.workspace))
-    except DocumentError as error:
-        report = Report([error], [])
+    entries, mistakes = read_with_mistakes(asked.path, asked.given, workspace=options.workspace)
+    report = Report(mistakes, ["no node was looked into: that comes when its file is right"])
+    if not mistakes:
+        report = validate(entries)
     if options.json:
         import msgspec
 

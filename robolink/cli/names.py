@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from robolink.cli.session import say, say_json
+from robolink.cli.output import say, say_json
 from robolink.interfaces import is_named
 
 

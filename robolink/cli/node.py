@@ -29,7 +29,9 @@ def list_nodes(
     as_json: Annotated[bool, typer.Option("--json", help="A JSON array.")] = False,
 ) -> None:
     """List the nodes by their full names."""
-    from robolink.cli.session import looking, nodes, say, say_json
+    from robolink.cli.announced import nodes
+    from robolink.cli.output import say, say_json
+    from robolink.cli.session import looking
 
     with looking() as context:
         found = [each for each in nodes(context) if show_all or not each.node_name.startswith("_")]
@@ -53,7 +55,9 @@ def info(
     as_json: Annotated[bool, typer.Option("--json", help="A JSON object.")] = False,
 ) -> None:
     """Show what a node publishes, subscribes to, serves and calls."""
-    from robolink.cli.session import absolute, looking, say, say_json, tell, tokens
+    from robolink.cli.announced import absolute, tokens
+    from robolink.cli.output import say, say_json, tell
+    from robolink.cli.session import looking
 
     name = absolute(node)
     with looking() as context:
@@ -86,7 +90,7 @@ def of_node(tokens: list[Token], name: str, domain: int) -> tuple[int, list[Endp
 def sections_of(endpoints: Sequence[EndpointToken], hidden: bool) -> list[tuple[str, NamesAndTypes]]:
     """Give what `ros2 node info` lists of a node: six titles, each with names and types."""
     from robolink.action.graph import actions
-    from robolink.cli.session import is_hidden
+    from robolink.cli.announced import is_hidden
     from robolink.graph import names_and_types
     from robolink.wire import EndpointKind
 
@@ -106,7 +110,7 @@ def sections_of(endpoints: Sequence[EndpointToken], hidden: bool) -> list[tuple[
 
 
 def _warn_of_twins(names: list[str]) -> None:
-    from robolink.cli.session import tell
+    from robolink.cli.output import tell
 
     twins = [f"{name} ({count} times)" for name, count in Counter(names).items() if count > 1]
     if twins:

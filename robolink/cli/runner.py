@@ -21,6 +21,7 @@ from robolink.exceptions import (
     NotFoundError,
     RobolinkError,
     ROSInterruptException,
+    nearest,
 )
 from robolink.lacking import LackingNameError
 from robolink.signals import SignalHandlerOptions, get_current_signal_handlers_options
@@ -38,6 +39,7 @@ from robolink.workspace import (
     find_ros_node,
     list_executables,
     list_nodes,
+    list_packages,
     load_node,
     named_executables,
     user_workspace,
@@ -116,12 +118,25 @@ def found(asked: Asked, workspace: str | None) -> tuple[NodeSource, list[str]]:
     try:
         return find_node(name, workspace=workspace), words
     except NotFoundError:
+        if folder is None and asked.before > 0 and canonical(name).isidentifier():
+            raise _neither(name, workspace) from None
         if folder is None or not executables(folder):
             raise
         if asked.before > 0:
             raise NotFoundError("executable", words[0], executables(folder), f"package {name}") from None
         choices = " or ".join(each.name for each in named_executables(folder))
         raise NodeLoadError(f"{name} is a package: say which of its executables, {choices}") from None
+
+
+def _neither(name: str, workspace: str | None) -> NotFoundError:
+    """Give the error for the first of two words that is neither a node nor a package."""
+    home = user_workspace(workspace)
+    known = [*(each.name for each in list_nodes(workspace=workspace)), *list_packages(workspace=workspace)]
+    error = NotFoundError("node or package", name, known, "" if home is None else str(home))
+    if home is None and not nearest(name, known):
+        advice = "this folder is in no workspace; go to the one with its src/, or name it with --workspace"
+        error.args = (f"{error}: {advice}",)
+    return error
 
 
 def show_nodes(workspace: str | None) -> None:

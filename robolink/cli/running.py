@@ -1,4 +1,7 @@
-"""What `robolink launch --status`, `stop`, `restart` and `--top` do: ask launchers that run in other shells."""
+"""What `robolink launch --status`, `stop`, `restart` and `--top` do: ask launchers that run in other shells.
+
+Names of nodes are those before their lines, or the last part of one where only one is called so.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robolink.cli.layout import aligned, shown_time
 from robolink.exceptions import NotFoundError, shown
+from robolink.names import meant, the_one
 
 if TYPE_CHECKING:
     from robolink.supervisor.door.asking import Launcher
@@ -21,6 +25,8 @@ if TYPE_CHECKING:
 
 STOPPED_WITHIN = 30.0
 """Seconds; a launcher kills what does not obey after ten."""
+LOOK_AGAIN = 0.05
+"""Seconds after which it is asked again whether a node has stopped."""
 FIRST_LOOK = 0.5
 """Seconds from the start of `--top` to its first figures: how busy a process is shows only over a while."""
 
@@ -43,31 +49,34 @@ def status(launch: str = "", *, json: bool = False) -> None:
         _say("\n\n".join("\n".join(_block(*each)) for each in found))
 
 
-def stop(launch: str = "") -> None:
-    """Stop a launcher, the only one if none is named, and wait until it has stopped."""
+def stop(name: str = "") -> None:
+    """Stop the launcher or the node that is called so, or the only launcher there is; wait until it has stopped.
+
+    Raises LauncherError, and does nothing, for a name that both a launcher and a node have.
+    """
     from robolink.supervisor.door.asking import LauncherError
 
-    launcher = _only(launch)
+    if name and _is_node(name):
+        stop_one(name)
+        return
+    launcher = _only(name)
     if not launcher.stop(STOPPED_WITHIN):
         raise LauncherError(f"{launcher} is still stopping after {STOPPED_WITHIN:g} s")
     _say(f"{launcher} has stopped")
 
 
-def restart(node: str, launch: str = "") -> None:
-    """Start a node anew, by the name that stands before its lines; `launch` says in which launcher."""
-    from robolink.supervisor.door.asking import LauncherError
+def stop_one(node: str, launch: str = "") -> None:
+    """Stop a node and wait until it has stopped; all others go on. `launch` says in which launcher."""
+    launcher, before = _node(node, launch, "stop")
+    launcher.stop_one(before.name)
+    _say(f"{before.name} of {launcher} {_stopped(launcher, before)}")
 
-    answered = list(_answering(_named(launch)))
-    if not answered:
-        raise LauncherError(f"cannot restart '{node}': no launcher is running")
-    asked = node.strip("/")
-    found = [launcher for launcher, answer in answered if any(each.name == asked for each in answer.nodes)]
-    if len(found) > 1:
-        raise LauncherError(f"'{node}' runs in {len(found)} launchers, say in which: {_listed(found)}")
-    if not found:
-        raise _unknown_node(node, answered)
-    found[0].restart(asked)
-    _say(f"restarting {asked} of {found[0]}")
+
+def restart(node: str, launch: str = "") -> None:
+    """Start a node anew; `launch` says in which launcher."""
+    launcher, before = _node(node, launch, "restart")
+    launcher.restart(before.name)
+    _say(f"restarting {before.name} of {launcher}")
 
 
 def top(launch: str = "", *, json: bool = False, every: float = 2.0) -> None:
@@ -96,7 +105,7 @@ def names_for(words: Sequence[str], within: float) -> list[str]:
     verb, *launch = words
     everyone = running()
     names = [] if launch else [each.name for each in everyone]
-    if verb == "restart" and len(launch) < 2:
+    if verb in ("restart", "stop") and len(launch) < 2:
         for each in _named(*launch) if launch else everyone:
             with contextlib.suppress(LauncherError):
                 names += [status.name for status in each.status(within).nodes]
@@ -110,10 +119,14 @@ def _named(launch: str) -> list[Launcher]:
     everyone = running()
     if not launch:
         return everyone
-    found = [each for each in everyone if launch in (each.name, str(each.pid), each.file)]
+    found = [each for each in everyone if launch in _names_of(each)]
     if not found:
         raise NotFoundError("launcher", launch, (name for each in everyone for name in (each.name, str(each.pid))))
     return found
+
+
+def _names_of(launcher: Launcher) -> tuple[str, ...]:
+    return launcher.name, str(launcher.pid), launcher.file
 
 
 def _only(launch: str, how: str = "") -> Launcher:
@@ -127,6 +140,64 @@ def _only(launch: str, how: str = "") -> Launcher:
         what = f"are called '{launch}', say by pid which one" if launch else f"are running, say which one{how}"
         raise LauncherError(f"{len(found)} launchers {what}: {_listed(found)}")
     return found[0]
+
+
+def _is_node(name: str) -> bool:
+    """Whether a name is that of a node. Raises LauncherError where it is a launcher's, too, NotFoundError for none."""
+    from robolink.supervisor.door.asking import LauncherError, running
+
+    everyone = running()
+    launchers = [each for each in everyone if name in _names_of(each)]
+    answered = list(_answering(everyone))
+    nodes = [each.name for _, answer in answered for each in answer.nodes]
+    members = [member for _, answer in answered for each in answer.members.values() for member in each]
+    found = meant(name, nodes)
+    if launchers and found:
+        home = next(each for each, answer in answered if any(one.name == found[0] for one in answer.nodes))
+        ways = f"stop {launchers[0].pid} for the launcher, or stop {shown(home.name)} {found[0]} for the node"
+        raise LauncherError(f"both a launcher and a node are called '{name}': write {ways}")
+    if everyone and not launchers and not meant(name, [*nodes, *members]):
+        names = [each for launcher in everyone for each in (launcher.name, str(launcher.pid))]
+        raise NotFoundError("launcher or node", name, [*names, *nodes])
+    return bool(everyone and not launchers)
+
+
+def _node(node: str, launch: str, verb: str) -> tuple[Launcher, Status]:
+    """Find a node in what runs: its launcher, and how it is. Raises what says why there is none, or not only one."""
+    from robolink.supervisor.door.asking import LauncherError
+
+    answered = list(_answering(_named(launch)))
+    if not answered:
+        raise LauncherError(f"cannot {verb} '{node}': no launcher is running")
+    names = dict.fromkeys(each.name for _, answer in answered for each in answer.nodes)
+    if not meant(node, names):
+        raise _unknown_node(node, answered, verb)
+    name = the_one("node", node, names)
+    found = [(launcher, each) for launcher, answer in answered for each in answer.nodes if each.name == name]
+    if len(found) > 1:
+        several = [launcher for launcher, _ in found]
+        raise LauncherError(f"'{node}' runs in {len(found)} launchers, say in which: {_listed(several)}")
+    return found[0]
+
+
+def _stopped(launcher: Launcher, before: Status) -> str:
+    """Wait until a node has stopped that was asked to; say how it ended. Raises LauncherError if it does not."""
+    from robolink.supervisor.door.asking import LauncherError, LauncherGoneError
+    from robolink.supervisor.rules import Step, described, is_orderly
+
+    deadline = time.monotonic() + STOPPED_WITHIN
+    while time.monotonic() < deadline:
+        try:
+            now = next(each for each in launcher.status().nodes if each.name == before.name)
+        except LauncherGoneError:
+            return "has stopped, and with it the system: nothing else ran"
+        if now.state in ("stopped", "ended") or (before.pid and now.pid not in (None, before.pid)):
+            if before.state in ("held", "waiting"):
+                return "is not started any more"
+            in_order = now.returncode is None or is_orderly(now.returncode, Step.TERMINATE)
+            return "has stopped" if in_order else f"has stopped: it {described(now.returncode or 0)}"
+        time.sleep(LOOK_AGAIN)
+    raise LauncherError(f"{before.name} of {launcher} is still stopping after {STOPPED_WITHIN:g} s")
 
 
 def _answering(found: Sequence[Launcher]) -> Iterator[Answered]:
@@ -143,15 +214,14 @@ def _answering(found: Sequence[Launcher]) -> Iterator[Answered]:
                 raise
 
 
-def _unknown_node(node: str, answered: Sequence[Answered]) -> Exception:
+def _unknown_node(node: str, answered: Sequence[Answered], verb: str) -> Exception:
     """Say that nothing is called so; of a node that shares a process, say which one."""
     from robolink.supervisor.door.asking import LauncherError
 
-    asked = node.strip("/")
     for launcher, answer in answered:
         for process, members in answer.members.items():
-            if asked in (each.strip("/") for each in members):
-                return LauncherError(f"'{node}' shares the process '{process}' of {launcher}: restart that one")
+            if meant(node, members):
+                return LauncherError(f"'{node}' shares the process '{process}' of {launcher}: {verb} that one")
     names = [each.name for _, answer in answered for each in answer.nodes]
     return NotFoundError("node", node, names, str(answered[0][0]) if len(answered) == 1 else "")
 

@@ -23,11 +23,16 @@ def shortcut(args: Sequence[str]) -> Callable[[], int] | None:
 
 
 def run_together() -> int:
-    """Run the nodes that standard input names; give the exit code."""
-    from robolink.cli import container
+    """Run the nodes that standard input names, a single one as `run` does; give the exit code."""
     from robolink.launch.together import read
 
-    return container.run(read(sys.stdin.buffer.read()))
+    members = read(sys.stdin.buffer.read())
+    alone = _run([members[0].node, "--", *members[0].args]) if len(members) == 1 else None
+    if alone is not None:
+        return alone()
+    from robolink.cli import container
+
+    return container.run(members)
 
 
 def look_into() -> NoReturn:

@@ -161,11 +161,15 @@ def _read(ctx: typer.Context, asked: Asked) -> tuple[Path, list[Entry], FaultsDe
     """Read all that can be wrong before anything is run."""
     from robolink.cli.launch_words import launch_file
     from robolink.launch import read_launch_file
-    from robolink.simulating.settings import parse_settings, with_parameters
+    from robolink.simulating.settings import SettingError, parse_settings, with_parameters
 
     folder = asked.workspace or None
+    try:
+        settings = parse_settings(asked.settings)
+    except SettingError as error:
+        ctx.fail(str(error))
     path, given = launch_file(ctx, asked.words, folder)
-    entries = with_parameters(read_launch_file(path, given, workspace=folder), parse_settings(asked.settings))
+    entries = with_parameters(read_launch_file(path, given, workspace=folder), settings)
     if not asked.faults:
         return path, entries, None
     from robolink.faults.file import check_nodes, read_faults

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import re
 import sys
@@ -132,9 +133,14 @@ def _is_colour_terminal(stream: TextIO) -> bool:
 
 def _terminal_knows_colours() -> bool:
     if sys.platform == "win32":
-        os.system("")  # an empty command switches the Windows console to escape sequences
-        return True
+        return _escapes_switched_on()
     return os.environ.get("TERM") != "dumb"
+
+
+@functools.cache
+def _escapes_switched_on() -> bool:
+    """Have Windows' console obey escape sequences from now on, which an empty command does; once, it takes a while."""
+    return os.system("") == 0
 
 
 _TOKENS: dict[str, Callable[[Record], str]] = {

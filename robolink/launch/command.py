@@ -42,7 +42,7 @@ def launch(
     held = {each.name: each.held_by for each in launched if each.held_by}
     members = {each.name: [entry.name for entry in each.entries] for each in launched if each.entries[0].node.process}
     with contextlib.ExitStack() as stack:
-        output = None if on_event is None else stack.enter_context(Path(os.devnull).open("w"))
+        output = None if on_event is None else stack.enter_context(Path(os.devnull).open("w", encoding="utf-8"))
         supervisor = Supervisor(_to_run(launched, watches), output=output, logs=RunLogs(path.stem), on_event=on_event)
         beside: list[contextlib.AbstractContextManager[object]] = [
             Control(supervisor, name=path.stem, file=str(path.resolve()), members=members)

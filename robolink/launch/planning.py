@@ -21,6 +21,9 @@ from robolink.yamlfile import spell
 
 PYTHON = (sys.executable, "-m", "robolink")
 
+_ROOM = 16_000
+"""Characters of a command line: one of Windows ends at 32,767, and quotes count; Linux takes 131,071 an argument."""
+
 SHARED = ("respawn", "on_exit", "env", "cpu")
 """What a process has once, however many nodes run in it."""
 
@@ -75,7 +78,8 @@ def processes(entries: Iterable[Entry]) -> list[Launched]:
     for group in groups.values():
         _check_group(group)
     _check_circles(everything)
-    return [_launched(name, group, everything) for name, group in groups.items()]
+    named = {each.full_name: each for each in everything}
+    return [_launched(name, group, named) for name, group in groups.items()]
 
 
 def process_of(entry: Entry) -> str:
@@ -85,11 +89,8 @@ def process_of(entry: Entry) -> str:
 
 def as_process(launched: Launched) -> Process:
     """Give what the supervisor runs: a command is itself, a node is run by robolink."""
-    argv, stdin = list(launched.command), b""
-    if len(launched.members) == 1 and not launched.entries[0].node.process:
-        [member] = launched.members
-        argv = [*PYTHON, "run", member.node, "--", *member.args]
-    elif launched.members:
+    argv, stdin = _words(launched), b""
+    if not argv or (launched.members and sum(map(len, argv)) > _ROOM and not launched.interactive):
         argv, stdin = [*PYTHON, COMMAND], written(launched.members)
     return Process(
         launched.name,
@@ -101,6 +102,14 @@ def as_process(launched: Launched) -> Process:
         cpu=launched.cpu,
         holds_interrupts=bool(launched.members),
     )
+
+
+def _words(launched: Launched) -> list[str]:
+    """Give the command line of a command or of a node that is alone; none for nodes that share a process."""
+    if not launched.members:
+        return list(launched.command)
+    member = launched.members[0]
+    return [] if launched.entries[0].node.process else [*PYTHON, "run", member.node, "--", *member.args]
 
 
 def arguments(entry: Entry) -> Iterator[str]:
@@ -126,25 +135,25 @@ def environment(entry: Entry) -> dict[str, str]:
     return {**home, **entry.node.env}
 
 
-def _launched(name: str, group: list[Entry], everything: list[Entry]) -> Launched:
+def _launched(name: str, group: list[Entry], named: Mapping[str, Entry]) -> Launched:
     first = group[0].node
-    held_by = dict.fromkeys(each for entry in group for each in awaited(entry, everything))
+    held_by = dict.fromkeys(each for entry in group for each in awaited(entry, named))
     return Launched(
         name,
         tuple(group),
         tuple(Member(each.name, each.source.spec, list(arguments(each))) for each in group if each.source is not None),
         (*first.run, *first.args) if group[0].source is None else (),
         environment(group[0]),
-        Rules(_restarts(first.respawn), first.on_exit, bool(held_by), _awaited_processes(group, everything)),
+        Rules(_restarts(first.respawn), first.on_exit, bool(held_by), _awaited_processes(group, named)),
         tuple(held_by),
         first.interactive,
         first.cpu,
     )
 
 
-def _awaited_processes(group: Iterable[Entry], everything: Iterable[Entry]) -> frozenset[str]:
+def _awaited_processes(group: Iterable[Entry], named: Mapping[str, Entry]) -> frozenset[str]:
     nodes = {target.node for entry in group for target in entry.node.start_after}
-    return frozenset(process_of(each) for each in everything if each.full_name in nodes)
+    return frozenset(process_of(named[each]) for each in nodes if each in named)
 
 
 def _restarts(respawn: Respawn) -> Restarts:

@@ -46,27 +46,29 @@ class Awaited(NamedTuple):
         return _WAITS_FOR[self.kind].format(self.names[0])
 
 
-def awaited(entry: Entry, entries: Sequence[Entry]) -> Iterator[Awaited]:
-    """Yield what a node or command waits for, under the names that its own remappings make of it."""
+def awaited(entry: Entry, named: Mapping[str, Entry]) -> Iterator[Awaited]:
+    """Yield what a node or command waits for, under the names that its own remappings make of it.
+
+    `named` are all nodes and commands of the system, by their full names.
+    """
     namespace = entry.node.namespace or "/"
     name = entry.full_name.rpartition("/")[2]
     rules = [parse_remap_rule(":=".join(each)) for each in entry.node.remappings.items()]
     for each in entry.node.start_after:
         if each.node:
-            yield Awaited("node", _names_of(each.node, entries))
+            yield Awaited("node", _names_of(each.node, named.get(each.node)))
         elif each.topic:
             yield Awaited("topic", (remap_name(rules, RemapKind.TOPIC, each.topic, name, namespace),))
         else:
             yield Awaited("service", (remap_name(rules, RemapKind.SERVICE, each.service, name, namespace),))
 
 
-def _names_of(full_name: str, entries: Sequence[Entry]) -> tuple[str, ...]:
+def _names_of(full_name: str, entry: Entry | None) -> tuple[str, ...]:
     """Give the names that a node may be announced by: that of the launch file, else those that its code gives it."""
+    if entry is None or entry.node.name or entry.source is None:
+        return (full_name,)
     namespace = full_name.rpartition("/")[0]
-    for each in entries:
-        if each.full_name == full_name and not each.node.name and each.source is not None:
-            return tuple(dict.fromkeys([full_name, *(f"{namespace}/{name}" for name in names_in(each.source))]))
-    return (full_name,)
+    return tuple(dict.fromkeys([full_name, *(f"{namespace}/{name}" for name in names_in(entry.source))]))
 
 
 def names_in(source: NodeSource) -> list[str]:

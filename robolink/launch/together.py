@@ -1,6 +1,7 @@
 """How a process is told which nodes to run together: as JSON on its standard input.
 
-A command line of Windows ends at 32,000 characters, which a hundred nodes with their parameters easily have.
+A command line of Windows ends at 32,000 characters, which a hundred nodes with their parameters easily have, and one
+node alone that gets a robot's description.
 """
 
 from __future__ import annotations

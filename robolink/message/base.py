@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from robolink.exceptions import EncodeError, MessageError
+from robolink.exceptions import EncodeError, MessageError, nearest
 from robolink.message import annotations as ros
 from robolink.message.annotations import FieldType
 from robolink.message.slot_types import SlotTypes, idl_name
@@ -330,7 +330,7 @@ else:
         def __getattr__(self, name: str) -> Any:
             if name[1:] in self.__ros_fields__ and name[0] == "_":  # what `__slots__` calls a field
                 return getattr(self, name[1:])
-            raise AttributeError(f"{self.__ros_type__} has no field {name!r}, only {', '.join(self.__ros_fields__)}")
+            raise AttributeError(_no_field(self.__class__, name))
 
         def __eq__(self, other: object) -> bool:
             if other.__class__ is not self.__class__:
@@ -344,10 +344,17 @@ else:
             return f"{package}.{kind}.{name}({', '.join(_shown_fields(self))})"
 
 
+@functools.lru_cache(maxsize=256)  # programs ask `hasattr(message, "header")` of each message
+def _no_field(cls: Any, name: str) -> str:
+    known = cls.__ros_fields__
+    near = "" if name.startswith("__") else nearest(name, known)
+    return f"{cls.__ros_type__} has no field {name!r}{near}, only {', '.join(known)}"
+
+
 def _set_fields(message: Any, **fields: Any) -> None:
     for name, value in fields.items():
         if name not in message.__ros_fields__:
-            raise TypeError(f"{message.__ros_type__} has no field {name!r}, only {', '.join(message.__ros_fields__)}")
+            raise TypeError(_no_field(message.__class__, name))
         setattr(message, name, value)
 
 

@@ -5,11 +5,16 @@ They are Python's own pools, whose workers wait for a queue that is written in C
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
-from robolink.oneprocess.parts import Runner
+from robolink.oneprocess.parts import Killed, Runner
 from robolink.oneprocess.places import spot_of
+
+if TYPE_CHECKING:
+    from robolink.oneprocess.program import Program
 
 A_MOMENT, A_WHILE = 0.002, 100
 """Real seconds that these threads have before it is looked whether they go on; and how often that is done at most."""
@@ -32,6 +37,16 @@ class Beside:
         """Have a thread take turns again."""
         runner.free = False
         self._threads.remove(runner)
+
+    def end(self, program: Program | None = None) -> None:
+        """Have the threads of a program, or all, meet `Killed` where they wait in virtual time, now or next."""
+        for runner in self._threads:
+            if program in (None, runner.program):
+                runner.killed = True
+                if runner.wait is not None:
+                    runner.wait.error = Killed()
+                    with contextlib.suppress(RuntimeError):  # it goes on already
+                        runner.resume()
 
     def __bool__(self) -> bool:
         return bool(self._threads)

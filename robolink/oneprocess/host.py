@@ -227,6 +227,12 @@ class Host:
         """Give an environment that is equal to this one: the same for all programs that have the same."""
         return self._environments.setdefault(tuple(sorted(env.items())), env)
 
+    def note_real_time(self, program: Program, what: str, place: str) -> None:
+        """Note what a program did by real time, and where, unless that is known already."""
+        use = RealTimeUse(program.name, what, place)
+        if use not in self.real_time_use:
+            self.real_time_use.append(use)
+
     def note_exit(self, program: Program) -> None:
         """Tell of a program's end."""
         for each in list(self.on_exit):

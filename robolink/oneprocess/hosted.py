@@ -16,7 +16,6 @@ from robolink.oneprocess.parts import HostedInbox, ParkedInbox
 from robolink.oneprocess.threads import HostedPool
 
 if TYPE_CHECKING:
-    from robolink.executors import SingleThreadedExecutor
     from robolink.oneprocess.program import Program
 
 
@@ -27,8 +26,6 @@ class HostedContext(Context):
         self.program: Program = get_defaults().program
         super().__init__(time=self.program.time)
         self.program.contexts.append(self)
-        if self.time.hosted:
-            self._sweeper.close()  # what arrives is delivered at once
 
     def init(
         self, args: list[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
@@ -67,28 +64,7 @@ class HostedContext(Context):
         """Make what an executor of this context waits at; an executor comes when a script's nodes are made."""
         if not parked and self.program.is_script:
             self.program.on_read()
-        turns = self.program.host.turns
-        if turns is None:
-            return Inbox()
-        return ParkedInbox(turns.due) if parked else HostedInbox(turns.due)
-
-    @property
-    def executor_type(self) -> type[SingleThreadedExecutor] | None:
-        """What a program's `SingleThreadedExecutor` is: in virtual time one that the host runs among others'."""
-        return None if self.program.host.turns is None else HostedExecutor
-
-    def make_pool(self, size: int) -> Executor:
-        """Make the threads in which callbacks of a multi-threaded executor run."""
-        return super().make_pool(size) if self.program.host.turns is None else HostedPool(self.program, size)
-
-    def interrupt(self) -> None:
-        """End the spinning, as Ctrl-C does in a process."""
-        if self.program.host.turns is None:
-            super().interrupt()
-        elif self._ok:
-            self.interrupted, self._ok = True, False
-            self._tell()
-            self._told.put(None)
+        return super().make_inbox(parked=parked)
 
     def abandon(self) -> None:
         """Be gone at once, as what a process that is killed has had: nobody is told, nothing is sent."""
@@ -99,3 +75,29 @@ class HostedContext(Context):
         self._sweeper.close()
         if transport is not None:
             transport.close()
+
+
+class VirtualContext(HostedContext):
+    """A context of a program in virtual time: its executors and their threads take turns with all others."""
+
+    executor_type = HostedExecutor
+
+    def __init__(self, **_: Any) -> None:
+        super().__init__()
+        self._sweeper.close()  # what arrives is delivered at once
+
+    def make_inbox(self, *, parked: bool = False) -> Inbox:
+        """Make what an executor of this context waits at, or what keeps arrivals while no executor does."""
+        due = self.program.host.the_turns.due
+        return ParkedInbox(due) if parked else HostedInbox(due)
+
+    def make_pool(self, size: int) -> Executor:
+        """Make the threads in which callbacks of a multi-threaded executor run."""
+        return HostedPool(self.program, size)
+
+    def interrupt(self) -> None:
+        """End the spinning, as Ctrl-C does in a process; whoever is told of it is told in this turn."""
+        if self._ok:
+            self.interrupted, self._ok = True, False
+            self._tell()
+            self._told.put(None)

@@ -25,7 +25,6 @@ from robolink.lacking import LackingNameError
 from robolink.logging import get_logger, set_logger_level
 from robolink.oneprocess.chance import stream
 from robolink.oneprocess.executor import HostedExecutor
-from robolink.oneprocess.hosted import HostedContext
 from robolink.oneprocess.loading import load
 from robolink.oneprocess.parts import Killed
 from robolink.workspace import VARIABLE, NodeSource, workspace_of
@@ -34,6 +33,7 @@ from robolink.workspace.making import check_needs_nothing, made
 if TYPE_CHECKING:
     from robolink.node import Node
     from robolink.oneprocess.host import Host
+    from robolink.oneprocess.hosted import HostedContext
     from robolink.timebase import TimeBase
 
 State = Literal["waiting", "running", "ended", "crashed"]
@@ -135,11 +135,8 @@ class Program:
         self.has_waited = self.has_begun = False
         self.argv = list(self.parts[0].argv)
         self.main_module = None
-        self.defaults = Defaults(HostedContext, self)
+        self.defaults = Defaults(self.host.pace.context_type, self)
         self.defaults.time = self.time
-        turns = self.host.turns
-        if turns is not None:
-            self.defaults.in_main_thread = turns.runners.is_hosts
 
     def begin(self) -> None:
         """Make its nodes, or run its script; called as its code is."""
@@ -160,7 +157,7 @@ class Program:
             self.has_begun = True
 
     def _make_nodes(self, classes: Sequence[Callable[[], Any]]) -> None:
-        context = self.defaults.context = HostedContext()
+        context = self.defaults.context = self.host.pace.context_type()
         context.init([])
         executor = self._make_executor(context)
         for part, node_class in zip(self.parts, classes, strict=True):

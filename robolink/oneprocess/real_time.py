@@ -15,6 +15,7 @@ from concurrent.futures import thread as pools
 from typing import TYPE_CHECKING
 
 from robolink.defaults import use_defaults
+from robolink.oneprocess.hosted import HostedContext
 from robolink.oneprocess.parts import Killed
 from robolink.oneprocess.surroundings import set_environment
 from robolink.oneprocess.threads import end_thread
@@ -38,6 +39,7 @@ class RealPace:
     """Lets programs go on by the computer's clock; `run_until` does in its caller's thread what `at` has noted."""
 
     turns = None
+    context_type = HostedContext
 
     def __init__(self) -> None:
         self.time = SystemTime()
@@ -76,15 +78,15 @@ class RealPace:
 
     def run_until(self, condition: Callable[[], bool], until: int) -> bool:
         """Wait until the condition, asked whenever something has happened, holds or it is `until`."""
-        while not condition() and time.monotonic_ns() < until:
+        while not condition() and self.time.steady() < until:
             wake_at = min(until, self._heap[0][0]) if self._heap else until
             try:
-                came = get_within(self._incoming, min(LOOK_UP, max(0.0, (wake_at - time.monotonic_ns()) / 1e9)))
+                came = get_within(self._incoming, min(LOOK_UP, max(0.0, (wake_at - self.time.steady()) / 1e9)))
             except queue.Empty:
                 came = None
             if came is not None:
                 heapq.heappush(self._heap, (came[0], next(self._serial), came[1]))
-            while self._heap and self._heap[0][0] <= time.monotonic_ns():
+            while self._heap and self._heap[0][0] <= self.time.steady():
                 heapq.heappop(self._heap)[2]()
         return condition()
 

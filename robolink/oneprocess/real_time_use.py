@@ -4,8 +4,8 @@ Another process that they start is noted, too, but goes by its own time.
 
 While there is a host, some functions of Python's are replaced by ones that look who calls. For a hosted program
 `time.sleep` and the clocks of `time` are the host's, a thread that it starts takes turns with all others, and so does
-who waits at a `threading.Condition` (and so at an Event, a Queue, a Semaphore ...) or joins a thread. Everybody else
-gets what Python gives.
+who waits for a lock or at a `threading.Condition` (and so at an Event, a Queue, a Semaphore ...), or joins a thread.
+Everybody else gets what Python gives.
 """
 
 from __future__ import annotations
@@ -24,14 +24,13 @@ from typing import Any, NamedTuple
 
 from robolink.defaults import get_defaults
 from robolink.exceptions import InterruptedByUser
-from robolink.oneprocess import chance
-from robolink.oneprocess.parts import Runner
+from robolink.oneprocess import chance, locks
 from robolink.oneprocess.places import is_users, place_of
 from robolink.oneprocess.program import Program
 from robolink.oneprocess.real_time import RealPace
 from robolink.oneprocess.threads import go_along, stay_beside, take_part
+from robolink.oneprocess.turn_taking import runner_of, wait_until
 from robolink.oneprocess.workers import Worker
-from robolink.timebase import TimeBase
 
 
 class RealTimeUse(NamedTuple):
@@ -42,8 +41,11 @@ class RealTimeUse(NamedTuple):
     place: str
 
 
+_CALENDAR = ("localtime", "gmtime", "ctime", "asctime", "strftime")
+"""What takes the clock's time where it is given none; its last argument."""
+
 _CLOCKS = ("time", "time_ns", "monotonic", "monotonic_ns", "perf_counter", "perf_counter_ns")
-_real = {name: getattr(time, name) for name in (*_CLOCKS, "sleep")}
+_real = {name: getattr(time, name) for name in (*_CLOCKS, *_CALENDAR, "sleep")}
 _real_start, _real_join, _real_wait = threading.Thread.start, threading.Thread.join, threading.Condition.wait
 _real_handle, _real_popen = signal.signal, subprocess.Popen.__init__
 _before: list[tuple[Any, str, Any]] = []
@@ -80,7 +82,10 @@ def _replacements() -> list[tuple[Any, str, Any]]:
         (threading.Thread, "start", _start),
         (threading.Thread, "join", _join),
         (threading.Condition, "wait", _wait),
+        (threading, "Lock", locks.Lock),
+        (threading, "RLock", locks.RLock),
         (threading, "_time", _steady),
+        (queue, "SimpleQueue", locks.SimpleQueue),
         (queue, "time", _steady),
         (signal, "signal", _handle),
         (subprocess.Popen, "__init__", _popen),
@@ -89,28 +94,19 @@ def _replacements() -> list[tuple[Any, str, Any]]:
 
 
 def adopt(module: types.ModuleType | None) -> None:
-    """Replace what a module has imported of `time` before there was a host: ``from time import sleep``."""
+    """Replace what a module has imported before there was a host: ``from time import sleep``."""
+    replaced = {id(_real[name]): function for name, function in _REPLACED.items()}
+    replaced |= {id(real): getattr(locks, name) for name, real in locks.REAL.items()}
     for name, value in list(vars(module).items()) if module is not None else ():
-        if isinstance(value, types.BuiltinFunctionType) and _REPLACED.get(value.__name__) and value in _real.values():
-            setattr(module, name, _REPLACED[value.__name__])
+        if id(value) in replaced:
+            setattr(module, name, replaced[id(value)])
 
 
 # Who calls
 
 
 def _note(program: Program, what: str, frame: types.FrameType) -> None:
-    use = RealTimeUse(program.name, what, place_of(frame))
-    if use not in program.host.real_time_use:
-        program.host.real_time_use.append(use)
-
-
-def _runner(program: Program | None) -> Runner | None:
-    """Give the calling thread, if it runs a program's code in virtual time; None leaves it to Python."""
-    turns = None if program is None else program.host.turns
-    if turns is None:
-        return None
-    runner = turns.runner()
-    return None if runner is None or runner.is_real or runner is turns.outside else runner
+    program.host.note_real_time(program, what, place_of(frame))
 
 
 # What is replaced
@@ -121,7 +117,7 @@ def _sleep(seconds: float, /) -> None:
     caller = sys._getframe(1)
     if program is not None and is_users(caller.f_code.co_filename):
         _note(program, "time.sleep", caller)
-        if seconds >= 0 and _runner(program) is not None:
+        if seconds >= 0 and runner_of(program) is not None:
             if seconds:
                 program.time.sleep(math.ceil(seconds * 1e9))  # the rest of a span, however short, must come to its end
             else:
@@ -149,7 +145,28 @@ def _clock(name: str, show: Callable[[Program], Any]) -> Callable[[], Any]:
     return shown
 
 
+def _calendar(name: str) -> Callable[..., Any]:
+    real, localtime, before = _real[name], _real["localtime"], 1 if name == "strftime" else 0
+
+    def shown(*given: Any) -> Any:
+        program: Program | None = get_defaults().program
+        is_given = len(given) > before and given[-1] is not None
+        if (
+            is_given
+            or program is None
+            or program.host.turns is None
+            or not is_users(sys._getframe(1).f_code.co_filename)
+        ):
+            return real(*given)
+        now = program.time.now() / 1e9
+        return real(*given[:before], localtime(now) if name in ("asctime", "strftime") else now)
+
+    shown.__name__ = name
+    return shown
+
+
 _REPLACED: dict[str, Any] = {
+    **{name: _calendar(name) for name in _CALENDAR},
     "sleep": _sleep,
     "time": _clock("time", lambda program: program.time.now() / 1e9),
     "time_ns": _clock("time_ns", lambda program: program.time.now()),
@@ -163,7 +180,7 @@ _REPLACED: dict[str, Any] = {
 def _steady() -> float:
     """Seconds for those of Python's own waits that have an end."""
     program: Program | None = get_defaults().program
-    if program is None or _runner(program) is None:
+    if program is None or runner_of(program) is None:
         return float(_real["monotonic"]())
     return program.time.steady() / 1e9
 
@@ -189,7 +206,7 @@ def _start(thread: threading.Thread) -> None:
     if isinstance(pace, RealPace):
         pace.threads.add(thread)
         return go_along(thread, program, _real_start)
-    runner = _runner(program)
+    runner = runner_of(program)
     if runner is None:
         return _real_start(thread)
     runner.is_real = True  # Python waits until the thread runs
@@ -215,16 +232,16 @@ def _popen(process: Any, *args: Any, **options: Any) -> None:
 
 def _join(thread: threading.Thread, timeout: float | None = None) -> None:
     program: Program | None = get_defaults().program
-    joined: Runner | None = getattr(thread, "_robolink_runner", None)
-    if program is None or joined is None or _runner(program) is None:
+    joined = getattr(thread, "_robolink_runner", None)
+    if program is None or joined is None or runner_of(program) is None:
         return _real_join(thread, timeout)
-    _wait_until(program.time, lambda: joined.is_done, timeout)
+    wait_until(program.time, lambda: joined.is_done, timeout)
     return _real_join(thread) if joined.is_done else None
 
 
 def _wait(condition: Any, timeout: float | None = None) -> bool:
     program: Program | None = get_defaults().program
-    if program is None or _runner(program) is None:
+    if program is None or runner_of(program) is None:
         return _real_wait(condition, timeout)
     if not condition._is_owned():
         raise RuntimeError("cannot wait on un-acquired lock")
@@ -233,16 +250,9 @@ def _wait(condition: Any, timeout: float | None = None) -> bool:
     condition._waiters.append(told)
     saved = condition._release_save()
     try:
-        _wait_until(program.time, lambda: not told.locked(), timeout)
+        wait_until(program.time, lambda: not told.locked(), timeout)
     finally:
         condition._acquire_restore(saved)
         if told.locked() and told in condition._waiters:
             condition._waiters.remove(told)
     return not told.locked()
-
-
-def _wait_until(time: TimeBase, holds: Callable[[], bool], seconds: float | None) -> None:
-    if seconds is not None and seconds <= 0:
-        time.pass_on()
-    else:
-        time.wait_until(holds, None if seconds is None else time.steady() + math.ceil(seconds * 1e9))

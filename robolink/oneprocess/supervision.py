@@ -144,7 +144,8 @@ class Supervision:
         if self.policy.is_over:
             self.ended_at = self.host.now if self.ended_at is None else self.ended_at
         elif deadline is not None:
-            self.host.at(deadline, lambda: self._do(self.policy.woken(self.host.now)))
+            # of 0.1 + 0.2 the host's nanoseconds are a hair earlier, and nothing would be due for ever
+            self.host.at(deadline, lambda: self._do(self.policy.woken(max(self.host.now, deadline))))
 
     def _start(self, name: str) -> None:
         if name in self.host.programs:

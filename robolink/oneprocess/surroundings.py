@@ -18,7 +18,7 @@ class Surroundings:
     def __init__(self) -> None:
         self.shown: Program | None = None
         self._main, self._argv, self._stdin = sys.modules["__main__"], sys.argv, sys.stdin
-        self._no_stdin = Path(os.devnull).open()  # noqa: SIM115 - closed with the host
+        self._no_stdin = Path(os.devnull).open(encoding="utf-8")  # noqa: SIM115 - closed with the host
         self._environment: dict[str, str | None] = {}
         self.env: dict[str, str] = {}
         """What is added to the environment."""

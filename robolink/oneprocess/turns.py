@@ -244,6 +244,8 @@ class Turns:
         others = (each for each in self.runners if each.program is blocked.program and each is not blocked)
         if blocked.program is None or not any(not each.is_done and not each.is_idle for each in others):
             return False
+        if self.holder is not blocked:  # it has gone on meanwhile
+            return False
         self.beside.add(blocked)
         self._hand_to(self._pick())
         return True

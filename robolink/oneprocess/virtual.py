@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from robolink.oneprocess.host_time import HostTime
+from robolink.oneprocess.hosted import VirtualContext
 from robolink.oneprocess.parts import Job, Killed, Runner
 from robolink.oneprocess.watchdog import Watchdog
 
@@ -19,6 +20,8 @@ BEGIN = 10**9
 class VirtualPace:
     """Lets programs go on as fast as they can, one at a time."""
 
+    context_type = VirtualContext
+
     def __init__(self) -> None:
         self.time = HostTime(BEGIN)
         self.turns = self.time.turns
@@ -27,6 +30,7 @@ class VirtualPace:
 
     def begin(self, program: Program) -> None:
         """Begin a program; if it is asked for from outside, go on until it has begun or waits."""
+        program.defaults.in_main_thread = self.turns.runners.is_hosts
         self.turns.due.append(Job(program, program.begin))
         if self.turns.runner() is self.turns.outside:
             self.turns.wait(holds=lambda: program.has_begun or program.has_waited or program.is_over)
@@ -60,6 +64,7 @@ class VirtualPace:
     def unwind(self, program: Program) -> None:
         """Have what waits of a program's code end where it waits."""
         self._kill(self.turns.runners.waiting(program))
+        self.turns.beside.end(program)
 
     def end_daemons(self, program: Program) -> None:
         """Have those threads end that do not keep a program from ending."""
@@ -79,3 +84,4 @@ class VirtualPace:
         """End all threads."""
         self._watchdog.stop()
         self.turns.close()
+        self.turns.beside.end()

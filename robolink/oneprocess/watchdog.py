@@ -10,7 +10,7 @@ import threading
 import time
 from typing import TYPE_CHECKING
 
-from robolink.oneprocess.places import spot_of
+from robolink.oneprocess.places import frame_of, place_of, spot_of
 
 if TYPE_CHECKING:
     from robolink.oneprocess.parts import Runner
@@ -21,6 +21,9 @@ LOOK = 0.1
 
 BLOCKED = 0.5
 """Real seconds at one instruction after which a thread seems to wait for another of its program."""
+
+BY_ITSELF = "wait by itself (not the same each time)"
+"""What is told of a thread that was passed over."""
 
 
 class Watchdog(threading.Thread):
@@ -51,10 +54,16 @@ class Watchdog(threading.Thread):
                 self._turns.give_up(found[0])
             elif now - moved >= self._turns.patience:
                 self._turns.tell_of_standstill(found[0])
-            elif now - still >= BLOCKED:
-                self._turns.pass_over(found[0])
+            elif now - still >= BLOCKED and self._turns.pass_over(found[0]):
+                _note(found[0])
 
     def stop(self) -> None:
         """Look no more."""
         self._over.set()
         self.join()
+
+
+def _note(blocked: Runner) -> None:
+    """Note that what a thread waits for is out of the host's sight; it is looked up once the others go on."""
+    if blocked.program is not None:
+        blocked.program.host.note_real_time(blocked.program, BY_ITSELF, place_of(frame_of(blocked)))

@@ -87,7 +87,7 @@ class Runner:
             self._timer.cancel()
             self._answer(True)
         if given_up > 0.0:
-            text = f"gave up {given_up:.1f} s of simulated time: too late"
+            text = f"the machine is too slow for this pace: {given_up:.3f} s of simulated time are left out"
             self._node.get_logger().warning(text, throttle_duration_sec=5.0)
 
     def _answer(self, made: bool) -> None:

@@ -17,8 +17,8 @@ import msgspec
 from robolink.simulating.result import SimulationResult
 
 ROBOLINK = (sys.executable, "-m", "robolink")
-INTERRUPTED = (130, -signal.SIGINT)
-"""The exit codes of a process that Ctrl-C has ended."""
+INTERRUPTED = (130, -signal.SIGINT, 0xC000013A)
+"""The exit codes of a process that Ctrl-C has ended; the last is what Windows gives to one that had not begun."""
 
 PATIENCE = 1.0
 """Seconds of real time that processes have to end by themselves."""

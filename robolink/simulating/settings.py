@@ -11,6 +11,7 @@ import msgspec
 
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.launch import Entry
+from robolink.names import meant
 from robolink.parameter_file import parse_parameter_value
 
 ASSIGN = ":="
@@ -50,12 +51,11 @@ def with_parameters(entries: Sequence[Entry], values: Mapping[str, Any]) -> list
 
 def _with_parameter(entries: list[Entry], place: str, value: Any) -> list[Entry]:
     node, _, parameter = place.lstrip("/").partition(".")
-    meant = [each for each in entries if each.name == node] or [
-        each for each in entries if each.name.endswith(f"/{node}")
-    ]
-    if not meant:
-        raise NotFoundError("node", node, [each.name for each in entries], "the launch file")
-    return [_changed(each, parameter, value) if each in meant else each for each in entries]
+    names = [each.name for each in entries]
+    found = meant(node, names)
+    if not found:
+        raise NotFoundError("node", node, names, "the launch file")
+    return [_changed(each, parameter, value) if each.name in found else each for each in entries]
 
 
 def _changed(entry: Entry, parameter: str, value: Any) -> Entry:

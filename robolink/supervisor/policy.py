@@ -56,6 +56,8 @@ class Tracked:
     starts: int = 0
     returncode: int | None = None
     """How it ended last."""
+    cause: str = ""
+    """Why it ended last, in words."""
     due: float | None = None
     """When it is started again, or asked harder to stop."""
     step: Step | None = None
@@ -142,9 +144,9 @@ class Policy:
         if not each.is_alive:
             return []
         asked, is_restart, ran = each.step, each.is_restart, now - each.since
+        how = f"{name} {described(returncode)}{_why(each, returncode, cause, ran)}"
         _move(each, "ended" if asked is None else "stopped", now)
-        each.returncode = returncode
-        how = f"{name} {described(returncode)}" + (f": {cause}" if cause else "")
+        each.returncode, each.cause = returncode, cause
         if self.step is not None:
             return self._ended_on_the_way(how, returncode, is_orderly(returncode, asked or Step.INTERRUPT, cause))
         if asked is None:
@@ -201,13 +203,27 @@ class Policy:
     def stop_one(self, name: str, now: float) -> list[Action]:
         """Somebody wants one process to stop, and the others to go on."""
         each = self.processes[name]
-        each.is_restart = False
-        if each.state in ("held", "waiting") and self.step is None:
-            _move(each, "stopped", now)
-            return [Say(f"{name} is not started"), *self._only_held(now)]
-        if each.state != "running" or self.step is not None:
+        if self.why_not_stopped(name):
             return []
-        return [Say(f"stopping {name}"), *self._one_harder(each, now)]
+        if each.is_restart:
+            each.is_restart = False
+            return [Say(f"{name} is not started again")]
+        if each.state == "running":
+            return [Say(f"stopping {name}"), *self._one_harder(each, now)]
+        again = " again" if each.starts else ""
+        _move(each, "stopped", now)
+        return [Say(f"{name} is not started{again}"), *self._only_held(now)]
+
+    def why_not_stopped(self, name: str) -> str:
+        """Say why `stop_one` would do nothing now; '' if it would."""
+        each = self.processes[name]
+        if self.step is not None:
+            return "the system is stopping"
+        if each.state == "ended":
+            return f"it {described(each.returncode or 0)}"
+        if each.state == "stopped":
+            return "somebody has stopped it already"
+        return "it is being stopped already" if each.state == "stopping" and not each.is_restart else ""
 
     def _start_all(self, is_meant: Callable[[Tracked], bool], now: float) -> list[Action]:
         meant = [each for each in self.processes.values() if is_meant(each)]
@@ -228,7 +244,7 @@ class Policy:
             each.respawned = [then for then in each.respawned if now - then < rule.within]
             if len(each.respawned) < rule.most:
                 return [Say(f"{how}{mark} {_respawn(each, ran, now)}")]
-            how += f"{mark} given up after {rule.most} starts within {rule.within:g} s"
+            how += f"{mark} given up after {rule.most} new starts within {rule.within:g} s"
         if each.rules.on_exit == "ignore":
             self._code = exit_code(code) if self.is_over else None
             return [Say(how), *self._only_held(now)]
@@ -306,6 +322,14 @@ def _move(each: Tracked, state: State, now: float) -> None:
     """Bring a process into a state in which nothing is planned for it yet."""
     is_restart = each.is_restart and state == "stopping"
     each.state, each.since, each.due, each.step, each.is_restart = state, now, None, None, is_restart
+
+
+def _why(each: Tracked, returncode: int, cause: str, ran: float) -> str:
+    """Say why a process ended; the same as before a new start that helped nothing is said once."""
+    is_in_vain = each.streak > 0 and ran < each.rules.respawn.within
+    if cause and is_in_vain and (returncode, cause) == (each.returncode, each.cause):
+        return " as before"
+    return f": {cause}" if cause else ""
 
 
 def _respawn(each: Tracked, ran: float, now: float) -> str:

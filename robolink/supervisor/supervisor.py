@@ -123,6 +123,11 @@ class Supervisor:
         """Stop one process in order; the others go on, if there are any. Raises NotFoundError."""
         self._put_about(name, lambda now: self._policy.stop_one(name, now))
 
+    def why_not_stopped(self, name: str) -> str:
+        """Say why `stop_one` would do nothing now; '' if it would."""
+        with self._lock:
+            return self._policy.why_not_stopped(name)
+
     def release(self, name: str) -> None:
         """Start a held process: what it waits for is there. Raises NotFoundError."""
         self._put_about(name, lambda now: self._policy.released(name, now))

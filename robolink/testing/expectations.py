@@ -11,7 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
-from robolink.exceptions import RobolinkError, nearest
+from robolink.exceptions import RobolinkError
+from robolink.names import near
 from robolink.testing.timeline import Moment, table
 
 MOST_NAMES = 12
@@ -97,18 +98,6 @@ def no_such(kind: str, name: str, known: Iterable[tuple[str, str]], when: str) -
     more = f" and {len(listed) - MOST_NAMES} more" if len(listed) > MOST_NAMES else ""
     instead = f"there are: {', '.join(listed[:MOST_NAMES])}{more}" if listed else "there is none at all"
     return f"there is no {kind} {name}{near(name, there)} {when}; {instead}"
-
-
-def near(name: str, known: Iterable[str]) -> str:
-    """Give `` (did you mean ...?)``: a name with the same last part in another namespace goes before similar letters.
-
-    >>> near("/odom", ["/ada/odom", "/odor"])
-    " (did you mean '/ada/odom'?)"
-    """
-    names = list(known)
-    last = name.rpartition("/")[2]
-    elsewhere = [each for each in names if each.rpartition("/")[2] == last]
-    return f" (did you mean '{elsewhere[0]}'?)" if elsewhere else nearest(name, names)
 
 
 def seconds(value: float) -> str:

@@ -10,7 +10,7 @@ import msgspec
 
 from robolink.faults.description import ClockFault, Crash, MessageFault, Partition
 from robolink.faults.file import mistakes_of
-from robolink.faults.patterns import mistake_in
+from robolink.faults.patterns import listed, mistake_in
 from robolink.testing.stage import Named
 
 if TYPE_CHECKING:
@@ -109,6 +109,9 @@ class Faults:
             raise ValueError("partition: expected a group of nodes or several, got none")
         if len(between) == 1:
             between.append("**")
+        names = [each.lstrip("/") for group in between for each in listed(group)]
+        if twice := next((each for each in names if names.count(each) > 1), None):
+            raise ValueError(f"partition: '{twice}' is named twice, so that nobody is parted from it")
         return self._striking.add(_checked(Partition(between=[*between], **self._times(during))))
 
     def crash(self, node: str | Named, *, after: float = 0.0, restart_after: float | None = None) -> None:

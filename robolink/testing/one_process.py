@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from robolink import logging
 from robolink.launch import processes
 from robolink.message import type_hash
+from robolink.names import meant, the_one
 from robolink.node import Node
 from robolink.oneprocess import Host, Program
 from robolink.oneprocess.places import is_users
@@ -191,11 +192,11 @@ class OneProcess:
         of_it = [] if isinstance(node, str) else [each for each, it in self.host.programs.items() if node in it.nodes]
         if of_it:
             return of_it[0]
-        node = full(node)
-        wanted, names = node.strip("/"), self.strikes.injector.network.programs.items()
-        found = [program for program, of_one in names if any(each.endswith(f"/{wanted}") for each in of_one)]
-        is_short = len(found) == 1 and not any(wanted in of_one for _, of_one in names)
-        return found[0] if is_short else self.strikes.injector.program_of(node)
+        by_node: dict[str, str] = {}
+        for program, names in self.strikes.injector.network.programs.items():
+            by_node.update((name, program) for name in names - by_node.keys())
+        found = {by_node[each] for each in meant(full(node), by_node)}
+        return found.pop() if len(found) == 1 else by_node[the_one("node", full(node), sorted(by_node))]
 
     def _on_exit(self, program: Program) -> None:
         code = program.returncode or 0

@@ -11,6 +11,7 @@ from robolink.exceptions import (
     ParameterNotDeclaredException,
     nearest,
 )
+from robolink.names import meant
 from robolink.parameter import Parameter, parameter_value_to_python
 from robolink.parameter_client import AsyncParameterClient
 from robolink.parameter_rules import WrittenParameter
@@ -92,10 +93,7 @@ class Parameters:
         """Note what was set in a launch file, as ``wall_follower.speed``."""
         for each in places:
             node, _, name = each.lstrip("/").partition(".")
-            self._given.append(_Given(name, lambda node=node: self._named(node)))  # type: ignore[misc]
-
-    def _named(self, name: str) -> list[str]:
-        return [each for each in self._graph.nodes() if each.endswith(f"/{name}")]
+            self._given.append(_Given(name, lambda node=node: meant(node, self._graph.nodes())))  # type: ignore[misc]
 
     def check_given(self) -> None:
         """Raise ExpectationError for what was given to nodes that run by now and have not declared it.

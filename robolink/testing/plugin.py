@@ -126,6 +126,22 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[Any]) -> 
         report.sections.append(("robolink", made.story.whole()))
 
 
+def pytest_exception_interact(call: pytest.CallInfo[Any], report: pytest.CollectReport | pytest.TestReport) -> None:
+    """Say how a file of tests imports rclpy's names, where it could not."""
+    error = call.excinfo.value.__cause__ if call.excinfo else None
+    if isinstance(report, pytest.CollectReport) and isinstance(error, ModuleNotFoundError):
+        name = (error.name or "").partition(".")[0]
+        if _is_ros(name):
+            advice = f"`import robolink.compat` first, here or in conftest.py, and {name} is robolink's"
+            report.sections.append(("robolink", advice))
+
+
+def _is_ros(name: str) -> bool:
+    from robolink.interfaces._standard import STANDARD
+
+    return name in ("rclpy", "tf2_ros", "message_filters") or any(name in packages for packages in STANDARD.values())
+
+
 _ROBOLINK = Path(__file__).parents[1]
 _WAYS = (_ROBOLINK / "testing", _ROBOLINK / "oneprocess")
 """What stands between a test and its nodes' code, and says nothing to either."""

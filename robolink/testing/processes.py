@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robolink.context import Context
-from robolink.exceptions import NotFoundError
 from robolink.executors import SingleThreadedExecutor
 from robolink.faults.injector import Fault
 from robolink.interfaces.rcl_interfaces.msg import Log
 from robolink.interfaces.rcl_interfaces.srv import ListParameters
 from robolink.logging import LoggingSeverity, Record
+from robolink.names import the_one
 from robolink.node import Node
 from robolink.qos import qos_profile_rosout_default
 from robolink.testing.expectations import NodeFailure, OnlyInMemoryError
@@ -228,12 +228,8 @@ class Processes:
         """Give a node's program, or that of this name, in any namespace if it is the only one. Raises NotFoundError."""
         if isinstance(node, RemoteNode):
             return node.program
-        node = full(node)
-        wanted, known = node.strip("/"), self.programs
-        found = [each for each in known if each == wanted] or [each for each in known if each.endswith(f"/{wanted}")]
-        if len(found) != 1:
-            raise NotFoundError("node", node, known, "this system")
-        return next((program for program, shown in self._shown.items() if shown == found[0]), found[0])
+        found = the_one("node", full(node), self.programs, "this system")
+        return next((program for program, shown in self._shown.items() if shown == found), found)
 
     def _launch_of(self, program: str) -> Launch:
         return next(each for each in reversed(self._launches) if program in each.names)

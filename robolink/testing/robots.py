@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Protocol
 
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticArray
 from robolink.interfaces.nav_msgs.msg import Odometry
+from robolink.names import the_one
 from robolink.plane import pose_of
 from robolink.serialization import deserialize_message
 
@@ -61,21 +62,11 @@ def chosen(robots: Iterable[tuple[str, SimulatedRobot]], name: str | None) -> Si
     names = [each for each, _ in found]
     if not found:
         raise NoRobotError("this system has no robot: no simulated world has begun in it")
-    meant = found if name is None else _called(found, name)
-    if len(meant) == 1:
-        return meant[0][1]
-    if name is None:
+    if name is not None:
+        name = the_one("robot", name, names, f"the world, which has {', '.join(names)}")
+    elif len(found) > 1:
         raise NoRobotError(f"which robot? The world has {', '.join(names)}: give a name")
-    if meant:
-        several = ", ".join(each for each, _ in meant)
-        raise NoRobotError(f"which robot '{name}'? There are {several}: give a whole name")
-    raise NotFoundError("robot", name, names, f"the world, which has {', '.join(names)}")
-
-
-def _called(robots: Sequence[tuple[str, SimulatedRobot]], name: str) -> list[tuple[str, SimulatedRobot]]:
-    """Give the robots of a name; where none has it as a whole, those of all worlds that have it in their namespace."""
-    exact = [each for each in robots if each[0] == name.strip("/")]
-    return exact or [each for each in robots if each[0].endswith(f"/{name}")]
+    return next(robot for each, robot in found if name in (None, each))
 
 
 class RobotElsewhere:

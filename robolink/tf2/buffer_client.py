@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import threading
-import time
 from typing import TYPE_CHECKING, Any
 
 from robolink.action.client import ActionClient
 from robolink.duration import Duration
 from robolink.exceptions import ServiceError
-from robolink.inbox import A_WHILE
 from robolink.interfaces.action_msgs.msg import GoalStatus
 from robolink.interfaces.builtin_interfaces.msg import Time as TimeMsg
 from robolink.interfaces.geometry_msgs.msg import TransformStamped
 from robolink.interfaces.tf2_msgs.action import LookupTransform
 from robolink.interfaces.tf2_msgs.msg import TF2Error
+from robolink.queues import A_WHILE
 from robolink.task import Future
 from robolink.tf2.buffer_interface import BufferInterface
 from robolink.tf2.buffer_server import CODES
@@ -133,9 +132,9 @@ class BufferClient(BufferInterface):
         else:
             came = threading.Event()
             future.when_done(came.set)
-            while not came.wait(min(A_WHILE, max(0.0, (deadline - time.monotonic_ns()) / 1e9))):
+            while not came.wait(min(A_WHILE, max(0.0, (deadline - context.time.steady()) / 1e9))):
                 check([context])
-                if time.monotonic_ns() >= deadline:
+                if context.time.steady() >= deadline:
                     break
         if not future.done():
             future.cancel()

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.defaults import get_defaults
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser
-from robolink.inbox import A_WHILE
 from robolink.interfaces.geometry_msgs.msg import TransformStamped
 from robolink.logging import get_logger
+from robolink.queues import A_WHILE
 from robolink.task import Future
 from robolink.tf2.core import LOGGER
 from robolink.timebase import SystemTime

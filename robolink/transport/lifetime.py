@@ -5,13 +5,16 @@ from __future__ import annotations
 import atexit
 import contextlib
 import os
+import signal
 import threading
 import time
 import weakref
-from collections.abc import Callable
-from typing import Protocol
+from collections.abc import Callable, Iterator
+from typing import Protocol, TypeVar
 
 from robolink.exceptions import TransportError
+
+_Kept = TypeVar("_Kept")
 
 
 class Mortal(Protocol):
@@ -27,21 +30,28 @@ class Mortal(Protocol):
 AFTER_FORK = "Zenoh does not survive a fork: start processes by 'spawn', or before the first session is opened"
 
 LAST_WAIT = 3.0
-"""Seconds that the exit waits for sessions that are still closing.
+"""Seconds that the exit waits for sessions that are still closing, and for threads that are at work in Zenoh.
 
 One with 30 peers takes 0.3 s; four that leave a busy machine at once take 0.7 s and more.
 """
 
 _open: weakref.WeakSet[Mortal] = weakref.WeakSet()
 _unfinished: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
+_last: list[Mortal] = []
+"""What the exit closes: held, so that no daemon thread frees it as it ends, which is work in Zenoh too."""
+_inside: set[int] = set()
+"""Threads, by their idents, that are just at work in Zenoh."""
 _armed = False
 _forked = False
+_ending = False
 
 
 def watch_over(mortal: Mortal) -> None:
     """Close it at exit, if it is still there, and disown it in forked children."""
     _arm()
     _open.add(mortal)
+    if _ending:
+        _last.append(mortal)
 
 
 def forget(mortal: Mortal) -> None:
@@ -51,20 +61,49 @@ def forget(mortal: Mortal) -> None:
 
 def finish(work: Callable[[], object], within: float) -> None:
     """Do some last work, in the background if it takes longer than `within` seconds."""
-    thread = threading.Thread(target=work, name="robolink close", daemon=True)
+    done = threading.Event()
+
+    def finish_it() -> None:
+        try:
+            work()
+        finally:
+            done.set()
+
+    thread = threading.Thread(target=finish_it, name="robolink close", daemon=True)
+    _unfinished.add(thread)  # now, since a Ctrl-C may break into all that follows
     try:
         thread.start()
     except RuntimeError:  # Python 3.12 starts no threads any more at exit
         work()
         return
-    thread.join(within)
-    if thread.is_alive():
-        _unfinished.add(thread)
+    done.wait(within)  # no join: before 3.13 Python takes a thread for ended when a Ctrl-C breaks into that
+
+
+class Inside:
+    """Within it a thread is at work in Zenoh, and the exit waits for it; not for what a daemon thread begins then."""
+
+    def __enter__(self) -> None:
+        _inside.add(threading.get_ident())
+        if _ending:
+            self.__exit__()
+            end_if_daemon()
+
+    def __exit__(self, *_: object) -> None:
+        _inside.discard(threading.get_ident())
+
+
+inside = Inside()
 
 
 def outlive(thread: threading.Thread) -> None:
     """Have the exit wait for a thread that is inside Zenoh until its session has been closed."""
     _unfinished.add(thread)
+
+
+def end_if_daemon() -> None:
+    """End a daemon thread that wants a session at the exit: quietly, as Python is about to."""
+    if _ending and threading.current_thread().daemon:
+        raise SystemExit
 
 
 def bury(remains: object) -> None:
@@ -81,24 +120,53 @@ def refuse_if_forked() -> None:
 
 
 def _close_all() -> None:
-    for mortal in list(_open):
-        with contextlib.suppress(Exception):
-            mortal.close()
-    _wait_for_the_unfinished()
+    global _ending
+    _last.extend(_all_of(_open))
+    _ending = True
+    with _undisturbed():
+        deadline = time.monotonic() + LAST_WAIT
+        # Before anything is closed: opening a session may take 10 s when the one that it meets is just closing.
+        while _inside - {threading.get_ident()} and time.monotonic() < deadline:
+            time.sleep(0.001)
+        for mortal in _all_of(_open):
+            with contextlib.suppress(Exception):
+                mortal.close()
+        _wait_for_the_unfinished(deadline)
 
 
-def _wait_for_the_unfinished() -> None:
+@contextlib.contextmanager
+def _undisturbed() -> Iterator[None]:
+    """Let no signal raise an exception here: a second Ctrl-C would leave threads in Zenoh."""
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    ours = {number: handler for number, handler in handlers.items() if callable(handler)}
+    for number in ours:
+        signal.signal(number, lambda number, frame: None)
+    try:
+        yield
+    finally:
+        for number, handler in ours.items():
+            signal.signal(number, handler)
+
+
+def _wait_for_the_unfinished(deadline: float) -> None:
     # A thread that comes back from Zenoh while the interpreter ends aborts the process (Python < 3.14). So most get
     # the time that they need; what takes longer, 10 s for a frozen peer, is not back before the process is gone.
-    deadline = time.monotonic() + LAST_WAIT
-    for thread in list(_unfinished):
-        thread.join(max(0, deadline - time.monotonic()))
+    for thread in _all_of(_unfinished):
+        if thread.ident is not None:  # else a Ctrl-C came before it was started
+            thread.join(max(0, deadline - time.monotonic()))
+
+
+def _all_of(them: weakref.WeakSet[_Kept]) -> list[_Kept]:
+    while True:
+        with contextlib.suppress(RuntimeError):  # another thread has just added one
+            return list(them)
 
 
 def _disown_all() -> None:
     global _forked
     _forked = True
     _unfinished.clear()
+    _inside.clear()
     for mortal in list(_open):
         mortal.disown()
 
@@ -108,13 +176,9 @@ def _arm() -> None:
     if _armed:
         return
     _armed = True
-    _at_thread_shutdown(_close_all)
+    # After Python has waited for the program's threads, which may go on for long, and before it ends daemon threads.
+    # Twice, since a Ctrl-C may break into the very beginning of the first.
+    for _ in range(2):
+        atexit.register(_close_all)
     if hasattr(os, "register_at_fork"):
         os.register_at_fork(after_in_child=_disown_all)
-
-
-def _at_thread_shutdown(close_all: Callable[[], None]) -> None:
-    # atexit runs after the interpreter has waited for all threads: too late, since Zenoh's wait for a session to be
-    # closed. What concurrent.futures uses runs before; it is private, hence the fallback.
-    register = getattr(threading, "_register_atexit", atexit.register)
-    register(close_all)

@@ -222,7 +222,7 @@ def meets_at_port(value: str, environ: Mapping[str, str]) -> bool:
 def _from_file(asked_by: str, value: str) -> zenoh.Config:
     import zenoh
 
-    path = Path(value.removeprefix("file://")).expanduser()
+    path = file_of(value)
     if not path.is_file():
         known = f"the networks are {', '.join(NAMES)} and tcp/HOST:PORT of a router"
         raise TransportError(f"{asked_by}: no network or file '{value[:200]}'{nearest(value[:200], NAMES)}; {known}")
@@ -232,6 +232,15 @@ def _from_file(asked_by: str, value: str) -> zenoh.Config:
         raise TransportError(f"{asked_by}: {path}: {reason(error)}") from None
     config.insert_json5("timestamping/enabled", "true")  # latched topics cannot do without
     return config
+
+
+def file_of(value: str) -> Path:
+    """Give the file that a path or an address names.
+
+    >>> file_of("file:///C:/robot.json5").as_posix()
+    'C:/robot.json5'
+    """
+    return Path(re.sub(r"^file://(/(?=[A-Za-z]:))?", "", value)).expanduser()
 
 
 def _overridden(config: zenoh.Config, overrides: str) -> zenoh.Config:

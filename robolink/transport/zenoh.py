@@ -6,6 +6,7 @@ sink is meant to be C as well. Raw samples wait in queues until `read` turns the
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import os
 import queue
@@ -60,10 +61,12 @@ class ZenohTransport(Transport):
         self.url = "zenoh://"
         lifetime.refuse_if_forked()
         self._holdings = handles.Holdings()
-        self._session, self._claim, holds_port = _join(domain, network, os.environ if environ is None else environ)
-        self._met_at = time.monotonic() + (REUNION if holds_port else 0.0)
-        self.session_id = str(self._session.info.zid())
-        lifetime.watch_over(self)
+        self._has_left = False
+        with lifetime.inside:
+            self._session, self._claim, holds_port = _join(domain, network, os.environ if environ is None else environ)
+            self._met_at = time.monotonic() + (REUNION if holds_port else 0.0)
+            self.session_id = str(self._session.info.zid())
+            lifetime.watch_over(self)
 
     def advertise(self, key: str, qos: QoSProfile) -> Outlet:
         """Declare a publisher. With TRANSIENT_LOCAL it keeps the last `qos.depth` samples for late joiners."""
@@ -133,27 +136,31 @@ class ZenohTransport(Transport):
 
     def close(self) -> None:
         """Undeclare everything and leave the network; calls under way end. Safe to call twice."""
-        if self._holdings.why_closed:
+        if self._has_left:
             return
         why = f"session {self.session_id} has been closed"
         with self._holdings.lock:
             declared = self._holdings.end(why)
         _leave(self._session, self._claim, [entity for handle in declared for entity in handle.shut(why)])
+        self._has_left = True  # so late: a Ctrl-C that breaks into this must not keep the exit from doing it
         lifetime.forget(self)
 
     def disown(self) -> None:
         """Refuse every further use in a forked child."""
+        self._has_left = True
         for handle in self._holdings.end(lifetime.AFTER_FORK):  # not locked: whoever holds the lock may be gone
             handle.disown(lifetime.AFTER_FORK)
         lifetime.bury(self._session)
 
     def _peers(self) -> set[str]:
-        return {str(peer) for peer in self._session.info.peers_zid()}
+        with lifetime.inside:
+            return {str(peer) for peer in self._session.info.peers_zid()}
 
     def _try(self, key: str, action: Callable[..., Any], *arguments: object) -> Any:
         self._holdings.check()
         try:
-            return action(self._session, *arguments)
+            with lifetime.inside:
+                return action(self._session, *arguments)
         except zenoh.ZError as error:
             raise self._holdings.failure(key, error) from None
 
@@ -165,7 +172,7 @@ def _leave(session: zenoh.Session, claim: network.PortClaim | None, entities: li
     """
 
     def close() -> None:
-        declare.quietly(session.close)
+        _close(session)
         if claim:
             claim.release()
 
@@ -174,6 +181,11 @@ def _leave(session: zenoh.Session, claim: network.PortClaim | None, entities: li
     # A daemon thread that is inside Zenoh when the interpreter ends aborts the process: let it come back first.
     while _in_use(entities) and time.monotonic() < deadline:
         time.sleep(0.001)
+
+
+def _close(session: Any) -> None:
+    with contextlib.suppress(zenoh.ZError, RuntimeError):  # as in `declare.quietly`, but the exit does begin it
+        session.close()
 
 
 def _in_use(entities: list[object]) -> bool:
@@ -257,7 +269,7 @@ def _meet(port: int, open_session: Callable[[bool], zenoh.Session]) -> _Joined:
         session = open_session(False)
         if _linked(session):
             return _Joined(session, claim)
-        lifetime.finish(functools.partial(declare.quietly, session.close), CLOSE_WITHIN)
+        lifetime.finish(functools.partial(_close, session), CLOSE_WITHIN)
     raise TransportError(
         f"port {port} is taken by a program that does not answer as a robolink session does: "
         "stop it, or choose another ROS_DOMAIN_ID"

@@ -80,7 +80,11 @@ def _follow(channel: Any, sink: Sink, name: str) -> None:
     """
     thread = threading.Thread(target=_hand_on, args=(channel, sink), name=name, daemon=True)
     lifetime.outlive(thread)
-    thread.start()
+    try:
+        thread.start()
+    except RuntimeError:  # Python 3.12 starts no threads any more at exit
+        lifetime.end_if_daemon()
+        raise
 
 
 def _hand_on(channel: Any, sink: Sink) -> None:
@@ -161,7 +165,7 @@ def quietly(action: Callable[[], object]) -> None:
     """Undeclare or close what may be closed already."""
     # RuntimeError: zenoh-python's "Already borrowed", when another thread is at work on the same object, which
     # then goes as soon as that thread lets go of it.
-    with contextlib.suppress(zenoh.ZError, RuntimeError):
+    with contextlib.suppress(zenoh.ZError, RuntimeError), lifetime.inside:
         action()
 
 

@@ -41,11 +41,13 @@ class Holdings:
     def check(self) -> None:
         """Raise TransportClosedError after the end."""
         if self.why_closed:
+            lifetime.end_if_daemon()
             raise TransportClosedError(self.why_closed)
 
     def failure(self, key: str, error: Exception) -> TransportError:
         """Turn Zenoh's error about `key` into one line."""
         if self.why_closed:
+            lifetime.end_if_daemon()
             return TransportClosedError(self.why_closed)
         return TransportError(f"{key[:200]}: {reason(error)}")
 
@@ -98,6 +100,7 @@ class _Gone:
         self._why = why
 
     def put(self, *_: object, **__: object) -> None:
+        lifetime.end_if_daemon()
         raise TransportClosedError(self._why)
 
     def undeclare(self) -> None:
@@ -116,8 +119,9 @@ class ZenohOutlet(Declared):
     __slots__ = ("_asked", "_key", "_topic")
 
     def __init__(self, holdings: Holdings, key: str, publishers: Publishers) -> None:
-        super().__init__(holdings, publishers.used)
+        # First, since it may be shut from the moment on that the session has it.
         self._key, self._topic, self._asked = key, holdings.topic(key), publishers.asked
+        super().__init__(holdings, publishers.used)
 
     def put(self, payload: bytes, attachment: bytes) -> None:
         """Send to every matching subscription. Raises TransportClosedError after close."""
@@ -155,8 +159,8 @@ class ZenohSubscription(Declared):
     __slots__ = ("_topic",)
 
     def __init__(self, holdings: Holdings, subscriber: Any, gate: Sink, topic: Topic | None) -> None:
-        super().__init__(holdings, subscriber, gate)
         self._topic = topic
+        super().__init__(holdings, subscriber, gate)
         if topic:
             with holdings.lock:
                 topic.sinks = (*topic.sinks, gate)
@@ -201,8 +205,8 @@ class ZenohWatch(Declared):
     __slots__ = ("_changes",)
 
     def __init__(self, holdings: Holdings, subscriber: Any, changes: Changes) -> None:
-        super().__init__(holdings, subscriber)
         self._changes = changes
+        super().__init__(holdings, subscriber)
 
     def shut(self, why: str) -> list[Any]:
         """Tell nothing any more; gives what is left to undeclare."""

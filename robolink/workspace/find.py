@@ -245,7 +245,8 @@ def _unshadowed(sources: Iterable[NodeSource]) -> list[NodeSource]:
 
 
 def _no_node(name: str, workspace: Folder) -> NotFoundError:
-    error = _not_found("node", name, workspace, (each.name for each in list_nodes(workspace=workspace)))
+    known = [*(each.name for each in list_nodes(workspace=workspace)), *_file_names(workspace, (".py",))]
+    error = _not_found("node", name, workspace, known)
     for package, found in list_executables(workspace=workspace).items():
         for each in found:
             if canonical(each.name) == canonical(name):

@@ -42,8 +42,9 @@ def list_actions(show_types: ShowTypes = False, count: Count = False, as_json: A
 @app.command("type")
 def show_type(action: Action, as_json: AsJson = False) -> None:
     """Show the type of an action."""
+    from robolink.cli.announced import absolute
     from robolink.cli.names import show_types
-    from robolink.cli.session import absolute, looking
+    from robolink.cli.session import looking
     from robolink.exceptions import NotFoundError, shown
 
     name = absolute(action)
@@ -114,7 +115,7 @@ def send_goal(
 ) -> int:
     """Send a goal and show what comes of it. Ctrl-C cancels the goal. Exits with 1 unless it succeeds."""
     from robolink.cli.action import goal
-    from robolink.cli.service.call import is_type, read_stdin
+    from robolink.cli.asked import is_type, read_stdin
 
     if values is None and not is_type(type_):  # ACTION VALUES: the type was left out
         type_, values = "", type_
@@ -123,13 +124,13 @@ def send_goal(
     if not 0 < timeout <= 1e9:
         ctx.fail(f"--timeout: expected a number of seconds above 0, got {timeout:g}")
     manner = goal.Manner(feedback, timeout, as_json, node_name)
-    return goal.run(action, type_, read_stdin() if from_stdin else values or "", manner)
+    return goal.run(action, type_, read_stdin("goal") if from_stdin else values or "", manner)
 
 
 def _types(context: Context) -> dict[str, list[str]]:
     """Give every action with its types, sorted."""
     from robolink.action.graph import actions
-    from robolink.cli.session import endpoints
+    from robolink.cli.announced import endpoints
     from robolink.graph import names_and_types
     from robolink.wire import EndpointKind
 

@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.action.graph import FEEDBACK, GET_RESULT, GOAL_TYPE, SEND_GOAL, part_name
 from robolink.cli import show
+from robolink.cli.asked import Asked, message_of
 from robolink.cli.elsewhere import domains_with, hint
-from robolink.cli.session import node_of, say, tell
+from robolink.cli.output import say, tell
+from robolink.cli.session import node_of
 from robolink.context import Context
 from robolink.exceptions import NotFoundError, RobolinkError, nearest, shown
 from robolink.interfaces import find, is_named
@@ -63,17 +65,6 @@ class Manner(NamedTuple):
             say(show.as_json({name: show.plain(value) for name, value in plain.items()}))
 
 
-class Asked(NamedTuple):
-    """Where a goal goes."""
-
-    name: str
-    """In full, with its leading slash."""
-    type_: str
-    """As it was named; empty where the graph shall say it."""
-    values: str
-    """The goal in YAML."""
-
-
 def run(action: str, type_: str, values: str, manner: Manner) -> int:
     """Send a goal and wait for its end; 0 if it succeeded, else 1. Ctrl-C has it cancelled.
 
@@ -88,7 +79,7 @@ def run(action: str, type_: str, values: str, manner: Manner) -> int:
         asked = Asked(node.resolve_topic_name(action), type_, values)
         deadline = time.monotonic() + manner.timeout
         chosen = _wait_for_type(context, asked, manner, deadline)
-        goal = goal_of(chosen, values)
+        goal = message_of(chosen.Goal, values)
         client = ActionClient(node, chosen, asked.name)
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(node)
@@ -114,17 +105,6 @@ def _interruptible() -> Iterator[Context]:
             signal.signal(number, handler if handler is not None else signal.SIG_DFL)
 
 
-def goal_of(action_type: type[Action], values: str) -> Any:
-    """Make the goal of YAML. Raises DocumentError or EncodeError that say where it is wrong."""
-    from robolink.message import encode, from_builtins
-    from robolink.yamlfile import parse
-
-    given = parse(values, name="<values>")
-    goal = from_builtins(action_type.Goal, {} if given is None else given)
-    encode(goal)
-    return goal
-
-
 def _wait_for_type(context: Context, asked: Asked, manner: Manner, deadline: float) -> type[Action]:
     """Wait until the action is served, with the type that is named, if one is; give its class."""
     from robolink.cli.types import action_type
@@ -147,7 +127,7 @@ def _check_early(asked: Asked) -> None:
     """Find what is wrong with the goal before anybody waits for the server, where its type is installed."""
     if asked.type_:
         with contextlib.suppress(NotFoundError):  # the server may know it
-            goal_of(find(asked.type_, "action"), asked.values)
+            message_of(find(asked.type_, "action").Goal, asked.values)
 
 
 def _served(context: Context, asked: Asked) -> bool:

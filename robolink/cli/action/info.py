@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robolink.cli.announced import absolute, endpoints
 from robolink.cli.node import sections_of
-from robolink.cli.session import absolute, endpoints, looking, say, say_json
+from robolink.cli.output import say, say_json
+from robolink.cli.session import looking
 from robolink.exceptions import NotFoundError, shown
 
 if TYPE_CHECKING:

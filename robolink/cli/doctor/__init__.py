@@ -31,7 +31,7 @@ def doctor(
     from robolink.cli.doctor.facts import gather
     from robolink.cli.doctor.graph_checks import GRAPH_CHECKS
     from robolink.cli.doctor.report import sections
-    from robolink.cli.session import say
+    from robolink.cli.output import say
 
     facts = gather()
     # Where the system could not be looked at, one check says so, and the others have nothing to say.

@@ -154,7 +154,7 @@ def holder(number: int, root: Path = Path("/proc")) -> Holder | None:
 def _listeners(table: Path, number: int) -> list[str]:
     """The inodes of the sockets that listen on a port, from a table of the kernel's."""
     try:
-        lines = table.read_text().splitlines()[1:]
+        lines = table.read_text(encoding="utf-8").splitlines()[1:]
     except OSError:
         return []
     rows = [line.split() for line in lines]

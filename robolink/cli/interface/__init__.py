@@ -32,7 +32,7 @@ def list_interfaces(
     only_msgs: OnlyMsgs = False, only_srvs: OnlySrvs = False, only_actions: OnlyActions = False, as_json: AsJson = False
 ) -> None:
     """List all types that are installed here or lie in the workspace."""
-    from robolink.cli.session import say, say_json
+    from robolink.cli.output import say, say_json
 
     found = {kind: _names(kind) for kind in _kinds(only_msgs, only_srvs, only_actions)}
     if as_json:
@@ -47,7 +47,7 @@ def packages(
     only_msgs: OnlyMsgs = False, only_srvs: OnlySrvs = False, only_actions: OnlyActions = False, as_json: AsJson = False
 ) -> None:
     """List the packages that have types."""
-    from robolink.cli.session import say, say_json
+    from robolink.cli.output import say, say_json
 
     names = [name for kind in _kinds(only_msgs, only_srvs, only_actions) for name in _names(kind)]
     found = sorted({name.partition("/")[0] for name in names})
@@ -71,7 +71,7 @@ def package(
     as_json: AsJson = False,
 ) -> None:
     """List the types of a package."""
-    from robolink.cli.session import say, say_json
+    from robolink.cli.output import say, say_json
     from robolink.exceptions import NotFoundError
 
     known = [each for kind in HEADINGS for each in _names(kind)]
@@ -101,7 +101,7 @@ def show_interface(
 ) -> None:
     """Show what a type is made of."""
     from robolink.cli.interface.show import as_data, lines, type_named
-    from robolink.cli.session import say
+    from robolink.cli.output import say
     from robolink.cli.show import as_json as json_text
 
     if all_comments and no_comments:
@@ -119,7 +119,7 @@ def proto(
 ) -> None:
     """Show a message, request or goal with its defaults, in YAML that topic pub and service call take."""
     from robolink.cli.interface.show import prototype, type_named
-    from robolink.cli.session import say
+    from robolink.cli.output import say
 
     text = prototype(type_named(type_))
     say(f"{text}\n" if no_quotes else f'"{_escaped(text)}\n"')

@@ -31,7 +31,8 @@ def list_nodes(
 ) -> None:
     """List the managed nodes."""
     from robolink.cli.lifecycle import ask
-    from robolink.cli.session import looking, say, say_json
+    from robolink.cli.output import say, say_json
+    from robolink.cli.session import looking
 
     with looking() as context:
         names = ask.managed(context, hidden=show_all)
@@ -51,7 +52,8 @@ def get(
 ) -> None:
     """Show the state of a managed node, or of all of them."""
     from robolink.cli.lifecycle import ask
-    from robolink.cli.session import looking, say, say_json, tell
+    from robolink.cli.output import say, say_json, tell
+    from robolink.cli.session import looking
 
     with looking() as context:
         names = [ask.known(context, node)] if node else ask.managed(context, hidden=hidden)
@@ -78,7 +80,8 @@ def list_transitions(
 ) -> None:
     """List the transitions that a managed node can make now."""
     from robolink.cli.lifecycle import ask
-    from robolink.cli.session import looking, say, say_json
+    from robolink.cli.output import say, say_json
+    from robolink.cli.session import looking
 
     with looking() as context:
         found = ask.transitions(context, ask.known(context, node), every=show_all)
@@ -105,7 +108,8 @@ def set_state(
 ) -> None:
     """Have a managed node make a transition."""
     from robolink.cli.lifecycle import ask
-    from robolink.cli.session import looking, say
+    from robolink.cli.output import say
+    from robolink.cli.session import looking
 
     with looking() as context:
         ask.make_transition(context, ask.known(context, node), transition)

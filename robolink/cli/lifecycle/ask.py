@@ -6,8 +6,9 @@ import time
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from robolink.cli.announced import absolute, is_hidden
 from robolink.cli.elsewhere import no_such_node
-from robolink.cli.session import absolute, is_hidden, node_of
+from robolink.cli.session import node_of
 from robolink.exceptions import RobolinkError, ServiceError, shown
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.lifecycle_msgs.srv import ChangeState, GetAvailableTransitions, GetState

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from robolink.cli.announced import absolute
 from robolink.cli.elsewhere import no_such_node
-from robolink.cli.session import absolute, looking, node_of
+from robolink.cli.session import looking, node_of
 from robolink.exceptions import ExternalShutdownException, NotFoundError, RobolinkError, shown
 from robolink.interfaces.rcl_interfaces import srv
 from robolink.interfaces.rcl_interfaces.msg import (

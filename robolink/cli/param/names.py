@@ -22,8 +22,9 @@ def of_node(ctx: Any, incomplete: str) -> list[str]:
 
 
 def _ask(node: str, names: queue.SimpleQueue[list[str]]) -> None:
+    from robolink.cli.announced import absolute
     from robolink.cli.param.ask import Asked, serves
-    from robolink.cli.session import absolute, node_of
+    from robolink.cli.session import node_of
     from robolink.context import Context
 
     context = Context()

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import typer
 
 from robolink.cli import show
+from robolink.cli.announced import is_hidden
+from robolink.cli.output import say, tell
 from robolink.cli.param.ask import Asked, asking, serves
 from robolink.cli.param.values import Type, as_file, in_json, label, plain, type_name
-from robolink.cli.session import is_hidden, looking, node_of, say, tell
+from robolink.cli.session import looking, node_of
 from robolink.exceptions import RobolinkError
 from robolink.parameter import parameter_value_to_python
 

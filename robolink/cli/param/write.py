@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from robolink.cli import complain, show
+from robolink.cli.output import say
 from robolink.cli.param.ask import Asked, asking
 from robolink.cli.param.values import fitting, plain, read
-from robolink.cli.session import say
 from robolink.exceptions import NotFoundError
 from robolink.interfaces.rcl_interfaces.msg import (
     Parameter,

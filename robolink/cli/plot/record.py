@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from robolink.cli.output import tell
 from robolink.cli.pictures import check_picture
-from robolink.cli.session import tell
 from robolink.cli.topic.echo import matching_qos
 from robolink.cli.types import message_type
 from robolink.exceptions import RobolinkError, nearest

@@ -6,8 +6,10 @@ import math
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
+from robolink.cli.announced import nodes
+from robolink.cli.output import tell
 from robolink.cli.plot.record import PlotError, Wish, check, deadline, listen, show, wait_for
-from robolink.cli.session import node_of, nodes, opened, tell
+from robolink.cli.session import node_of, opened
 from robolink.exceptions import RobolinkError
 
 if TYPE_CHECKING:

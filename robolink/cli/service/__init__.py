@@ -112,16 +112,17 @@ def call_service(
     as_json: Annotated[bool, typer.Option("--json", help="A line of JSON for each call.")] = False,
 ) -> None:
     """Call a service and show what it answers."""
+    from robolink.cli.asked import is_type, read_stdin
     from robolink.cli.service import call
 
-    if values is None and not call.is_type(type_):  # SERVICE VALUES: the type was left out
+    if values is None and not is_type(type_):  # SERVICE VALUES: the type was left out
         type_, values = "", type_
     if from_stdin and values:
         ctx.fail("either VALUES or --stdin, not both")
     manner = call.Manner(rate, timeout, as_json, node_name)
     if manner.problem():
         ctx.fail(manner.problem())
-    call.run(service, type_, call.read_stdin() if from_stdin else values or "", manner)
+    call.run(service, type_, read_stdin("request") if from_stdin else values or "", manner)
 
 
 @app.command("echo")
@@ -157,7 +158,7 @@ def echo_events(
 
 def _types(context: Context, *, hidden: bool = True) -> dict[str, list[str]]:
     """Give every service with its types, sorted; also those that are only called, as in ros2."""
-    from robolink.cli.session import endpoints, is_hidden
+    from robolink.cli.announced import endpoints, is_hidden
     from robolink.graph import names_and_types
     from robolink.wire import EndpointKind
 
@@ -167,7 +168,7 @@ def _types(context: Context, *, hidden: bool = True) -> dict[str, list[str]]:
 
 def _known(context: Context, service: str, services: dict[str, list[str]]) -> str:
     """Give the full name of a service. Raises NotFoundError when there is none."""
-    from robolink.cli.session import absolute
+    from robolink.cli.announced import absolute
     from robolink.exceptions import NotFoundError, shown
 
     name = absolute(service)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import contextlib
-import re
-import sys
 import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.cli import show
+from robolink.cli.asked import Asked, message_of
 from robolink.cli.elsewhere import domains_with, hint
-from robolink.cli.session import node_of, opened, say, tell
+from robolink.cli.output import say, tell
+from robolink.cli.session import node_of, opened
 from robolink.exceptions import NotFoundError, RobolinkError, nearest, shown
 from robolink.interfaces import find, is_named
 from robolink.wire import EndpointKind
@@ -25,8 +25,6 @@ PATIENCE = 1.0
 
 _SLICE = 0.25
 """Seconds of one wait: on Windows Ctrl-C does not end a wait that is longer."""
-
-_TYPE = re.compile(r"[A-Za-z]\w*(?:[/.][A-Za-z]\w*){0,2}", re.ASCII)
 
 
 class CallError(RobolinkError, RuntimeError):
@@ -52,34 +50,6 @@ class Manner(NamedTuple):
         return ""
 
 
-class Asked(NamedTuple):
-    """What is called."""
-
-    name: str
-    """In full, with its leading slash."""
-    type_: str
-    """As it was named; empty where the graph shall say it."""
-    values: str
-    """The request in YAML."""
-
-
-def is_type(text: str) -> bool:
-    """Whether a text can name a type: then it is no YAML of a request."""
-    return _TYPE.fullmatch(text) is not None
-
-
-def read_stdin() -> str:
-    """Read the request that is piped in. Raises CallError for what is no text."""
-    if sys.stdin is None:
-        raise CallError("--stdin: there is no standard input")
-    if sys.stdin.isatty():
-        tell("the request in YAML, and Ctrl-D at its end:" if sys.platform != "win32" else "the request, then Ctrl-Z:")
-    try:
-        return sys.stdin.read()
-    except UnicodeDecodeError as error:
-        raise CallError(f"--stdin: expected text in UTF-8: {error.reason} at byte {error.start}") from None
-
-
 def run(service: str, type_: str, values: str, manner: Manner) -> None:
     """Call a service once, or at a rate until Ctrl-C.
 
@@ -93,7 +63,7 @@ def run(service: str, type_: str, values: str, manner: Manner) -> None:
         asked = Asked(node.resolve_service_name(service), type_, values)
         deadline = time.monotonic() + manner.timeout
         srv_type = _wait_for_type(context, asked, manner, deadline)
-        request = request_of(srv_type, values)
+        request = message_of(srv_type.Request, values)
         client = node.create_client(srv_type, asked.name)
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(node)
@@ -104,17 +74,6 @@ def run(service: str, type_: str, values: str, manner: Manner) -> None:
                 return
             _sleep(executor, began + 1.0 / manner.rate)
             deadline = time.monotonic() + manner.timeout
-
-
-def request_of(srv_type: type[Any], values: str) -> Any:
-    """Make the request of YAML. Raises DocumentError or EncodeError that say where it is wrong."""
-    from robolink.message import encode, from_builtins
-    from robolink.yamlfile import parse
-
-    given = parse(values, name="<values>")
-    request = from_builtins(srv_type.Request, {} if given is None else given)
-    encode(request)
-    return request
 
 
 def _wait_for_type(context: Context, asked: Asked, manner: Manner, deadline: float) -> type[Any]:
@@ -133,7 +92,7 @@ def _check_early(asked: Asked) -> None:
     """Find what is wrong with the request before anybody waits for the service, where its type is installed."""
     if asked.type_:
         with contextlib.suppress(NotFoundError):  # the server may know it
-            request_of(find(asked.type_, "srv"), asked.values)
+            message_of(find(asked.type_, "srv").Request, asked.values)
 
 
 def _served(context: Context, asked: Asked) -> bool:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from robolink.cli import show
-from robolink.cli.session import node_of, opened, say, tell
+from robolink.cli.output import say, tell
+from robolink.cli.session import node_of, opened
 from robolink.cli.types import service_type
 from robolink.exceptions import RobolinkError
 from robolink.executors import SingleThreadedExecutor

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from robolink.cli.session import absolute, announced, looking, say, say_json
+from robolink.cli.announced import absolute, announced
+from robolink.cli.output import say, say_json
+from robolink.cli.session import looking
 from robolink.exceptions import NotFoundError, shown
 from robolink.topic_endpoint_info import qos_lines
 from robolink.wire import EndpointKind, EndpointToken, gid_of

@@ -7,7 +7,8 @@ import time
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from robolink.cli.session import node_of, opened, say, say_json, tell
+from robolink.cli.output import say, say_json, tell
+from robolink.cli.session import node_of, opened
 from robolink.cli.tf.watch import NoTransformsError, Watch
 from robolink.cli.topic.silence import PATIENCE
 from robolink.exceptions import RobolinkError

@@ -6,7 +6,8 @@ import time
 from collections.abc import Iterable
 from typing import Any
 
-from robolink.cli.session import node_of, opened, say, say_json, tell
+from robolink.cli.output import say, say_json, tell
+from robolink.cli.session import node_of, opened
 from robolink.cli.tf.echo import ASKER, why_not
 from robolink.cli.tf.watch import Seen, Watch
 from robolink.cli.topic.rates import Figures, figures_of

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from robolink.cli.session import node_of, opened, say, say_json
+from robolink.cli.output import say, say_json
+from robolink.cli.session import node_of, opened
 from robolink.cli.tf.watch import NoTransformsError, Seen, Watch
 from robolink.exceptions import shown
 from robolink.tf2.listing import Frame, as_dot
@@ -45,7 +47,7 @@ def run(wait: float, topics: tuple[str, str], form: str) -> None:
     elif form == "dot":
         say(as_dot([_in_graph(each) for each in found.values()], reference(links, now)))
     else:
-        say("\n".join([*lines(found), *(f"! {each}" for each in wrong)]))
+        say("\n".join([*map(_drawable, lines(found)), *(f"! {each}" for each in wrong)]))
 
 
 def nodes(links: list[Seen], now: int) -> dict[str, Node]:
@@ -156,6 +158,18 @@ def lines(found: dict[str, Node]) -> list[str]:
         rows += [(before + shown(name), _about(found[name])) for name, before in _below(found, top)]
     width = max(len(left) for left, _ in rows)
     return [f"{left:<{width}}  {right}".rstrip() for left, right in rows]
+
+
+def _drawable(line: str) -> str:
+    """Draw with ASCII where the output has no lines to draw with, as a pipe on Windows."""
+    try:
+        "└├─│".encode(getattr(sys.stdout, "encoding", None) or "ascii")
+    except UnicodeEncodeError:
+        return line.translate(_ASCII)
+    return line
+
+
+_ASCII = str.maketrans({"└": "`", "├": "|", "─": "-", "│": "|"})
 
 
 def _about(node: Node) -> str:

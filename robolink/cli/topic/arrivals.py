@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from robolink import systemclock
 from robolink.exceptions import RobolinkError
 from robolink.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from robolink.transport.base import Handle
@@ -34,7 +35,7 @@ QOS = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.B
 class Arrivals:
     """Listens to topics in whatever types they are published, those of later publishers too."""
 
-    def __init__(self, node: Node, clock: Callable[[], int] = time.monotonic_ns) -> None:
+    def __init__(self, node: Node, clock: Callable[[], int] = systemclock.steady) -> None:
         self._node, self._context = node, node.context
         self._queue: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._arrival = msgspec.defstruct(

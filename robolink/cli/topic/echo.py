@@ -7,7 +7,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.cli import show
-from robolink.cli.session import node_of, opened, say, tell
+from robolink.cli.output import say, tell
+from robolink.cli.session import node_of, opened
 from robolink.cli.topic import silence
 from robolink.cli.topic.lenient import Leniently
 from robolink.cli.topic.qos_options import QoSFlags

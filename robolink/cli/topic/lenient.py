@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from robolink.cli.session import tell
+from robolink.cli.output import tell
 from robolink.exceptions import DecodeError, TransportError
 
 

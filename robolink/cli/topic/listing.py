@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
+from robolink.cli.announced import absolute, announced, endpoints, is_hidden
 from robolink.cli.names import show_names, show_of_type, show_types
-from robolink.cli.session import absolute, announced, endpoints, is_hidden, looking, say, say_json, tell
+from robolink.cli.output import say, say_json, tell
+from robolink.cli.session import looking
 from robolink.duration import Infinite
 from robolink.exceptions import MessageError, NotFoundError, nearest, shown
 from robolink.graph import names_and_types

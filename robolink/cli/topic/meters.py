@@ -7,7 +7,9 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.cli.session import node_of, opened, say, say_json, tell
+from robolink import systemclock
+from robolink.cli.output import say, say_json, tell
+from robolink.cli.session import node_of, opened
 from robolink.cli.topic import rates
 from robolink.cli.topic.arrivals import Arrivals, Take
 from robolink.cli.topic.lenient import Leniently
@@ -90,7 +92,7 @@ def _measure(
     meter: Meter,
     *,
     more: int = 0,
-    clock: Callable[[], int] = time.monotonic_ns,
+    clock: Callable[[], int] = systemclock.steady,
 ) -> None:
     node = node_of(context)
     names = list(dict.fromkeys(node.resolve_topic_name(each) for each in topics))

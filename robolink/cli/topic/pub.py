@@ -9,7 +9,8 @@ import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.cli.session import node_of, opened, say
+from robolink.cli.output import say
+from robolink.cli.session import node_of, opened
 from robolink.cli.topic.qos_options import QoSFlags
 from robolink.cli.topic.stamps import Stamped
 from robolink.cli.types import message_type

@@ -35,12 +35,14 @@ class Found(msgspec.Struct):
 
 
 def validate(entries: Sequence[Entry]) -> Report:
-    """Check a system: every node is made, in another process; the texts of mistakes begin with file:line:column.
-
-    Raises `DocumentError` for what keeps it from being started at all, whatever its nodes are.
-    """
-    processes(entries)
-    return judged(entries, looks_of(entries))
+    """Check a system: every node is made, in another process; the texts of mistakes begin with file:line:column."""
+    mistakes: list[DocumentError] = []
+    try:
+        processes(entries)
+    except DocumentError as error:
+        mistakes.append(error)
+    found = judged(entries, looks_of(entries))
+    return Report([*mistakes, *(each for each in found.mistakes if str(each) not in map(str, mistakes))], found.notes)
 
 
 def judged(entries: Sequence[Entry], looks: Mapping[str, Look]) -> Report:
@@ -52,8 +54,10 @@ def judged(entries: Sequence[Entry], looks: Mapping[str, Look]) -> Report:
     mistakes += _wide_errors(entries, looks)
     mistakes += _remapping_errors(entries, looks)
     mistakes += _type_errors(entries, looks)
-    for each in entries:
-        for mistake, text in _waiting(each, entries, looks):
+    named = {each.full_name: each for each in entries}
+    is_all_known = all(each.name in looks and _is_known(looks[each.name]) for each in entries)
+    for each in entries if is_all_known else ():
+        for mistake, text in _waiting(each, named, looks):
             if mistake:
                 mistakes.append(each.error(["start_after"], text))
             else:
@@ -167,15 +171,13 @@ def _type_errors(entries: Iterable[Entry], looks: Mapping[str, Look]) -> Iterato
 # What is waited for
 
 
-def _waiting(entry: Entry, entries: Sequence[Entry], looks: Mapping[str, Look]) -> Iterator[tuple[bool, str]]:
+def _waiting(entry: Entry, named: Mapping[str, Entry], looks: Mapping[str, Look]) -> Iterator[tuple[bool, str]]:
     """Tell what nobody of this system offers: a mistake where it is nearly what somebody does, else somebody else may.
 
-    Nothing is told where a node was not looked into: it may be that one.
+    Every node was looked into: else it may be one of the others.
     """
-    if any(each.name not in looks or not _is_known(looks[each.name]) for each in entries):
-        return
     others = [look for name, look in looks.items() if name != entry.name]
-    for each in awaited(entry, entries):
+    for each in awaited(entry, named):
         text = f"'{entry.name}' waits for {each.kind} {each.names[0]}, which"
         if each.kind == "node":
             nodes = looks[each.names[0].removeprefix("/")].nodes

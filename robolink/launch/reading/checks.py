@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any, get_args
 
 from robolink.launch.reading.description import NodeDescription, Respawn, When
@@ -27,7 +27,10 @@ def check_node(part: Part, said: NodeDescription) -> None:
     """Check what a node or command says of itself. Raises `DocumentError`."""
     if not said.node and not said.run:
         key = next((each for each in ("node", "run") if each in part), None)
-        raise part.error([key], "nothing to start") if key else part.error([], "missing key 'node'")
+        if key is None:
+            raise part.error([], "missing key 'node' (or 'run', for a command)")
+        example = "a node, such as `node: world`" if key == "node" else "a program, such as `run: [python, -V]`"
+        raise part.error([key], f"nothing to start: name {example}")
     if said.node and said.run:
         raise part.error(["run"], "either `node` or `run`: a command is no node", key=True)
     if said.run:
@@ -59,26 +62,46 @@ def check_shared(part: Part, said: Any) -> None:
 
 def check_words(part: Part) -> None:
     """Refuse what would be called a wrong type, and say what to write instead. Raises `DocumentError`."""
+    if isinstance(named := part.get("node"), dict | list):
+        kind = "mapping" if isinstance(named, dict) else "list"
+        raise part.error(["node"], f"expected a node's name, such as `node: world`, got {kind}")
     for key in ("run", "args"):
         if isinstance(text := part.get(key), str):
             raise part.error([key], f"expected a list, such as [{', '.join(text.split())}]")
     for key, right in (("remappings", "{from: to}"), ("env", "{NAME: value}")):
         if isinstance(part.get(key), list):
             raise part.error([key], f"expected a mapping, such as {right}")
+    _check_parameters(part)
     respawn, awaited = part.get("respawn"), part.get("start_after")
     if respawn is not None and not isinstance(respawn, str | dict):
         words = ", ".join(get_args(When))
         raise part.error(["respawn"], f"expected one of {words}, or a mapping with `when`, got '{spell(respawn)}'")
-    if isinstance(awaited, int | float):
-        reason = f"expected a node, {{topic: NAME}} or {{service: NAME}}, got '{spell(awaited)}'"
-        raise part.error(["start_after"], f"{reason}: nothing waits for a time")
+    for steps, each in _listed("start_after", awaited):
+        if isinstance(each, int | float):
+            reason = f"expected a node, {{topic: NAME}} or {{service: NAME}}, got '{spell(each)}'"
+            raise part.error(steps, f"{reason}: nothing waits for a time")
+
+
+def _check_parameters(part: Part) -> None:
+    for steps, each in _listed("parameters", part.get("parameters", {})):
+        if not isinstance(each, str | dict):
+            found = "a list" if isinstance(each, list) else "nothing" if each is None else f"'{spell(each)}'"
+            raise part.error(steps, f"expected parameters, as {{NAME: VALUE}}, or a parameter file, got {found}")
+
+
+def _listed(key: str, data: Any) -> Iterator[tuple[tuple[Step, ...], Any]]:
+    """Yield what is said under a key, be it one thing or a list, with the steps to each."""
+    if isinstance(data, list):
+        yield from (((key, index), each) for index, each in enumerate(data))
+    else:
+        yield (key,), data
 
 
 def check_terminal(entries: Iterable[Entry]) -> None:
     """Check who has the keyboard. Raises `DocumentError`."""
     interactive = [each for each in entries if each.node.interactive]
     if len(interactive) > 1:
-        raise interactive[1].error(["interactive"], "there is one keyboard, and another node has it")
+        raise interactive[1].error(["interactive"], f"there is one keyboard, and '{interactive[0].name}' has it")
     for each in interactive:
         if each.node.process:
             raise each.error(["interactive"], "a node with the keyboard cannot share a process: leave `process` out")
@@ -104,4 +127,6 @@ def _check_respawn(part: Part, respawn: Respawn) -> None:
             raise part.error(["respawn", key], f"expected seconds, got {getattr(respawn, key)}")
     if respawn.delay_max < respawn.delay:
         at = "delay_max" if "delay_max" in part.get("respawn") else "delay"
-        raise part.error(["respawn", at], f"delay {respawn.delay} is more than delay_max {respawn.delay_max}")
+        default = "" if "delay_max" in part.get("respawn") else " if nothing is said: give that, too"
+        reason = f"delay {respawn.delay} is more than delay_max, which is {respawn.delay_max}{default}"
+        raise part.error(["respawn", at], reason)

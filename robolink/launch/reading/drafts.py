@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePath
-from typing import Any
+from typing import Any, TypeAlias
 
 from robolink.exceptions import DocumentError, shown
 from robolink.launch.reading.around import Around
@@ -16,6 +16,9 @@ from robolink.launch.reading.part import Part, Place
 from robolink.launch.reading.start_after import Known, resolved
 from robolink.launch.reading.substitution import Step
 from robolink.workspace import NodeSource
+
+Refuse: TypeAlias = "Callable[[DocumentError], object]"
+"""What is called with a mistake: it raises it, or keeps it."""
 
 _NODES_ONLY = ("process", "log_level")
 
@@ -50,20 +53,27 @@ class Draft:
         return f"{self.around.namespace}/{self.said.name or default}".removeprefix("/")
 
 
-def entries_of(drafts: Iterable[Draft], off: Collection[str] = ()) -> list[Entry]:
+def entries_of(drafts: Iterable[Draft], off: Collection[str], refuse: Refuse) -> list[Entry]:
     """Give the entries of a whole system, `off` being the full names of what its conditions leave out.
 
-    Raises `DocumentError` for names that two of them have, or nobody has.
+    Names that two of them have, or nobody has, go to `refuse`; what is wrong so is left out if that does not raise.
     """
     named: dict[str, Draft] = {}
     for name, each in _named(list(drafts)):
         if name in named:
-            raise _twice(name, each, named[name])
-        named[name] = each
+            refuse(_twice(name, each, named[name]))
+        named.setdefault(name, each)
     nodes = {f"/{name}": None for name, each in named.items() if each.source}
     commands = {f"/{name}": None for name, each in named.items() if not each.source}
     known = Known(nodes, commands, off)
-    return [_entry(name, each, known) for name, each in named.items()]
+    return [entry for name, each in named.items() for entry in _entries(name, each, known, refuse)]
+
+
+def _entries(name: str, draft: Draft, known: Known, refuse: Refuse) -> Iterator[Entry]:
+    try:
+        yield _entry(name, draft, known)
+    except DocumentError as error:
+        refuse(error)
 
 
 def _named(drafts: Sequence[Draft]) -> Iterator[tuple[str, Draft]]:

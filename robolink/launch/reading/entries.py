@@ -20,16 +20,16 @@ from robolink.launch.reading.around import Around
 from robolink.launch.reading.checks import check_node, check_shared, check_terminal, check_words
 from robolink.launch.reading.conditions import decided, is_wanted
 from robolink.launch.reading.description import GroupDescription, IncludeDescription, NodeDescription
-from robolink.launch.reading.drafts import Draft, entries_of
+from robolink.launch.reading.drafts import Draft, Refuse, entries_of
 from robolink.launch.reading.entry import Entry
 from robolink.launch.reading.file import LaunchFile
-from robolink.launch.reading.keys import check_keys
+from robolink.launch.reading.keys import unknown_keys
 from robolink.launch.reading.parameters import given_in
 from robolink.launch.reading.part import Part, Place, copies
 from robolink.launch.reading.substitution import Step, Values
 from robolink.workspace import Folder, NodeSource
 
-__all__ = ["Entry", "read_launch_file"]
+__all__ = ["Entry", "read_launch_file", "read_with_mistakes"]
 
 MOST_PARTS = 100_000
 """Copies of nodes, groups and includes: files that include others could fill the memory otherwise."""
@@ -52,12 +52,44 @@ def read_launch_file(
     leave nothing to start. Raises `DocumentError` with `file:line:column` for all that is wrong in the file, and
     `NotFoundError` for a `workspace` that is no folder.
     """
-    file = LaunchFile(Path(path), text)
-    reading = _Reading(workspace)
+    return _read(LaunchFile(Path(path), text), given, workspace, _raised)
+
+
+def read_with_mistakes(
+    path: str | os.PathLike[str],
+    given: Mapping[str, str] = _NOTHING,
+    *,
+    workspace: Folder = None,
+    text: str | None = None,
+) -> tuple[list[Entry], list[DocumentError]]:
+    """Read a launch file as `read_launch_file` does, and give all that is wrong in it, by place.
+
+    That is one mistake of each node, group and include; then what they have to do with each other is not looked at.
+    What keeps the file from being read at all is the only one: text that is no YAML, or a mapping in place of a list.
+    """
+    found: list[DocumentError] = []
+    entries: list[Entry] = []
+    try:
+        entries = _read(LaunchFile(Path(path), text), given, workspace, found.append)
+    except DocumentError as error:
+        found.append(error)
+    by_place = {(each.file != os.fspath(path), each.file, each.line, each.column): each for each in reversed(found)}
+    return entries, [by_place[place] for place in sorted(by_place)]
+
+
+def _read(file: LaunchFile, given: Mapping[str, str], workspace: Folder, refuse: Refuse) -> list[Entry]:
+    """Read a file; what `refuse` does not raise is left out, and nothing comes of it."""
+    reading = _Reading(workspace, refuse)
     drafts = list(reading.file(file, values_of(file, read_given(given)), Around()))
-    entries = entries_of(drafts, reading.off)
+    if reading.is_refused:
+        return []
+    entries = entries_of(drafts, reading.off, refuse)
     check_terminal(entries)
     return entries
+
+
+def _raised(error: DocumentError) -> None:
+    raise error
 
 
 @dataclass(frozen=True)
@@ -76,16 +108,20 @@ class _Scope:
 class _Reading:
     """The walk through a launch file and all that it includes."""
 
-    def __init__(self, workspace: Folder) -> None:
+    def __init__(self, workspace: Folder, refuse: Refuse) -> None:
         self._workspace = workspace
+        self._refuse = refuse
         self._parts = 0
+        self.is_refused = False
+        """Whether something was refused, and left out."""
         self.off: set[str] = set()
         """The full names of nodes that conditions leave out, as far as they can be told."""
         self._sources: dict[tuple[str, Path | None, Path], NodeSource] = {}
 
     def file(self, file: LaunchFile, values: Values, around: Around, asker: _Scope | None = None) -> Iterator[Draft]:
         """Yield what a file comes to; `asker` is the one that includes it."""
-        check_keys(file)
+        for error in unknown_keys(file):
+            self._leave_out(error)
         file.value(file.data.get("description", ""), str, ["description"])
         home = lookup.home_of(file.path, self._workspace)
         chain = (*(asker.chain if asker else ()), file.path.resolve())
@@ -98,7 +134,7 @@ class _Reading:
         """Yield the nodes, what is included, and the groups, in the order in which these three are written."""
         held = {key: scope.file.value(data[key], list[dict[str, Any]], [*steps, key]) for key in data if key in _HELD}
         if not any(held.values()):
-            raise scope.file.error([*steps, *list(held)[:1]], "there is nothing to start")
+            raise scope.file.error([*steps, *list(held)[:1]], "there is nothing to start: list some `nodes`")
         for key, each in held.items():
             for index, said in enumerate(each):
                 with self._forgiving(scope):
@@ -125,9 +161,15 @@ class _Reading:
         """Let mistakes pass where nothing is to be started: that may be for another computer, with other files."""
         try:
             yield
-        except DocumentError:
-            if not scope.is_off or self._parts > MOST_PARTS:
+        except DocumentError as error:
+            if self._parts > MOST_PARTS:
                 raise
+            if not scope.is_off:
+                self._leave_out(error)
+
+    def _leave_out(self, error: DocumentError) -> None:
+        self._refuse(error)
+        self.is_refused = True
 
     def _node(self, scope: _Scope, part: Part, around: Around) -> Iterator[Draft]:
         check_words(part)

@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 
 from robolink.exceptions import DocumentError
-from robolink.launch.reading.slips import hint, slips
+from robolink.launch.reading.slips import hint, misshapen, slips
 from robolink.launch.reading.substitution import Step
 from robolink.yamlfile import read_text
 from robolink.yamlmistakes import Reader
@@ -32,9 +32,9 @@ class LaunchFile:
             self._reader = _reader(text, str(path))
         except DocumentError as error:
             raise self._told(_with_hint(error, text)) from None
-        self.data: dict[str, Any] = self.value(self._reader.data, dict[str, Any], [])
-        for steps, message in slips(self.data, self._reader.spelled):
+        for steps, message in (*slips(self._reader.data, self._reader.spelled), *misshapen(self._reader.data)):
             raise self.error(steps, message)
+        self.data: dict[str, Any] = self.value(self._reader.data, dict[str, Any], [])
 
     @property
     def folder(self) -> Path:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from robolink.exceptions import nearest, shown
+from robolink.exceptions import DocumentError, nearest, shown
 from robolink.launch.reading.description import GroupDescription, IncludeDescription, LaunchDescription, NodeDescription
 from robolink.launch.reading.file import LaunchFile
 from robolink.launch.reading.substitution import Step
@@ -86,22 +86,25 @@ _PARTS = {"nodes": _NODE, "include": _INCLUDE, "groups": _GROUP}
 """What the mappings are that a launch file and a group list under these keys."""
 
 
-def check_keys(file: LaunchFile) -> None:
-    """Refuse keys that mean nothing, everywhere in a file, also in what is not to be started this time.
+def unknown_keys(file: LaunchFile) -> Iterator[DocumentError]:
+    """Yield an error for each key that means nothing, everywhere in a file, also in what is not to be started now.
 
-    Raises `DocumentError` with the key that is the nearest, or with what its name stands for in other launch files.
+    It says which key is the nearest, or for what its name stands in other launch files.
     """
-    for steps, key, kind in _unknown(file.data, _TOP, []):
-        raise file.error([*steps, key], f"unknown key '{shown(key)}'{_meant(key, kind)}", key=True)
+    for steps, key, meant in _unknown(file.data, _TOP, []):
+        yield file.error([*steps, key], f"unknown key '{shown(key)}'{meant}", key=True)
 
 
-def _unknown(data: Any, kind: _Kind, steps: list[Step]) -> Iterator[tuple[list[Step], str, _Kind]]:
-    """Yield the unknown keys of a mapping of some kind and of those within; what is no mapping has none."""
+def _unknown(data: Any, kind: _Kind, steps: list[Step]) -> Iterator[tuple[list[Step], str, str]]:
+    """Yield the unknown keys of a mapping of some kind and of those within: steps, key and what was probably meant.
+
+    What is no mapping has none.
+    """
     if not isinstance(data, dict):
         return
     for key, value in data.items():
         if key not in kind.keys:
-            yield steps, key, kind
+            yield steps, key, _meant(key, kind) or _named(key, value, kind)
         elif kind in (_TOP, _GROUP) and key in _PARTS and isinstance(value, list):
             for index, each in enumerate(value):
                 yield from _unknown(each, _PARTS[key], [*steps, key, index])
@@ -116,4 +119,11 @@ def _meant(key: str, kind: _Kind) -> str:
     if near := nearest(key, kind.keys):
         return near
     owners = [each.title for each in _KINDS if each is not kind and key in each.keys]
-    return f": it is said of {' or '.join(owners)}, not of {kind.title}" if owners else f" in {kind.title}"
+    return f": it is said of {' or '.join(owners)}, not of {kind.title}" if owners else ""
+
+
+def _named(key: str, value: Any, kind: _Kind) -> str:
+    """Say what a key is that nothing is like: perhaps a node's name, as in `- world: {...}`."""
+    if kind is _NODE and (value is None or isinstance(value, dict)) and key:
+        return f" in a node: write `node: {shown(key, 40)}`"
+    return f" in {kind.title}"

@@ -42,23 +42,40 @@ _PROGRAMS = {".py": "a Python program", ".xml": "XML"}
 
 
 class LaunchKindError(RobolinkError, ValueError):
-    """A launch file that ROS 2 reads and robolink does not."""
+    """What is asked for is no launch file that robolink reads: one of ROS 2's programs, or a node."""
 
 
 def find(names: Sequence[str], *, workspace: Folder = None) -> Path:
     """Find a launch file by its name or path, or by a package and the file's name in it.
 
-    Raises `NotFoundError` with the nearest name, and `LaunchKindError` for one that is no YAML.
+    Raises `NotFoundError` with the nearest name, and `LaunchKindError` for one that is no YAML, or is a node's.
     """
     _check_kind(names[-1])
     if len(names) == 1:
-        return find_launch(names[0], workspace=workspace)
+        return _by_name(names[0], workspace)
     package, name = names
     folder = find_package(package, workspace=workspace)
     if folder is None:
         known = list_packages(workspace=workspace)
         raise NotFoundError("package", package, known, "the workspace (an argument is given as NAME:=VALUE)")
     return _in_package(folder, package, name)
+
+
+def _by_name(name: str, workspace: Folder) -> Path:
+    try:
+        return find_launch(name, workspace=workspace)
+    except NotFoundError:
+        if _is_node(name, workspace):
+            raise LaunchKindError(f"'{name}' is a node, and no launch file: robolink run {name}") from None
+        raise
+
+
+def _is_node(name: str, workspace: Folder) -> bool:
+    try:
+        find_node(name, workspace=workspace)
+    except NOT_FOUND:
+        return False
+    return True
 
 
 def _check_kind(name: str) -> None:
@@ -160,9 +177,11 @@ def command_of(run: Sequence[str], path: str | None) -> list[str] | None:
 
     `robolink` and `python` are those of this process where the PATH has none.
     """
-    if shutil.which(run[0], path=path) is not None:
-        return list(run)
-    ours = _OURS.get(run[0])
+    found, ours = shutil.which(run[0], path=path), _OURS.get(run[0])
+    if found is not None and ours is not None and Path(found).parent.name == "WindowsApps":
+        found = None  # what Windows has in place of a Python that is not installed: it leads to a shop
+    if found is not None:  # Windows itself would look on our PATH, and for no `.bat`
+        return [found if sys.platform == "win32" else run[0], *run[1:]]
     return None if ours is None else [*ours, *run[1:]]
 
 
@@ -173,7 +192,9 @@ def _around(folder: Path, home: Path | None) -> list[Path]:
 
 def why_no_command(program: str) -> str:
     """Say why `command_of` finds no such program."""
-    if sys.platform != "win32" and Path(program).name != program and Path(program).is_file():
+    if Path(program).name != program and Path(program).is_file():
+        if sys.platform == "win32":
+            return f"'{program}' is nothing that Windows starts by itself: write before it what runs it, as python"
         return f"'{program}' may not be executed: chmod +x it"
     return f"no program '{program}' is found: {WHERE_PROGRAMS_ARE}"
 

@@ -68,8 +68,6 @@ def _given(part: Part, said: Any, steps: tuple[Step, ...], home: Path | None) ->
     if isinstance(said, dict):
         _check_ros_spelling(said, place)
         return Given(list(_inline(said, place)))
-    if not isinstance(said, str):
-        raise part.error(steps, f"expected parameters by name, or a parameter file, got '{shown(spell(said))}'")
     try:
         file = lookup.parameter_file(said, home, part.file.folder)
         overrides = _read(file)
@@ -111,7 +109,7 @@ def _check_value(value: Any, place: Place) -> None:
     """Refuse what would arrive at the node as something else, or not at all."""
     for item in value if isinstance(value, list) else [value]:
         if item is None:
-            raise place.error("a parameter cannot be null")
+            raise place.error("a parameter cannot be null: give a value, or leave it out")
         if isinstance(item, int) and not -(2**63) <= item < 2**63:
             raise place.error(f"{item} is more than a 64-bit integer holds")
     if isinstance(value, str):

@@ -6,12 +6,16 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
+from robolink.exceptions import shown
 from robolink.launch.reading.substitution import Step
 
 _BRACES = re.compile(r"\{\s*(?:[^\W\d]\w*|env:[^\s{}]+)\s*\}")
 _QUOTED = re.compile(r"\"(?:\\.|[^\"\\])*\"|'[^']*'|(?:^|\s)#.*")
 _JOINED = re.compile(r"\s*(?:- +)?([A-Za-z_]\w*:)[^\s:/\\].*")
-_LISTS = {"nodes", "include", "groups"}
+_ALIAS = re.compile(r"(?:[\[{,]|[:-] )\s*\*")
+_LISTS = {"nodes": "node: NAME", "include": "file: NAME", "groups": "nodes: [...]"}
+"""What a launch file lists, and how one of each begins."""
+_BEGIN = "a launch file begins with `nodes:`, and below it each node with `- node: NAME`"
 
 
 def hint(text: str, line: int) -> str:
@@ -19,8 +23,61 @@ def hint(text: str, line: int) -> str:
     near = [_QUOTED.sub("", each) for each in text.splitlines()[max(line - 2, 0) : line]]
     if near and (braces := _BRACES.search(near[-1])):
         return f"a value with {braces[0]} in it needs quotes here"
+    if near and _ALIAS.search(near[-1]):
+        return "a value that begins with '*' needs quotes"
     joined = next(filter(None, map(_JOINED.fullmatch, near)), None)
     return _space(joined) if joined else ""
+
+
+def misshapen(data: Any, steps: tuple[Step, ...] = ()) -> Iterator[tuple[tuple[Step, ...], str]]:
+    """Yield what should be a list or a mapping in a launch file, or one of its groups, and is none: steps, message."""
+    if not isinstance(data, dict):
+        yield steps, f"{_expected('mapping', data)}: {_instead(data)}"
+        return
+    for key in (each for each in _LISTS if each in data):
+        listed, at = data[key], (*steps, key)
+        is_below = listed is None and any(each.startswith("-") for each in data)  # `-node: NAME`, which is told of
+        if not isinstance(listed, list) and not is_below:
+            yield at, f"{_expected('list', listed)}: {_as_items(key, listed)}"
+        for index, each in enumerate(listed if isinstance(listed, list) else ()):
+            if not isinstance(each, dict):
+                yield (*at, index), f"{_expected('mapping', each)}: {_as_item(key, each)}"
+            elif key == "groups":
+                yield from misshapen(each, (*at, index))
+    if not steps and isinstance(data.get("arguments"), list):
+        yield ("arguments",), "expected mapping, got list: write each as `NAME: DEFAULT`, without '-'"
+
+
+def _expected(what: str, data: Any) -> str:
+    kinds = {dict: "mapping", list: "list", type(None): "nothing"}
+    return f"expected {what}, got {kinds.get(type(data)) or repr(shown(str(data)))}"
+
+
+def _instead(data: Any) -> str:
+    if isinstance(data, list):
+        return "write `nodes:` above it"
+    if isinstance(data, str) and (joined := _JOINED.fullmatch(data)):
+        return _space(joined)
+    return _BEGIN
+
+
+def _as_items(key: str, data: Any) -> str:
+    """Say how to write as a list what is none."""
+    if isinstance(data, dict):
+        return "begin each with '- '"
+    return f"begin each with '- ', as in `- {_as_named(key, data)}`"
+
+
+def _as_item(key: str, data: Any) -> str:
+    """Say how to write an item of a list that is no mapping."""
+    if isinstance(data, str) and (joined := _JOINED.fullmatch(data)):
+        return _space(joined)
+    return "one '-' too many" if isinstance(data, list) else f"write `{_as_named(key, data)}`"
+
+
+def _as_named(key: str, data: Any) -> str:
+    begin = _LISTS[key]
+    return begin.replace("NAME", shown(data, 40)) if isinstance(data, str) and data.strip() else begin
 
 
 def slips(
@@ -36,10 +93,7 @@ def slips(
         for key, value in data.items():
             yield from slips(value, spelled, (*steps, key))
     elif isinstance(data, list):
-        holds_parts = _LISTS.issuperset(each for each in steps if isinstance(each, str))
         for index, value in enumerate(data):
-            if holds_parts and isinstance(value, str) and (joined := _JOINED.fullmatch(value)):
-                yield (*steps, index), f"expected mapping, got '{value}': {_space(joined)}"
             yield from slips(value, spelled, (*steps, index))
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple
 
-from robolink.exceptions import NameValidationException, nearest, shown
+from robolink.exceptions import NameValidationException, shown
 from robolink.expand_topic_name import expand_topic_name
 from robolink.launch.reading.around import Placed
 from robolink.launch.reading.description import StartAfter
+from robolink.names import near
 from robolink.validate_topic_name import validate_topic_name
 
 
@@ -48,18 +49,18 @@ def _node(each: Placed, name: str, namespace: str, known: Known) -> Iterator[Sta
         return
     steps = [] if isinstance(each.value, str) else ["node"]
     if any(full in known.commands for full in candidates):
-        raise each.place.error(f"'{shown(name)}' is a command, of which nothing tells that it is up", steps)
+        reason = f"'{shown(name)}' is a command, of which nothing tells that it is up: wait for a {{topic: NAME}}"
+        raise each.place.error(reason, steps)
     if not any(full in known.off for full in candidates):
-        near = _nearest(name, namespace, known.nodes)
-        raise each.place.error(f"no node of this system is called '{shown(name)}'{near}", steps)
+        nearest = _nearest(name, namespace, known.nodes)
+        raise each.place.error(f"no node of this system is called '{shown(name)}'{nearest}", steps)
 
 
 def _nearest(name: str, namespace: str, nodes: Collection[str]) -> str:
     """Suggest the node that was probably meant, by a name that finds it."""
     around = [f"{above}/" for above in _and_above(namespace)]
     short = {full: full.removeprefix(next(each for each in around if full.startswith(each))) for full in nodes}
-    elsewhere = [each for full, each in short.items() if full.endswith(f"/{name}")]
-    return nearest(name, short.values()) if not elsewhere else f" (did you mean '{elsewhere[0]}'?)"
+    return near(name, short.values())
 
 
 def _and_above(namespace: str) -> Iterator[str]:

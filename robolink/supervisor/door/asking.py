@@ -64,6 +64,10 @@ class Launcher:
         """Have it start a process anew, which it does after this. Raises what `status` does."""
         self._ask(Question("restart", node))
 
+    def stop_one(self, node: str) -> None:
+        """Have it stop a process in order, which it does after this; the others go on. Raises what `status` does."""
+        self._ask(Question("stop_one", node))
+
     def stop(self, patience: float) -> bool:
         """Have it stop; say whether it did within `patience` seconds. Raises `LauncherError`."""
         try:

@@ -1,4 +1,4 @@
-"""The door of a running launcher: commands in other shells ask it how its processes are, to restart one, or to stop."""
+"""The door of a running launcher: other shells ask how its processes are, to restart or stop one, or for its end."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 import socket
 import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Protocol
@@ -37,6 +37,12 @@ class Controlled(Protocol):
         """Start one anew."""
 
     def why_not_restarted(self, name: str) -> str:
+        """Say why that would do nothing now; '' if it would."""
+
+    def stop_one(self, name: str) -> object:
+        """Stop one; the others go on."""
+
+    def why_not_stopped(self, name: str) -> str:
         """Say why that would do nothing now; '' if it would."""
 
     def stop(self) -> object:
@@ -151,19 +157,23 @@ class Control:
         self._places.release()
 
     def _answer(self, question: Question) -> Answer:
+        asked = self._controlled
+        if question.ask == "restart":
+            return self._about(question.node, "restarted", asked.why_not_restarted, asked.restart)
+        if question.ask == "stop_one":
+            return self._about(question.node, "stopped", asked.why_not_stopped, asked.stop_one)
         if question.ask == "stop":
-            self._controlled.stop()
-        elif question.ask == "restart":
-            return self._restart(question.node)
-        return Answer(nodes=list(self._controlled.status()), members=self._members)
+            asked.stop()
+        return Answer(nodes=list(asked.status()), members=self._members)
 
-    def _restart(self, name: str) -> Answer:
+    def _about(self, name: str, done: str, why_not: Callable[[str], str], act: Callable[[str], object]) -> Answer:
+        """Do something with one process, unless it is not there or there is a reason why not."""
         names = [each.name for each in self._controlled.status()]
         if name not in names:
             return Answer(error=f"no node named '{name}' in '{self._name}'{nearest(name, names)}")
-        if why_not := self._controlled.why_not_restarted(name):
-            return Answer(error=f"'{name}' of '{self._name}' is not restarted: {why_not}")
-        self._controlled.restart(name)
+        if reason := why_not(name):
+            return Answer(error=f"'{name}' of '{self._name}' is not {done}: {reason}")
+        act(name)
         return Answer()
 
 

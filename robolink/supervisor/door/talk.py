@@ -33,7 +33,7 @@ AF_UNIX: int | None = getattr(socket, "AF_UNIX", None)
 class Question(msgspec.Struct, frozen=True):
     """What a launcher is asked for."""
 
-    ask: Literal["status", "stop", "restart"]
+    ask: Literal["status", "stop", "restart", "stop_one"]
     node: str = ""
 
 

@@ -78,14 +78,18 @@ def _set_on_linux(pid: int, cores: Sequence[int]) -> str:
 
 
 def _set_on_windows(pid: int, cores: Sequence[int]) -> str:
-    import psutil
+    """Do so for what it has started, too: the python.exe of a virtual environment starts the Python that works."""
+    if sys.platform != "darwin":  # Linux has the call as well, for the tests
+        import psutil
 
-    try:
-        psutil.Process(pid).cpu_affinity(list(cores))  # type: ignore[no-untyped-call, unused-ignore]
-    except psutil.NoSuchProcess:
-        return ""
-    except (psutil.Error, OSError, ValueError) as error:
-        return f"cpu: cannot keep it on {ranges(cores)}: {error}"
+        try:
+            process = psutil.Process(pid)
+            for each in (process, *process.children(recursive=True)):
+                each.cpu_affinity(list(cores))  # type: ignore[no-untyped-call, unused-ignore]
+        except psutil.NoSuchProcess:
+            return ""
+        except (psutil.Error, OSError, ValueError) as error:
+            return f"cpu: cannot keep it on {ranges(cores)}: {error}"
     return ""
 
 

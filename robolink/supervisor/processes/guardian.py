@@ -139,7 +139,7 @@ def is_alive(group: int) -> bool:
 def _stat(path: Path) -> list[str]:
     """Give the fields of a /proc/PID/stat behind the command: state, parent, group ...; none if it has gone."""
     try:
-        return path.read_text(errors="replace").rpartition(")")[2].split()
+        return path.read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
     except OSError:
         return []
 

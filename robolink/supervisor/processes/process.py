@@ -11,7 +11,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
@@ -64,7 +64,7 @@ class Child:
             with _standard_input(process) as stdin, _interrupts_held(process.holds_interrupts):
                 self._popen = subprocess.Popen(
                     list(process.argv),
-                    env={**os.environ, "PYTHONUNBUFFERED": "1", **process.env, **variables},
+                    env={**_plain_output(), **process.env, **variables},
                     cwd=process.cwd,
                     stdin=stdin,
                     stdout=subprocess.PIPE,
@@ -99,7 +99,8 @@ class Child:
             signal_group(self.group, _SIGNALS[step])
             signal_group(self.group, signal.SIGCONT)
         elif step is Step.INTERRUPT:
-            self._popen.send_signal(signal.CTRL_BREAK_EVENT)
+            with suppress(OSError):  # it has just ended; or there is no console, and only the next step reaches it
+                self._popen.send_signal(signal.CTRL_BREAK_EVENT)
         else:
             self._popen.terminate()
 
@@ -137,6 +138,8 @@ def _why(error: OSError | ValueError, program: str) -> str:
     why = error.errno if isinstance(error, OSError) and error.filename == program else None
     if why in (errno.ENOEXEC, errno.ENOENT) and Path(program).is_file():
         return "its first line names no program that runs it, as '#!/bin/sh' does (with a line end of Unix)"
+    if why == errno.E2BIG:
+        return "it is given more than a command line and an environment hold: hand what is long over in a file"
     return str(error)
 
 
@@ -174,6 +177,15 @@ def _interrupts_held(wanted: bool) -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _plain_output() -> dict[str, str]:
+    """Give our environment, with which Python prints each line at once, and in UTF-8, as consoles take it.
+
+    On Windows it would write to a pipe in the country's own letters. Elsewhere a terminal may want other than UTF-8.
+    """
+    encoding = {"PYTHONIOENCODING": "utf-8"} if sys.platform == "win32" else {}
+    return {**encoding, **os.environ, "PYTHONUNBUFFERED": "1"}
 
 
 def _own_group() -> dict[str, Any]:

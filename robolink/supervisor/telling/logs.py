@@ -125,7 +125,11 @@ class _File:
 
     def _begin_anew(self) -> None:
         self.file.close()
-        self._path.replace(self._path.with_name(f"{self._path.name}.old"))
+        try:
+            self._path.replace(self._path.with_name(f"{self._path.name}.old"))
+        except PermissionError:  # on Windows, while somebody reads it: then what was is lost, not what comes
+            if sys.platform != "win32":
+                raise
         self.file, self._size = self._path.open("wb", buffering=0), 0
 
 
@@ -145,12 +149,18 @@ def file_names(names: list[str]) -> dict[str, str]:
 
 
 def remove_old_runs(home: Path, kept: int) -> None:
-    """Remove all but the newest runs. What is not clearly a run's folder stays, and so does a run that goes on."""
+    """Remove all but the newest runs. What is not clearly a run's folder stays, and so does a run that goes on.
+
+    An empty folder is what a launcher leaves that was killed as it made it.
+    """
     with contextlib.suppress(OSError):
         runs = sorted(each for each in home.iterdir() if _RUN.fullmatch(each.name) and not each.is_symlink())
         for run in runs[: max(0, len(runs) - kept)]:
             if (run / OWN_FILE).is_file() and not _is_locked(run / OWN_FILE):
                 shutil.rmtree(run, ignore_errors=True)
+            else:
+                with contextlib.suppress(OSError):  # no empty one
+                    run.rmdir()
 
 
 def _new_folder(home: Path, name: str) -> Path:
@@ -171,6 +181,8 @@ def _point_to(folder: Path) -> None:
         return
     with contextlib.suppress(OSError):
         unfinished.symlink_to(folder.name, target_is_directory=True)
+        if sys.platform == "win32":  # a link to a folder is a folder there, which nothing can replace
+            link.unlink(missing_ok=True)
         unfinished.replace(link)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import sys
 import warnings
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -18,6 +19,7 @@ class Imports:
     def __init__(self, roots: Iterable[Path] = ()) -> None:
         self._roots = list(roots)
         self._read: dict[Path, set[Path]] = {}
+        self._absent: dict[Path, set[Path]] = {}
         self._stale: set[Path] = set()
 
     def of(self, path: Path) -> set[Path]:
@@ -28,6 +30,10 @@ class Imports:
             found |= new
             left += new
         return found
+
+    def absent_of(self, path: Path) -> set[Path]:
+        """Give the files that it or what it imports would also import, were they there: they may be saved later."""
+        return {absent for file in self.of(path) for absent in self._absent.get(file, ())}
 
     def forget(self, path: Path) -> None:
         """Read this file again when it is asked for next."""
@@ -40,7 +46,9 @@ class Imports:
             except (OSError, SyntaxError):
                 return self._read.get(path, set())
             roots = [path.parent, _above_package(path.parent), *self._roots]
-            self._read[path] = {file for names in _imported(tree, path) for file in _found(names, roots)}
+            found = [_found(names, roots) for names in _imported(tree, path)]
+            self._read[path] = {file for there, _ in found for file in there}
+            self._absent[path] = {file for _, absent in found for file in absent}
             self._stale.discard(path)
         return self._read.get(path, set())
 
@@ -78,12 +86,13 @@ def _above_package(folder: Path) -> Path:
     return folder
 
 
-def _found(imported: tuple[Path | None, list[str]], roots: list[Path]) -> set[Path]:
-    """Give the files that are read for a module: its own, and those of the packages around it.
+def _found(imported: tuple[Path | None, list[str]], roots: list[Path]) -> tuple[set[Path], set[Path]]:
+    """Give the files that are read for a module, its own and those of the packages around it, and those not there.
 
     The last part of a name may be something in a module rather than a module.
     """
     folder, parts = imported
+    absent: set[Path] = set()
     for root in roots if folder is None else [folder]:
         files = {root / "__init__.py"} if folder is not None else set()
         for count in range(1, len(parts) + 1):
@@ -91,5 +100,7 @@ def _found(imported: tuple[Path | None, list[str]], roots: list[Path]) -> set[Pa
             files |= {inner.with_suffix(".py"), inner / "__init__.py"}
         there = {each for each in files if each.is_file()}
         if there:
-            return there
-    return set()
+            return there, files - there
+        absent |= files
+    is_pythons_own = folder is None and not sys.stdlib_module_names.isdisjoint(parts[:1])
+    return set(), set() if is_pythons_own else absent

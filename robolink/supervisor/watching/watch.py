@@ -120,9 +120,11 @@ class Watch(Repeating):
             self._say(f"{self._broken[path]}: not restarted until that is mended: {', '.join(held)}")
 
     def _gathered(self) -> dict[str, set[Path]]:
-        """Give all files that each process is made of, and follow them."""
+        """Give all files that each process is made of, or would be if they were there, and follow them."""
+        imports = self._imports
         made_of = {
-            name: {file for path in paths for file in self._imports.of(path)} for name, paths in self._files.items()
+            name: {file for path in paths for file in imports.of(path) | imports.absent_of(path)}
+            for name, paths in self._files.items()
         }
         self._changes.follow(self._settings.union(*made_of.values()))
         return made_of

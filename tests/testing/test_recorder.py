@@ -16,9 +16,10 @@ from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.message.one_line import WIDTH, short
+from robolink.names import near
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.serialization import deserialize_message
-from robolink.testing.expectations import Ends, near, no_such, nothing_came, seconds
+from robolink.testing.expectations import Ends, no_such, nothing_came, seconds
 from robolink.testing.recorder import KEPT, Recorder
 from robolink.testing.timeline import Moment, messages_of, table
 from robolink.transport.memory import Bus, MemoryTransport
@@ -72,7 +73,7 @@ def test_any_message_is_told_on_one_line(name: str, seed: int) -> None:
 def network() -> tuple[Context, Recorder]:
     bus = Bus()
     context = Context(transport=MemoryTransport(bus=bus), time=VirtualTime(5))
-    context.init([])
+    context.init([], domain_id=0)
     return context, Recorder(MemoryTransport(bus=bus), 0, context.time.now)
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from robolink import Message, Node, logging
+from robolink import Message, Node
 from robolink.exceptions import InvalidParameterValueException, NotFoundError, RobolinkError, ServiceError
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.interfaces.std_srvs.srv import SetBool, Trigger
@@ -49,13 +49,6 @@ def main():
 """
 
 
-@pytest.fixture
-def tested() -> Iterator[System]:
-    logging.set_console_handler(None)
-    with System(seed=7) as made:
-        yield made
-
-
 # Faults that cannot be
 
 
@@ -72,6 +65,7 @@ def tested() -> Iterator[System]:
         (lambda faults: faults.delay("count", -1), "latency: expected float >= 0.0, got -1"),
         (lambda faults: faults.duplicate("count", 2), "duplication: expected float <= 1.0, got 2"),
         (lambda faults: faults.partition(), "partition: expected a group of nodes or several, got none"),
+        (lambda faults: faults.partition("counter", "/counter"), "partition: 'counter' is named twice, so that nobody"),
         (lambda faults: faults.partition("counter", during=-1), "during: expected seconds, more than 0, got -1"),
         (lambda faults: faults.crash("counter", after=-1), "after: expected seconds, 0 or more, got -1"),
         (lambda faults: faults.crash("counter", restart_after=-1), "restart_after: expected float >= 0.0, got -1"),
@@ -355,7 +349,7 @@ class Caller(Node):
 
 def test_a_failure_names_the_line_of_the_node_not_of_robolink(tested: System) -> None:
     tested.start(Caller)
-    with pytest.raises(NodeFailure, match=r"ServiceError: .* \(test_testing_mistakes\.py:\d+\)") as error:
+    with pytest.raises(NodeFailure, match=r"ServiceError: .* \(test_mistakes\.py:\d+\)") as error:
         tested.run(1.0)
     assert isinstance(error.value.__cause__, ServiceError)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import subprocess
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,32 +14,7 @@ import pytest
 from robolink.cli import complete, main
 from robolink.supervisor.door.asking import running
 from robolink.supervisor.door.control import Control
-from tests.launchers import FakeSupervisor, files_in, launcher_elsewhere, own_runtime_folder
-
-PATIENCE = 30.0
-
-
-@pytest.fixture(autouse=True)
-def folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    with own_runtime_folder(monkeypatch) as made:
-        yield made
-
-
-@pytest.fixture
-def supervisor() -> FakeSupervisor:
-    return FakeSupervisor("world", "robot_1/wall_follower")
-
-
-@pytest.fixture
-def launched(supervisor: FakeSupervisor) -> Iterator[Control]:
-    with Control(supervisor, name="follow", file="/somewhere/follow.yaml") as made:
-        yield made
-
-
-@pytest.fixture
-def elsewhere(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
-    with launcher_elsewhere(folder) as process:
-        yield process
+from tests.launchers import PATIENCE, FakeSupervisor, files_in
 
 
 def test_status_lists_every_launcher(capsys: pytest.CaptureFixture[str], launched: Control) -> None:
@@ -119,8 +93,9 @@ def test_what_is_not_clear(
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
-        (["stop"], ["follow", "lap"]),
-        (["stop", "lap"], []),
+        (["stop"], ["follow", "lap", "robot_1/wall_follower", "sensors", "world"]),
+        (["stop", "lap"], ["sensors"]),
+        (["stop", "lap", "sensors"], []),
         (["restart"], ["follow", "lap", "robot_1/wall_follower", "sensors", "world"]),
         (["restart", "lap"], ["sensors"]),
         (["restart", "lap", "sensors"], []),
