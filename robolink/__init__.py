@@ -7,6 +7,7 @@ Everything is imported when it is first used, so that ``import robolink`` costs 
 
 from __future__ import annotations
 
+import atexit
 import importlib
 import sys
 from typing import TYPE_CHECKING, Any
@@ -173,3 +174,16 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__, *_ROOMS})
+
+
+def _close_sessions() -> None:
+    lifetime = sys.modules.get("robolink.transport.lifetime")
+    if lifetime is not None:
+        lifetime.close_all()
+
+
+# At this import, so that what a program does at its exit (it stops the robot) comes before. Python has waited for the
+# program's threads then, which may go on for long, and has not yet ended daemon threads. Twice, since a Ctrl-C may
+# break into the very beginning of the first.
+atexit.register(_close_sessions)
+atexit.register(_close_sessions)

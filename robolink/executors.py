@@ -365,9 +365,11 @@ class MultiThreadedExecutor(Executor):
             return
         try:
             self._threads.submit(entity, taken)
-        except RuntimeError:  # shut down meanwhile
-            entity.gate.ending_execution(entity)
-            raise ShutdownException from None
+        except RuntimeError:
+            if self._is_shutdown:  # meanwhile
+                entity.gate.ending_execution(entity)
+                raise ShutdownException from None
+            self.run(entity, taken)  # Python ends the pool when the main thread ends, but not whoever spins
 
     def serve_until(self, future: Future[Any], deadline: int | None, *, serving: bool = True) -> None:
         """In a callback that waits: go on with others; if `serving`, in this thread too when no other is free."""

@@ -55,9 +55,9 @@ def uninstall_signal_handlers() -> None:
     """Give the signals back to whom they belonged before."""
     if threading.current_thread() is not threading.main_thread():
         return
-    while _before:
-        number, handler = _before.popitem()
+    for number, handler in list(_before.items()):
         signal.signal(number, handler if handler is not None else signal.SIG_DFL)
+        _before.pop(number, None)  # last: the handler needs it until the moment it is replaced
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:

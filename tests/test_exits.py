@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import queue
 import signal
 import subprocess
 import sys
@@ -74,6 +75,17 @@ def test_a_second_ctrl_c_does_not_break_into_what_the_exit_does(kind: str) -> No
         sessions = [Session(name, lambda: signal.raise_signal(signal.SIGINT)) for name in "abc"]
     """
     assert program(text) == (0, ["closed a", "closed b", "closed c"], "")
+
+
+def test_an_exit_in_another_thread_closes_too() -> None:
+    """As in a Python that another program embeds."""
+    text = """
+        session = Session("a")
+        thread = threading.Thread(target=lifetime.close_all)
+        thread.start()
+        thread.join()
+    """
+    assert program(text) == (0, ["closed a"], "")
 
 
 def test_nor_does_it_break_into_the_wait_for_what_still_closes() -> None:
@@ -182,17 +194,102 @@ def test_what_goes_on_in_a_thread_keeps_its_session_when_the_main_thread_ends() 
     assert program(text) == (0, ["after the main thread", "and then", "closed a"], "")
 
 
-def test_what_a_program_does_at_its_exit_still_has_its_session() -> None:
+def test_a_multi_threaded_executor_goes_on_when_the_main_thread_ends() -> None:
+    """In rclpy its thread dies of an error then; here it would drop one callback after the other, for ever."""
     text = """
-        import atexit
-        session = Session("a")
-        atexit.register(lambda: setattr(session, "during", lambda: print("bye before", flush=True)))
+        from robolink import Context, Node
+        from robolink.executors import MultiThreadedExecutor
+        from robolink.transport.memory import MemoryTransport
+
+        def tick():
+            if not threading.main_thread().is_alive():
+                print("after the main thread", flush=True)
+                context.shutdown()
+
+        context = Context(transport=MemoryTransport())
+        context.init()
+        node = Node("node", context=context)
+        node.create_timer(0.001, tick)
+        executor = MultiThreadedExecutor(context=context)
+        executor.add_node(node)
+        threading.Thread(target=executor.spin).start()
     """
-    assert program(text) == (0, ["bye before", "closed a"], "")
+    assert program(text) == (0, ["after the main thread"], "")
+
+
+@pytest.mark.parametrize("lines", [(0, 1), (1, 0)], ids=["opened first", "registered first"])
+def test_what_a_program_does_at_its_exit_still_has_its_session(lines: tuple[int, int]) -> None:
+    text = (
+        'session = Session("a")',
+        'atexit.register(lambda: setattr(session, "during", lambda: print("bye before", flush=True)))',
+    )
+    assert program("\n".join(["import atexit", *(text[at] for at in lines)])) == (0, ["bye before", "closed a"], "")
+
+
+def test_the_exit_waits_once_for_what_does_not_end() -> None:
+    text = """
+        class Endless(threading.Thread):
+            def join(self, timeout=None):
+                print("waits" if timeout else "looks", flush=True)
+                super().join(timeout)
+
+        lifetime.LAST_WAIT = 0.1
+        thread = Endless(target=threading.Event().wait, daemon=True)
+        lifetime.outlive(thread)
+        thread.start()
+    """
+    assert program(text) == (0, ["looks", "waits"], "")
+
+
+class Entity:
+    """Something of Zenoh's."""
+
+    def undeclare(self) -> None:
+        """Be gone."""
+
+
+def test_a_daemon_thread_that_the_exit_ends_frees_nothing_of_zenohs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Freeing it is work in Zenoh: about one of 50 programs was aborted whose threads closed what they had declared."""
+    used, asked = Entity(), Entity()
+    outlet = ZenohOutlet(Holdings(), "key", Publishers(used, asked))
+    left = [weakref.ref(used), weakref.ref(asked)]
+    del used, asked
+    monkeypatch.setattr(lifetime, "_ending", True)
+    monkeypatch.setattr(lifetime, "_last", [])
+
+    def work() -> None:
+        with pytest.raises(SystemExit):
+            outlet.close()
+
+    thread = threading.Thread(target=work, daemon=True)
+    thread.start()
+    thread.join(PATIENCE)
+    assert all(each() is not None for each in left)
+
+
+def test_calls_that_the_exit_ends_are_not_told_that_nobody_answers(
+    domain: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A thread that spins would warn of it, when the program is over and all is well."""
+    asked, arrived = queue.SimpleQueue[Any](), queue.SimpleQueue[Any]()
+    session = ZenohTransport(domain)
+    session.serve("a/service", asked.put)
+    session.call("a/service", b"", b"", arrived.put)
+    query = asked.get(timeout=PATIENCE)
+    assert len(session._ends) == 1
+    monkeypatch.setattr(lifetime, "_ending", True)
+    session.close()
+    deadline = time.monotonic() + PATIENCE
+    while session._ends and time.monotonic() < deadline:  # until Zenoh has let go of it
+        time.sleep(0.001)
+    assert not session._ends
+    assert arrived.empty()
+    del query
 
 
 def test_the_exit_waits_for_a_daemon_thread_that_opens_a_session_and_closes_it() -> None:
     text = """
+        import atexit
         is_exiting, is_inside = threading.Event(), threading.Event()
 
         def work():
@@ -203,7 +300,8 @@ def test_the_exit_waits_for_a_daemon_thread_that_opens_a_session_and_closes_it()
                 time.sleep(0.2)
                 late = Session("late")
 
-        session = Session("early", is_exiting.set)
+        session = Session("early")
+        atexit.register(is_exiting.set)
         threading.Thread(target=work, daemon=True).start()
         is_inside.wait()
     """

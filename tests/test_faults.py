@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from robolink.faults import FaultyNetwork, FaultyTransport, MessageFault, Partition
+from robolink.faults import FaultyNetwork, FaultyTransport, MessageFault, Partition, Why
 from robolink.faults.streams import uniform
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.transport.base import Sample
@@ -394,10 +394,12 @@ def test_a_fault_that_met_nothing_is_told_with_the_nearest_name() -> None:
         system.network.add(fault)
     system.program("follower").hear("/scan")
     system.program("world").publisher("/scan")(1)
-    assert system.network.unmet() == [
+    system.time.go_on(0.1)
+    assert [each.text for each in system.network.unmet()] == [
         "{topic: /scann, loss: 0.5} met nothing: no topic '/scann' was received by any node (did you mean '/scan'?)",
         (
             "{from: follower, to: world, loss: 0.5} met nothing: nothing went that way"
             " (what stays within a process never travels)"
         ),
     ]
+    assert [each.why for each in system.network.unmet()] == [Why.WRONG_NAME, Why.IN_VAIN]

@@ -101,6 +101,9 @@ BAD = {
     "crashes: [{node: 'a*', at: 1}]": "1:18: crashes[0].node: one node crashes: 'a*' may be several",
     "crashes: [{node: a, at: -1}]": "1:25: crashes[0].at: expected float >= 0.0, got '-1'",
     "clocks: [{node: a}]": "1:10: clocks[0]: this clock is right: give offset or drift",
+    "clocks: [{node: a, offset: 1}, {node: [b, /a], drift: 0.1}]": (
+        "1:43: clocks[1].node[1]: the clock of '/a' is wrong already: say in one place all that it is"
+    ),
     "clocks: [{node: a, drift: 2}]": "1:27: clocks[0].drift: expected float <= 0.1, got '2'",
     "clocks: [{node: a, offset: .nan}]": "1:28: clocks[0].offset: expected float >= -1000000000.0, got '.nan'",
     "message: []": "1:1: message: unknown key 'message' (did you mean 'messages'?)",

@@ -6,6 +6,7 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -37,6 +38,17 @@ def test_handlers_are_installed_and_given_back(options: SignalHandlerOptions) ->
     assert (signal.getsignal(signal.SIGINT) is not before) is bool(options & SignalHandlerOptions.SIGINT)
     signals.uninstall_signal_handlers()
     assert signals.get_current_signal_handlers_options() == SignalHandlerOptions.NO
+
+
+def test_a_ctrl_c_is_not_lost_while_they_are_given_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(number: int, handler: Any) -> None:
+        signal.raise_signal(signal.SIGINT)
+
+    signals.install_signal_handlers(SignalHandlerOptions.SIGINT)
+    with monkeypatch.context() as patch:
+        patch.setattr(signal, "signal", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            signals.uninstall_signal_handlers()
 
 
 def test_only_the_main_thread_can() -> None:

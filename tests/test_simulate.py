@@ -172,9 +172,18 @@ def test_commands_are_left_out(folder: Path) -> None:
     assert result.messages["/chatter"] == 100
 
 
+def test_a_fault_on_a_topic_that_is_not_there_is_a_failure(folder: Path) -> None:
+    result = simulated(folder, faults="messages: [{topic: /chater, loss: 1}]")
+    (failure,) = result.failures
+    assert failure.endswith("no topic '/chater' was received by any node (did you mean '/chatter'?)")
+    assert result.warnings == []
+
+
 def test_a_fault_that_met_nothing_is_told(folder: Path) -> None:
-    (warning,) = simulated(folder, faults="messages: [{topic: /chater, loss: 1}]").warnings
-    assert warning.endswith("no topic '/chater' was received by any node (did you mean '/chatter'?)")
+    faults = "messages: [{topic: /chatter, from: listener, loss: 1}, {topic: '*/chater', loss: 1}]"
+    result = simulated(folder, faults=faults)
+    assert [each.partition(" met ")[2][:32] for each in result.warnings] == ["nothing: nothing went that way ("] * 2
+    assert result.failures == []
 
 
 @pytest.mark.parametrize(

@@ -161,6 +161,36 @@ def test_a_fault_on_an_unknown_node_is_told_with_its_place(folder: Path, capsys:
     )
 
 
+def test_a_fault_on_an_unknown_topic_is_told_after_the_summary(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "wrong.yaml").write_text("messages:\n  - {topic: [/chatter, /chater], loss: 0.5}\n")
+    assert main(["simulate", "talk", "--duration", "1", "--faults", "wrong.yaml"]) == 1
+    told = "no topic '/chater' was received by any node (did you mean '/chatter'?)"
+    assert f"failed: {{topic: [/chatter, /chater], loss: 0.5}} met something, but {told}" in capsys.readouterr().out
+
+
+CAMERA = '''
+"""Would declare its rate once it is configured."""
+
+from robolink.lifecycle import LifecycleNode
+
+
+class Camera(LifecycleNode):
+    def __init__(self, **options):
+        super().__init__("camera", **options)
+'''
+
+
+def test_a_parameter_that_no_node_declares_is_a_failure(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "nodes" / "camera.py").write_text(CAMERA)
+    (folder / "configs" / "films.yaml").write_text("nodes: [{node: camera}, {node: talker, namespace: ada}]\n")
+    assert main(["simulate", "films", "--duration", "1", "--set", "talker.fails_a:=3", "--set", "camera.rate:=3"]) == 1
+    failed = [each for each in capsys.readouterr().out.splitlines() if each.startswith("failed: ")]
+    expected = "parameter 'fails_a' was given to ada/talker, which has not declared it (did you mean 'fails_at'?)"
+    assert failed == [f"failed: {expected}"]
+
+
 def test_a_seed_that_fails_is_told_and_fails_again_by_itself(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "gambles", "--duration", "2.00000001", "--repeat", "4", "--seed", "3"]) == 1
     *told, last = capsys.readouterr().out.splitlines()

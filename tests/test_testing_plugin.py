@@ -37,8 +37,9 @@ class Counter(Node):
 
 
 @pytest.fixture
-def project(pytester: pytest.Pytester) -> pytest.Pytester:
+def project(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> pytest.Pytester:
     """A project of somebody's own, with a node."""
+    monkeypatch.delenv("PYTHONHASHSEED", raising=False)
     pytester.makepyfile(counter=NODE)
     pytester.syspathinsert()
     return pytester
@@ -105,6 +106,21 @@ def test_the_seed_is_the_tests_own_and_the_same_each_time_or_the_one_asked_for(p
     result = run(project, FAILS, "--robolink-seed", "often")
     assert result.ret == pytest.ExitCode.USAGE_ERROR
     result.stderr.fnmatch_lines(["*--robolink-seed: invalid whole number up to 4294967295, or 'random' value: 'often'"])
+
+
+def test_a_replay_tells_the_seed_of_hashes_too(project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONHASHSEED", "5")
+    told = "robolink: the order of sets of texts is chance; PYTHONHASHSEED=0 makes it the same"
+    result = run(project, FAILS)
+    result.stdout.fnmatch_lines(["E  *replay: PYTHONHASHSEED=5 pytest 'test_it.py::test_fails' --robolink-seed *"])
+    result.stdout.no_fnmatch_line(told)
+    monkeypatch.delenv("PYTHONHASHSEED")
+    project.makepyfile(test_it="from counter import Counter\n" + FAILS)
+    result = project.runpytest_subprocess("-p", "no:cacheprovider", "-p", "no:xdist")
+    result.stdout.fnmatch_lines(["E  *replay: pytest 'test_it.py::test_fails' --robolink-seed *", told])
+    project.makepyfile(test_it="def test_of_something_else():\n    assert False\n")
+    result = project.runpytest_subprocess("-p", "no:cacheprovider", "-p", "no:xdist")
+    result.stdout.no_fnmatch_line(told)
 
 
 def test_what_replays_a_failure_can_be_pasted_in_any_folder(
@@ -228,6 +244,30 @@ def test_it(system):
     result = run(project, text)
     result.assert_outcomes(passed=1, errors=1)
     result.stdout.fnmatch_lines(["E *NodeFailure: counter failed at 0 s: ValueError: rude (test_it.py:*)"])
+
+
+def test_a_fault_that_comes_to_nothing_breaks_the_test_unless_that_has_failed(project: pytest.Pytester) -> None:
+    text = """
+import pytest
+
+def test_misspells(system):
+    system.start(Counter)
+    system.faults.lose("cuont", 0.5)
+    system.run(1.0)
+
+def test_fails(system):
+    system.faults.lose("cuont", 0.5)
+    system.run(1.0)
+    assert False
+
+def test_skips(system):
+    system.faults.lose("cuont", 0.5)
+    system.run(1.0)
+    pytest.skip("not today")
+"""
+    result = run(project, text)
+    result.assert_outcomes(passed=1, errors=1, failed=1, skipped=1)
+    result.stdout.fnmatch_lines(["E *ExpectationError: {topic: cuont, loss: 0.5} met nothing: no topic 'cuont' was*"])
 
 
 def test_what_lies_between_the_test_and_its_nodes_is_left_out(project: pytest.Pytester) -> None:

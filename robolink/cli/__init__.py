@@ -9,6 +9,7 @@ import sys
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from robolink.cli.hashing import begin_steadily
 from robolink.cli.interrupts import not_lost
 from robolink.exceptions import NameValidationException, RobolinkError
 
@@ -30,6 +31,11 @@ def main(args: Sequence[str] | None = None) -> int:
     """
     given = sys.argv[1:] if args is None else list(args)
     if args is None:
+        try:
+            if not os.environ.get(COMPLETION):
+                begin_steadily(given)
+        except KeyboardInterrupt:
+            return 130
         _open_closed_streams()
         _write_any_letter()
         with not_lost():

@@ -113,8 +113,8 @@ def simulate(
 
     Ten minutes of a robot with a bad network: `simulate follow --duration 600 --faults radio`.
 
-    The exit code is 1 when a node crashes or ends with an error, other than by a fault. Ctrl-C ends with the summary so
-    far, and exit code 130.
+    The exit code is 1 when a node crashes or ends with an error, other than by a fault, and when a name of --set or
+    --faults was nobody's. Ctrl-C ends with the summary so far, and exit code 130.
     """
     _compute_in_one_thread()
     asked = Asked(words, duration, settings or [], faults, workspace, fail_on or [])
@@ -137,6 +137,7 @@ def _compute_in_one_thread() -> None:
 def _once(ctx: typer.Context, asked: Asked, seed: int | None, as_json: bool, verbose: bool) -> int:
     path, entries, faults = _read(ctx, asked)
     from robolink.simulating import failed_by, simulate
+    from robolink.simulating.settings import parse_settings
 
     apart = redirect_stdout(sys.stderr) if as_json else nullcontext()  # what nodes print
     with apart, Progress(asked.duration, "s") as progress:
@@ -146,6 +147,7 @@ def _once(ctx: typer.Context, asked: Asked, seed: int | None, as_json: bool, ver
             name=path.stem,
             seed=seed,
             faults=faults,
+            given=parse_settings(asked.settings),
             watching=_watching(progress, verbose),
         )
     result = failed_by(result, asked.fail_on)

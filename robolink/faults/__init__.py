@@ -4,7 +4,7 @@ from robolink.faults.description import ClockFault, Crash, FaultsDescription, Me
 from robolink.faults.file import check_nodes, read_faults
 from robolink.faults.injector import Injector
 from robolink.faults.network import FaultyNetwork
-from robolink.faults.report import FaultReport
+from robolink.faults.report import FaultReport, Unmet, Why
 from robolink.faults.transport import FaultyTransport
 
 __all__ = [
@@ -17,6 +17,8 @@ __all__ = [
     "Injector",
     "MessageFault",
     "Partition",
+    "Unmet",
+    "Why",
     "check_nodes",
     "read_faults",
 ]

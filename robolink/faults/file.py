@@ -95,6 +95,12 @@ def _problems_of_clocks(faults: FaultsDescription) -> Iterator[_Problem]:
     for index, clock in enumerate(faults.clocks):
         if not clock.offset and not clock.drift:
             yield _Problem(["clocks", index], "this clock is right: give offset or drift")
+    named: set[str] = set()
+    for index, clock in enumerate(faults.clocks):
+        for steps, name in _placed(clock.node, ["clocks", index, "node"]):
+            if not is_pattern(name) and name.lstrip("/") in named:
+                yield _Problem(steps, f"the clock of '{name}' is wrong already: say in one place all that it is")
+            named.add(name.lstrip("/"))
 
 
 def _problems_of_partitions(faults: FaultsDescription) -> Iterator[_Problem]:

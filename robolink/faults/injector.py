@@ -9,8 +9,8 @@ from typing import Protocol, TypeAlias
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.faults.description import ClockFault, Crash, FaultsDescription, MessageFault, Partition
 from robolink.faults.network import FaultyNetwork, Timetable, spelled
-from robolink.faults.patterns import fits_any, listed
-from robolink.faults.report import FaultReport
+from robolink.faults.patterns import fits_any, has_pattern, listed
+from robolink.faults.report import FaultReport, Unmet, Why
 from robolink.faults.transport import FaultyTransport
 from robolink.timebase import SkewedTime, TimeBase
 from robolink.transport.memory import Bus
@@ -43,9 +43,11 @@ class _Strike:
     has_come: bool = False
     has_struck: bool = False
 
-    def __str__(self) -> str:
-        why = "the node did not run then" if self.has_come else "the run ended before"
-        return f"{spelled(self.crash)} did not happen: {why}"
+    def unmet(self) -> Unmet:
+        why, told = (
+            (Why.IN_VAIN, "the node did not run then") if self.has_come else (Why.TOO_EARLY, "the run ended before")
+        )
+        return Unmet(f"{spelled(self.crash)} did not happen: {told}", why)
 
 
 class Injector:
@@ -59,6 +61,7 @@ class Injector:
         self._programs = programs
         self._clocks: list[ClockFault] = []
         self._times: dict[str, tuple[list[ClockFault], TimeBase]] = {}
+        self._met_clocks: list[ClockFault] = []
         self._strikes: list[_Strike] = []
 
     def connect(self, program: str) -> FaultyTransport:
@@ -73,6 +76,7 @@ class Injector:
         """
         names = self.network.programs.get(program, {program})
         wrong = [each for each in self._clocks if fits_any(listed(each.node), names)]
+        self._met_clocks += wrong
         if program in self._times and self._times[program][0] == wrong:
             return self._times[program][1]
         self._times[program] = wrong, self._skewed(program, time, wrong) if wrong else time
@@ -123,9 +127,19 @@ class Injector:
         self._strikes.append(planned)
         self._programs.at(crash.at, strike)
 
-    def unmet(self) -> list[str]:
-        """Say of each fault that has done nothing so far why that may be."""
-        return [*self.network.unmet(), *(str(each) for each in self._strikes if not each.has_struck)]
+    def unmet(self) -> list[Unmet]:
+        """Say of each fault that has done nothing so far, or that names what was never there, why that may be."""
+        strikes = [each.unmet() for each in self._strikes if not each.has_struck]
+        wrong_clocks = (each for each in self._clocks if each.offset or each.drift)
+        return [*self.network.unmet(), *filter(None, map(self._unmet, wrong_clocks)), *strikes]
+
+    def _unmet(self, clock: ClockFault) -> Unmet | None:
+        wrong, is_met = self.network.wrong_node(clock.node), clock in self._met_clocks
+        said = f"{spelled(clock)} {'met something, but' if is_met else 'met nothing:'} "
+        if wrong:
+            return Unmet(said + wrong, Why.WRONG_NAME)
+        vain = Unmet(said + "no such node was started with this clock", Why.IN_VAIN)
+        return None if is_met else vain._replace(why=Why.WILD) if has_pattern(clock.node) else vain
 
     def program_of(self, node: str) -> str:
         """Give the program in which a node runs. Raises `NotFoundError` with the nearest name."""

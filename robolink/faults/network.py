@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import msgspec
 
-from robolink.exceptions import nearest
-from robolink.faults.description import Crash, MessageFault, Partition
+from robolink.faults.description import ClockFault, Crash, MessageFault, Partition
 from robolink.faults.fate import Strand, Way, Window, window
-from robolink.faults.patterns import fits_any, is_pattern, listed, matcher
-from robolink.faults.report import FaultReport
+from robolink.faults.patterns import exact, fits_any, has_pattern, listed, matcher
+from robolink.faults.report import FaultReport, Unmet, Why
 from robolink.faults.streams import uniform
+from robolink.names import near
 from robolink.transport.memory import Bus
 from robolink.wire import parse_key
 
@@ -54,6 +54,18 @@ class _Rule(NamedTuple):
     when: Window
     report: FaultReport
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether it does nothing to what it meets: a test may ask for a loss of 0."""
+        fault = self.fault
+        return not (fault.loss or fault.duplication or fault.latency or fault.jitter)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All names that it says."""
+        fault = self.fault
+        return tuple(name for each in (fault.topic, fault.service, fault.from_, fault.to) for name in listed(each))
+
     def may_meet(self, name: Name) -> bool:
         fault, service = self.fault, listed(self.fault.service)
         if name.of_service:
@@ -71,6 +83,11 @@ class _Cut(NamedTuple):
     groups: tuple[tuple[str, ...], ...]
     when: Window
     report: FaultReport
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All names that it says."""
+        return tuple(name for group in self.groups for name in group)
 
     def parts(self, one: set[str], other: set[str]) -> bool:
         first, second = self._group(one), self._group(other)
@@ -96,6 +113,7 @@ class FaultyNetwork:
         """The program of each endpoint, by the 16 bytes that stand beside its messages."""
         self._rules: list[_Rule] = []
         self._cuts: list[_Cut] = []
+        self._cleared: list[Unmet] = []
         self._sessions: list[FaultyTransport] = []
         self._names: set[Name] = set()
         self._ways: dict[_Between, Way | None] = {}
@@ -117,7 +135,8 @@ class FaultyNetwork:
         return report
 
     def clear(self) -> None:
-        """Have no faults any more. What is on its way still arrives when it would have."""
+        """Have no faults any more, and know which had met nothing. What is on its way still arrives."""
+        self._cleared = [each for each in self.unmet() if each.why is not Why.TOO_EARLY]
         self._rules.clear()
         self._cuts.clear()
         self._strands.clear()
@@ -192,26 +211,41 @@ class FaultyNetwork:
             self._strands[known] = Strand(fault, rule.when, draws, rule.report)
         return self._strands[known]
 
-    def unmet(self) -> list[str]:
-        """Say of each fault that has met nothing so far why that may be."""
+    def unmet(self) -> list[Unmet]:
+        """Say of each fault that has met nothing so far, or that names what was never there, why that may be."""
         added: list[_Rule | _Cut] = [*self._rules, *self._cuts]
-        return [f"{each.report.fault} met nothing: {self._cause(each)}" for each in added if not each.report.met]
+        return [*self._cleared, *filter(None, map(self._unmet, added))]
 
-    def _cause(self, unmet: _Rule | _Cut) -> str:
-        wrong = self._wrong_name(unmet.fault) if isinstance(unmet, _Rule) else None
-        if wrong is None and unmet.when[0] > self.time.steady():
-            return "the run ended before"
-        return wrong or "nothing went that way (what stays within a process never travels)"
+    def _unmet(self, added: _Rule | _Cut) -> Unmet | None:
+        rule, report = added if isinstance(added, _Rule) else None, added.report
+        wrong = self.wrong_node(added.names) if rule is None else self._wrong_name(rule.fault)
+        if (rule is not None and rule.is_idle) or (report.met and not wrong):
+            return None
+        said = f"{report.fault} {'met something, but' if report.met else 'met nothing:'} "
+        if added.when[0] >= self.time.steady():
+            return Unmet(said + (wrong or "the run ended before"), Why.TOO_EARLY)
+        if wrong:
+            return Unmet(said + wrong, Why.WRONG_NAME)
+        vain = Unmet(said + "nothing went that way (what stays within a process never travels)", Why.IN_VAIN)
+        return vain._replace(why=Why.WILD) if has_pattern(added.names) else vain
 
-    def _wrong_name(self, fault: MessageFault) -> str | None:
-        for wanted, of_service in ((fault.topic, False), (fault.service, True)):
-            known = [each.text for each in self._names if each.of_service is of_service]
-            for each in listed(wanted):
-                if not any(map(matcher((each,)), known)):
-                    kind = "service" if of_service else "topic"
-                    near = "" if is_pattern(each) else nearest("/" + each.lstrip("/"), known)
-                    return f"no {kind} '{each}' was received by any node{near}"
-        return None
+    def _wrong_name(self, fault: MessageFault) -> str:
+        for kind, wanted in (("topic", fault.topic), ("service", fault.service)):
+            known = sorted(each.text for each in self._names if each.of_service is (kind == "service"))
+            if missing := _missing(wanted, known):
+                return f"no {kind} '{missing}' was received by any node{near('/' + missing.lstrip('/'), known)}"
+        return self.wrong_node((*listed(fault.from_), *listed(fault.to)))
+
+    def wrong_node(self, names: str | Sequence[str]) -> str:
+        """Say which of these names no node has had so far, with the nearest; '' if each had one, or has wildcards."""
+        known = sorted({name for each in self.programs.values() for name in each})
+        missing = _missing(names, known)
+        return f"no node was ever named '{missing}'{near(missing.lstrip('/'), known)}" if missing else ""
+
+
+def _missing(wanted: str | Sequence[str], known: Sequence[str]) -> str:
+    """Give the first exact name that is none of the known ones; '' if there is none."""
+    return next((each for each in exact(wanted) if not any(map(matcher((each,)), known))), "")
 
 
 def _identity(fault: MessageFault) -> str:
@@ -219,7 +253,7 @@ def _identity(fault: MessageFault) -> str:
     return "|".join(" ".join(listed(each)) for each in (fault.topic, fault.service, fault.from_, fault.to))
 
 
-def spelled(fault: MessageFault | Partition | Crash) -> str:
+def spelled(fault: MessageFault | Partition | Crash | ClockFault) -> str:
     """Give a fault as its file would spell it, without what is as it usually is."""
     plain = msgspec.to_builtins(fault)
     usual = {each.encode_name: each.default for each in msgspec.structs.fields(fault)}

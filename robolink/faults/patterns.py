@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache
-
-from robolink.faults.description import Names
 
 _ALLOWED = re.compile(r"/?[A-Za-z0-9_*]+(?:/[A-Za-z0-9_*]+)*", re.ASCII)
 _PARTS = re.compile(r"(\*\*/|/\*\*|\*\*|\*)")
 _WILD = {"**/": "(?:[^/]+/)*", "/**": "(?:/[^/]+)*", "**": ".*", "*": "[^/]*"}
 
 
-def listed(names: Names) -> tuple[str, ...]:
+def listed(names: str | Sequence[str]) -> tuple[str, ...]:
     """Give names as a tuple, whether one was written or several."""
     return (names,) if isinstance(names, str) else tuple(names)
 
@@ -28,6 +26,16 @@ def mistake_in(pattern: str) -> str | None:
 def is_pattern(name: str) -> bool:
     """Whether a name stands for several."""
     return "*" in name
+
+
+def exact(names: str | Sequence[str]) -> tuple[str, ...]:
+    """Give those names that stand for one thing each."""
+    return tuple(each for each in listed(names) if not is_pattern(each))
+
+
+def has_pattern(names: str | Sequence[str]) -> bool:
+    """Whether some of the names stand for several."""
+    return any(map(is_pattern, listed(names)))
 
 
 @lru_cache(maxsize=256)

@@ -1,7 +1,7 @@
 """Locks and queues that hosted programs make: in virtual time whoever waits for one lets the others go on.
 
 Python's own block in C, where a host only notices after a while that nothing goes on. What Python's modules make for
-themselves stays Python's: nobody waits while holding such a lock.
+themselves stays Python's, but for the queue from which a pool of threads takes its work: nobody waits while holding it.
 """
 
 from __future__ import annotations
@@ -10,16 +10,20 @@ import _thread
 import queue
 import sys
 import threading
-from typing import TYPE_CHECKING, Any
+from concurrent.futures import thread as pools
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from robolink.defaults import get_defaults
+from robolink.oneprocess.parts import Killed
 from robolink.oneprocess.places import is_users
 from robolink.oneprocess.turn_taking import runner_of, wait_until
 
 if TYPE_CHECKING:
     from robolink.oneprocess.program import Program
+    from robolink.timebase import TimeBase
 
 REAL: dict[str, Any] = {"Lock": threading.Lock, "RLock": threading.RLock, "SimpleQueue": queue.SimpleQueue}
+_real_condition = threading.Condition.__init__
 
 
 def _is_for_program() -> bool:
@@ -28,40 +32,75 @@ def _is_for_program() -> bool:
     return program is not None and program.host.turns is not None and is_users(sys._getframe(2).f_code.co_filename)
 
 
-class Lock:
-    """`threading.Lock` while there is a host; for everybody but its programs it gives Python's."""
+def make_condition(condition: Any, lock: Any = None) -> None:
+    """Make a `threading.Condition`; one that a program makes has a lock of these, since it may wait while it holds it.
 
-    __slots__ = ("_lock", "locked", "release")
+    It takes the place of `Condition.__init__`.
+    """
+    if lock is None and _is_for_program():
+        lock = object.__new__(RLock)
+        lock.__init__()
+    _real_condition(condition, lock)
+
+
+class Lock:
+    """`threading.Lock` while there is a host; for everybody but its programs it gives Python's.
+
+    Who comes while others wait for it lets them go first: else whoever takes it again and again would keep it for ever.
+    """
+
+    __slots__ = ("__weakref__", "_at_fork_reinit", "_lock", "_waiting", "locked", "release")
 
     def __new__(cls) -> Any:
         """Give a lock to whoever asks."""
         return super().__new__(cls) if _is_for_program() else REAL["Lock"]()
 
     def __init__(self) -> None:
-        self._lock = _thread.allocate_lock()
-        self.locked, self.release = self._lock.locked, self._lock.release
+        lock: Any = _thread.allocate_lock()
+        self._lock: _thread.LockType = lock
+        self.locked, self.release, self._at_fork_reinit = lock.locked, lock.release, lock._at_fork_reinit
+        self._waiting = 0
+        """How many wait for it in virtual time."""
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take it; whether that was possible, with `timeout` within so many virtual seconds."""
-        if self._lock.acquire(False):
+        if not blocking or (timeout < 0 and timeout != -1):
+            return self._lock.acquire(blocking, timeout)
+        if not self._waiting and self._lock.acquire(False):
             return True
         program: Program | None = get_defaults().program
-        if not blocking or program is None or runner_of(program) is None or (timeout < 0 and timeout != -1):
+        if program is None or runner_of(program) is None:
             return self._lock.acquire(blocking, timeout)
-        time = program.time
-        begin = time.steady()
+        return self._wait(program, timeout)
+
+    def _wait(self, program: Program, timeout: float) -> bool:
+        left = None if timeout == -1 else timeout
+        time, begin = program.time, program.time.steady()
+        if self._waiting:
+            time.sleep(0)
         while not self._lock.acquire(False):
-            left = None if timeout == -1 else timeout - (time.steady() - begin) / 1e9
-            if left is not None and left <= 0:
+            if left is not None and left < 0:
                 return False
-            wait_until(time, lambda: not self._lock.locked(), left)
+            self._waiting += 1
+            try:
+                wait_until(time, lambda: not self._lock.locked(), left)
+            finally:
+                self._waiting -= 1
+            left = None if left is None else _left(time, begin, timeout)
         return True
 
     def __enter__(self) -> bool:
-        return self.acquire()
+        return (not self._waiting and self._lock.acquire(False)) or self.acquire()
 
     def __exit__(self, *_: object) -> None:
         self.release()
+
+    def __repr__(self) -> str:
+        return repr(self._lock)
+
+    def __reduce__(self) -> NoReturn:
+        """Raise TypeError, as Python's do: a copy would be held by nobody."""
+        raise TypeError(f"cannot pickle {type(self).__name__!r} object")
 
 
 class RLock(threading._PyRLock):  # type: ignore[name-defined,misc] # Python's own, written in Python
@@ -75,18 +114,82 @@ class RLock(threading._PyRLock):  # type: ignore[name-defined,misc] # Python's o
         super().__init__()
         self._block = _OfRLock()
 
+    def __reduce__(self) -> NoReturn:
+        """Raise TypeError, as Python's do."""
+        raise TypeError(f"cannot pickle {type(self).__name__!r} object")
+
 
 class _OfRLock(Lock):
     """The lock in an `RLock`."""
+
+    __slots__ = ()
 
     def __new__(cls) -> Any:
         return object.__new__(cls)
 
 
-class SimpleQueue(queue._PySimpleQueue):  # type: ignore[name-defined,misc] # Python's own, written in Python
+class SimpleQueue:
     """`queue.SimpleQueue` while there is a host; for everybody but its programs it gives Python's."""
 
     def __new__(cls) -> Any:
         """Give a queue to whoever asks, and an object of a class that was derived from this one."""
         is_ours = cls is not SimpleQueue or _is_for_program()
         return super().__new__(cls) if is_ours else REAL["SimpleQueue"]()
+
+    def __init__(self) -> None:
+        self._take_from(REAL["SimpleQueue"]())
+
+    def _take_from(self, items: Any) -> None:
+        self._items = items
+        self.put, self.put_nowait = items.put, items.put_nowait  # in C: whatever breaks in may put something, too
+        self.get_nowait, self.empty, self.qsize = items.get_nowait, items.empty, items.qsize
+
+    @classmethod
+    def around(cls, items: Any) -> SimpleQueue:
+        """Give a queue that holds what one of Python's holds."""
+        made: SimpleQueue = object.__new__(cls)
+        made._take_from(items)
+        return made
+
+    def __class_getitem__(cls, _: Any) -> type[SimpleQueue]:
+        """Be what `SimpleQueue[int]` is: the same."""
+        return cls
+
+    def get(self, block: bool = True, timeout: float | None = None) -> Any:
+        """Take the oldest; wait for one, with `timeout` for so many virtual seconds. Raises queue.Empty."""
+        program: Program | None = get_defaults().program
+        runner = runner_of(program)
+        if program is None or runner is None or not block or (timeout is not None and timeout < 0):
+            return self._items.get(block, timeout)
+        if runner.killed:
+            raise Killed
+        runner.is_idle = sys._getframe(1).f_code.co_filename == pools.__file__
+        try:
+            return self._wait(program.time, timeout)
+        finally:
+            runner.is_idle = False
+
+    def _wait(self, time: TimeBase, timeout: float | None) -> Any:
+        left, begin = timeout, time.steady()
+        while True:
+            try:
+                return self._items.get_nowait()
+            except queue.Empty:
+                if left is not None and left < 0:
+                    raise
+            wait_until(time, lambda: not self._items.empty(), left)
+            left = None if timeout is None else _left(time, begin, timeout)
+
+
+def _left(time: TimeBase, begin: int, timeout: float) -> float:
+    """Give how many seconds are left; less than 0 once there are none."""
+    left = timeout - (time.steady() - begin) / 1e9
+    return left if left > 0 else -1.0
+
+
+def work_in_turns(worker: threading.Thread) -> None:
+    """Have a thread of one of Python's pools wait for work as a program's threads wait for each other."""
+    args = vars(worker)["_args"]
+    vars(worker)["_args"] = tuple(
+        SimpleQueue.around(each) if type(each) is REAL["SimpleQueue"] else each for each in args
+    )

@@ -4,13 +4,15 @@ Another process that they start is noted, too, but goes by its own time.
 
 While there is a host, some functions of Python's are replaced by ones that look who calls. For a hosted program
 `time.sleep` and the clocks of `time` are the host's, a thread that it starts takes turns with all others, and so does
-who waits for a lock or at a `threading.Condition` (and so at an Event, a Queue, a Semaphore ...), or joins a thread.
+who waits for a lock or at a `threading.Condition` (and so at an Event, a Queue, a Semaphore, a Future ...), or joins a
+thread. The threads of `concurrent.futures` are threads of the program whose work made the pool start them.
 Everybody else gets what Python gives.
 """
 
 from __future__ import annotations
 
 import _thread
+import logging
 import math
 import queue
 import signal
@@ -20,15 +22,18 @@ import threading
 import time
 import types
 from collections.abc import Callable
+from concurrent.futures import _base as futures
+from concurrent.futures import thread as pools
 from typing import Any, NamedTuple
 
 from robolink.defaults import get_defaults
 from robolink.exceptions import InterruptedByUser
-from robolink.oneprocess import chance, locks
+from robolink.oneprocess import chance, event_loops, locks
+from robolink.oneprocess.parts import Killed
 from robolink.oneprocess.places import is_users, place_of
 from robolink.oneprocess.program import Program
 from robolink.oneprocess.real_time import RealPace
-from robolink.oneprocess.threads import go_along, stay_beside, take_part
+from robolink.oneprocess.threads import go_along, take_part
 from robolink.oneprocess.turn_taking import runner_of, wait_until
 from robolink.oneprocess.workers import Worker
 
@@ -43,6 +48,9 @@ class RealTimeUse(NamedTuple):
 
 _CALENDAR = ("localtime", "gmtime", "ctime", "asctime", "strftime")
 """What takes the clock's time where it is given none; its last argument."""
+
+_CALL_FOR_OTHERS = (threading.__file__, pools.__file__)
+"""What sleeps for nobody but who says so: ``Thread(target=time.sleep)``, ``pool.submit(time.sleep, 1.0)``."""
 
 _CLOCKS = ("time", "time_ns", "monotonic", "monotonic_ns", "perf_counter", "perf_counter_ns")
 _real = {name: getattr(time, name) for name in (*_CLOCKS, *_CALENDAR, "sleep")}
@@ -82,14 +90,18 @@ def _replacements() -> list[tuple[Any, str, Any]]:
         (threading.Thread, "start", _start),
         (threading.Thread, "join", _join),
         (threading.Condition, "wait", _wait),
+        (threading.Condition, "__init__", locks.make_condition),
         (threading, "Lock", locks.Lock),
         (threading, "RLock", locks.RLock),
         (threading, "_time", _steady),
         (queue, "SimpleQueue", locks.SimpleQueue),
         (queue, "time", _steady),
+        (futures, "time", types.SimpleNamespace(monotonic=_steady)),
+        (futures.LOGGER, "filters", [*futures.LOGGER.filters, _is_no_end]),
         (signal, "signal", _handle),
         (subprocess.Popen, "__init__", _popen),
         *chance.replacements(),
+        *event_loops.replacements(),
     ]
 
 
@@ -106,7 +118,8 @@ def adopt(module: types.ModuleType | None) -> None:
 
 
 def _note(program: Program, what: str, frame: types.FrameType) -> None:
-    program.host.note_real_time(program, what, place_of(frame))
+    if place := place_of(frame):  # else it was told of where the thread was started
+        program.host.note_real_time(program, what, place)
 
 
 # What is replaced
@@ -115,7 +128,8 @@ def _note(program: Program, what: str, frame: types.FrameType) -> None:
 def _sleep(seconds: float, /) -> None:
     program: Program | None = get_defaults().program
     caller = sys._getframe(1)
-    if program is not None and is_users(caller.f_code.co_filename):
+    file = caller.f_code.co_filename
+    if program is not None and (is_users(file) or file in _CALL_FOR_OTHERS):
         _note(program, "time.sleep", caller)
         if seconds >= 0 and runner_of(program) is not None:
             if seconds:
@@ -185,6 +199,11 @@ def _steady() -> float:
     return program.time.steady() / 1e9
 
 
+def _is_no_end(record: logging.LogRecord) -> bool:
+    """Whether this is no more than the end of a program, which a thread of one of its pools has met."""
+    return record.exc_info is None or not isinstance(record.exc_info[1], Killed)
+
+
 def _handle(number: int, handler: Any) -> Any:
     """Have a program handle a signal: as Ctrl-C it gets SIGINT; no other comes."""
     program: Program | None = get_defaults().program
@@ -213,9 +232,9 @@ def _start(thread: threading.Thread) -> None:
     try:
         if isinstance(thread, Worker):
             return _real_start(thread)
-        target = getattr(thread, "_target", None)  # Python's pools take their work from queues that are written in C
-        join = stay_beside if getattr(target, "__module__", "") == "concurrent.futures.thread" else take_part
-        return join(thread, program, _real_start)
+        if getattr(getattr(thread, "_target", None), "__module__", "") == pools.__name__:
+            locks.work_in_turns(thread)
+        return take_part(thread, program, _real_start)
     finally:
         runner.is_real = False
 
@@ -243,6 +262,8 @@ def _wait(condition: Any, timeout: float | None = None) -> bool:
     program: Program | None = get_defaults().program
     if program is None or runner_of(program) is None:
         return _real_wait(condition, timeout)
+    if timeout is not None and timeout <= 0 and sys._getframe(2).f_code.co_filename == pools.__file__:
+        return False  # whether a thread of a pool is idle: the pool's own lock is held meanwhile
     if not condition._is_owned():
         raise RuntimeError("cannot wait on un-acquired lock")
     told = _thread.allocate_lock()

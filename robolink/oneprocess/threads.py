@@ -9,6 +9,7 @@ import traceback
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
+from concurrent.futures import thread as pools
 from typing import TYPE_CHECKING, Any
 
 from robolink.defaults import use_defaults
@@ -38,12 +39,15 @@ def take_part(thread: threading.Thread, program: Program, start: Callable[[threa
         use_defaults(program.defaults)
         runner.park()
         first.version, runner.wait = 1, None
+        vars(pools)["_threads_queues"].pop(thread, None)  # of a pool: Python would wait for it at the end
         try:
             if first.error is None:
                 act()
         except _QUIET:
             pass
         except BaseException as error:  # noqa: BLE001 - it ends this thread alone, as in every program
+            if runner.killed:  # its locks are another's now, say
+                return
             text = "".join(traceback.format_exception(type(error), error, error.__traceback__))
             get_logger("robolink").error(f"a thread of {program.name} ended:\n{text.rstrip()}")
         finally:
@@ -53,23 +57,6 @@ def take_part(thread: threading.Thread, program: Program, start: Callable[[threa
     thread.run = run  # type: ignore[method-assign]
     turns.runners.add(runner)
     turns.due.append(first)
-    start(thread)
-
-
-def stay_beside(thread: threading.Thread, program: Program, start: Callable[[threading.Thread], None]) -> None:
-    """Start a thread that only works for others, who wait for it: it goes on beside those that take turns."""
-    turns = program.host.the_turns
-    runner = Runner(turns, program)
-    runner.thread = thread
-    act = thread.run
-
-    def run() -> None:
-        turns.runners.belong(runner)
-        use_defaults(program.defaults)
-        act()
-
-    thread.run = run  # type: ignore[method-assign]
-    turns.beside.add(runner)
     start(thread)
 
 
@@ -89,7 +76,7 @@ def go_along(thread: threading.Thread, program: Program, start: Callable[[thread
 def tell_of(runner: Runner) -> None:
     """Tell of a program's thread that is still there, and would keep its process from ending."""
     thread, program = runner.thread, runner.program
-    if thread is None or program is None or runner.is_host or runner.is_done or runner.is_daemon:
+    if thread is None or program is None or runner.is_host or runner.is_done or runner.is_daemon or runner.is_idle:
         return
     place = place_of(frame_of(runner)) or "an unknown place"
     get_logger("robolink").warning(f"{program.name}: its thread {thread.name} goes on after its end, at {place}")

@@ -239,16 +239,16 @@ class Turns:
         holder = self.holder
         return (None if holder is self.outside else holder), self.picks
 
-    def pass_over(self, blocked: Runner) -> bool:
-        """Take the turn from a thread that seems to wait for another one of its program; False if there is none."""
+    def pass_over(self, blocked: Runner, note: Callable[[Runner], None]) -> None:
+        """Take the turn from a thread that seems to wait for another one of its program, if there is one; note that."""
         others = (each for each in self.runners if each.program is blocked.program and each is not blocked)
         if blocked.program is None or not any(not each.is_done and not each.is_idle for each in others):
-            return False
+            return
         if self.holder is not blocked:  # it has gone on meanwhile
-            return False
+            return
+        note(blocked)  # before anybody goes on: it may come to an end then
         self.beside.add(blocked)
         self._hand_to(self._pick())
-        return True
 
     def give_up(self, stuck: Runner) -> None:
         """Tell whoever runs the host of a thread that does not go on, and leave that one to itself."""
@@ -274,7 +274,8 @@ class Turns:
 
     def _is_news(self) -> bool:
         """Whether threads that take no turns have brought something to do."""
-        return bool(self.due or self._foreign) or any(map(Wait.is_over, self._waits))
+        is_asked = self._asking is not None and self._asking.is_over()
+        return is_asked or bool(self.due or self._foreign) or any(map(Wait.is_over, self._waits))
 
     def fail(self, error: BaseException) -> None:
         """Have whoever runs the host meet this error."""
@@ -372,9 +373,8 @@ class Turns:
         """Tell whoever runs the host that it would wait for ever; but one that is free may still bring something."""
         if self.beside:
             return
-        waiting = (each for each in self.runners if each.wait is not None and each.program is not None)
-        where = "".join(f"; {where_waits(each)}" for each in waiting)
-        error = HostError(f"all programs wait for ever, and nothing is to come{where}")
+        those = (each for each in self.runners if each.wait and each.program and not each.is_idle)
+        error = HostError("; ".join(["all programs wait for ever, and nothing is to come", *map(where_waits, those)]))
         if self._watch is None:
             raise error
         self.fail(error)

@@ -54,8 +54,8 @@ class Watchdog(threading.Thread):
                 self._turns.give_up(found[0])
             elif now - moved >= self._turns.patience:
                 self._turns.tell_of_standstill(found[0])
-            elif now - still >= BLOCKED and self._turns.pass_over(found[0]):
-                _note(found[0])
+            elif now - still >= BLOCKED:
+                self._turns.pass_over(found[0], _note)
 
     def stop(self) -> None:
         """Look no more."""
@@ -64,6 +64,6 @@ class Watchdog(threading.Thread):
 
 
 def _note(blocked: Runner) -> None:
-    """Note that what a thread waits for is out of the host's sight; it is looked up once the others go on."""
+    """Note that what a thread waits for is out of the host's sight."""
     if blocked.program is not None:
         blocked.program.host.note_real_time(blocked.program, BY_ITSELF, place_of(frame_of(blocked)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, cast
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 import msgspec
 
 from robolink import logging
-from robolink.faults import FaultsDescription, FaultyNetwork, FaultyTransport, Injector
+from robolink.faults import FaultsDescription, FaultyNetwork, FaultyTransport, Injector, Why
 from robolink.faults.network import Timetable
 from robolink.impl.log_output import output
 from robolink.launch import Entry, Launched, processes
@@ -23,6 +23,7 @@ from robolink.qos import QoSProfile
 from robolink.simulating.result import ProgramResult, RobotResult, SimulationResult
 from robolink.simulating.robots import robots_of
 from robolink.simulating.settings import numpy_seeded
+from robolink.simulating.undeclared import undeclared
 from robolink.timebase import TimeBase
 from robolink.transport.base import Outlet
 
@@ -50,12 +51,15 @@ def simulate(
     name: str = "",
     seed: int | None = None,
     faults: FaultsDescription | None = None,
+    given: Collection[str] = (),
     watching: Watching | None = None,
 ) -> SimulationResult:
     """Run a system for `duration` simulated seconds, or until it ends or Ctrl-C; give what has come of it.
 
     The same entries, seed and faults give the same bytes. A `seed` that is given, here or in the faults, is that of
     the faults, of Python's and numpy's generators, and of every node with a parameter `seed` that has no other value.
+    Failures are, beside programs that fail, parameters `given`, named as by `with_parameters`, that their nodes do not
+    declare, and faults with a name that nobody ever had.
     Raises `DocumentError` for nodes that cannot share a process, and `NotFoundError` for a crash of an unknown node.
     """
     seed = faults.seed if seed is None and faults is not None else seed
@@ -66,6 +70,7 @@ def simulate(
         launched = [replace(each, env={**_SAME_EVERYWHERE, **each.env}) for each in nodes]
         errors = stack.enter_context(_console(told.log))
         run = _Run(launched, faults or FaultsDescription(), seed or 0, told)
+        run.given = given
         run.host.wishes = {} if seed is None else {"seed": seed}
         stack.callback(run.host.close)
         result = run.result(duration)
@@ -115,7 +120,9 @@ class _Run:
         for each in launched:
             self.injector.introduce(each.name, [entry.name for entry in each.entries])
         self.injector.have(faults)
-        self._interrupted = False
+        self._launched, self._interrupted = launched, False
+        self.given: Collection[str] = ()
+        """Parameters that nodes are to declare."""
 
     def _session(self, program: str) -> FaultyTransport:
         return _Session(self.injector.network, program, self.trace)
@@ -140,12 +147,14 @@ class _Run:
             programs=[self._program(each) for each in self.host.programs.values()],
             faults=network.reports,
             warnings=self._warnings(seconds, duration),
+            failures=[*self._wrong_names(), *self._undeclared()],
             interrupted=self._interrupted,
             hash=self.trace.hexdigest(),
         )
         self.supervision.end()
         real_time = [f"{program} {what} at {place}" for program, what, place in self.host.real_time_use]
-        return msgspec.structs.replace(result, failures=self.supervision.failures, real_time=real_time)
+        failures = [*self.supervision.failures, *result.failures]
+        return msgspec.structs.replace(result, failures=failures, real_time=real_time)
 
     def _pass(self, duration: float) -> float:
         """Let time pass until the end, or until Ctrl-C; give its seconds."""
@@ -168,7 +177,16 @@ class _Run:
 
     def _warnings(self, seconds: float, duration: float) -> list[str]:
         interrupted = [f"interrupted at {seconds:g} of {duration:g} s"] if self._interrupted else []
-        return [*interrupted, *self.injector.unmet()]
+        failures = self._wrong_names()
+        return [*interrupted, *(each.text for each in self.injector.unmet() if each.text not in failures)]
+
+    def _wrong_names(self) -> list[str]:
+        """Say which faults name what was never there; nothing of a run that was interrupted, as it might have come."""
+        unmet = [] if self._interrupted else self.injector.unmet()
+        return [each.text for each in unmet if each.why is Why.WRONG_NAME]
+
+    def _undeclared(self) -> Iterator[str]:
+        return iter(()) if self._interrupted else undeclared(self.given, self._launched, self.host)
 
     def _program(self, program: Program) -> ProgramResult:
         crashes = self.supervision.crashes[program.name]

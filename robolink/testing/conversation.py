@@ -30,6 +30,7 @@ class Conversation:
         if key not in self._publishers:
             self._publishers[key] = self._node.create_publisher(type(message), key[0], qos)
         self._publishers[key].publish(message)
+        self._story.note_said(key[0])
 
     def keep(self, topic: str, given: type[Message] | None) -> list[Any]:
         """Give a list that fills, at each `hear`, with what is published from now on; of this class, if it is given."""

@@ -51,6 +51,7 @@ class Told(NamedTuple):
     headline: str
     begin_ns: int
     moments: Sequence[Moment] = ()
+    unheard: Sequence[str] = ()
     faults: Sequence[str] = ()
     real_time: Sequence[str] = ()
     replay: str = ""
@@ -59,6 +60,7 @@ class Told(NamedTuple):
         parts = [self.headline]
         if self.moments:
             parts.append("what came last:\n" + table(self.moments, self.begin_ns))
+        parts += self.unheard
         if self.faults:
             parts.append("faults: " + "; ".join(self.faults))
         if self.real_time:

@@ -8,10 +8,12 @@ import traceback
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink import logging
+from robolink.faults.report import Why
 from robolink.launch import processes
 from robolink.message import type_hash
 from robolink.names import meant, the_one
@@ -123,11 +125,13 @@ class OneProcess:
         names = (first if number == 1 else f"{first}_{number}" for number in range(1, len(self.host.programs) + 2))
         return next(each for each in names if each not in self.host.programs)
 
-    def launch(self, entries: Sequence[Entry]) -> None:
-        """Start what a launch file says, by its rules; commands are left out."""
+    def launch(self, entries: Sequence[Entry], faults: str | PathLike[str] | None = None) -> None:
+        """Start what a launch file says, by its rules, with what a file of faults says; commands are left out."""
         launched = processes(entries)
         for each in launched:
             self._introduce(each)
+        if faults is not None:
+            self.strikes.read(faults)
         for each in launched:
             if not each.members:
                 logging.get_logger("robolink.testing").warning(
@@ -237,6 +241,11 @@ class OneProcess:
     def fault_reports(self) -> list[str]:
         """Tell what each fault of messages has done."""
         return [str(each) for each in self.strikes.injector.network.reports]
+
+    def faults_in_vain(self) -> list[str]:
+        """Tell of faults that name what was never there, or whose time came and that met nothing; not of wildcards."""
+        unmet = self.strikes.injector.unmet()
+        return [each.text for each in unmet if each.why in (Why.WRONG_NAME, Why.IN_VAIN)]
 
     def close(self) -> None:
         """End all programs."""

@@ -15,6 +15,7 @@ from robolink.names import meant
 from robolink.parameter import Parameter, parameter_value_to_python
 from robolink.parameter_client import AsyncParameterClient
 from robolink.parameter_rules import WrittenParameter
+from robolink.simulating.undeclared import is_among
 from robolink.testing.expectations import ExpectationError
 from robolink.testing.stage import Named
 
@@ -115,7 +116,7 @@ class Parameters:
         for each in nodes:
             full_name = each if isinstance(each, str) else each.get_fully_qualified_name()
             declared = None if f"{full_name}/change_state" in served else self._declared(each, full_name)
-            if declared is None or any(f"{one}.".startswith(f"{name}.") for one in declared):
+            if declared is None or is_among(name, declared):
                 return
             known |= declared
         raise ExpectationError(

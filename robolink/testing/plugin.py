@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import random
+import sys
 import zlib
 from collections.abc import Generator, Iterable, Iterator
 from pathlib import Path
@@ -22,9 +23,11 @@ if TYPE_CHECKING:
     from robolink.testing.clock import SystemClock
     from robolink.testing.system import System
 
+SEED = "--robolink-seed"
 SEEDS = 100_000
 MOST_SEED = 2**32 - 1
 RANDOM = "random"
+HASH_SEED = "PYTHONHASHSEED"
 TRANSPORTS = ("memory", "zenoh")
 
 
@@ -43,7 +46,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the options that tests of robot systems have."""
     group = parser.getgroup("robolink", "systems of robolink's nodes")
     group.addoption(
-        "--robolink-seed",
+        SEED,
         type=_seed,
         metavar="N",
         help="the seed of every system, as a failure names it; 'random' draws one for each test."
@@ -58,11 +61,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 _SYSTEM = pytest.StashKey["System"]()
+_HAS_FAILED = pytest.StashKey[bool]()
+"""Whether a test has ended before its time: it failed, or was skipped."""
 
 
 def _seed_for(item: pytest.Item) -> int:
     """Give a test's seed: the same in every run, wherever its file lies, unless one was asked for."""
-    asked: int | str | None = item.config.getoption("--robolink-seed")
+    asked: int | str | None = item.config.getoption(SEED)
     if isinstance(asked, int):
         return asked
     return random.randrange(SEEDS) if asked == RANDOM else zlib.crc32(item.name.encode()) % SEEDS
@@ -86,11 +91,15 @@ def system(request: pytest.FixtureRequest) -> Iterator[System]:
     item = request.node
     seed, transport = _seed_for(item), request.config.getoption("--robolink-transport")
     where = "" if transport == TRANSPORTS[0] else f" --robolink-transport {transport}"
-    replay = f"pytest '{_name_from_here(item)}' --robolink-seed {seed}{where}"
+    hashes = os.environ.get(HASH_SEED, "")
+    before = f"{HASH_SEED}={hashes} " if hashes.isdecimal() else ""
+    replay = f"{before}pytest '{_name_from_here(item)}' {SEED} {seed}{where}"
     with System(seed=seed, transport=transport, replay=replay) as made:
-        item.stash[_SYSTEM] = made
+        item.stash[_SYSTEM], item.stash[_HAS_FAILED] = made, False
         yield made
         made.check()
+        if item.stash[_HAS_FAILED]:
+            made.close()  # its faults may have had no time to meet anything
 
 
 @pytest.fixture
@@ -116,6 +125,7 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[Any]) -> 
     report: pytest.TestReport = (yield).get_result()
     if made is None or call.excinfo is None:  # of unittest's tests pytest says only now what they raised
         return
+    item.stash[_HAS_FAILED] = True
     from robolink.testing.expectations import ExpectationError, OnlyInMemoryError
 
     error = call.excinfo.value
@@ -124,6 +134,17 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[Any]) -> 
         report.longrepr = (str(item.path), item.location[1] or 0, f"Skipped: {error}")
     elif report.failed and not isinstance(error, ExpectationError):  # which says so itself
         report.sections.append(("robolink", made.story.whole()))
+
+
+def pytest_terminal_summary(terminalreporter: Any) -> None:
+    """Say once, below failures that have a replay, what their seed does not decide."""
+    reports = (each for kind in ("failed", "error") for each in terminalreporter.stats.get(kind, ()))
+    if sys.flags.hash_randomization and not os.environ.get(HASH_SEED) and any(map(_has_replay, reports)):
+        terminalreporter.write_line(f"robolink: the order of sets of texts is chance; {HASH_SEED}=0 makes it the same")
+
+
+def _has_replay(report: Any) -> bool:
+    return any(f" {SEED} " in text for text in (report.longreprtext, *(each for _, each in report.sections)))
 
 
 def pytest_exception_interact(call: pytest.CallInfo[Any], report: pytest.CollectReport | pytest.TestReport) -> None:

@@ -123,9 +123,11 @@ class Processes:
         names = (name if number == 1 else f"{name}_{number}" for number in range(1, len(taken) + 2))
         return next(each for each in names if each not in taken)
 
-    def launch(self, entries: Sequence[Entry]) -> None:
+    def launch(self, entries: Sequence[Entry], faults: str | PathLike[str] | None = None) -> None:
         """Start what a launch file says, and wait until every node is made that waits for nothing."""
         __tracebackhide__ = True
+        if faults is not None:
+            self.faults.read(faults)
         before = set(self.node.context.graph.nodes())
         launch = Launch(entries, self.domain, NETWORK, self._exits.put)
         self._begin(launch)
@@ -272,6 +274,10 @@ class Processes:
 
     def fault_reports(self) -> list[str]:
         """Give nothing: there are no faults."""
+        return []
+
+    def faults_in_vain(self) -> list[str]:
+        """Give nothing, likewise."""
         return []
 
     def real_time_use(self) -> list[str]:

@@ -97,8 +97,8 @@ class Stage(Protocol):
     def start(self, wanted: Wanted) -> Any:
         """Start a node; give it, or what stands for it."""
 
-    def launch(self, entries: Sequence[Entry]) -> None:
-        """Start what a launch file says."""
+    def launch(self, entries: Sequence[Entry], faults: str | PathLike[str] | None = None) -> None:
+        """Start what a launch file says, with what a file of faults says, which may concern its very start."""
 
     def stop(self, program: str) -> None:
         """End a program in order."""
@@ -130,6 +130,9 @@ class Stage(Protocol):
 
     def fault_reports(self) -> list[str]:
         """Tell what each fault of messages has done so far."""
+
+    def faults_in_vain(self) -> list[str]:
+        """Tell which faults have come to nothing, so that a test with them has shown nothing, and why."""
 
     def real_time_use(self) -> list[str]:
         """Tell which nodes slept or started threads in real time, and where."""

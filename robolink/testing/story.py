@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from robolink.names import near
 from robolink.testing.expectations import ExpectationError, Told, nothing_came, seconds, too_early
 from robolink.testing.graph_view import EVERYBODYS_TOPICS, GraphView
 from robolink.testing.recorder import Recorder, Topic
@@ -24,6 +25,7 @@ class Story:
     def __init__(self, stage: Stage, replay: str) -> None:
         self._stage, self._replay = stage, replay
         self._classes: dict[str, type[Message]] = {}
+        self._said: dict[str, None] = {}
         self.graph = GraphView(stage.node)
         self.recorder = Recorder(stage.session(), stage.domain, stage.now_ns, self._learn)
         """What was last published on each topic."""
@@ -67,6 +69,16 @@ class Story:
 
     # What is told
 
+    def note_said(self, topic: str) -> None:
+        """Note that the test itself has published on a topic."""
+        self._said[topic] = None
+
+    def _said_in_vain(self) -> list[str]:
+        """Tell to which topics the test publishes that nobody hears, with the nearest that somebody does."""
+        vain = [each for each in self._said if not self._stage.node.count_subscribers(each)]
+        heard = [each for each in self.graph.topics() if self.graph.ends(each).taken] if vain else []
+        return [f"nobody listens to {each}{near(each, heard)}" for each in vain]
+
     def whole(self) -> str:
         """Tell what was last published on each topic, what was logged, what failed, and how to replay it."""
         topics = [each.name for each in self.recorder.topics.values() if each.name not in EVERYBODYS_TOPICS]
@@ -83,7 +95,8 @@ class Story:
         ]
         moments += logs_of(stage.logs, MOST_LOGS, all_logs)
         moments += [Moment(each.time_ns, "failed", each.program, each.why) for each in stage.failures]
-        return str(Told(headline, stage.begin_ns, moments, stage.fault_reports(), stage.real_time_use(), self._replay))
+        faults, real_time = stage.fault_reports(), stage.real_time_use()
+        return str(Told(headline, stage.begin_ns, moments, self._said_in_vain(), faults, real_time, self._replay))
 
     def told_of(self, failures: Iterable[Failure]) -> str:
         """Tell which programs failed, when and why."""

@@ -12,7 +12,7 @@ from robolink.interfaces import find
 from robolink.simulating.robots import robots_of
 from robolink.testing.clock import SystemClock
 from robolink.testing.conversation import Conversation
-from robolink.testing.expectations import ClosedError, NodeFailure
+from robolink.testing.expectations import ClosedError, ExpectationError, NodeFailure
 from robolink.testing.expecting import Expecting
 from robolink.testing.parameters import Parameters
 from robolink.testing.robots import RobotsElsewhere, SimulatedRobot, chosen
@@ -112,10 +112,8 @@ class System:
         from robolink.testing.launching import read
 
         self._check_open()
-        self._stage.launch(read(file, arguments or {}, set or {}))
+        self._stage.launch(read(file, arguments or {}, set or {}), faults)
         self._parameters.note_set(set or {})
-        if faults is not None:
-            self.faults.read(faults)
         self._conversation.hear()
 
     def stop(self, node: str | Named) -> None:
@@ -311,6 +309,17 @@ class System:
         __tracebackhide__ = True
         self._run_until(lambda: True, 0.0)
 
+    def check_faults(self) -> None:
+        """Raise ExpectationError when a fault has come to nothing: a test of it would pass whatever the nodes do.
+
+        That is a fault with a name that nobody ever had, or whose time came and that met nothing, unless it has
+        wildcards. The end of a test, and of a `with`, looks by itself.
+        """
+        __tracebackhide__ = True
+        self._check_open()
+        if in_vain := self._stage.faults_in_vain():
+            raise ExpectationError(self.story.told("\n".join(in_vain)))
+
     def _run_until(self, condition: Callable[[], bool], within: float) -> bool:
         """Let time pass until a condition holds; whether it does. Raises NodeFailure when a program fails first."""
         __tracebackhide__ = True
@@ -357,8 +366,13 @@ class System:
     def __enter__(self) -> System:
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self.close()
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        __tracebackhide__ = True
+        try:
+            if kind is None and not self._is_closed:
+                self.check_faults()
+        finally:
+            self.close()
 
 
 def _stage(transport: str, seed: int) -> Stage:

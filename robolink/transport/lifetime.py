@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import atexit
 import contextlib
 import os
 import signal
@@ -37,13 +36,15 @@ One with 30 peers takes 0.3 s; four that leave a busy machine at once take 0.7 s
 
 _open: weakref.WeakSet[Mortal] = weakref.WeakSet()
 _unfinished: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
-_last: list[Mortal] = []
-"""What the exit closes: held, so that no daemon thread frees it as it ends, which is work in Zenoh too."""
+_last: list[object] = []
+"""What the exit closes, and with what daemon threads end: held, since what they free as they end is work in Zenoh."""
 _inside: set[int] = set()
 """Threads, by their idents, that are just at work in Zenoh."""
 _armed = False
 _forked = False
 _ending = False
+_deadline = 0.0
+"""When the exit waits no longer, by `time.monotonic`."""
 
 
 def watch_over(mortal: Mortal) -> None:
@@ -103,7 +104,14 @@ def outlive(thread: threading.Thread) -> None:
 def end_if_daemon() -> None:
     """End a daemon thread that wants a session at the exit: quietly, as Python is about to."""
     if _ending and threading.current_thread().daemon:
-        raise SystemExit
+        end = SystemExit()
+        _last.append(end)  # its traceback holds what the thread was about to undeclare: it would be freed now
+        raise end
+
+
+def is_ending() -> bool:
+    """Tell whether the interpreter exits: threads that still wait for something are not told of it any more."""
+    return _ending
 
 
 def bury(remains: object) -> None:
@@ -119,24 +127,29 @@ def refuse_if_forked() -> None:
         raise TransportError(AFTER_FORK)
 
 
-def _close_all() -> None:
-    global _ending
-    _last.extend(_all_of(_open))
+def close_all() -> None:
+    """Close what is open, at exit; what a signal has broken off is done by another call, in the time that is left."""
+    global _ending, _deadline
+    _last.extend([*all_of(_open)])
+    if not _ending:
+        _deadline = time.monotonic() + LAST_WAIT
     _ending = True
     with _undisturbed():
-        deadline = time.monotonic() + LAST_WAIT
         # Before anything is closed: opening a session may take 10 s when the one that it meets is just closing.
-        while _inside - {threading.get_ident()} and time.monotonic() < deadline:
+        while _inside - {threading.get_ident()} and time.monotonic() < _deadline:
             time.sleep(0.001)
-        for mortal in _all_of(_open):
+        for mortal in all_of(_open):
             with contextlib.suppress(Exception):
                 mortal.close()
-        _wait_for_the_unfinished(deadline)
+        _wait_for_the_unfinished(_deadline)
 
 
 @contextlib.contextmanager
 def _undisturbed() -> Iterator[None]:
     """Let no signal raise an exception here: a second Ctrl-C would leave threads in Zenoh."""
+    if threading.current_thread() is not threading.main_thread():  # none comes here, as in a Python that is embedded
+        yield
+        return
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     ours = {number: handler for number, handler in handlers.items() if callable(handler)}
     for number in ours:
@@ -151,12 +164,13 @@ def _undisturbed() -> Iterator[None]:
 def _wait_for_the_unfinished(deadline: float) -> None:
     # A thread that comes back from Zenoh while the interpreter ends aborts the process (Python < 3.14). So most get
     # the time that they need; what takes longer, 10 s for a frozen peer, is not back before the process is gone.
-    for thread in _all_of(_unfinished):
-        if thread.ident is not None:  # else a Ctrl-C came before it was started
+    for thread in all_of(_unfinished):
+        with contextlib.suppress(RuntimeError):  # not started: a Ctrl-C came before, or it is about to be
             thread.join(max(0, deadline - time.monotonic()))
 
 
-def _all_of(them: weakref.WeakSet[_Kept]) -> list[_Kept]:
+def all_of(them: weakref.WeakSet[_Kept]) -> list[_Kept]:
+    """List what is in a set to which other threads may be adding."""
     while True:
         with contextlib.suppress(RuntimeError):  # another thread has just added one
             return list(them)
@@ -176,9 +190,5 @@ def _arm() -> None:
     if _armed:
         return
     _armed = True
-    # After Python has waited for the program's threads, which may go on for long, and before it ends daemon threads.
-    # Twice, since a Ctrl-C may break into the very beginning of the first.
-    for _ in range(2):
-        atexit.register(_close_all)
     if hasattr(os, "register_at_fork"):
         os.register_at_fork(after_in_child=_disown_all)

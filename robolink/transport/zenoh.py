@@ -12,6 +12,7 @@ import os
 import queue
 import sys
 import time
+import weakref
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
@@ -61,6 +62,7 @@ class ZenohTransport(Transport):
         self.url = "zenoh://"
         lifetime.refuse_if_forked()
         self._holdings = handles.Holdings()
+        self._ends: weakref.WeakSet[Sink] = weakref.WeakSet()
         self._has_left = False
         with lifetime.inside:
             self._session, self._claim, holds_port = _join(domain, network, os.environ if environ is None else environ)
@@ -89,6 +91,7 @@ class ZenohTransport(Transport):
     def call(self, key: str, payload: bytes, attachment: bytes, sink: Sink) -> Handle:
         """Ask whoever serves `key`. `sink` gets each reply, then None once: no more will come."""
         gate, end = declare.make_gate(sink), declare.make_gate(sink, None)
+        self._ends.add(end)
         cancel = self._try(key, declare.call, key, payload, attachment, gate, end)
         return handles.ZenohCall(cancel, gate, end)
 
@@ -138,6 +141,9 @@ class ZenohTransport(Transport):
         """Undeclare everything and leave the network; calls under way end. Safe to call twice."""
         if self._has_left:
             return
+        if lifetime.is_ending():  # whoever waits ends as well, and shall not complain that nobody answers
+            for end in lifetime.all_of(self._ends):
+                declare.close_gate(end)
         why = f"session {self.session_id} has been closed"
         with self._holdings.lock:
             declared = self._holdings.end(why)
@@ -176,9 +182,9 @@ def _leave(session: zenoh.Session, claim: network.PortClaim | None, entities: li
         if claim:
             claim.release()
 
-    deadline = time.monotonic() + CLOSE_WITHIN
     lifetime.finish(close, CLOSE_WITHIN)
     # A daemon thread that is inside Zenoh when the interpreter ends aborts the process: let it come back first.
+    deadline = time.monotonic() + CLOSE_WITHIN  # from now on: at the exit of Python 3.12 it has just been closed here
     while _in_use(entities) and time.monotonic() < deadline:
         time.sleep(0.001)
 

@@ -78,7 +78,8 @@ class Declared:
         """Undeclare. Safe to call twice."""
         with self._holdings.lock:
             self._holdings.handles.pop(self, None)
-        for entity in self.shut("it has been closed"):
+        left = self.shut("it has been closed")  # by name: `lifetime.end_if_daemon` keeps what has one
+        for entity in left:
             quietly(entity.undeclare)
 
     def shut(self, why: str) -> list[Any]:

@@ -195,7 +195,7 @@ def test_any_order_of_starts_and_ends_leaves_nothing_behind(tmp_path: Path, seed
     assert not host.bus.tokens
 
 
-@pytest.mark.parametrize("end", [Host.close, lambda host: host.crash("pool")])
+@pytest.mark.parametrize("end", [Host.close, lambda host: (host.crash("pool"), host.run(0.0))])
 def test_what_waits_in_a_pool_of_pythons_ends_with_its_program(
     stage: Stage, end: Callable[[Host], object], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -125,7 +125,7 @@ time.sleep(1.0)
     assert ("locks", "wait by itself (not the same each time)", place) in stage.host.real_time_use
 
 
-def test_a_pool_of_pythons_works_beside(stage: Stage) -> None:
+def test_a_pool_of_pythons_works(stage: Stage) -> None:
     text = """
 import time
 from concurrent.futures import ThreadPoolExecutor

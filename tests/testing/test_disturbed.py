@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -84,3 +85,93 @@ def test_the_same_seed_says_the_same() -> None:
 
     logging.set_console_handler(None)
     assert run(1) == run(1) != run(2)
+
+
+# Faults that come to nothing
+
+
+def in_vain(seconds: float, add: Callable[[System], object]) -> str:
+    """What a system says at its end of a fault that it was given."""
+    logging.set_console_handler(None)
+    told = "fine"
+    try:
+        with System(seed=7) as tested:
+            tested.start(Doubler)
+            add(tested)
+            tested.start(Counter)
+            tested.run(seconds)
+    except ExpectationError as error:
+        told = str(error).partition("\n")[0]
+    return told
+
+
+@pytest.mark.parametrize(
+    ("add", "told"),
+    [
+        (
+            lambda each: each.faults.lose("cuont", 0.5),
+            "met nothing: no topic 'cuont' was received by any node (did you mean '/count'?)",
+        ),
+        (lambda each: each.faults.lose("ada/count", 0.5), "received by any node (did you mean '/count'?)"),
+        (lambda each: each.faults.lose(["count", "cuont"], 0.5), "met something, but no topic 'cuont' was received"),
+        (
+            lambda each: each.faults.delay("doubler/enabel", 0.5, service=True),
+            "no service 'doubler/enabel' was received by any node (did you mean '/doubler/enable'?)",
+        ),
+        (lambda each: each.faults.duplicate("count", 0.5, sender="cuonter"), "no node was ever named 'cuonter' (did"),
+        (lambda each: each.faults.delay("count", 1.0, receiver="counter"), "met nothing: nothing went that way"),
+        (lambda each: each.faults.partition("doublr"), "met nothing: no node was ever named 'doublr' (did you mean"),
+        (lambda each: each.faults.skew("cuonter", 1.0), "no node was ever named 'cuonter' (did you mean 'counter'?)"),
+        (lambda each: each.faults.skew("doubler", 1.0), "offset: 1} met nothing: no such node was started with this"),
+        (lambda each: (each.faults.lose("cuont", 1.0), each.run(0.1), each.faults.clear()), "no topic 'cuont' was"),
+        (lambda each: (each.crash("doubler"), each.faults.crash("doubler")), "the node did not run then"),
+    ],
+)
+def test_a_fault_that_comes_to_nothing_fails_the_test(add: Callable[[System], object], told: str) -> None:
+    assert told in in_vain(1.0, add)
+
+
+@pytest.mark.parametrize(
+    "add",
+    [
+        lambda each: each.faults.lose("count", 1e-9),
+        lambda each: each.faults.lose("cuont", 0.0),
+        lambda each: each.faults.skew("cuonter"),
+        lambda each: each.faults.partition("test"),
+        lambda each: each.faults.lose("**/cuont", 0.5),
+        lambda each: each.faults.lose("count", 0.5, receiver="robot*"),
+        lambda each: each.faults.partition("robot*"),
+        lambda each: each.faults.skew("robot*", 1.0),
+        lambda each: each.faults.crash("doubler", after=5.0),
+        lambda each: (each.faults.lose("count", 1.0), each.run(0.1), each.start(Counter), each.run(1.0)),
+    ],
+)
+def test_a_fault_whose_time_has_not_come_or_that_has_wildcards_does_not(add: Callable[[System], object]) -> None:
+    assert in_vain(1.0, add) == "fine"
+
+
+def test_a_fault_of_a_later_time_is_no_mistake(tested: System, tmp_path: Path) -> None:
+    file = tmp_path / "faults.yaml"
+    file.write_text("messages: [{topic: cuont, loss: 1.0, after: 60}]\n")
+    tested.faults.read(file)
+    tested.run(1.0)
+    tested.check_faults()
+
+
+def test_what_goes_wrong_before_is_told_instead() -> None:
+    def fail() -> None:
+        with System() as tested:
+            tested.faults.lose("cuont", 1.0)
+            tested.expect("count")
+
+    with pytest.raises(ExpectationError, match="there is no topic /count"):
+        fail()
+
+
+def test_the_faults_of_a_launch_are_there_when_its_nodes_begin(tested: System, tmp_path: Path) -> None:
+    launch, faults = tmp_path / "drive.yaml", tmp_path / "faults.yaml"
+    launch.write_text("nodes: [{node: world, parameters: {world: corners}}]\n")
+    faults.write_text("clocks: [{node: world, offset: 100}]\ncrashes: [{node: world, at: 60}]\n")
+    tested.launch(launch, faults=faults)
+    assert tested.expect("odom").header.stamp.sec == 101
+    tested.check_faults()

@@ -301,6 +301,27 @@ def test_messages_that_came_too_early_are_told(tested: System) -> None:
         tested.expect("words", within=1.0)
 
 
+def test_what_is_published_where_nobody_hears_it_is_told(tested: System) -> None:
+    class Listener(Node):
+        def __init__(self) -> None:
+            super().__init__("listener")
+            self.create_subscription(String, "words", lambda _: None, 10)
+            self.create_publisher(String, "answers", 10)
+
+    tested.start(Listener)
+    for topic in ("wrds", "words", "/ada/words", "own"):
+        tested.publish(topic, String(data="hello"))
+    tested.node.create_subscription(String, "own", lambda _: None, 10)
+    with pytest.raises(ExpectationError) as error:
+        tested.expect("answers", within=1.0)
+    told = [each for each in str(error.value).splitlines() if "nobody" in each]
+    assert told == [
+        "nobody listens to /wrds (did you mean '/words'?)",
+        "nobody listens to /ada/words (did you mean '/words'?)",
+    ]
+    assert told[0] in tested.story.whole()
+
+
 class Basket(Message):
     """A type of this file alone."""
 

@@ -164,7 +164,10 @@ def remove_old_runs(home: Path, kept: int) -> None:
 
 
 def _new_folder(home: Path, name: str) -> Path:
-    home.mkdir(parents=True, exist_ok=True)
+    try:
+        home.mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError):
+        raise NotADirectoryError(f"{home} is no folder: name one by ROBOLINK_LOG_DIR") from None
     for serial in range(1, 1000):
         folder = home / (name if serial == 1 else f"{name}_{serial}")
         with contextlib.suppress(FileExistsError):
