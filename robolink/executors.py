@@ -373,7 +373,10 @@ class MultiThreadedExecutor(Executor):
 
     def serve_until(self, future: Future[Any], deadline: int | None, *, serving: bool = True) -> None:
         """In a callback that waits: go on with others; if `serving`, in this thread too when no other is free."""
-        self._threads.wait(future, deadline, serving)
+        if self._threads.runs_here():
+            self._threads.wait(future, deadline, serving)
+        else:  # in whoever spins, who runs callbacks once Python has ended the pool
+            super().serve_until(future, deadline, serving=serving)
 
     @contextmanager
     def waiting_for(self, services: Sequence[Entity]) -> Iterator[bool]:

@@ -198,23 +198,30 @@ def test_a_multi_threaded_executor_goes_on_when_the_main_thread_ends() -> None:
     """In rclpy its thread dies of an error then; here it would drop one callback after the other, for ever."""
     text = """
         from robolink import Context, Node
+        from robolink.callback_groups import ReentrantCallbackGroup
         from robolink.executors import MultiThreadedExecutor
+        from robolink.interfaces.std_srvs.srv import Trigger
         from robolink.transport.memory import MemoryTransport
 
         def tick():
             if not threading.main_thread().is_alive():
-                print("after the main thread", flush=True)
+                print(client.call(Trigger.Request(), timeout_sec=30.0), flush=True)
                 context.shutdown()
 
         context = Context(transport=MemoryTransport())
         context.init()
         node = Node("node", context=context)
-        node.create_timer(0.001, tick)
+        group = ReentrantCallbackGroup()
+        node.create_service(Trigger, "go", lambda request, response: response, callback_group=group)
+        client = node.create_client(Trigger, "go", callback_group=group)
+        node.create_timer(0.001, tick, callback_group=group)
         executor = MultiThreadedExecutor(context=context)
         executor.add_node(node)
         threading.Thread(target=executor.spin).start()
     """
-    assert program(text) == (0, ["after the main thread"], "")
+    code, [answer], complaints = program(text)
+    assert (code, complaints) == (0, "")
+    assert "Trigger_Response" in answer
 
 
 @pytest.mark.parametrize("lines", [(0, 1), (1, 0)], ids=["opened first", "registered first"])

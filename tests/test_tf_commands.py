@@ -19,6 +19,7 @@ from robolink import Node
 from robolink.cli import main, output
 from robolink.cli.tf import echo, monitor, tree, watch
 from robolink.cli.tf.watch import Seen
+from robolink.graph import Graph
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.tf2 import StaticTransformBroadcaster, TransformBroadcaster
 from robolink.time import Time
@@ -326,6 +327,30 @@ def test_a_tree_of_nothing_says_why(node: Node, capsys: Captured) -> None:
     assert main(["tf", "tree", "-t", "0.1"]) == 1
     assert "/tf_static is published by /lab/robot, which has sent nothing yet" in capsys.readouterr().err
     assert main(["tf", "tree", "--dot", "--json"]) == 2
+
+
+def test_who_is_announced_behind_its_transforms_is_named_all_the_same(
+    node: Node, again: Callable[..., None], monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    static(node, transform("map", "odom"))
+    again(transform("odom", "base"))
+    asked: list[bytes] = []
+    known = Graph.endpoint_of
+
+    def late(graph: Graph, gid: bytes) -> Any:
+        """The first that is asked for is never announced, all others when they are asked for the third time."""
+        asked.append(gid)
+        return known(graph, gid) if gid != asked[0] and asked.count(gid) > 2 else None
+
+    monkeypatch.setattr(Graph, "endpoint_of", late)
+    monkeypatch.setattr(tree, "NAMED_WITHIN", 0.1)
+    assert main(["tf", "tree", "-t", "0.2", "--json"]) == 0
+    frames = json.loads(capsys.readouterr().out)["frames"]
+    [unknown], [known_by_name] = sorted(
+        (each["publishers"] for each in frames), key=lambda each: "unknown" not in each[0]
+    )
+    assert unknown == f"an unknown node ({asked[0].hex()[:8]})"
+    assert known_by_name == node.get_fully_qualified_name()
 
 
 def test_names_do_not_move_the_terminal(node: Node, capsys: Captured) -> None:

@@ -18,6 +18,9 @@ S = 10**9
 LATE = 1.0
 """Seconds, and two periods more, after which a frame that moves counts as old."""
 
+NAMED_WITHIN = 1.0
+"""Seconds in which who has sent is announced, even on a busy machine."""
+
 NEAR = 10 * S
 """Nanoseconds: stamps that are farther from this computer's clock are of another clock, and compared to each other."""
 
@@ -37,6 +40,7 @@ def run(wait: float, topics: tuple[str, str], form: str) -> None:
     with opened() as context:
         watch = Watch(node_of(context), topics)
         watch.listen(wait)
+        watch.await_names(NAMED_WITHIN)
         if not watch.links:
             raise NoTransformsError(f"no transforms within {wait:g} s; {watch.why_nothing()}")
         links, now = list(watch.links.values()), time.time_ns()

@@ -20,6 +20,9 @@ from robolink.tf2.rigid import Rigid
 from robolink.tf2.tree import Tree
 from robolink.wire import EndpointKind, unpack_attachment
 
+Link = tuple[str, str, str, bool]
+"""Child, parent, sender, and whether it is static."""
+
 TOPICS = ("/tf", "/tf_static")
 DEPTH = 1000
 QOS = {False: QoSProfile(depth=DEPTH), True: QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)}
@@ -48,6 +51,11 @@ class Seen:
             kept.append(new)
             del kept[:-LAST]
 
+    def add_earlier(self, other: Seen) -> None:
+        """Note all that another has, which turned out to be the same."""
+        self.stamps[:0], self.arrivals[:0] = other.stamps, other.arrivals
+        del self.stamps[:-LAST], self.arrivals[:-LAST]
+
     @property
     def rate(self) -> float | None:
         """Transforms a second, by their arrival; None of a single one."""
@@ -65,13 +73,14 @@ class Watch:
 
     def __init__(self, node: Node, topics: tuple[str, str] = TOPICS) -> None:
         self.node, self.topics = node, tuple(node.resolve_topic_name(each) for each in topics)
-        self.links: dict[tuple[str, str, str, bool], Seen] = {}
+        self.links: dict[Link, Seen] = {}
         self.refused: dict[tuple[str, str, str, str], int] = {}
         """How many were refused: by parent, child, sender and the reason."""
         self.tree = Tree(CACHE_TIME)
         self.on_news: Callable[[], object] | None = None
         """Called after each message."""
         self._names: dict[bytes, str] = {}
+        self._nameless: dict[str, bytes] = {}
         for topic, static in zip(self.topics, (False, True), strict=True):
             heard = _Heard(node._owner_, TFMessage, topic, self._taker(static), ReentrantCallbackGroup(), QOS[static])
             node._add_subscription_(heard)
@@ -81,6 +90,13 @@ class Watch:
     def listen(self, span: float, until: Future[Any] | None = None) -> None:
         """Take in what comes for so many seconds, or until a future is done. Raises KeyboardInterrupt at the end."""
         self._executor.spin_until_future_complete(until or Future(), timeout_sec=span)
+        self._name_late()
+
+    def await_names(self, patience: float) -> None:
+        """Listen on until all who have sent are known by name, for so many seconds at most."""
+        deadline = time.monotonic() + patience
+        while self._nameless and time.monotonic() < deadline:
+            self.listen(0.05)
 
     def why_nothing(self) -> str:
         """Say why nothing has come."""
@@ -116,9 +132,30 @@ class Watch:
         if gid not in self._names:
             token = self.node.context.graph.endpoint_of(gid)
             if token is None:
-                return "an unknown node"
+                nameless = f"an unknown node ({gid.hex()[:8]})"
+                self._nameless[nameless] = gid
+                return nameless
             self._names[gid] = token.full_node_name
         return self._names[gid]
+
+    def _name_late(self) -> None:
+        """Name those whose transforms came before they were announced, as the only one on /tf_static may."""
+        for nameless, gid in list(self._nameless.items()):
+            del self._nameless[nameless]  # it comes back if it is still not known
+            if (name := self._name(gid)) != nameless:
+                self.links = _renamed(self.links, nameless, name)
+
+
+def _renamed(links: dict[Link, Seen], sender: str, name: str) -> dict[Link, Seen]:
+    found: dict[Link, Seen] = {}
+    for (child, parent, own, static), seen in links.items():
+        seen.sender = name if own == sender else own
+        first = found.setdefault((child, parent, seen.sender, static), seen)
+        if first is not seen:
+            earlier, later = sorted((first, seen), key=lambda each: each.arrivals[0])
+            later.add_earlier(earlier)
+            found[child, parent, seen.sender, static] = later
+    return found
 
 
 class _Heard(Subscription[TFMessage]):

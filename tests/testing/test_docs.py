@@ -14,7 +14,7 @@ from robolink.testing.faults import Faults
 
 pytest_plugins = ["pytester"]
 
-DOCS = (Path(__file__).parent.parent / "docs" / "testing.md").read_text(encoding="utf-8")
+DOCS = (Path(__file__).parents[2] / "docs" / "testing.md").read_text(encoding="utf-8")
 PROGRAMS = re.findall(r'```python\n("""(\w+)\.py""".*?)```', DOCS, re.DOTALL)
 
 

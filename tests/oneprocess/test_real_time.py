@@ -31,18 +31,6 @@ def host() -> Iterator[Host]:
         yield made
 
 
-@pytest.fixture
-def log() -> Iterator[list[str]]:
-    lines: list[str] = []
-
-    def note(record: logging.Record) -> None:
-        lines.append(record.message)
-
-    logging.add_handler(note)
-    yield lines
-    logging.remove_handler(note)
-
-
 def launched(folder: Path, text: str, **files: str) -> list[Entry]:
     for name in ("nodes", "configs"):
         (folder / name).mkdir()
