@@ -63,8 +63,7 @@ class Member(Node):
 '''
 
 BARE = f"""
-import os, sys, time, zenoh
-os.environ["ZENOH_RUNTIME"] = "(rx:(worker_threads:1),tx:(handover:rx))"
+import sys, time, zenoh
 session = zenoh.open(zenoh.Config.from_json5('''{{
     mode: "peer",
     connect: {{endpoints: ["tcp/127.0.0.1:{17447 + DOMAIN}"]}},

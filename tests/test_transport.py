@@ -12,9 +12,10 @@ from typing import Any
 
 import pytest
 
-from robolink.exceptions import TransportClosedError
+from robolink.exceptions import TransportClosedError, TransportError
 from robolink.inbox import Inbox, Mailbox
 from robolink.qos import QoSProfile
+from robolink.transport import base
 from tests.transports import (
     ADD,
     BEST_EFFORT,
@@ -24,6 +25,7 @@ from tests.transports import (
     OTHER,
     PATIENCE,
     PLAIN,
+    Caller,
     Desk,
     Ear,
     Network,
@@ -346,3 +348,30 @@ def test_a_slow_subscriber_does_not_hold_up_a_fast_one(net: Network) -> None:
     assert took < 4.0
     until(lambda: slow.arrivals() == 100)
     assert len(slow.mailbox) == 2
+
+
+def test_a_message_that_no_receiver_would_take_is_refused(net: Network, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(base, "LARGEST_PAYLOAD", 100_000)
+    session = net.session()
+    outlet, desk = session.advertise(CHATTER, PLAIN), Desk(session)
+    outlet.put(bytes(100_000), b"")
+    with pytest.raises(TransportError, match=r"chatter.*: a message of 100,001 bytes .* \(100,000\): send it in parts"):
+        outlet.put(bytes(100_001), b"")
+    with pytest.raises(TransportError, match="100,001 bytes"):
+        session.call(ADD, bytes(100_001), b"", print)
+    caller = Caller(session)
+    with pytest.raises(TransportError, match="the answer to a call: a message of 100,001 bytes"):
+        desk.next().reply(bytes(100_001), b"")
+    assert caller.arrived.get(timeout=PATIENCE) is None
+
+
+@pytest.mark.processes
+def test_a_message_beyond_the_64_mib_that_once_were_the_limit_arrives(zenoh_net: Network) -> None:
+    outlet, ear = zenoh_net.session().advertise(CHATTER, PLAIN), Ear(zenoh_net.session())
+    reach(outlet, ear)
+    for _ in range(20):  # on a busy machine one may be dropped
+        outlet.put(bytes(65 << 20), b"")
+        with contextlib.suppress(queue.Empty):
+            assert ear.session.size(ear.arrived.get(timeout=3.0)) == 65 << 20
+            return
+    raise AssertionError("it never came")

@@ -281,7 +281,7 @@ def test_a_port_held_by_something_else(domain: int) -> None:
         done = run(domain % 232 + 1, SQUATTED, str(domain))
     assert done.stdout == (
         f"port {port} is taken by a program that does not answer as a robolink session does: "
-        "stop it, or choose another ROS_DOMAIN_ID\n"
+        "go on with it if it was suspended (Ctrl-Z; `fg`), stop it, or choose another ROS_DOMAIN_ID\n"
     )
 
 

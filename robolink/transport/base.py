@@ -12,7 +12,11 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
 
+from robolink.exceptions import TransportError
 from robolink.qos import QoSProfile
+
+LARGEST_PAYLOAD = (1 << 30) - (1 << 16)
+"""Bytes of one message: rmw_zenoh's limit of 1 GiB, less what the network adds."""
 
 Sink = Callable[[Any], object]
 """Called on any thread with something that `Transport.read` or `Transport.accept` understands. Must not block."""
@@ -29,6 +33,15 @@ make_sample: Callable[[tuple[bytes, bytes]], Sample] = functools.partial(tuple._
 """Half the time of Sample(), whose `__new__` is Python: for what is run once a message."""
 
 
+def refuse_giant(key: str, payload: bytes) -> None:
+    """Raise TransportError for a payload that every receiver would throw away without a word."""
+    if len(payload) > LARGEST_PAYLOAD:
+        raise TransportError(
+            f"{key[:200]}: a message of {len(payload):,} bytes is larger than ROS 2's network carries"
+            f" ({LARGEST_PAYLOAD:,}): send it in parts"
+        )
+
+
 class Handle(Protocol):
     """What a declaration gives back; after `close` returns, its sink is not called again."""
 
@@ -40,7 +53,10 @@ class Outlet(Handle, Protocol):
     """A declared publisher."""
 
     def put(self, payload: bytes, attachment: bytes) -> None:
-        """Send to every matching subscription. Raises TransportClosedError after close."""
+        """Send to every matching subscription.
+
+        Raises TransportClosedError after close, TransportError for more than LARGEST_PAYLOAD bytes.
+        """
 
     @property
     def matched(self) -> bool:

@@ -18,7 +18,7 @@ from typing import Any
 
 from robolink.exceptions import TransportClosedError
 from robolink.qos import DurabilityPolicy, QoSProfile, resolved
-from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample
+from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample, refuse_giant
 
 
 class Bus:
@@ -85,6 +85,7 @@ class MemoryTransport(Transport):
 
     def call(self, key: str, payload: bytes, attachment: bytes, sink: Sink) -> Handle:
         """Ask whoever serves `key`: `sink` gets each reply, then None."""
+        refuse_giant(key, payload)
         with self._declaring():
             servers = self.bus.servers.get(key, ())
             call = _Call(self.bus, sink, len(servers))
@@ -178,6 +179,7 @@ class _Outlet(_Declared):
         with self.bus.lock:
             if not self.open:
                 raise TransportClosedError(f"the publisher of {self.key} has been closed")
+            refuse_giant(self.key, payload)
             listening = self.bus.subscriptions.get(self.key, ())
             if not (listening or self.kept.maxlen):
                 return
@@ -265,6 +267,7 @@ class _Query:
         self._call, self._open = call, True
 
     def reply(self, payload: bytes, attachment: bytes) -> None:
+        refuse_giant("the answer to a call", payload)
         with self._call.bus.lock:
             if self._open:
                 self._call.give(Sample(payload, attachment))

@@ -25,6 +25,30 @@ ROS_ROUTER = "tcp/127.0.0.1:7447"
 NAMES = ("localhost", "subnet", "off")
 """Networks that can be asked for by name; an endpoint of a router or a file of Zenoh's settings do as well."""
 
+LEASE_MS = 60_000
+"""Milliseconds without a sign of life after which a peer counts as gone, as in rmw_zenoh.
+
+Who ends or is killed is gone at once, since the system closes its connections. So this is for who stands still (Ctrl-Z,
+a debugger, a laptop that sleeps) and for cables: with 5 s such a node left the graph, and its links had to be made anew
+(5 s after the cable was back, not 0.4). It costs others nothing: what finds no room for such a peer is dropped.
+"""
+
+WAIT_BEFORE_DROP_US = 50_000
+"""Microseconds that a publisher waits for room on the way to a peer before it drops what is for that one.
+
+Zenoh's own 1 ms is too short: a busy machine lets no thread run that fast, and a burst of a hundred scans lost a tenth.
+A peer that stands still holds up one message by this; the next ones are dropped at once.
+"""
+
+WAIT_FOR_THE_REST_US = 150_000
+"""Microseconds more for a message of several batches (64 kB), so that no `publish` takes longer than 0.2 s.
+
+Zenoh's own 50 ms are not enough for 70 MB on a busy machine.
+"""
+
+LARGEST_MESSAGE = 1 << 30
+"""Bytes, with all that Zenoh adds: rmw_zenoh's limit. A session throws away, without a word, what is larger."""
+
 SOUGHT_EVERY = 0.1
 """Seconds: so often a session whose rendezvous has gone looks whether somebody else has taken the port."""
 
@@ -92,6 +116,8 @@ def settings(value: str, domain: int, *, holds_port: bool = True, platform: str 
     return _localhost(port, holds_port, platform)
 
 
+_PATIENCE = {"wait_before_drop": WAIT_BEFORE_DROP_US, "max_wait_before_drop_fragments": WAIT_FOR_THE_REST_US}
+
 _BASE: dict[str, Any] = {
     "mode": "peer",
     # Publishers that keep samples for late joiners stamp them.
@@ -99,11 +125,11 @@ _BASE: dict[str, Any] = {
     "transport": {
         "link": {
             "protocols": ["tcp", "tls", "quic", "ws"],
-            # What finds no room for 50 ms is dropped, as Zenoh has it for what is larger than a batch, not for 1 ms: a
-            # busy machine lets no thread run that fast, and a burst of a hundred scans lost a tenth of them. A peer
-            # that is frozen holds up one message, the next are dropped at once.
-            "tx": {"lease": 5000, "queue": {"congestion_control": {"drop": {"wait_before_drop": 50_000}}}},
-            "rx": {"max_message_size": 64 * 1024 * 1024},
+            "tx": {
+                "lease": LEASE_MS,
+                "queue": {"congestion_control": {"drop": _PATIENCE}},
+            },
+            "rx": {"max_message_size": LARGEST_MESSAGE},
         },
         "shared_memory": {"enabled": True},
     },

@@ -24,7 +24,7 @@ from robolink.queues import get_within
 from robolink.transport import lifetime, network
 from robolink.transport import zenoh_declare as declare
 from robolink.transport import zenoh_handles as handles
-from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample
+from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample, refuse_giant
 
 QUIET = 0.03
 """Seconds without news after which no more peers are expected."""
@@ -37,9 +37,6 @@ LONGEST = 3.0
 
 CLOSE_WITHIN = 0.15
 """Seconds that closing may take before it goes on in the background."""
-
-RUNTIME = "(rx:(worker_threads:1),tx:(handover:rx))"
-"""Fewer threads for Zenoh, unless ZENOH_RUNTIME is set: a fifth less latency and CPU (at 1 kHz), nothing lost."""
 
 LINK_WITHIN = 3.0
 """Seconds in which whoever holds the rendezvous port has to answer; it takes 2 ms, and 1 s on a very busy machine."""
@@ -90,6 +87,7 @@ class ZenohTransport(Transport):
 
     def call(self, key: str, payload: bytes, attachment: bytes, sink: Sink) -> Handle:
         """Ask whoever serves `key`. `sink` gets each reply, then None once: no more will come."""
+        refuse_giant(key, payload)
         gate, end = declare.make_gate(sink), declare.make_gate(sink, None)
         self._ends.add(end)
         cancel = self._try(key, declare.call, key, payload, attachment, gate, end)
@@ -245,7 +243,6 @@ class _Joined(NamedTuple):
 
 
 def _join(domain: int, asked: str | None, environ: Mapping[str, str]) -> _Joined:
-    os.environ.setdefault("ZENOH_RUNTIME", RUNTIME)  # Zenoh reads it when the first session is opened
     if "RUST_LOG" in environ:
         show_log: Callable[[], object] = zenoh.try_init_log_from_env
         show_log()
@@ -278,7 +275,7 @@ def _meet(port: int, open_session: Callable[[bool], zenoh.Session]) -> _Joined:
         lifetime.finish(functools.partial(_close, session), CLOSE_WITHIN)
     raise TransportError(
         f"port {port} is taken by a program that does not answer as a robolink session does: "
-        "stop it, or choose another ROS_DOMAIN_ID"
+        "go on with it if it was suspended (Ctrl-Z; `fg`), stop it, or choose another ROS_DOMAIN_ID"
     )
 
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import zenoh
 
-from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from robolink.transport import lifetime
 from robolink.transport.base import Sink
 
@@ -30,11 +30,14 @@ class Publishers(NamedTuple):
 
 
 def declare_publishers(session: zenoh.Session, key: str, qos: QoSProfile) -> Publishers:
-    """Declare what a resolved profile asks for: it drops when congested, unless it is RELIABLE and KEEP_ALL."""
+    """Declare what a resolved profile asks for; for a peer without room it waits a little, then drops.
+
+    Also when it is RELIABLE and KEEP_ALL, where rmw_zenoh has Zenoh block: that stops all that this session sends to
+    that peer, and whoever sends it, for seconds, and then ends the link.
+    """
     reliable = qos.reliability is ReliabilityPolicy.RELIABLE
-    blocking = reliable and qos.history is HistoryPolicy.KEEP_ALL
     options: dict[str, Any] = {
-        "congestion_control": zenoh.CongestionControl.BLOCK if blocking else zenoh.CongestionControl.DROP,
+        "congestion_control": zenoh.CongestionControl.DROP,
         "reliability": zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
     }
     plain = session.declare_publisher(key, **options)

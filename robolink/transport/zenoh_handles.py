@@ -10,7 +10,7 @@ import zenoh
 
 from robolink.exceptions import TransportClosedError, TransportError
 from robolink.transport import lifetime
-from robolink.transport.base import Sample, Sink
+from robolink.transport.base import Sample, Sink, refuse_giant
 from robolink.transport.network import reason
 from robolink.transport.zenoh_declare import Publishers, close_gate, is_matching, quietly
 
@@ -125,13 +125,16 @@ class ZenohOutlet(Declared):
         super().__init__(holdings, publishers.used)
 
     def put(self, payload: bytes, attachment: bytes) -> None:
-        """Send to every matching subscription. Raises TransportClosedError after close."""
+        """Send to every matching subscription. Raises TransportClosedError after close, TransportError for giants."""
+        large = len(payload) >= LARGE
+        if large:
+            refuse_giant(self._key, payload)
         sinks = self._topic.sinks
         if sinks:
             sample = Sample(payload, attachment)
             for sink in sinks:
                 sink(sample)
-        if len(payload) < LARGE or self._worth_a_copy():
+        if not large or self._worth_a_copy():
             try:
                 self._entity.put(payload, attachment=attachment)
             except zenoh.ZError as error:
@@ -236,7 +239,8 @@ class ZenohQuery:
         self.payload, self.attachment = content(raw.payload), content(raw.attachment)
 
     def reply(self, payload: bytes, attachment: bytes) -> None:
-        """Answer, from any thread. Nothing happens when the caller is gone."""
+        """Answer, from any thread. Nothing happens when the caller is gone. Raises TransportError for giants."""
+        refuse_giant("the answer to a call", payload)
         quietly(lambda: self._raw.reply(self._key, payload, attachment=attachment))
 
     def close(self) -> None:
