@@ -39,6 +39,11 @@ class FromHumbleKey(NamedTuple):
 
     sample: Sample
 
+    @property
+    def attachment(self) -> bytes:
+        """The sample's."""
+        return self.sample.attachment
+
 
 class CopyError(RobolinkError):
     """A message has been, or will be, received on the topic's other key."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import threading
 from collections.abc import Callable
 from enum import Enum
 from typing import Any, Generic, TypedDict, TypeVar
 
+from robolink.backlog import Backlog, Gaps
 from robolink.callback_groups import CallbackGroup
 from robolink.endpoint import Endpoint, Owner
 from robolink.entity import ANY_TIME, Receiver
@@ -24,12 +26,11 @@ from robolink.logging import get_logger
 from robolink.message import Message, decoder, message_type
 from robolink.qos import HistoryPolicy, QoSProfile, resolved
 from robolink.transport.base import Handle, Sample
-from robolink.wire import ATTACHMENT_BYTES, Attachment, EndpointKind, unpack_attachment
+from robolink.wire import ATTACHMENT_BYTES, EndpointKind, unpack_attachment
 
 MsgT = TypeVar("MsgT", bound=Message)
 
-MOST_SENDERS = 1000
-"""Publishers of a topic whose messages are looked at for gaps."""
+_LOST = {QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST}
 
 
 def takes_arguments(function: Callable[..., Any], count: int) -> bool:
@@ -91,6 +92,9 @@ class Subscription(Receiver, Generic[MsgT]):
         self._humble_door: _HumbleDoor | None = None
         self._inbox = owner.context.inbox
         self._handles: list[Handle] = []
+        self._backlog: Backlog | None = None
+        if depth == 0:
+            self._backlog, self.straight = Backlog(topic), False
         self._listen_for_events(event_callbacks or SubscriptionEventCallbacks())
         self._endpoint.speak_humble = self._speak_humble
         self._handles.append(self._endpoint.transport.subscribe(self._endpoint.key, qos_profile, self.sink))
@@ -114,8 +118,21 @@ class Subscription(Receiver, Generic[MsgT]):
         self._callback = callback
         self._with_info = self._callback_type is self.CallbackType.WithMessageInfo
 
+    def deliver(self, arrived: Any) -> None:
+        """Keep what arrived; with KEEP_ALL as plain bytes, since one that came from Zenoh holds all of its batch."""
+        if self._backlog is not None:
+            if type(arrived) is not FromHumbleKey:
+                arrived = self._endpoint.transport.read(arrived)
+            with contextlib.suppress(WireError):  # told when it is taken
+                missing = self._backlog.add(arrived.attachment, self.mailbox.waiting)
+                if missing:
+                    tell_handlers(self.event_handlers, _LOST, total=missing)
+        super().deliver(arrived)
+
     def execute(self, taken: Any) -> Any:
         """Decode what arrived and call the callback; what cannot be decoded is counted, and warned about once."""
+        if self._backlog is not None and self._backlog.warnings:
+            get_logger(self.logger_name).warning(self._backlog.warnings.popleft())
         try:
             payload, attachment = self._read(taken)
             if len(attachment) != ATTACHMENT_BYTES or attachment[16] != 16:
@@ -155,6 +172,11 @@ class Subscription(Receiver, Generic[MsgT]):
         """How many messages gave way to newer ones before they were taken."""
         return self.mailbox.dropped
 
+    @property
+    def lost(self) -> int:
+        """How many messages did not arrive; counted for KEEP_ALL alone."""
+        return self._backlog.lost if self._backlog is not None else 0
+
     def get_publisher_count(self) -> int:
         """How many publishers of this topic and type there are."""
         return self._endpoint.count_others()
@@ -167,7 +189,7 @@ class Subscription(Receiver, Generic[MsgT]):
         self._endpoint.warns = warns_of_types(callbacks)
         self._endpoint.on_disagreement = self._on_disagreement
         self._endpoint.on_other = self._on_other
-        if callbacks.message_lost:
+        if callbacks.message_lost and self._backlog is None:
             self._count_lost()
 
     def _on_other(self, came: bool) -> None:
@@ -179,14 +201,15 @@ class Subscription(Receiver, Generic[MsgT]):
 
     def _count_lost(self) -> None:
         """Look for gaps between the numbers of the messages that are taken."""
-        read, lost = self._read, {QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST}
-        gaps = _Gaps()
+        read, gaps = self._read, Gaps()
+        lock = threading.Lock()  # callbacks of a reentrant group run side by side
 
         def read_and_count(taken: Any) -> Sample:
             sample = read(taken)
-            missing = gaps.before(unpack_attachment(sample.attachment))
+            with lock:
+                missing = gaps.before(unpack_attachment(sample.attachment))
             if missing:
-                tell_handlers(self.event_handlers, lost, total=missing)
+                tell_handlers(self.event_handlers, _LOST, total=missing)
             return sample
 
         self._read = read_and_count
@@ -263,20 +286,3 @@ class _HumbleDoor:
         sample = self._read(arrived)
         if not self._copies.comes_twice(sample.attachment):
             self._subscription.deliver(FromHumbleKey(sample))
-
-
-class _Gaps:
-    """The last number of each sender's messages."""
-
-    def __init__(self) -> None:
-        self._last: dict[bytes, int] = {}
-        self._lock = threading.Lock()  # callbacks of a reentrant group run side by side
-
-    def before(self, sender: Attachment) -> int:
-        """How many of its messages are missing before this one."""
-        with self._lock:
-            last = self._last.pop(sender.gid, sender.sequence)
-            self._last[sender.gid] = max(last, sender.sequence)  # the one heard last is last
-            if len(self._last) > MOST_SENDERS:
-                del self._last[next(iter(self._last))]
-        return max(0, sender.sequence - last - 1)

@@ -21,6 +21,7 @@ from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.builtin_interfaces.msg import Time
 from robolink.interfaces.std_msgs.msg import Header, UInt8MultiArray
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
+from robolink.subscription import Subscription
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 JOIN_WITHIN = 30.0
@@ -59,12 +60,11 @@ class Pulse(robolink.Node):
         self._sent, self._blocked = 0, 0.0
         self._heard = {other: Heard() for other in others}
         self._publisher = self.create_publisher(Header, name, qos)
-        for other in others:
-            self._listen(other, qos)
+        self.ears = {other: self._listen(other, qos) for other in others}
         self._clockwork = self.create_timer(1 / rate, self._beat)
 
-    def _listen(self, other: str, qos: QoSProfile) -> None:
-        self.create_subscription(Header, other, lambda header: self._hear(other, header), qos)
+    def _listen(self, other: str, qos: QoSProfile) -> Subscription[Header]:
+        return self.create_subscription(Header, other, lambda header: self._hear(other, header), qos)
 
     def mark(self) -> None:
         """Have what is sent from now on count."""
@@ -94,7 +94,12 @@ class Pulse(robolink.Node):
             "sent": self._sent,
             "blocked": self._blocked,
             "heard": {
-                other: {"count": heard.count, "latest": heard.latest, "pause": heard.pause}
+                other: {
+                    "count": heard.count,
+                    "told": self.ears[other].lost,
+                    "latest": heard.latest,
+                    "pause": heard.pause,
+                }
                 for other, heard in self._heard.items()
             },
         }

@@ -38,6 +38,8 @@ class Harm(NamedTuple):
     """Messages of the other one."""
     lost: int
     """Those of them that did not come."""
+    told: int
+    """Those that its KEEP_ALL subscription has counted as lost."""
     late: float
     """Seconds: the latest message, or the longest pause."""
     blocked: float
@@ -99,13 +101,14 @@ class Pulses:
 
 
 def _harm(name: str, reports: dict[str, Any]) -> Harm:
-    """Look at one through what the others sent; the worst counts."""
-    harm = Harm(0, 0, 0.0, reports[name]["blocked"])
+    """Look at one through what those sent that went on; the worst counts."""
+    harm = Harm(0, 0, 0, 0.0, reports[name]["blocked"])
     for other, heard in reports[name]["heard"].items():
-        if other in reports:
+        if other in WATCHED and other in reports:
             sent = reports[other]["sent"]
             late = max(harm.late, heard["latest"], heard["pause"])
-            harm = Harm(max(harm.sent, sent), max(harm.lost, sent - heard["count"]), late, harm.blocked)
+            lost = max(harm.lost, sent - heard["count"])
+            harm = Harm(max(harm.sent, sent), lost, max(harm.told, heard["told"]), late, harm.blocked)
     return harm
 
 
@@ -113,10 +116,11 @@ def play(
     order: str,
     fault: Callable[[Pulses], None],
     *options: str,
+    names: Sequence[str] = WATCHED,
     environ: dict[str, str] | None = None,
     prefixes: dict[str, list[str]] | None = None,
 ) -> dict[str, Harm]:
-    """Start the three in this order, let something happen to `c`, and give what it did to the others."""
+    """Start the three in this order, let something happen to `c`, and give what it did to these."""
     with ExitStack() as stack:
         pulses = Pulses(stack, environ or {}, prefixes)
         for name in order:
@@ -124,7 +128,7 @@ def play(
         pulses.ready()
         time.sleep(1.0)  # so long all is well
         fault(pulses)
-        return pulses.harm()
+        return pulses.harm(names)
 
 
 def freeze(seconds: float) -> Callable[[Pulses], None]:

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from robolink import Context, Node
+from robolink.backlog import MOST_SENDERS
 from robolink.callback_groups import MutuallyExclusiveCallbackGroup
 from robolink.event_handler import (
     EventHandler,
@@ -29,7 +30,7 @@ from robolink.impl.log_output import Record
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.message import encode
 from robolink.publisher import Publisher
-from robolink.subscription import MOST_SENDERS
+from robolink.qos import HistoryPolicy, QoSProfile
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.wire import pack_attachment
 from tests.programs import Program
@@ -102,11 +103,13 @@ def test_another_type_is_an_event(node: Node, executor: SingleThreadedExecutor, 
     assert log_lines == []
 
 
-def test_lost_messages_are_counted_by_their_numbers(bus: Bus, node: Node, executor: SingleThreadedExecutor) -> None:
-    got: list[Any] = []
-    subscription = node.create_subscription(
-        Int32, "topic", nothing, 100, event_callbacks=SubscriptionEventCallbacks(message_lost=got.append)
-    )
+@pytest.mark.parametrize("history", [HistoryPolicy.KEEP_LAST, HistoryPolicy.KEEP_ALL])
+def test_lost_messages_are_counted_by_their_numbers(
+    bus: Bus, node: Node, executor: SingleThreadedExecutor, history: HistoryPolicy
+) -> None:
+    got, qos = list[Any](), QoSProfile(depth=100, history=history)
+    callbacks = SubscriptionEventCallbacks(message_lost=got.append)
+    subscription = node.create_subscription(Int32, "topic", nothing, qos, event_callbacks=callbacks)
     outlet = MemoryTransport(bus=bus).advertise(subscription._endpoint.key, subscription.qos_profile)
     for number in (5, 6, 9, 7, 10, 14):  # 7 and 8 are missed, and 7 comes late; 11 to 13 never come
         outlet.put(encode(Int32()), pack_attachment(number, 0, b"a" * 16))

@@ -41,9 +41,12 @@ def test_a_cable_that_is_out_stalls_nobody_on_this_side() -> None:
 
 def test_a_subscriber_that_is_stopped_takes_nothing_from_the_others() -> None:
     """Of 10 kB each, so that what waits for it soon fills all buffers: nobody waits for it then."""
-    harms = play("abc", freeze(6.0), "--keep-all", "--rate", "500", "--bytes", "10000")
+    harms = play("abc", freeze(6.0), "--keep-all", "--rate", "500", "--bytes", "10000", names="abc")
+    stopped = harms.pop("c")
     check_unharmed(harms)
     assert [harm.lost for harm in harms.values()] == [0, 0]
+    assert stopped.lost > 0
+    assert stopped.told >= stopped.lost
 
 
 @pytest.mark.parametrize("shared_memory", [True, False])

@@ -40,8 +40,8 @@ Zenoh's own 1 ms is too short: a busy machine lets no thread run that fast, and 
 A peer that stands still holds up one message by this; the next ones are dropped at once.
 """
 
-WAIT_FOR_THE_REST_US = 150_000
-"""Microseconds more for a message of several batches (64 kB), so that no `publish` takes longer than 0.2 s.
+WAIT_FOR_THE_REST_US = 100_000
+"""Microseconds more for a message of several batches (64 kB), so that no `publish` waits longer than 0.15 s.
 
 Zenoh's own 50 ms are not enough for 70 MB on a busy machine.
 """

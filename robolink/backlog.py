@@ -1,0 +1,79 @@
+"""The backlog of a KEEP_ALL subscription: what was lost on the way to it, and what waits since its callback is slow.
+
+Such a subscription is told about neither by its network nor by its depth, which it has not. So it counts the gaps in
+its publishers' numbers, and says once that there are some; and it says when more and more waits.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+from robolink.wire import Attachment, unpack_attachment
+
+MOST_SENDERS = 1000
+"""Publishers of a topic whose messages are looked at for gaps."""
+
+MANY_WAIT = 1000
+"""Messages that wait when the first warning comes; each next one comes at ten times as many."""
+
+TOO_OLD_NS = 1_000_000_000
+"""Nanoseconds between the first and the last that wait: less is a burst, and no reason to warn."""
+
+
+class Gaps:
+    """The last number of each sender's messages."""
+
+    def __init__(self) -> None:
+        self._last: dict[bytes, int] = {}
+
+    def before(self, sender: Attachment) -> int:
+        """Give how many of its messages are missing before this one; not to be called by two threads at once."""
+        last = self._last.pop(sender.gid, sender.sequence)
+        self._last[sender.gid] = max(last, sender.sequence)  # the one heard last is last
+        if len(self._last) > MOST_SENDERS:
+            del self._last[next(iter(self._last))]
+        return max(0, sender.sequence - last - 1)
+
+
+class Backlog:
+    """Looks at what is delivered, in its order, and has warnings ready for whoever takes it."""
+
+    def __init__(self, topic: str) -> None:
+        self._topic = topic
+        self._gaps = Gaps()
+        self._warns_at = MANY_WAIT
+        self.lost = 0
+        """Messages that were published and did not arrive, as far as the numbers of later ones tell."""
+        self.warnings: deque[str] = deque()
+        """What is to be logged: not here, where a lock is held, but by whoever runs the callback."""
+
+    def add(self, attachment: bytes, waiting: deque[Any]) -> int:
+        """Look at a message that is about to wait behind others; give how many are missing before it.
+
+        Raises WireError for an attachment that is not ROS 2's.
+        """
+        sender = unpack_attachment(attachment)
+        missing = self._gaps.before(sender)
+        if missing:
+            self._count(missing)
+        if len(waiting) >= self._warns_at:
+            self._look_at_age(sender.timestamp, waiting)
+        return missing
+
+    def _count(self, missing: int) -> None:
+        if not self.lost:
+            self.warnings.append(
+                f"{self._topic}: {missing} messages that were published did not arrive: this process stood still, or"
+                " took them too slowly from the network (more are only counted, in `Subscription.lost`)"
+            )
+        self.lost += missing
+
+    def _look_at_age(self, newest: int, waiting: deque[Any]) -> None:
+        age = newest - unpack_attachment(waiting[0].attachment).timestamp
+        if age >= TOO_OLD_NS:
+            self._warns_at = 10 * len(waiting)
+            self.warnings.append(
+                f"{self._topic}: the callback does not keep up: {len(waiting)} messages wait, the first of them since"
+                f" {age / 1e9:.1f} s, and KEEP_ALL keeps them all: make the callback faster, or use KEEP_LAST"
+            )

@@ -1,0 +1,118 @@
+"""A KEEP_ALL subscription tells what was lost on the way to it, and that it does not keep up."""
+
+from __future__ import annotations
+
+import pytest
+
+from robolink import Context, Node
+from robolink.callback_groups import ReentrantCallbackGroup
+from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from robolink.impl.log_output import Record
+from robolink.interfaces.std_msgs.msg import Int32
+from robolink.message import encode
+from robolink.qos import HistoryPolicy, QoSProfile
+from robolink.subscription import Subscription
+from robolink.transport.base import Outlet
+from robolink.transport.memory import Bus, MemoryTransport
+from robolink.wire import pack_attachment
+from tests.spins import spin_for
+
+KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+MILLISECOND = 1_000_000
+
+
+@pytest.fixture
+def node(virtual: Context, executor: SingleThreadedExecutor) -> Node:
+    made = Node("slow", context=virtual)
+    executor.add_node(made)
+    return made
+
+
+class Sender:
+    """A publisher of another process, whose messages may be lost."""
+
+    def __init__(self, bus: Bus, subscription: Subscription[Int32]) -> None:
+        transport = MemoryTransport(bus=bus)
+        self._outlet: Outlet = transport.advertise(subscription._endpoint.key, subscription.qos_profile)
+
+    def send(self, number: int, gid: bytes = b"a" * 16, apart: int = MILLISECOND) -> None:
+        self._outlet.put(encode(Int32(data=number)), pack_attachment(number, number * apart, gid))
+
+
+def test_what_is_lost_is_told_once_and_counted(
+    bus: Bus, node: Node, executor: SingleThreadedExecutor, log_lines: list[Record]
+) -> None:
+    got: list[int] = []
+    subscription = node.create_subscription(Int32, "topic", lambda message: got.append(message.data), KEEP_ALL)
+    sender = Sender(bus, subscription)
+    for number in (5, 6, 9, 10, 14):
+        sender.send(number)
+        sender.send(number, gid=b"b" * 16)
+    spin_for(executor, 0.1)
+    assert got == [5, 5, 6, 6, 9, 9, 10, 10, 14, 14]
+    assert subscription.lost == 10
+    (line,) = log_lines
+    assert line.message == (
+        "/topic: 2 messages that were published did not arrive: this process stood still, or took them too slowly"
+        " from the network (more are only counted, in `Subscription.lost`)"
+    )
+
+
+def test_callbacks_side_by_side_lose_nothing(bus: Bus, two: MultiThreadedExecutor, context: Context) -> None:
+    """What arrives is counted in its order, whichever thread takes it first."""
+    made, got = Node("quick", context=context), list[int]()
+    two.add_node(made)
+    group = ReentrantCallbackGroup()
+    subscription = made.create_subscription(
+        Int32, "topic", lambda message: got.append(message.data), KEEP_ALL, callback_group=group
+    )
+    sender = Sender(bus, subscription)
+    for number in range(500):
+        sender.send(number)
+    while len(got) < 500:
+        two.spin_once(timeout_sec=1.0)
+    assert subscription.lost == 0
+
+
+def test_keep_last_counts_nothing(bus: Bus, node: Node, executor: SingleThreadedExecutor) -> None:
+    subscription = node.create_subscription(Int32, "topic", lambda _: None, 10)
+    sender = Sender(bus, subscription)
+    sender.send(1)
+    sender.send(9)
+    spin_for(executor, 0.1)
+    assert subscription.lost == 0
+
+
+def test_who_does_not_keep_up_is_told_at_a_thousand_and_at_ten_thousand(
+    bus: Bus, node: Node, executor: SingleThreadedExecutor, log_lines: list[Record]
+) -> None:
+    subscription = node.create_subscription(Int32, "topic", lambda _: None, KEEP_ALL)
+    sender = Sender(bus, subscription)
+    for number in range(12_000):
+        sender.send(number)
+    spin_for(executor, 0.1)
+    assert [line.message for line in log_lines] == [
+        f"/topic: the callback does not keep up: {waiting} messages wait, the first of them since {age} s, and KEEP_ALL"
+        " keeps them all: make the callback faster, or use KEEP_LAST"
+        for waiting, age in ((1000, 1.0), (10_000, 10.0))
+    ]
+
+
+def test_a_burst_is_no_reason_to_warn(
+    bus: Bus, node: Node, executor: SingleThreadedExecutor, log_lines: list[Record]
+) -> None:
+    subscription = node.create_subscription(Int32, "topic", lambda _: None, KEEP_ALL)
+    sender = Sender(bus, subscription)
+    for number in range(5000):
+        sender.send(number, apart=MILLISECOND // 10)
+    spin_for(executor, 0.1)
+    assert log_lines == []
+
+
+def test_a_message_without_ros_2s_attachment_is_refused_when_it_is_taken(
+    bus: Bus, node: Node, executor: SingleThreadedExecutor
+) -> None:
+    subscription = node.create_subscription(Int32, "topic", lambda _: None, KEEP_ALL)
+    MemoryTransport(bus=bus).advertise(subscription._endpoint.key, KEEP_ALL).put(encode(Int32()), b"nonsense")
+    spin_for(executor, 0.1)
+    assert (subscription.malformed, subscription.lost) == (1, 0)
