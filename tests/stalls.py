@@ -187,8 +187,8 @@ def _ip(*words: str) -> None:
     subprocess.run(["ip", *words], check=True)
 
 
-def cut_the_cable(order: str, seconds: float) -> dict[str, Harm]:
-    """Have `c` on another machine, and its cable out for so long; give what that did to the others."""
+def cut_the_cable(order: str, seconds: float, *options: str, names: Sequence[str] = WATCHED) -> dict[str, Harm]:
+    """Have `c` on another machine, and its cable out for so long; give what that did to these."""
     with two_hosts() as (here, there):
 
         def pull(pulses: Pulses) -> None:
@@ -198,7 +198,8 @@ def cut_the_cable(order: str, seconds: float) -> dict[str, Harm]:
             time.sleep(2.0)
 
         prefixes = {name: ["ip", "netns", "exec", there if name == "c" else here] for name in order}
-        return play(order, pull, environ={"ROBOLINK_NETWORK": "subnet"}, prefixes=prefixes)
+        environ = {"ROBOLINK_NETWORK": "subnet"}
+        return play(order, pull, *options, names=names, environ=environ, prefixes=prefixes)
 
 
 # Latched messages

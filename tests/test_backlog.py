@@ -53,8 +53,8 @@ def test_what_is_lost_is_told_once_and_counted(
     assert subscription.lost == 10
     (line,) = log_lines
     assert line.message == (
-        "/topic: 2 messages that were published did not arrive: this process stood still, or took them too slowly"
-        " from the network (more are only counted, in `Subscription.lost`)"
+        "/topic: 2 messages that were published did not arrive: this process or its link stood still, or"
+        " it took them too slowly (more are only counted, in `Subscription.lost`)"
     )
 
 
