@@ -64,8 +64,8 @@ class Backlog:
     def _count(self, missing: int) -> None:
         if not self.lost:
             self.warnings.append(
-                f"{self._topic}: {missing} messages that were published did not arrive: this process or its link stood still, or"
-                " it took them too slowly (more are only counted, in `Subscription.lost`)"
+                f"{self._topic}: {missing} messages that were published did not arrive: this process or its link stood"
+                " still, or it took them too slowly (more are only counted, in `Subscription.lost`)"
             )
         self.lost += missing
 

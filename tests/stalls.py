@@ -135,6 +135,8 @@ def freeze(seconds: float) -> Callable[[Pulses], None]:
     """Stop a process for so long, as Ctrl-Z does."""
 
     def stand_still(pulses: Pulses) -> None:
+        if sys.platform == "win32":
+            raise RuntimeError("Windows has no SIGSTOP: nothing can be stopped")
         pulses.processes["c"].send_signal(signal.SIGSTOP)
         time.sleep(seconds)
         pulses.processes["c"].send_signal(signal.SIGCONT)
