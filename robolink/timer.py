@@ -224,21 +224,26 @@ def _info_parameter(callback: Callable[..., Any]) -> str | None:
 
 
 class Rate:
-    """Sleeps for the rest of each period. Something else has to spin, or time to be virtual."""
+    """Sleeps for the rest of each period. Something else has to spin, or time to be virtual.
+
+    A tick that comes while nobody sleeps lets the next `sleep` return at once; of several, one is kept. So work that
+    took longer than a period is not followed by a wait for the next whole one.
+    """
 
     def __init__(self, timer: Timer, *, context: Context) -> None:
         self._timer, self._context = timer, context
         self._sleepers: list[Future[None]] = []
-        self._woken = threading.Event()
+        self._has_ticked = False
         self._lock = threading.Lock()
         self._is_shutdown = self._is_destroyed = False
-        timer.callback = self._wake
+        timer.callback = self._tick
         timer.quick = True
         context.on_shutdown(self._shut_down)
 
-    def _wake(self) -> None:
+    def _tick(self) -> None:
         with self._lock:
             sleepers, self._sleepers = self._sleepers, []
+            self._has_ticked = not sleepers
         for each in sleepers:
             each.set_result(None)
 
@@ -249,12 +254,11 @@ class Rate:
     def destroy(self) -> None:
         """Wake whoever sleeps, for good. Safe to call twice."""
         self._is_destroyed = True
-        self._woken.set()
-        self._wake()
+        self._tick()
         self._timer.destroy()
 
     def sleep(self) -> None:
-        """Sleep until the next tick, or until the rate is destroyed.
+        """Sleep until the next tick, or until the rate is destroyed; not at all if there was one since the last sleep.
 
         In the thread that spins, or where nobody does, it sleeps by the clock instead of waiting for a callback. Raises
         ROSInterruptException when the context ends, InterruptedByUser (a KeyboardInterrupt) in the main thread when
@@ -274,27 +278,45 @@ class Rate:
             raise ROSInterruptException()
 
     def _sleep(self) -> None:
+        tick = self._next_tick()
+        try:
+            self._wait_for(tick)
+        finally:
+            with self._lock:  # a sleep that was broken off leaves the tick to the next one
+                self._sleepers = [each for each in self._sleepers if each is not tick]
+
+    def _next_tick(self) -> Future[None]:
+        """Come to sleep: the future of the next tick, which is done if there was one."""
+        tick: Future[None] = Future()
+        with self._lock:
+            ticked, self._has_ticked = self._has_ticked or self._is_destroyed, False
+            if not ticked:
+                self._sleepers.append(tick)
+        if ticked:
+            tick.set_result(None)
+        return tick
+
+    def _wait_for(self, tick: Future[None]) -> None:
         executor = self._timer.executor
         if executor is None or not executor.spinning or (executor.spins_here and not executor.parallel):
-            self._sleep_by_clock()
+            self._tick_by_clock(tick)
         elif executor.spins_here:
-            executor.serve_until(self._next_tick(), None, serving=False)
+            executor.serve_until(tick, None, serving=False)
         else:
             woken = threading.Event()
-            self._next_tick().when_done(woken.set)
+            tick.when_done(woken.set)
             while not woken.wait(A_WHILE):
                 continue  # a signal that comes just before the wait begins is noticed at its end
 
-    def _next_tick(self) -> Future[None]:
-        tick: Future[None] = Future()
-        with self._lock:
-            self._sleepers.append(tick)
-        if self._is_destroyed:
-            self._wake()
-        return tick
-
-    def _sleep_by_clock(self) -> None:
-        timer = self._timer
-        timer.clock.sleep_until_ns(timer.next_call_ns, self._woken, lambda: self._is_destroyed)
-        if timer.take() is NOTHING and not self._is_destroyed:
-            timer.reset()
+    def _tick_by_clock(self, tick: Future[None]) -> None:
+        """Take the timer's ticks here, until an executor that begins to spin has taken one, or the rate ends."""
+        timer, woken = self._timer, threading.Event()
+        tick.when_done(woken.set)
+        while not tick.over():
+            reached = timer.clock.sleep_until_ns(timer.next_call_ns, woken, tick.over)
+            if tick.over():
+                return
+            if timer.take() is not NOTHING:
+                self._tick()
+            elif timer.is_canceled() or not reached:  # not: an executor took it just now, and will tell
+                timer.reset()

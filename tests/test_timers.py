@@ -10,10 +10,12 @@ from collections.abc import Callable
 
 import pytest
 
+import robolink
 from robolink import Clock, Context, Node
 from robolink.clock_type import ClockType
 from robolink.exceptions import InvalidHandle, ROSInterruptException
 from robolink.executors import SingleThreadedExecutor
+from robolink.testing import System
 from robolink.timebase import SystemTime
 from robolink.timer import Timer, TimerInfo
 from tests.spins import spin_for, spin_until
@@ -251,6 +253,69 @@ def test_a_rate_sleeps_the_rest_of_each_period_in_one_thread(node: Node, executo
     assert woke == [100, 200, 300]
 
 
+def test_a_tick_that_comes_while_nobody_sleeps_is_kept(node: Node, executor: SingleThreadedExecutor) -> None:
+    rate, woke = node.create_rate(10.0), list[int]()
+    for _ in range(3):
+        executor.spin_once()
+        rate.sleep()
+        woke.append(node.context.time.now() // MILLISECOND)
+    assert woke == [100, 200, 300]
+
+
+def test_of_several_ticks_that_nobody_slept_for_one_is_kept(node: Node, executor: SingleThreadedExecutor) -> None:
+    rate, woke = node.create_rate(10.0), list[int]()
+    spin_for(executor, 0.35)
+    for _ in range(3):
+        rate.sleep()
+        woke.append(node.context.time.now() // MILLISECOND)
+    assert woke == [350, 400, 500]
+
+
+def test_work_that_takes_longer_than_a_period_is_followed_by_no_pause(
+    node: Node, executor: SingleThreadedExecutor
+) -> None:
+    rate = node.create_rate(10.0)
+    for _ in range(20):
+        node.context.time.sleep(110 * MILLISECOND)
+        executor.spin_once(timeout_sec=0)
+        rate.sleep()
+    assert node.context.time.now() == 2200 * MILLISECOND
+
+
+def works(args: list[str] | None = None) -> None:
+    robolink.init(args=args)
+    node = Node("works")
+    threading.Thread(target=robolink.spin, args=(node,), daemon=True).start()
+    rate = node.create_rate(10.0)
+    for _ in range(20):
+        time.sleep(0.11)
+        rate.sleep()
+    node.get_logger().info("done")
+    robolink.shutdown()
+
+
+def test_nor_is_it_beside_a_thread_that_spins() -> None:
+    with System() as system:
+        system.start(works)
+        system.expect_log("done")
+        assert system.time == pytest.approx(2.2)
+
+
+def test_a_sleep_that_is_broken_off_leaves_its_tick(node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
+    rate = node.create_rate(10.0)
+    with monkeypatch.context() as patch:
+        patch.setattr(node.context.time, "wait_until", interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            rate.sleep()
+    rate._tick()
+    rate.sleep()
+    assert node.context.time.now() == 0
+
+
+def interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
 def test_a_rate_in_a_callback_sleeps_by_the_clock(node: Node, executor: SingleThreadedExecutor) -> None:
     rate, woke = node.create_rate(10.0), list[int]()
 
@@ -262,7 +327,7 @@ def test_a_rate_in_a_callback_sleeps_by_the_clock(node: Node, executor: SingleTh
 
     timer = node.create_timer(0.15, callback)
     spin_for(executor, 1.0)
-    assert woke == [200, 300, 400]
+    assert woke == [150, 200, 300]  # the tick at 100 came while nobody slept
 
 
 def test_a_rate_beside_a_thread_that_spins(context: Context) -> None:
