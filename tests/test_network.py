@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -160,6 +161,15 @@ def test_who_meets_at_the_rendezvous_port() -> None:
     assert network.meets_at_port("subnet", {})
     assert not network.meets_at_port("tcp/10.0.0.1:7447", {})
     assert not network.meets_at_port("localhost", {"ZENOH_CONFIG_OVERRIDE": "listen/endpoints=[]"})
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no limit of open files that could be read")
+@pytest.mark.parametrize(("files", "pending"), [(256, 128), (1024, 512), (1 << 20, 10_000), (-1, 10_000)])
+def test_silent_connections_leave_a_process_half_of_its_files(
+    files: int, pending: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("resource.getrlimit", lambda which: (files, files))
+    assert network._most_pending() == pending
 
 
 def test_only_one_process_holds_the_port_on_windows(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager, suppress
 from pathlib import Path
@@ -32,6 +33,8 @@ plain, keep_all, latched = QoSProfile(depth=10), QoSProfile(history=2), QoSProfi
 arrived = queue.SimpleQueue()
 key = "{CHATTER}"
 """
+SILENT = 200
+"""Connections to the rendezvous port that say nothing."""
 WAIT = "\nprint('ready', flush=True)\nsys.stdin.read()\n"
 
 
@@ -283,6 +286,18 @@ def test_a_port_held_by_something_else(domain: int) -> None:
         f"port {port} is taken by a program that does not answer as a robolink session does: "
         "go on with it if it was suspended (Ctrl-Z; `fg`), stop it, or choose another ROS_DOMAIN_ID\n"
     )
+
+
+@pytest.mark.skipif(network._most_pending() < 2 * SILENT, reason="processes may open few files here")
+def test_silent_connections_keep_nobody_out(domain: int) -> None:
+    """Zenoh lets 100 of them wait for 10 s, and nobody else in meanwhile."""
+    with process(domain, "session.announce('@ros2_lv/0/a/x')" + WAIT), ExitStack() as stack:
+        for _ in range(SILENT):
+            stack.enter_context(socket.create_connection(("127.0.0.1", network.FIRST_PORT + domain), PATIENCE))
+        begin = time.monotonic()
+        with closing(ZenohTransport(domain, environ={})) as session:
+            assert session.tokens(GRAPH) == ["@ros2_lv/0/a/x"]
+        assert time.monotonic() - begin < 5.0
 
 
 def test_a_router_that_is_not_there(domain: int) -> None:

@@ -49,6 +49,9 @@ Zenoh's own 50 ms are not enough for 70 MB on a busy machine.
 LARGEST_MESSAGE = 1 << 30
 """Bytes, with all that Zenoh adds: rmw_zenoh's limit. A session throws away, without a word, what is larger."""
 
+MOST_PENDING = 10_000
+"""Connections that may be silent at once, as in rmw_zenoh. With Zenoh's own 100 nobody else was let in for 10 s."""
+
 SOUGHT_EVERY = 0.1
 """Seconds: so often a session whose rendezvous has gone looks whether somebody else has taken the port."""
 
@@ -116,6 +119,16 @@ def settings(value: str, domain: int, *, holds_port: bool = True, platform: str 
     return _localhost(port, holds_port, platform)
 
 
+def _most_pending() -> int:
+    """Give how many connections may be silent at once: they leave the process half of the files that it may open."""
+    if sys.platform == "win32":
+        return MOST_PENDING
+    import resource
+
+    files = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
+    return MOST_PENDING if files == resource.RLIM_INFINITY else min(MOST_PENDING, files // 2)
+
+
 _PATIENCE = {"wait_before_drop": WAIT_BEFORE_DROP_US, "max_wait_before_drop_fragments": WAIT_FOR_THE_REST_US}
 
 _BASE: dict[str, Any] = {
@@ -123,6 +136,7 @@ _BASE: dict[str, Any] = {
     # Publishers that keep samples for late joiners stamp them.
     "timestamping": {"enabled": True},
     "transport": {
+        "unicast": {"accept_pending": _most_pending()},
         "link": {
             "protocols": ["tcp", "tls", "quic", "ws"],
             "tx": {
