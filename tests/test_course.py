@@ -20,6 +20,9 @@ from pathlib import Path
 
 import pytest
 
+from robolink.sim import load_world
+from robolink.testing import System
+from robolink.workspace import find_world
 from tests.commands import BUSY_ROBOLINK, Command
 from tests.domains import free_domain
 from tests.witness import Watched, watched
@@ -137,10 +140,10 @@ class Scene:
 
 
 SCENES = {
-    "drive": ("obstacles", "robo_publisher", "sensor_subscriber"),
-    "react": ("obstacles", "controle_reativo"),
-    "follow": ("corners", "seguidor_parede"),
-    "command": ("obstacles",),
+    "drive": ("classroom", "robo_publisher", "sensor_subscriber"),
+    "react": ("classroom", "controle_reativo"),
+    "follow": ("classroom", "seguidor_parede"),
+    "command": ("classroom",),
     "webots": (WEBOTS_WORLD, "webots_controller"),
 }
 
@@ -201,6 +204,32 @@ def test_the_wall_follower_drives(scenes: Mapping[str, Scene]) -> None:
     follower.wait_for("Distância direita: ")
     drives(scenes["follow"].robot)
     ends_quietly(follower)
+
+
+def farthest_of_the_walls(world: str, path: list[tuple[float, float]]) -> float:
+    """How far in metres a way keeps from that point of a world's first wall, a closed one, that it leaves out most."""
+    corners = load_world(find_world(world)).walls[0].polyline
+    points = [
+        ((1 - part / 10) * x1 + part / 10 * x2, (1 - part / 10) * y1 + part / 10 * y2)
+        for (x1, y1), (x2, y2) in zip(corners, (*corners[1:], corners[0]), strict=True)
+        for part in range(10)
+    ]
+    return max(min(math.dist(point, place) for place in path) for point in points)
+
+
+@pytest.mark.parametrize(("world", "comes_round"), [("classroom", True), ("corners", False)])
+def test_the_wall_follower_comes_round_every_wall_of_the_classroom(
+    world: str, comes_round: bool, workspace: Path, system: System
+) -> None:
+    """It takes the first quarter of its ranges for the right side: so it is with 180 degrees, not with a full circle."""
+    system.start("world", parameters={"world": world})
+    truths = system.messages("ground_truth")
+    system.start(workspace / "src" / PACKAGE / PACKAGE / "seguidor_parede.py")
+    system.run(240.0)
+    path = [(each.pose.pose.position.x, each.pose.pose.position.y) for each in truths]
+    assert (farthest_of_the_walls(world, path) < 1.0) is comes_round
+    assert system.robot().driven > 50.0
+    assert system.robot().contacts == 0
 
 
 def test_what_the_course_types_works_with_robolink_in_ros2s_place(scenes: Mapping[str, Scene]) -> None:
