@@ -1,0 +1,83 @@
+"""Keys of topics and services: domain, name, type and hash, and how types are spelled in them."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from robolink.exceptions import WireError
+from robolink.wire.text import LONGEST, format_number, matched, not_too_long, parse_number, remembered, shown
+
+NO_HASH = "TypeHashNotSupported"
+"""What Humble says in place of a type hash."""
+
+CHUNK = r"[A-Za-z0-9_.~-]+"
+"""A part of a name between two slashes, as a pattern."""
+
+_TOPIC = re.compile(rf"(?:/{CHUNK})+")
+_TYPE = re.compile(r"[A-Za-z]\w*(?:/[A-Za-z]\w*)+", re.ASCII)
+_DDS_TYPE = re.compile(r"((?:[A-Za-z]\w*::)+)dds_::([A-Za-z]\w*)_", re.ASCII)
+_HASH = re.compile(rf"RIHS\d\d_[0-9a-f]{{64}}|{NO_HASH}", re.ASCII)
+
+
+class DataKey(NamedTuple):
+    """Where samples of a topic, or calls of a service, are sent."""
+
+    domain: int
+    name: str
+    """Fully qualified, with its leading slash."""
+    type_name: str
+    """As in ROS 2: `std_msgs/msg/String`; a service's own type, not its request's."""
+    type_hash: str
+
+
+@remembered
+def mangle_type(type_name: str) -> str:
+    """Spell a ROS type as DDS does; raises WireError for what is no type name.
+
+    >>> mangle_type("std_msgs/msg/String")
+    'std_msgs::msg::dds_::String_'
+    """
+    *packages, name = matched(_TYPE, type_name, "a type name").split("/")
+    return f"{'::'.join(packages)}::dds_::{name}_"
+
+
+@remembered
+def demangle_type(dds_name: str) -> str:
+    """Undo `mangle_type`; raises WireError for what it cannot have made."""
+    match = _DDS_TYPE.fullmatch(dds_name) if len(dds_name) <= LONGEST else None
+    if match is None:
+        raise WireError(f"expected a type such as std_msgs::msg::dds_::String_, got {shown(dds_name)}")
+    return match[1].replace("::", "/") + match[2]
+
+
+def format_key(key: DataKey) -> str:
+    """The key expression of a topic or service; raises WireError for a part that it cannot carry."""
+    name = checked_topic(key.name)
+    text = f"{format_number(key.domain)}{name}/{mangle_type(key.type_name)}/{checked_hash(key.type_hash)}"
+    return not_too_long(text, "a key")
+
+
+def parse_key(text: str) -> DataKey:
+    """Read a key expression; raises WireError for what `format_key` cannot have made."""
+    fields = not_too_long(text, "a key").split("/")
+    if len(fields) < 4:
+        raise WireError(f"a key is DOMAIN/NAME/TYPE/HASH, got {shown(text)}")
+    domain, *name, dds_type, type_hash = fields
+    return DataKey(
+        parse_number(domain),
+        checked_topic("/" + "/".join(name)),
+        demangle_type(dds_type),
+        checked_hash(type_hash),
+    )
+
+
+def checked_topic(name: str) -> str:
+    """The full name of a topic or service itself; raises WireError for anything else."""
+    return matched(_TOPIC, name, "a full topic or service name")
+
+
+@remembered
+def checked_hash(text: str) -> str:
+    """A type hash, or NO_HASH, itself; raises WireError for anything else."""
+    return matched(_HASH, text, "a type hash")

@@ -1,0 +1,160 @@
+"""Tokens of the ROS graph: what nodes, and what they own, announce about themselves."""
+
+from __future__ import annotations
+
+import re
+from enum import Enum
+from typing import NamedTuple
+
+from robolink.exceptions import WireError
+from robolink.names import join
+from robolink.qos import QoSProfile
+from robolink.wire.keys import CHUNK, NO_HASH, checked_hash, checked_topic, demangle_type, mangle_type
+from robolink.wire.profiles import format_qos, shared_qos
+from robolink.wire.text import format_number, matched, not_too_long, parse_number, remembered, shown
+
+_GRAPH = "@ros2_lv"
+_NAME = re.compile(rf"/?{CHUNK}(?:/{CHUNK})*|/")
+_SESSION = re.compile(r"[0-9a-f]{1,32}")
+
+
+class EndpointKind(Enum):
+    """What a node may own, spelled as in tokens."""
+
+    PUBLISHER = "MP"
+    SUBSCRIPTION = "MS"
+    SERVICE = "SS"
+    CLIENT = "SC"
+
+
+OTHER_END = {
+    EndpointKind.PUBLISHER: EndpointKind.SUBSCRIPTION,
+    EndpointKind.SUBSCRIPTION: EndpointKind.PUBLISHER,
+    EndpointKind.SERVICE: EndpointKind.CLIENT,
+    EndpointKind.CLIENT: EndpointKind.SERVICE,
+}
+"""Whom each kind talks to."""
+
+
+class NodeToken(NamedTuple):
+    """What a node announces about itself."""
+
+    domain: int
+    session: str
+    node_id: int
+    enclave: str
+    namespace: str
+    node_name: str
+
+    @property
+    def full_node_name(self) -> str:
+        """Namespace and name."""
+        return join(self.namespace, self.node_name)
+
+
+class EndpointToken(NamedTuple):
+    """What a node announces about a publisher, subscription, service or client that it owns."""
+
+    domain: int
+    session: str
+    node_id: int
+    endpoint_id: int
+    kind: EndpointKind
+    enclave: str
+    namespace: str
+    node_name: str
+    name: str
+    """Fully qualified name of the topic or service."""
+    type_name: str
+    type_hash: str
+    qos: QoSProfile
+
+    @property
+    def full_node_name(self) -> str:
+        """Namespace and name of the node that owns it."""
+        return join(self.namespace, self.node_name)
+
+    def understands(self, other: EndpointToken) -> bool:
+        """Whether both mean the same type: by name and hash, or by name where one is a Humble peer's."""
+        same_hash = self.type_hash == other.type_hash or NO_HASH in (self.type_hash, other.type_hash)
+        return same_hash and self.type_name == other.type_name
+
+
+def graph_pattern(domain: int | None = None) -> str:
+    """The key expression that all tokens of a domain match; without one, those of all domains."""
+    return f"{_GRAPH}/**" if domain is None else f"{_GRAPH}/{format_number(domain)}/**"
+
+
+def own_tokens(domain: int, session: str) -> str:
+    """How all tokens of a session on a domain begin."""
+    return f"{_GRAPH}/{format_number(domain)}/{session}/"
+
+
+def format_token(token: NodeToken | EndpointToken) -> str:
+    """The token as it is announced; raises WireError for a part that it cannot carry."""
+    endpoint = token if isinstance(token, EndpointToken) else None
+    fields = [
+        _GRAPH,
+        format_number(token.domain),
+        matched(_SESSION, token.session, "a session id"),
+        format_number(token.node_id),
+        format_number(endpoint.endpoint_id if endpoint else token.node_id),
+        endpoint.kind.value if endpoint else "NN",
+        *map(_mangled, (token.enclave or "/", token.namespace or "/", token.node_name)),
+    ]
+    if endpoint:
+        fields += [_mangled(checked_topic(endpoint.name)), mangle_type(endpoint.type_name)]
+        fields += [checked_hash(endpoint.type_hash), format_qos(endpoint.qos)]
+    return not_too_long("/".join(fields), "a token")
+
+
+def parse_token(text: str) -> NodeToken | EndpointToken:
+    """Read a token; raises WireError for what no peer of rmw_zenoh announces.
+
+    Tokens share their profiles: copy one before you change it.
+    """
+    fields = not_too_long(text, "a token").split("/")
+    if len(fields) not in (9, 13) or fields[0] != _GRAPH:
+        raise WireError(f"a token has 9 or 13 fields after {_GRAPH}, got {shown(text)}")
+    domain, node_id, own_id = map(parse_number, (fields[1], fields[3], fields[4]))
+    session = matched(_SESSION, fields[2], "a session id")
+    enclave, namespace, node_name = map(_demangled, fields[6:9])
+    if len(fields) == 9:
+        if fields[5] != "NN":
+            raise WireError(f"a token of 9 fields is a node's, got {shown(text)}")
+        return NodeToken(domain, session, node_id, enclave, namespace, node_name)
+    return EndpointToken(
+        domain,
+        session,
+        node_id,
+        own_id,
+        _parsed_kind(fields[5]),
+        enclave,
+        namespace,
+        node_name,
+        checked_topic(_demangled(fields[9])),
+        demangle_type(fields[10]),
+        checked_hash(fields[11]),
+        shared_qos(fields[12]),
+    )
+
+
+def _parsed_kind(text: str) -> EndpointKind:
+    try:
+        return EndpointKind(text)
+    except ValueError:
+        raise WireError(f"a token is of kind NN, MP, MS, SS or SC, got {shown(text)}") from None
+
+
+@remembered
+def _mangled(name: str) -> str:
+    return _checked_name(name).replace("/", "%")
+
+
+@remembered
+def _demangled(field: str) -> str:
+    return _checked_name(field.replace("%", "/"))
+
+
+def _checked_name(name: str) -> str:
+    return matched(_NAME, name, "a name")
