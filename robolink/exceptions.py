@@ -256,8 +256,8 @@ class InterruptedByUser(KeyboardInterrupt, ExternalShutdownException):
         super().__init__(text)
 
 
-class ROSInterruptException(RobolinkError):
-    """A wait was ended because its context shut down."""
+class ROSInterruptException(ExternalShutdownException):
+    """A rate's sleep was ended because its context shut down: no fault of the callback that sleeps."""
 
 
 class ServiceError(RobolinkError, RuntimeError):

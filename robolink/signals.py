@@ -10,7 +10,7 @@ from enum import IntFlag
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any
 
-from robolink.exceptions import ExternalShutdownException, InterruptedByUser, ROSInterruptException
+from robolink.exceptions import ExternalShutdownException, InterruptedByUser
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -34,7 +34,7 @@ _NUMBERS = {SignalHandlerOptions.SIGINT: [signal.SIGINT], SignalHandlerOptions.S
 if sys.platform == "win32":
     _NUMBERS[SignalHandlerOptions.SIGINT].append(signal.SIGBREAK)  # what a launcher can send to a process of its own
 
-_ENDS = (KeyboardInterrupt, ExternalShutdownException, ROSInterruptException)
+_ENDS = (KeyboardInterrupt, ExternalShutdownException)
 """What a program meets when it is told to end; InterruptedByUser is one of the first two."""
 
 

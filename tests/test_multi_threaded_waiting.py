@@ -166,6 +166,25 @@ def test_the_end_of_the_context_wakes_a_rate_in_a_callback(
     assert ended.wait(PATIENCE)
 
 
+def test_a_rate_that_the_end_of_the_context_wakes_is_no_fault_of_its_callback(
+    node: Node,
+    context: Context,
+    two: MultiThreadedExecutor,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    rate, begun = node.create_rate(0.001), threading.Event()
+
+    def work() -> None:
+        begun.set()
+        rate.sleep()
+
+    node.create_guard_condition(work).trigger()
+    spin_until(two, begun.is_set)
+    context.interrupt()
+    assert two.shutdown(PATIENCE)
+    assert capsys.readouterr().err == ""
+
+
 # Virtual time
 
 

@@ -203,6 +203,27 @@ LONELY = """
         sys.exit(3)
 """
 
+IN_A_CALLBACK = """
+    from robolink.callback_groups import ReentrantCallbackGroup
+    from robolink.executors import MultiThreadedExecutor
+
+    def sleep():
+        while True:
+            rate.sleep()
+
+    rclpy.init()
+    node = Talker()
+    rate = node.create_rate(100)
+    for _ in range(2):
+        node.create_timer(0.01, sleep, callback_group=ReentrantCallbackGroup())
+    executor = MultiThreadedExecutor(4)
+    executor.add_node(node)
+    try:
+        executor.spin()
+    except KeyboardInterrupt:
+        sys.exit(3)
+"""
+
 BROKEN = """
     rclpy.init()
     node = Talker()
@@ -225,6 +246,8 @@ BROKEN = """
         (DEAF, Program.terminate, 143),
         (LONELY, Program.interrupt, 3),
         (LONELY, Program.terminate, 3),
+        (IN_A_CALLBACK, Program.interrupt, 3),
+        (IN_A_CALLBACK, Program.terminate, 3),
     ],
     ids=[
         "tutorial-int",
@@ -237,6 +260,8 @@ BROKEN = """
         "deaf",
         "lonely-int",
         "lonely-term",
+        "in-a-callback-int",
+        "in-a-callback-term",
     ],
 )
 def test_a_program_ends_quietly(

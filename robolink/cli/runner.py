@@ -20,7 +20,6 @@ from robolink.exceptions import (
     InterruptedByUser,
     NotFoundError,
     RobolinkError,
-    ROSInterruptException,
     nearest,
 )
 from robolink.lacking import LackingNameError
@@ -91,7 +90,7 @@ def outcome(act: Callable[[], Any], terminated: list[int]) -> int:
     """Run the user's code; give the exit code, as `run` says, having told of what went wrong."""
     try:
         return _exit_code(act)
-    except (KeyboardInterrupt, ExternalShutdownException, ROSInterruptException):
+    except (KeyboardInterrupt, ExternalShutdownException):
         return TERMINATED if terminated else INTERRUPTED
     except LackingNameError as error:
         _show(error)

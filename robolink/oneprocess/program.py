@@ -18,7 +18,6 @@ from robolink.exceptions import (
     InterruptedByUser,
     NotInitializedException,
     RobolinkError,
-    ROSInterruptException,
 )
 from robolink.executors import SingleThreadedExecutor
 from robolink.lacking import LackingNameError
@@ -42,7 +41,7 @@ INTERRUPTED = 130
 KILLED = -9
 """The return code of a process that SIGKILL has ended, as `Popen` has it."""
 
-_ENDS = (KeyboardInterrupt, ExternalShutdownException, ROSInterruptException)
+_ENDS = (KeyboardInterrupt, ExternalShutdownException)
 
 
 class Part:

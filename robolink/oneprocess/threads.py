@@ -13,7 +13,7 @@ from concurrent.futures import thread as pools
 from typing import TYPE_CHECKING, Any
 
 from robolink.defaults import use_defaults
-from robolink.exceptions import ExternalShutdownException, ROSInterruptException
+from robolink.exceptions import ExternalShutdownException
 from robolink.logging import get_logger
 from robolink.oneprocess.parts import Killed, Runner, Wait
 from robolink.oneprocess.places import frame_of, place_of
@@ -21,7 +21,7 @@ from robolink.oneprocess.places import frame_of, place_of
 if TYPE_CHECKING:
     from robolink.oneprocess.program import Program
 
-_QUIET = (Killed, SystemExit, ExternalShutdownException, ROSInterruptException)
+_QUIET = (Killed, SystemExit, ExternalShutdownException)
 
 
 def take_part(thread: threading.Thread, program: Program, start: Callable[[threading.Thread], None]) -> None:
