@@ -20,7 +20,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink import Node
-from robolink.cli import main
+from robolink.cli import doctor, main
 from robolink.cli.doctor import facts, graph_checks, look, probes
 from robolink.cli.doctor.facts import Facts, Seen, Space
 from robolink.cli.doctor.probes import Port, holder, listening, read_answer
@@ -198,7 +198,32 @@ def test_a_sound_system_passes(robot: Node, capsys: Captured) -> None:
     out = capsys.readouterr().out
     assert "WARN  settings        ROBOLINK_TRANSPORT=memory://" in out
     assert "ok    domains         domain 7 has 1 node\n" in out
-    assert out.endswith("\nAll 17 checks passed\n\n")
+    assert out.endswith("\n15 of 17 checks passed, 1 warning, 1 not known\n\n")
+
+
+@pytest.mark.parametrize(
+    ("levels", "said"),
+    [
+        ({"ok": 17}, "All 17 checks passed"),
+        ({"ok": 15, "warning": 2}, "15 of 17 checks passed, 2 warnings"),
+        ({"ok": 16, "unknown": 1}, "16 of 17 checks passed, 1 not known"),
+        ({"warning": 1, "unknown": 2}, "0 of 3 checks passed, 1 warning, 2 not known"),
+    ],
+)
+def test_what_has_not_passed_is_not_said_to_have(levels: dict[str, int], said: str) -> None:
+    assert doctor._passed([level for level, count in levels.items() for _ in range(count)]) == said
+
+
+def test_another_distributions_robolink_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, owned in [("robodk", "robolink/__init__.py"), ("lone", "robolink.py"), ("far", "robolinks/a.py")]:
+        folder = tmp_path / f"{name}-1.2.dist-info"
+        folder.mkdir()
+        (folder / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.2\n")
+        (folder / "RECORD").write_text(f"{name}/a.py,,\n{owned},sha256=abc,12\n")
+    (tmp_path / "bare-1.0.dist-info").mkdir()
+    (tmp_path / "bare-1.0.dist-info" / "METADATA").write_text("Metadata-Version: 2.1\nName: bare\nVersion: 1.0\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert sorted(facts.namesakes()) == ["lone 1.2", "robodk 1.2"]
 
 
 def test_what_is_wrong_fails_and_is_named(robot: Node, capsys: Captured) -> None:

@@ -73,6 +73,9 @@ def test_versions_that_are_too_old_or_missing_are_errors() -> None:
     ]
     new = Facts(python=(3, 11, 2), versions={"robolink": "0.1.0", "eclipse-zenoh": "1.10.2"})
     assert checks.versions(new) == Verdict("robolink 0.1.0, Python 3.11.2, eclipse-zenoh 1.10.2")
+    both = only(checks.versions(new._replace(namesakes=("robodk 6.0.2",))).warnings)
+    assert both.startswith("robodk 6.0.2 also installs a module 'robolink'")
+    assert "'pip uninstall robodk'" in both
 
 
 @pytest.mark.parametrize(

@@ -58,11 +58,24 @@ def _lines(verdicts: list[tuple[Check, Verdict]], failed: list[str]) -> list[str
     if failed:
         modules = sorted(set(failed))
         return [*lines, f"\n{len(failed)}/{len(verdicts)} check(s) failed\n", f"Failed modules: {' '.join(modules)}"]
-    return [*lines, f"\nAll {len(verdicts)} checks passed\n"]
+    return [*lines, f"\n{_passed([verdict.level for _, verdict in verdicts])}\n"]
+
+
+def _passed(levels: list[str]) -> str:
+    """Count in words what has passed and what has not."""
+    from robolink.cli.doctor.verdict import OK, UNKNOWN, WARNING, count
+
+    if levels.count(OK) == len(levels):
+        return f"All {len(levels)} checks passed"
+    warnings, unknown = levels.count(WARNING), levels.count(UNKNOWN)
+    rest = [count(warnings, "warning")] * bool(warnings) + [f"{unknown} not known"] * bool(unknown)
+    return ", ".join([f"{levels.count(OK)} of {len(levels)} checks passed", *rest])
 
 
 def _json(verdicts: list[tuple[Check, Verdict]], failed: list[str], shown: list[Section]) -> str:
     import msgspec
+
+    from robolink.cli.doctor.verdict import OK
 
     checks = [
         {
@@ -78,6 +91,7 @@ def _json(verdicts: list[tuple[Check, Verdict]], failed: list[str], shown: list[
     result: dict[str, Any] = {
         "checks": checks,
         "total": len(verdicts),
+        "passed": sum(verdict.level == OK for _, verdict in verdicts),
         "failed": len(failed),
         "failed_modules": sorted(set(failed)),
     }

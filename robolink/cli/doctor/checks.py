@@ -39,7 +39,13 @@ def versions(facts: Facts) -> Verdict:
     if zenoh and _numbers(zenoh) < OLDEST_ZENOH:
         errors.append(f"eclipse-zenoh {zenoh} is too old: pip install -U 'eclipse-zenoh>={_dotted(OLDEST_ZENOH)}'")
     shown = [f"{name} {found}" for name, found in facts.versions.items() if found]
-    return Verdict(", ".join([*shown[:1], f"Python {_dotted(facts.python)}", *shown[1:4]]), tuple(errors))
+    warnings = tuple(
+        f"{each} also installs a module 'robolink', and the one that comes last overwrites the other's: "
+        f"give it a virtual environment of its own, here 'pip uninstall {each.split()[0]}' "
+        "and 'pip install --force-reinstall robolink'"
+        for each in facts.namesakes
+    )
+    return Verdict(", ".join([*shown[:1], f"Python {_dotted(facts.python)}", *shown[1:4]]), tuple(errors), warnings)
 
 
 def _dotted(version: tuple[int, ...]) -> str:

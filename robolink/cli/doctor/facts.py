@@ -102,6 +102,8 @@ class Facts(NamedTuple):
     python: tuple[int, ...] = (3, 10)
     versions: Mapping[str, str] = {}
     """Distribution to version; empty for what is not installed."""
+    namesakes: tuple[str, ...] = ()
+    """Other distributions, with their versions, that install a module `robolink`."""
     settings: Settings = Settings()
     loopback: bool = True
     router_port: int = 7447
@@ -127,6 +129,7 @@ def gather() -> Facts:
         platform=sys.platform,
         python=tuple(sys.version_info[:3]),
         versions=versions(),
+        namesakes=namesakes(),
         settings=settings,
         loopback=loopback_works(),
         router_port=int(network.ROS_ROUTER.rpartition(":")[2]),
@@ -184,6 +187,18 @@ def versions() -> dict[str, str]:
         except PackageNotFoundError:
             found[name] = ""
     return found
+
+
+def namesakes() -> tuple[str, ...]:
+    """Find other distributions that install a module `robolink`, as robodk does, by what they list as theirs."""
+    from importlib.metadata import distributions
+
+    theirs = re.compile(r"^robolink(/|\.py\b)", re.MULTILINE)
+    return tuple(
+        f"{each.metadata['Name']} {each.version}"
+        for each in distributions()
+        if theirs.search(each.read_text("RECORD") or "") and each.metadata["Name"] != "robolink"
+    )
 
 
 def shared_memory(folder: str = "/dev/shm") -> Space | None:
