@@ -1,29 +1,23 @@
-"""robolink doctor: who is on a port, and what the command says of sound, wrong and hostile systems."""
+"""robolink doctor: what the command says of sound, wrong and hostile systems."""
 
 from __future__ import annotations
 
 import json
 import os
-import socket
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
-import zenoh
 from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink import Node
 from robolink.cli import doctor, main
-from robolink.cli.doctor import facts, graph_checks, look, probes
+from robolink.cli.doctor import facts, graph_checks, look
 from robolink.cli.doctor.facts import Facts, Seen, Space
-from robolink.cli.doctor.probes import Port, holder, listening, read_answer
 from robolink.cli.doctor.report import sections
 from robolink.cli.doctor.verdict import MOST_SHOWN
 from robolink.interfaces.geometry_msgs.msg import Twist
@@ -43,6 +37,7 @@ from robolink.wire import (
     unpack_attachment,
 )
 from tests.domains import free_domain
+from tests.ports import free_port, stranger, zenoh_router
 from tests.programs import Program
 from tests.seen_by_commands import LATCHED, a_node_that_commands_see, made
 from tests.transports import Network
@@ -51,7 +46,6 @@ SERVICE = EndpointKind.SERVICE
 HASH = "RIHS01_" + "a" * 64
 PARAMETERS = "rcl_interfaces/srv/GetParameters"
 PLAIN = QoSProfile(depth=10)
-PATIENCE = 30.0
 
 
 @pytest.fixture(autouse=True)
@@ -61,117 +55,6 @@ def _usual_machine(monkeypatch: pytest.MonkeyPatch) -> None:
         if name.startswith(("ROS_", "RMW_", "ZENOH_", "ROBOLINK_")):
             monkeypatch.delenv(name)
     monkeypatch.setattr(facts, "shared_memory", lambda: Space(2**30, 2**30))
-
-
-# --- Who is on a port -----------------------------------------------------------------------------------------------
-
-
-@given(st.binary(max_size=80))
-def test_any_answer_can_be_read(answer: bytes) -> None:
-    role, session, complete = read_answer(answer)
-    assert role in (probes.SILENT, probes.STRANGER, probes.REFUSES, probes.ROUTER, probes.PEER, probes.CLIENT)
-    assert bool(session) <= complete
-
-
-@given(st.sampled_from(range(3)), st.binary(min_size=1, max_size=16), st.integers(0, 40))
-def test_zenohs_answer_is_read_once_it_is_there(role: int, session: bytes, cut: int) -> None:
-    body = bytes([0x61, 9, (len(session) - 1) << 4 | role]) + session + b"\x0a\x00\x20"
-    answer = len(body).to_bytes(2, "little") + body
-    known = 5 + len(session)
-    found = read_answer(answer[:cut])
-    if min(cut, len(answer)) < known:
-        assert not found[2]
-    else:
-        assert found == (("router", "peer", "client")[role], f"{int.from_bytes(session, 'little'):x}", True)
-
-
-@contextmanager
-def stranger(port: int = 0, says: bytes | None = None) -> Iterator[int]:
-    """Something that listens and is silent, or says this to the first that comes and hangs up."""
-    with socket.create_server(("127.0.0.1", port)) as server:
-        server.settimeout(PATIENCE)
-
-        def answer() -> None:
-            with server.accept()[0] as connection:
-                connection.sendall(says or b"")
-
-        thread = threading.Thread(target=answer)
-        if says is not None:
-            thread.start()
-        yield int(server.getsockname()[1])
-        if says is not None:
-            thread.join()
-
-
-@contextmanager
-def zenoh_router(port: int) -> Iterator[str]:
-    """A router as ROS 2's; its session id."""
-    listen = {"mode": "router", "listen": {"endpoints": [f"tcp/127.0.0.1:{port}"]}}
-    settings = listen | {"scouting": {"multicast": {"enabled": False}}}
-    session: Any = zenoh.open(zenoh.Config.from_json5(json.dumps(settings)))
-    try:
-        yield str(session.info.zid())
-    finally:
-        session.close()
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        return int(server.getsockname()[1])
-
-
-def test_ports_are_told_apart_at_once() -> None:
-    free, routers = free_port(), free_port()
-    with ExitStack() as stack:
-        silent = [stack.enter_context(stranger()) for _ in range(20)]
-        chatty = stack.enter_context(stranger(says=b"SSH-2.0-OpenSSH_9.2\r\n"))
-        session = stack.enter_context(zenoh_router(routers))
-        begin = time.monotonic()
-        found = listening([free, *silent, chatty, routers], within=0.5)
-        assert time.monotonic() - begin < 5.0  # one after the other, the silent ones take 10 s
-    assert found == {
-        **{each: Port(each, probes.SILENT) for each in silent},
-        chatty: Port(chatty, probes.STRANGER),
-        routers: Port(routers, probes.ROUTER, session),
-    }
-
-
-def test_a_stranger_that_hangs_up_is_a_stranger() -> None:
-    with stranger(says=b"") as port:
-        assert listening([port], within=PATIENCE)[port].role == probes.STRANGER
-
-
-def test_a_busy_machine_has_its_time_to_say_hello(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Saying hello to hundreds of ports may take longer than an answer may: no answer is missed by that."""
-
-    class Late(probes._Greeting):
-        def __init__(self, number: int, host: str) -> None:
-            super().__init__(number, host)
-            clock["now"] += 100.0
-
-    clock = {"now": 0.0}
-    monkeypatch.setattr(probes, "_Greeting", Late)
-    monkeypatch.setattr(probes, "time", SimpleNamespace(monotonic=lambda: clock["now"]))
-    with stranger(says=b"") as port:
-        assert listening([port], within=PATIENCE)[port].role == probes.STRANGER
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="only Linux says whose a port is")
-def test_the_process_behind_a_port_is_found_on_linux() -> None:
-    with stranger() as port:
-        found = holder(port)
-        assert found is not None
-        assert Path(f"/proc/{found.pid}").samefile("/proc/self")
-        assert found.command
-    assert holder(free_port()) is None
-
-
-def test_a_proc_that_cannot_be_read_says_nothing(tmp_path: Path) -> None:
-    assert holder(17447, tmp_path) is None
-    (tmp_path / "net").mkdir()
-    (tmp_path / "net" / "tcp").write_text("header\n garbage\n 0: 0100007F:4427 00000000:0000 0A 0 0 0 0 0 4711\n")
-    (tmp_path / "12" / "fd").mkdir(parents=True)
-    assert holder(17447, tmp_path) is None
 
 
 # --- The command ----------------------------------------------------------------------------------------------------

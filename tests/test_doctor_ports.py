@@ -1,0 +1,90 @@
+"""robolink doctor: who is on a port."""
+
+from __future__ import annotations
+
+import sys
+import time
+from contextlib import ExitStack
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robolink.cli.doctor import probes
+from robolink.cli.doctor.probes import Port, holder, listening, read_answer
+from tests.ports import PATIENCE, free_port, stranger, zenoh_router
+
+
+@given(st.binary(max_size=80))
+def test_any_answer_can_be_read(answer: bytes) -> None:
+    role, session, complete = read_answer(answer)
+    assert role in (probes.SILENT, probes.STRANGER, probes.REFUSES, probes.ROUTER, probes.PEER, probes.CLIENT)
+    assert bool(session) <= complete
+
+
+@given(st.sampled_from(range(3)), st.binary(min_size=1, max_size=16), st.integers(0, 40))
+def test_zenohs_answer_is_read_once_it_is_there(role: int, session: bytes, cut: int) -> None:
+    body = bytes([0x61, 9, (len(session) - 1) << 4 | role]) + session + b"\x0a\x00\x20"
+    answer = len(body).to_bytes(2, "little") + body
+    known = 5 + len(session)
+    found = read_answer(answer[:cut])
+    if min(cut, len(answer)) < known:
+        assert not found[2]
+    else:
+        assert found == (("router", "peer", "client")[role], f"{int.from_bytes(session, 'little'):x}", True)
+
+
+def test_ports_are_told_apart_at_once() -> None:
+    free, routers = free_port(), free_port()
+    with ExitStack() as stack:
+        silent = [stack.enter_context(stranger()) for _ in range(20)]
+        chatty = stack.enter_context(stranger(says=b"SSH-2.0-OpenSSH_9.2\r\n"))
+        session = stack.enter_context(zenoh_router(routers))
+        begin = time.monotonic()
+        found = listening([free, *silent, chatty, routers], within=0.5)
+        assert time.monotonic() - begin < 5.0  # one after the other, the silent ones take 10 s
+    assert found == {
+        **{each: Port(each, probes.SILENT) for each in silent},
+        chatty: Port(chatty, probes.STRANGER),
+        routers: Port(routers, probes.ROUTER, session),
+    }
+
+
+def test_a_stranger_that_hangs_up_is_a_stranger() -> None:
+    with stranger(says=b"") as port:
+        assert listening([port], within=PATIENCE)[port].role == probes.STRANGER
+
+
+def test_a_busy_machine_has_its_time_to_say_hello(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Saying hello to hundreds of ports may take longer than an answer may: no answer is missed by that."""
+
+    class Late(probes._Greeting):
+        def __init__(self, number: int, host: str) -> None:
+            super().__init__(number, host)
+            clock["now"] += 100.0
+
+    clock = {"now": 0.0}
+    monkeypatch.setattr(probes, "_Greeting", Late)
+    monkeypatch.setattr(probes, "time", SimpleNamespace(monotonic=lambda: clock["now"]))
+    with stranger(says=b"") as port:
+        assert listening([port], within=PATIENCE)[port].role == probes.STRANGER
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux says whose a port is")
+def test_the_process_behind_a_port_is_found_on_linux() -> None:
+    with stranger() as port:
+        found = holder(port)
+        assert found is not None
+        assert Path(f"/proc/{found.pid}").samefile("/proc/self")
+        assert found.command
+    assert holder(free_port()) is None
+
+
+def test_a_proc_that_cannot_be_read_says_nothing(tmp_path: Path) -> None:
+    assert holder(17447, tmp_path) is None
+    (tmp_path / "net").mkdir()
+    (tmp_path / "net" / "tcp").write_text("header\n garbage\n 0: 0100007F:4427 00000000:0000 0A 0 0 0 0 0 4711\n")
+    (tmp_path / "12" / "fd").mkdir(parents=True)
+    assert holder(17447, tmp_path) is None
