@@ -1,4 +1,4 @@
-"""Poses in the plane: where a robot is and how it is turned, and where that is as seen from elsewhere."""
+"""Poses in the plane: where a robot is and how it is turned, where that is as seen from elsewhere, and boxes."""
 
 from __future__ import annotations
 
@@ -15,6 +15,31 @@ class Pose(NamedTuple):
     x: float = 0.0
     y: float = 0.0
     theta: float = 0.0
+
+
+class Area(NamedTuple):
+    """A box along the axes, in metres."""
+
+    x_min: float
+    y_min: float
+    x_max: float
+    y_max: float
+
+    @property
+    def width(self) -> float:
+        """Metres along x."""
+        return self.x_max - self.x_min
+
+    @property
+    def height(self) -> float:
+        """Metres along y."""
+        return self.y_max - self.y_min
+
+    def grown(self, x: float, y: float) -> Area:
+        """Return the smallest box that holds this one and a point."""
+        if self.x_min <= x <= self.x_max and self.y_min <= y <= self.y_max:
+            return self
+        return Area(min(self.x_min, x), min(self.y_min, y), max(self.x_max, x), max(self.y_max, y))
 
 
 class Speeds(NamedTuple):

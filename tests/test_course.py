@@ -221,7 +221,7 @@ def farthest_of_the_walls(world: str, path: list[tuple[float, float]]) -> float:
 def test_the_wall_follower_comes_round_every_wall_of_the_classroom(
     world: str, comes_round: bool, workspace: Path, system: System
 ) -> None:
-    """It takes the first quarter of its ranges for the right side: so it is with 180 degrees, not with a full circle."""
+    """It takes the first quarter of its ranges for its right side: so it is with 180 degrees, and not with 360."""
     system.start("world", parameters={"world": world})
     truths = system.messages("ground_truth")
     system.start(workspace / "src" / PACKAGE / PACKAGE / "seguidor_parede.py")

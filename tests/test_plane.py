@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from robolink.interfaces.geometry_msgs.msg import Point, Quaternion
 from robolink.interfaces.geometry_msgs.msg import Pose as PoseMessage
-from robolink.plane import Pose, clipped, placed_on, pose_of, seen_from, wrapped
+from robolink.plane import Area, Pose, clipped, placed_on, pose_of, seen_from, wrapped
 
 angles = st.floats(-math.pi, math.pi)
 poses = st.builds(Pose, st.floats(-10.0, 10.0), st.floats(-10.0, 10.0), angles)
@@ -20,6 +20,16 @@ def test_what_is_ahead_of_a_robot_and_to_its_left() -> None:
     robot = Pose(1.0, 2.0, math.pi / 2)
     assert placed_on(robot, Pose(3.0, 1.0, 0.5)) == pytest.approx((0.0, 5.0, math.pi / 2 + 0.5))
     assert seen_from(robot, Pose(0.0, 5.0, 0.0)) == pytest.approx((3.0, 1.0, -math.pi / 2))
+
+
+@given(st.lists(poses, min_size=1))
+def test_an_area_holds_what_it_has_grown_by_and_no_more(places: list[Pose]) -> None:
+    area = Area(places[0].x, places[0].y, places[0].x, places[0].y)
+    for each in places:
+        area = area.grown(each.x, each.y)
+    xs, ys = [each.x for each in places], [each.y for each in places]
+    assert area == (min(xs), min(ys), max(xs), max(ys))
+    assert (area.width, area.height) == (max(xs) - min(xs), max(ys) - min(ys))
 
 
 @given(poses, poses)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import re
 from pathlib import Path
 
 import numpy as np
@@ -88,6 +89,41 @@ def test_a_robots_way_contacts_and_pose_are_told() -> None:
     assert robot.contacts == 0
     assert 2.0 < robot.driven < 3.5
     assert robot.x - 3.0 == pytest.approx(robot.driven, abs=0.2)  # along the first wall
+    assert robot.area.width == pytest.approx(robot.driven, abs=0.2)
+    assert robot.area.height < 0.6
+
+
+CIRCLER = '''
+"""Drives in a circle of 0.3 m radius."""
+
+from robolink import Node
+from robolink.interfaces.geometry_msgs.msg import Twist
+
+
+class Circler(Node):
+    def __init__(self, **options):
+        super().__init__("circler", **options)
+        self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_timer(0.1, self.tick)
+
+    def tick(self):
+        twist = Twist()
+        twist.linear.x, twist.angular.z = 0.3, 1.0
+        self.cmd_vel.publish(twist)
+'''
+
+
+def test_a_robot_that_circles_on_the_spot_is_told_from_one_that_gets_on(folder: Path) -> None:
+    (folder / "nodes" / "circler.py").write_text(CIRCLER)
+    world = "{node: world, parameters: {world: empty_room}}"
+    (folder / "configs" / "circle.yaml").write_text(f"nodes:\n  - {world}\n  - {{node: circler}}\n")
+    result = simulated(folder, "circle", duration=60.0)
+    (robot,) = result.robots
+    assert robot.driven > 15.0
+    assert (robot.area.width, robot.area.height) == pytest.approx((0.6, 0.6), abs=0.05)  # 0.3 m/s at 1 rad/s
+    assert any(
+        re.match(r"robot: drove 1\d\.\d\d m within 0\.6\d x 0\.6\d m, 0 contacts", each) for each in result.lines()
+    )
 
 
 def test_robots_of_two_worlds_are_told_apart(folder: Path) -> None:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import pymunk
 
 from robolink.exceptions import NotFoundError
-from robolink.plane import wrapped
+from robolink.plane import Area, wrapped
 from robolink.sim.description import Pose, RobotDescription, Wall
 from robolink.sim.driving.arithmetic import sinc
 from robolink.sim.driving.drive import Driver
@@ -37,6 +37,8 @@ class Robot:
         self._body = body_at(description.pose, description.mass, description.shape)
         self._shapes = solids(description.shape, self._body)
         self._touches = Touches(self._body)
+        x, y = description.pose.x, description.pose.y
+        self._area = Area(x, y, x, y)
         self._driver = Driver(description, self._body, parts.dt)
         noise = description.odom.noise
         random = stream(parts.seed, self.name, "odom")
@@ -135,6 +137,15 @@ class Robot:
     def driven(self) -> float:
         """How many metres the robot has driven since the start, there and back alike."""
         return float(self._motion.driven)
+
+    @property
+    def area(self) -> Area:
+        """The box in metres in which its pose has been since the start: what circles on the spot has a small one."""
+        self._note_place()
+        return self._area
+
+    def _note_place(self) -> None:
+        self._area = self._area.grown(*self._body.position)
 
     @property
     def twist(self) -> Velocity:

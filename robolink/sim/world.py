@@ -32,6 +32,9 @@ from robolink.sim.sensing.schedule import Schedule
 
 _ITERATIONS = 20
 
+_LOOK = 0.1
+"""Seconds after which the robots' places count into their areas: more often would cost, and show nothing more."""
+
 
 class World:
     """A world made from a description; to reset it, make another one.
@@ -46,6 +49,7 @@ class World:
         self.dt_ns = round(description.world.dt * 1e9)
         self.steps = 0
         self._dt = dt = description.world.dt
+        self._steps_between_looks = max(1, round(_LOOK / dt))
         self._space = _space(description)
         self._scene, self._fleet, self._contacts = Scene(description), Fleet(self._space), Contacts(self._space, dt)
         self._movers: list[Mover] = []
@@ -76,6 +80,9 @@ class World:
             mover.aim(self.steps + 1)
         self._space.step(self._dt)
         self.steps += 1
+        if self.steps % self._steps_between_looks == 0:
+            for robot in self._robots.values():
+                robot._note_place()
         self._scene.step = self.steps
         self._contacts.measure()
 

@@ -8,13 +8,17 @@ from collections.abc import Iterable, Iterator, Sequence
 import msgspec
 
 from robolink.faults import FaultReport
+from robolink.plane import Area
 
 SHOWN = 40
 """Of so many topics people are told; of robots, of half as many or the first quarter."""
 
 
 class RobotResult(msgspec.Struct, frozen=True):
-    """A robot of a simulated world as it truly is in the end: metres driven, things run into, pose in m and rad."""
+    """A robot of a simulated world as it truly is in the end: metres driven, things run into, pose in m and rad.
+
+    `area` is the box in m in which it was all the time.
+    """
 
     name: str
     driven: float
@@ -22,6 +26,7 @@ class RobotResult(msgspec.Struct, frozen=True):
     x: float
     y: float
     theta: float
+    area: Area
 
 
 class ProgramResult(msgspec.Struct, frozen=True):
@@ -110,7 +115,8 @@ def _of_robots(robots: Sequence[RobotResult]) -> Iterator[str]:
 
 def _of_robot(robot: RobotResult) -> str:
     where = f"({robot.x:.2f}, {robot.y:.2f}), heading {math.degrees(robot.theta):.0f} degrees"
-    return f"{robot.name}: drove {robot.driven:.2f} m, {_counted(robot.contacts, 'contact')}, ends at {where}"
+    drove = f"drove {robot.driven:.2f} m within {robot.area.width:.2f} x {robot.area.height:.2f} m"
+    return f"{robot.name}: {drove}, {_counted(robot.contacts, 'contact')}, ends at {where}"
 
 
 def _of_messages(messages: dict[str, int], size: int) -> Iterator[str]:

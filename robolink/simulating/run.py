@@ -197,4 +197,4 @@ class _Run:
 
 def _of_robot(name: str, robot: Robot) -> RobotResult:
     pose = robot.pose
-    return RobotResult(name, robot.driven, robot.contacts, pose.x, pose.y, pose.theta)
+    return RobotResult(name, robot.driven, robot.contacts, pose.x, pose.y, pose.theta, robot.area)

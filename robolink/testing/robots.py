@@ -10,7 +10,7 @@ from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticArray
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.names import the_one
-from robolink.plane import pose_of
+from robolink.plane import Area, pose_of
 from robolink.serialization import deserialize_message
 
 if TYPE_CHECKING:
@@ -52,6 +52,10 @@ class SimulatedRobot(Protocol):
         """Metres that it has driven since the beginning."""
 
     @property
+    def area(self) -> Area:
+        """The box in which it has been since the beginning."""
+
+    @property
     def contacts(self) -> int:
         """How many things it has run into since the beginning."""
 
@@ -80,6 +84,7 @@ class RobotElsewhere:
     def __init__(self, topic: str) -> None:
         self.name = topic.removesuffix(TRUTH).strip("/") or "robot"
         self._last: Odometry | None = None
+        self._area: Area | None = None
 
     @property
     def pose(self) -> Pose:
@@ -87,6 +92,11 @@ class RobotElsewhere:
         from robolink.sim import Pose
 
         return Pose(0.0, 0.0) if self._last is None else Pose(*pose_of(self._last.pose.pose))
+
+    @property
+    def area(self) -> Area:
+        """The box in metres in which it has been since the first word of it."""
+        return Area(0.0, 0.0, 0.0, 0.0) if self._area is None else self._area
 
     @property
     def twist(self) -> Velocity:
@@ -103,7 +113,8 @@ class RobotElsewhere:
         told: Odometry = deserialize_message(payload, Odometry)
         if self._last is not None:
             self.driven += _way(self._last, told)
-        self._last = told
+        x, y, _ = pose_of(told.pose.pose)
+        self._last, self._area = told, (self._area or Area(x, y, x, y)).grown(x, y)
 
     def diagnose(self, payload: bytes) -> None:
         """Take in what the world tells of itself."""

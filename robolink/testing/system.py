@@ -284,9 +284,10 @@ class System:
     def robot(self, name: str | None = None) -> SimulatedRobot:
         """Give a robot of the simulated world in this system, as it truly is.
 
-        It has a `pose`, a `twist`, `contacts`, and the metres that it has `driven`. The robot of a world in a
-        namespace is called ``one/robot``; its last name serves too, where no other has it. Raises NotFoundError when
-        there is no world, no such robot, or several that may be meant.
+        It has a `pose`, a `twist`, `contacts`, the metres that it has `driven`, and the `area` in which it has been
+        (`width` and `height` in metres). The robot of a world in a namespace is called ``one/robot``; its last name
+        serves too, where no other has it. Raises NotFoundError when there is no world, no such robot, or several that
+        may be meant.
         """
         __tracebackhide__ = True
         elsewhere = ((each.name, each) for each in self._elsewhere)

@@ -65,6 +65,7 @@ def test_a_launch_file_as_processes(tmp_path: Path, mark: str) -> None:
         system.expect("odom", lambda odom: odom.pose.pose.position.x > 3.3, within=PATIENCE)
         robot = system.robot()
         assert robot.driven > 0.2
+        assert 0.2 < robot.area.width <= robot.driven + 0.1
         assert robot.pose.x > 3.2
         assert robot.contacts == 0
         assert system.call("std_srvs/srv/Trigger", "world/pause").message.startswith("paused")
