@@ -327,7 +327,10 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
         clock: Clock | None = None,
         autostart: bool = True,
     ) -> Timer:
-        """Make a timer that calls `callback` every `timer_period_sec` seconds of the node's clock."""
+        """Make a timer that calls `callback` every `timer_period_sec` seconds of the node's clock.
+
+        Raises ValueError for a period that is none, TypeError for what cannot be called.
+        """
         group = callback_group or self._default_callback_group
         period = period_ns(timer_period_sec)
         timer = Timer(callback, group, period, clock or self._clock, context=self._context, autostart=autostart)
@@ -344,7 +347,7 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
         """Make a rate, `frequency` in Hz. Raises ValueError unless it is above 0."""
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
-        timer = self.create_timer(1.0 / frequency, None, callback_group=self._rate_group, clock=clock)
+        timer = self.create_timer(1.0 / frequency, _until_its_rate, callback_group=self._rate_group, clock=clock)
         return Rate(timer, context=self._context)
 
     def destroy_node(self) -> None:
@@ -373,6 +376,10 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
 
     def __exit__(self, *_: object) -> None:
         self.destroy_node()
+
+
+def _until_its_rate() -> None:
+    """Do nothing when a rate's timer is due before there is the rate."""
 
 
 def _qos(profile: QoSProfile | int) -> QoSProfile:

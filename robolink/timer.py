@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -53,6 +54,7 @@ class Timer(Entity):
     ) -> None:
         super().__init__(callback_group)
         self.callback = callback
+        self._made_at = _users_line() if callback is None else ""
         self.clock = clock
         self.version = 0
         """Changes whenever an older deadline no longer holds."""
@@ -63,11 +65,16 @@ class Timer(Entity):
 
     @property
     def callback(self) -> Callable[..., Any] | None:
-        """What is called; with a TimerInfo if it has a parameter that is annotated so."""
+        """What is called; with a TimerInfo if it has a parameter that is annotated so.
+
+        None, as in rclpy, must have been replaced before the timer is due. Raises TypeError for what cannot be called.
+        """
         return self._callback
 
     @callback.setter
     def callback(self, callback: Callable[..., Any] | None) -> None:
+        if callback is not None and not callable(callback):
+            raise TypeError(f"a timer's callback must be callable, got {callback!r:.80}")
         self._callback = callback
         self._info_name = None if callback is None else _info_parameter(callback)
 
@@ -128,7 +135,10 @@ class Timer(Entity):
     def execute(self, taken: Any) -> Any:
         """Call the callback."""
         if self._callback is None:
-            return None
+            raise TypeError(
+                f"the timer of {self._period / 1e9:g} s{self._made_at} has None for a callback; "
+                "give it the function itself, without (): self.on_timer, not self.on_timer()"
+            )
         if self._info_name is None:
             return self._callback()
         expected, actual = taken
@@ -208,6 +218,14 @@ def _checked_period(period: int) -> int:
     if period < 0:
         raise ValueError(f"a timer's period cannot be negative, got {period} ns")
     return int(period)
+
+
+def _users_line() -> str:
+    """Say where in the user's code the call is that has led here."""
+    frame = sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("robolink."):
+        frame = frame.f_back
+    return f" that was made at {frame.f_code.co_filename}:{frame.f_lineno}"
 
 
 def _info_parameter(callback: Callable[..., Any]) -> str | None:

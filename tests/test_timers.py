@@ -243,6 +243,25 @@ def test_a_coroutine_as_timer_callback(node: Node, executor: SingleThreadedExecu
     assert calls == [100, -250, 250, -250, 300, -300]
 
 
+def test_a_timer_without_a_callback_says_so_when_it_is_due(
+    node: Node, executor: SingleThreadedExecutor, capsys: pytest.CaptureFixture[str]
+) -> None:
+    timer, called = node.create_timer(0.5, None), list[None]()
+    timer.callback = lambda: called.append(None)
+    spin_for(executor, 0.6)
+    timer.callback = None
+    with pytest.raises(TypeError, match=r"^the timer of 0\.5 s that was made at .*test_timers\.py:\d+ has None for a"):
+        spin_for(executor, 1.0)
+    assert called == [None]
+    assert "without (): self.on_timer, not self.on_timer()" in capsys.readouterr().err
+
+
+def test_a_timer_calls_only_what_can_be_called(node: Node) -> None:
+    with pytest.raises(TypeError, match=r"must be callable, got 3$"):
+        node.create_timer(0.5, 3)  # type: ignore[arg-type]
+    assert list(node.timers) == []
+
+
 def test_a_rate_sleeps_the_rest_of_each_period_in_one_thread(node: Node, executor: SingleThreadedExecutor) -> None:
     rate, woke = node.create_rate(10.0), list[int]()
     for work in (30, 99, 0):
