@@ -159,9 +159,9 @@ class Context:
 
         return ThreadPoolExecutor(size, thread_name_prefix="robolink callbacks")
 
-    def next_id(self) -> int:
-        """Give a number for a node or endpoint; they share one counter on the wire."""
-        return next(self._ids)
+    def next_id(self) -> str:
+        """An id for a node or endpoint: the next number of one counter, as text, since the wire knows no numbers."""
+        return str(next(self._ids))
 
     def look_after(self, inbox: Inbox) -> None:
         """See to it that nothing piles up in an inbox while its owner is busy."""

@@ -29,7 +29,7 @@ class Owner(NamedTuple):
     """The node that an endpoint belongs to, as tokens name it."""
 
     context: Context
-    node_id: int
+    node_id: str
     enclave: str
     namespace: str
     node_name: str

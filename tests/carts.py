@@ -64,7 +64,7 @@ def seen(context: Context, name: str) -> EndpointToken:
 def announced(context: Context, name: str, type_: str, hash_: str, node: str = "keeper") -> EndpointToken:
     """Announce a publisher that is not there."""
     token = EndpointToken(
-        7, "a1", 1, 2, EndpointKind.PUBLISHER, "/", "/lab", node, name, type_, hash_, QoSProfile(depth=1)
+        7, "a1", "1", "2", EndpointKind.PUBLISHER, "/", "/lab", node, name, type_, hash_, QoSProfile(depth=1)
     )
     context.transport.announce(format_token(token))
     return token

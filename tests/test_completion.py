@@ -161,7 +161,7 @@ def test_zsh_and_fish_are_offered_the_same(tab: Tab) -> None:
 def test_what_a_shell_would_run_is_never_offered(tab: Tab) -> None:
     tab.monkeypatch.setenv("ROBOLINK_TRANSPORT", "memory://strangers")
     stranger = MemoryTransport("strangers")
-    good = format_token(NodeToken(0, "abc", 0, "/", "/", "good"))
+    good = format_token(NodeToken(0, "abc", "0", "/", "/", "good"))
     for name in ["good", "$(reboot)", "`reboot`", "a'b", 'a"b', "a;b", "a b", "a\nb", "*"]:
         stranger.announce(good.removesuffix("good") + name)
     assert complete.node_names("") == ["/good"]
@@ -240,7 +240,7 @@ def test_a_network_that_hangs_is_waited_for_only_a_moment(tab: Tab) -> None:
 
 
 def test_what_is_known_in_time_is_offered(tab: Tab) -> None:
-    token = format_token(NodeToken(7, "abc", 0, "/", "/", "early"))
+    token = format_token(NodeToken(7, "abc", "0", "/", "/", "early"))
     tab.monkeypatch.setattr(complete, "_look", lambda texts, finished: texts.update({token: True}))
     tab.monkeypatch.setattr(complete, "WITHIN", 1.0)
     assert tab("robolink node info /") == ["/early"]

@@ -203,7 +203,7 @@ def test_a_context_is_a_context_manager() -> None:
 
 
 def test_numbers_and_nodes_are_counted(context: Context) -> None:
-    assert [context.next_id() for _ in range(3)] == [0, 1, 2]
+    assert [context.next_id() for _ in range(3)] == ["0", "1", "2"]
     node = weakref.ref(Node("node", context=context))
     assert node() is not None
     gc.collect()

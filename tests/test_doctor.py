@@ -207,7 +207,7 @@ def announce_clock(robot: Node, on_query: Callable[[Query], object]) -> Transpor
     """The node /far, of another session, which serves its parameters."""
     robot.destroy_node()
     transport = robot.context.transport
-    far = EndpointToken(7, "b", 0, 1, SERVICE, "/", "/", "far", "/far/get_parameters", PARAMETERS, HASH, PLAIN)
+    far = EndpointToken(7, "b", "0", "1", SERVICE, "/", "/", "far", "/far/get_parameters", PARAMETERS, HASH, PLAIN)
     transport.serve(format_key(DataKey(7, far.name, far.type_name, HASH)), lambda got: on_query(transport.accept(got)))
     transport.announce(format_token(far))
     return transport

@@ -38,12 +38,12 @@ def end(
     type_hash: str = HASH,
     qos: QoSProfile = PLAIN,
     session: str = "a",
-    node_id: int = 0,
+    node_id: str = "0",
 ) -> EndpointToken:
-    return EndpointToken(0, session, node_id, 1, kind, "/", "/", node, name, type_name, type_hash, qos)
+    return EndpointToken(0, session, node_id, "1", kind, "/", "/", node, name, type_name, type_hash, qos)
 
 
-def node(name: str, session: str = "a", node_id: int = 0, namespace: str = "/") -> NodeToken:
+def node(name: str, session: str = "a", node_id: str = "0", namespace: str = "/") -> NodeToken:
     return NodeToken(0, session, node_id, "/", namespace, name)
 
 
@@ -300,15 +300,15 @@ def test_a_client_without_server_and_a_service_with_two_are_warnings() -> None:
 
 
 def test_two_nodes_of_one_name_are_a_warning() -> None:
-    apart = seeing(node("robot", "a"), node("robot", "b"), node("robot", "b", 9, "/lab"))
+    apart = seeing(node("robot", "a"), node("robot", "b"), node("robot", "b", "9", "/lab"))
     assert only(graph_checks.nodes(apart).warnings).startswith("2 nodes are named /robot: rename one")
-    ends = [end(PUBLISHER, f"/{each}", "robot", node_id=each % 2) for each in range(4)]
-    assert graph_checks.nodes(seeing(node("robot", "a", 0), node("robot", "a", 1), *ends)).level == WARNING
+    ends = [end(PUBLISHER, f"/{each}", "robot", node_id=str(each % 2)) for each in range(4)]
+    assert graph_checks.nodes(seeing(node("robot", "a", "0"), node("robot", "a", "1"), *ends)).level == WARNING
 
 
 def test_a_peer_that_announces_a_node_for_each_of_its_endpoints_has_one() -> None:
-    ends = [end(PUBLISHER, f"/{each}", "robot", node_id=each) for each in range(3)]
-    assert graph_checks.nodes(seeing(*(node("robot", "a", each) for each in range(3)), *ends)).level == OK
+    ends = [end(PUBLISHER, f"/{each}", "robot", node_id=str(each)) for each in range(3)]
+    assert graph_checks.nodes(seeing(*(node("robot", "a", str(each)) for each in range(3)), *ends)).level == OK
 
 
 def test_simulated_time_needs_one_source() -> None:

@@ -57,7 +57,7 @@ class Program:
     def __init__(self, system: System, name: str) -> None:
         self.system, self.name = system, name
         self.session = FaultyTransport(system.network, name)
-        self.session.announce(format_token(NodeToken(0, self.session.session_id, 0, "/", "/", name)))
+        self.session.announce(format_token(NodeToken(0, self.session.session_id, "0", "/", "/", name)))
         self._ids = itertools.count(1)
 
     def publisher(self, topic: str, qos: QoSProfile = QOS) -> Callable[[int], None]:
@@ -98,7 +98,9 @@ class Program:
     def _attachments(self, name: str, kind: EndpointKind) -> Callable[[], bytes]:
         session, number = self.session.session_id, next(self._ids)
         token = format_token(
-            EndpointToken(0, session, 0, number, kind, "/", "/", self.name, name, "std_msgs/msg/Int32", HASH, QOS)
+            EndpointToken(
+                0, session, "0", str(number), kind, "/", "/", self.name, name, "std_msgs/msg/Int32", HASH, QOS
+            )
         )
         self.session.announce(token)
         return attachments(gid_of(token), self.system.time.steady)
@@ -225,7 +227,7 @@ def test_a_fault_finds_a_program_by_the_names_of_its_nodes() -> None:
     world, heard = system.program("world"), system.program("follower").hear("/scan")
     publish = world.publisher("/scan")
     publish(0)
-    world.session.announce(format_token(NodeToken(0, world.session.session_id, 1, "/", "/ada", "lidar")))
+    world.session.announce(format_token(NodeToken(0, world.session.session_id, "1", "/", "/ada", "lidar")))
     publish(1)
     assert numbers(heard) == [0]
 

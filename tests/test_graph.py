@@ -296,7 +296,7 @@ def test_questions_are_cheap_in_a_big_system(bus: Bus, context: Context) -> None
     token = publisher._endpoint.token._replace(kind=EndpointKind.SUBSCRIPTION, session=crowd.session_id)
     for number in range(2000):
         name, topic = f"node{number % 30}", f"/topic{number % 200}"
-        crowd.announce(format_token(token._replace(endpoint_id=number, node_name=name, name=topic)))
+        crowd.announce(format_token(token._replace(endpoint_id=str(number), node_name=name, name=topic)))
     assert publisher.get_subscription_count() == 10
     assert steps(lambda: context.graph.count(EndpointKind.SUBSCRIPTION, "/topic7")) < 100
     assert steps(lambda: context.graph.nodes()) > 30, "the measure sees no loop"
@@ -313,7 +313,7 @@ def test_a_token_that_is_none_is_counted_and_told_once(bus: Bus, context: Contex
     assert graph.nodes() == []
     (line,) = log_lines
     assert line.name == "robolink.graph"
-    assert "somebody on domain 0 announces what cannot be read: a token has 9 or 13 fields" in line.message
+    assert "somebody on domain 0 announces what cannot be read: a token has at least 9 fields, or 13" in line.message
     assert len(line.message) < 500
 
 
@@ -323,7 +323,7 @@ def test_nonsense_is_not_remembered(zenoh_net: Network) -> None:
     for number in range(50):
         session.announce(f"@ros2_lv/0/nonsense/{number}").close()
     session.announce("@ros2_lv/0/nonsense/last")
-    node = NodeToken(0, session.session_id, 1, "/", "/", "real")
+    node = NodeToken(0, session.session_id, "1", "/", "/", "real")
     session.announce(format_token(node))
     assert graph.wait_for(lambda: graph.nodes() == [node], timeout=PATIENCE)
     assert graph.malformed > 0
@@ -344,7 +344,7 @@ def test_own_announcements_are_known_at_once(zenoh_net: Network) -> None:
             node.destroy_publisher(publisher)
             assert node.count_publishers("/quick") == 0
         other = zenoh_net.session()
-        other.announce(format_token(NodeToken(0, other.session_id, 1, "/", "/", "real")))
+        other.announce(format_token(NodeToken(0, other.session_id, "1", "/", "/", "real")))
         assert node.wait_for_node("/real", PATIENCE)  # by now the network has told of all that was before
         assert told == [True, False] * 5
         handle.close()

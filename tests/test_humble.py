@@ -54,9 +54,9 @@ class Peer:
         self.sequence = 0
 
     def announce(self, kind: EndpointKind, qos: QoSProfile = PLAIN) -> EndpointToken:
-        number = list(EndpointKind).index(kind) + 1
+        number = str(list(EndpointKind).index(kind) + 1)
         token = EndpointToken(
-            0, self.session.session_id, 0, number, kind, "/", "/", "old", self.name, TYPES[kind], NO_HASH, qos
+            0, self.session.session_id, "0", number, kind, "/", "/", "old", self.name, TYPES[kind], NO_HASH, qos
         )
         self.handle = self.session.announce(format_token(token))
         self.gid = gid_of(format_token(token))

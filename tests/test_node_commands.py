@@ -65,7 +65,7 @@ def announce(node: Node) -> Iterator[Announce]:
 
     def announce(namespace: str, name: str, *ends: tuple[EndpointKind, str, str]) -> None:
         session = f"{next(sessions):x}"
-        texts = [format_token(NodeToken(7, session, 0, "/", namespace, name))]
+        texts = [format_token(NodeToken(7, session, "0", "/", namespace, name))]
         for number, (kind, topic, type_name) in enumerate(ends, 1):
             texts.append(format_token(end(kind, topic, type_name, (session, number, namespace, name))))
         handles.extend(node.context.transport.announce(each) for each in texts)
@@ -80,7 +80,7 @@ def end(
 ) -> EndpointToken:
     session, number, namespace, name = owner
     return EndpointToken(
-        7, session, 0, number, kind, "/", namespace, name, topic, type_name, NO_HASH, QoSProfile(depth=10)
+        7, session, "0", str(number), kind, "/", namespace, name, topic, type_name, NO_HASH, QoSProfile(depth=10)
     )
 
 
@@ -136,7 +136,7 @@ def test_announcements_that_cannot_be_read_are_counted(
     stranger = MemoryTransport("strangers")
     monkeypatch.setenv("ROBOLINK_TRANSPORT", "memory://strangers")
     monkeypatch.setenv("ROS_DOMAIN_ID", "7")
-    for text in [*texts, format_token(NodeToken(7, "abc", 0, "/", "/", "good"))]:
+    for text in [*texts, format_token(NodeToken(7, "abc", "0", "/", "/", "good"))]:
         stranger.announce(text)
     assert main(["node", "list"]) == 0
     assert capsys.readouterr() == ("/good\n", said)

@@ -411,7 +411,7 @@ def test_an_answer_that_is_none(node: Node, payload: bytes, attachment: bytes, r
 
     transport, key = node.context.transport, DataKey(7, "/bad", "std_srvs/srv/SetBool", type_hash(SetBool))
     _server = transport.serve(format_key(key), lambda arrived: answer(transport.accept(arrived)))
-    owner = (7, "abc", 0, 1, EndpointKind.SERVICE, "/", "/", "bad")
+    owner = (7, "abc", "0", "1", EndpointKind.SERVICE, "/", "/", "bad")
     _token = transport.announce(format_token(EndpointToken(*owner, *key[1:], QoSProfile(depth=10))))
     assert main(["service", "call", "/bad", "SetBool"]) == 1
     assert f"robolink: service /bad: {reason}" in capsys.readouterr().err

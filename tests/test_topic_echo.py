@@ -223,7 +223,7 @@ def test_another_definition_of_the_type_is_told(node: Node, monkeypatch: pytest.
     publisher = node.create_publisher(Int32, "/x", 10)
     own = node.context.graph.endpoints(EndpointKind.PUBLISHER, name="/x")[0]
     reader = node.create_subscription(Int32, "/x", print, 10)
-    node.context.graph.announce(own._replace(endpoint_id=99, type_hash="RIHS01_" + "0" * 64))
+    node.context.graph.announce(own._replace(endpoint_id="99", type_hash="RIHS01_" + "0" * 64))
     node.destroy_publisher(publisher)
     when_said(monkeypatch, echo, "tell", press_ctrl_c)
     monkeypatch.setattr("robolink.cli.topic.echo.message_type", lambda *_: Int32)

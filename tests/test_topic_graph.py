@@ -113,7 +113,7 @@ def test_info_shows_every_policy(node: Node, capsys: Captured) -> None:
 
 def test_the_gid_is_that_of_the_announcement_as_it_was_written(node: Node, capsys: Captured) -> None:
     own = node.context.graph.endpoints(EndpointKind.PUBLISHER, name="/cmd_vel")[0]
-    spelled = format_token(own._replace(name="/odd", endpoint_id=99)).rpartition("/")[0] + "/1:2:1,10:,:,:,,"
+    spelled = format_token(own._replace(name="/odd", endpoint_id="99")).rpartition("/")[0] + "/1:2:1,10:,:,:,,"
     node.context.transport.announce(spelled)
     assert main(["topic", "info", "/odd", "-v"]) == 0
     assert f"GID: {gid_of(spelled).hex('.')}\n" in capsys.readouterr().out

@@ -164,7 +164,7 @@ def test_a_request_without_attachment_is_refused(lab: Lab, log_lines: list[Recor
 
 def test_a_stranger_cannot_speak_for_this_session(lab: Lab) -> None:
     """A token with our own session's id that we have not announced says nothing."""
-    token = lab.publisher._endpoint.token._replace(endpoint_id=99)
+    token = lab.publisher._endpoint.token._replace(endpoint_id="99")
     lab.stranger.announce(format_token(token))
     lab.stranger.announce(format_token(lab.publisher._endpoint.token)).close()
     assert lab.node.count_publishers("topic") == 1

@@ -13,6 +13,7 @@ from robolink.wire.keys import NO_HASH, DataKey, demangle_type, format_key, mang
 from robolink.wire.profiles import format_qos, parse_qos
 from robolink.wire.text import LONGEST
 from robolink.wire.tokens import (
+    CPU_BACKEND,
     OTHER_END,
     EndpointKind,
     EndpointToken,
@@ -25,6 +26,7 @@ from robolink.wire.tokens import (
 
 __all__ = [
     "ATTACHMENT_BYTES",
+    "CPU_BACKEND",
     "GID_BYTES",
     "LONGEST",
     "NO_HASH",

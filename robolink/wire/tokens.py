@@ -16,6 +16,13 @@ from robolink.wire.text import format_number, matched, not_too_long, parse_numbe
 _GRAPH = "@ros2_lv"
 _NAME = re.compile(rf"/?{CHUNK}(?:/{CHUNK})*|/")
 _SESSION = re.compile(r"[0-9a-f]{1,32}")
+_FIELD = r"[^/*$?#]+"
+_ID = re.compile(_FIELD)
+_MORE = re.compile(rf"{_FIELD}(?:/{_FIELD})*")
+_NODE, _NODE_FIELDS, _ENDPOINT_FIELDS = "NN", 9, 13
+
+CPU_BACKEND = "backends:cpu:"
+"""What Lyrical adds to the token of an end whose type holds a `uint8[]`: where the bytes may lie, here main memory."""
 
 
 class EndpointKind(Enum):
@@ -41,10 +48,13 @@ class NodeToken(NamedTuple):
 
     domain: int
     session: str
-    node_id: int
+    node_id: str
+    """Unique in its session: a number for rmw_zenoh, for others any text."""
     enclave: str
     namespace: str
     node_name: str
+    more: str = ""
+    """The fields that come after, of peers that are newer than this."""
 
     @property
     def full_node_name(self) -> str:
@@ -57,8 +67,9 @@ class EndpointToken(NamedTuple):
 
     domain: int
     session: str
-    node_id: int
-    endpoint_id: int
+    node_id: str
+    endpoint_id: str
+    """Unique in its session, as the node's."""
     kind: EndpointKind
     enclave: str
     namespace: str
@@ -68,6 +79,8 @@ class EndpointToken(NamedTuple):
     type_name: str
     type_hash: str
     qos: QoSProfile
+    more: str = ""
+    """The fields that come after, such as CPU_BACKEND; "" if there are none."""
 
     @property
     def full_node_name(self) -> str:
@@ -97,32 +110,37 @@ def format_token(token: NodeToken | EndpointToken) -> str:
         _GRAPH,
         format_number(token.domain),
         matched(_SESSION, token.session, "a session id"),
-        format_number(token.node_id),
-        format_number(endpoint.endpoint_id if endpoint else token.node_id),
-        endpoint.kind.value if endpoint else "NN",
+        matched(_ID, token.node_id, "a node's id"),
+        matched(_ID, endpoint.endpoint_id if endpoint else token.node_id, "an endpoint's id"),
+        endpoint.kind.value if endpoint else _NODE,
         *map(_mangled, (token.enclave or "/", token.namespace or "/", token.node_name)),
     ]
     if endpoint:
         fields += [_mangled(checked_topic(endpoint.name)), mangle_type(endpoint.type_name)]
         fields += [checked_hash(endpoint.type_hash), format_qos(endpoint.qos)]
+    if token.more:
+        fields.append(matched(_MORE, token.more, "further fields"))
     return not_too_long("/".join(fields), "a token")
 
 
 def parse_token(text: str) -> NodeToken | EndpointToken:
     """Read a token; raises WireError for what no peer of rmw_zenoh announces.
 
-    Tokens share their profiles: copy one before you change it.
+    What comes after the fields that are known is kept, unread. Tokens share their profiles: copy one before you
+    change it.
     """
     fields = not_too_long(text, "a token").split("/")
-    if len(fields) not in (9, 13) or fields[0] != _GRAPH:
-        raise WireError(f"a token has 9 or 13 fields after {_GRAPH}, got {shown(text)}")
-    domain, node_id, own_id = map(parse_number, (fields[1], fields[3], fields[4]))
-    session = matched(_SESSION, fields[2], "a session id")
+    is_node = fields[5:6] == [_NODE]
+    known = _NODE_FIELDS if is_node else _ENDPOINT_FIELDS
+    if len(fields) < known or fields[0] != _GRAPH:
+        least = f"at least {_NODE_FIELDS} fields, or {_ENDPOINT_FIELDS} for an endpoint"
+        raise WireError(f"a token has {least}, the first of them {_GRAPH}: got {shown(text)}")
+    domain, session = parse_number(fields[1]), matched(_SESSION, fields[2], "a session id")
+    node_id, own_id = matched(_ID, fields[3], "a node's id"), matched(_ID, fields[4], "an endpoint's id")
     enclave, namespace, node_name = map(_demangled, fields[6:9])
-    if len(fields) == 9:
-        if fields[5] != "NN":
-            raise WireError(f"a token of 9 fields is a node's, got {shown(text)}")
-        return NodeToken(domain, session, node_id, enclave, namespace, node_name)
+    more = matched(_MORE, "/".join(fields[known:]), "further fields") if len(fields) > known else ""
+    if is_node:
+        return NodeToken(domain, session, node_id, enclave, namespace, node_name, more)
     return EndpointToken(
         domain,
         session,
@@ -136,6 +154,7 @@ def parse_token(text: str) -> NodeToken | EndpointToken:
         demangle_type(fields[10]),
         checked_hash(fields[11]),
         shared_qos(fields[12]),
+        more,
     )
 
 

@@ -104,8 +104,9 @@ def _of_topic(context: Context, topic: str) -> tuple[str, list[End]]:
     return name, found
 
 
-def _by_node(end: End) -> tuple[str, str, str, int]:
-    return end[1].namespace, end[1].node_name, end[1].session, end[1].endpoint_id
+def _by_node(end: End) -> tuple[str, str, str, int, str]:
+    token = end[1]
+    return token.namespace, token.node_name, token.session, len(token.endpoint_id), token.endpoint_id  # 10 after 9
 
 
 def _spellings(ends: list[EndpointToken]) -> set[str]:
