@@ -18,6 +18,7 @@ from robolink.launch import plan, together
 from robolink.launch.planning import core_errors, processes
 from robolink.launch.reading.entries import read_launch_file
 from robolink.launch.reading.entry import Entry
+from robolink.own_command import own_command
 from robolink.remapping import RemapKind, resolve_name
 from robolink.supervisor import Process
 from robolink.supervisor.rules import Restarts, Rules
@@ -33,6 +34,11 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def planned(home: Path, text: str, **given: str) -> list[Process]:
     return plan(home / "configs" / "lap.yaml", given, text=text)
+
+
+def words(process: Process) -> list[str]:
+    """What stands behind the words that start a robolink."""
+    return process.argv[len(own_command()) :]
 
 
 def test_a_node_is_run_with_all_that_is_said_of_it(home: Path) -> None:
@@ -61,10 +67,10 @@ nodes:
     assert [first.interactive, second.interactive, third.interactive] == [False, False, True]
     assert [first.cpu, third.cpu] == [(), (0, 1)]
     assert first.argv == [
-        *(sys.executable, "-m", "robolink", "run", str(built_in_workspace() / "nodes/world.py"), "--", "--ros-args"),
+        *(*own_command(), "run", str(built_in_workspace() / "nodes/world.py"), "--", "--ros-args"),
         *("-p", 'world:="corners"'),
     ]
-    assert second.argv[4:9] == [f"{home}/nodes/mine.py:main", "--", "--fast", "3", "--ros-args"]
+    assert words(second)[1:6] == [f"{home}/nodes/mine.py:main", "--", "--fast", "3", "--ros-args"]
     assert first.env == {VARIABLE: str(home)}
     assert second.env == {VARIABLE: str(home), "LEVEL": "3", "WORD": "on"}
     arguments = parse_arguments(list(second.argv))
@@ -99,9 +105,9 @@ nodes:
 """,
     )
     assert [each.name for each in found] == ["r0/n0", "r1/n1", "r2/n2", "mine"]
-    assert found[3].argv[5:] == ["--", "{i}", "{linear: {x: 1}}", "--ros-args"]
+    assert words(found[3])[2:] == ["--", "{i}", "{linear: {x: 1}}", "--ros-args"]
     second = found[1]
-    assert second.argv[5:9] == ["--", "1", "--name=a1", "2.5"]
+    assert words(second)[2:6] == ["--", "1", "--name=a1", "2.5"]
     arguments = parse_arguments(list(second.argv))
     assert arguments.node_name("mine") == "n1"
     assert arguments.namespace("/", "n1") == "/r1"
@@ -166,7 +172,7 @@ nodes:
 """,
     )
     assert [each.name for each in (world, shared, other, single)] == ["world", "both", "other0", "world2"]
-    assert shared.argv == [sys.executable, "-m", "robolink", "run-together"]
+    assert shared.argv == [*own_command(), "run-together"]
     assert (shared.env, shared.cpu) == ({VARIABLE: str(home), "A": "1"}, (0,))
     file, level = str(home / "nodes" / "mine.py"), ["--log-level", "warn"]
     assert together.read(shared.input) == [
@@ -237,9 +243,9 @@ def test_the_launch_files_own_workspace_comes_first(
     (elsewhere / "nodes" / "world.py").write_text("")
     monkeypatch.chdir(elsewhere)
     [process] = planned(home, "nodes: [node: mine]")
-    assert process.argv[4] == str(home / "nodes" / "mine.py")
+    assert words(process)[1] == str(home / "nodes" / "mine.py")
     [process] = plan(built_in_workspace() / "configs" / "any.yaml", text="nodes: [node: world]")
-    assert process.argv[4] == str(elsewhere / "nodes" / "world.py")
+    assert words(process)[1] == str(elsewhere / "nodes" / "world.py")
     assert process.env == {VARIABLE: str(elsewhere)}
 
 
@@ -250,7 +256,7 @@ def test_a_launch_file_alone_finds_its_neighbours(tmp_path: Path, monkeypatch: p
     (tmp_path / "sub").mkdir()
     monkeypatch.chdir(tmp_path / "sub")
     [process] = plan(tmp_path / "lap.yaml", text="nodes: [node: mine.py]")
-    assert process.argv[4] == str((tmp_path / "mine.py").resolve())
+    assert words(process)[1] == str((tmp_path / "mine.py").resolve())
     assert process.env == {}
 
 
@@ -368,8 +374,8 @@ nodes:
 - {{node: mine, name: short}}
 """,
     )
-    assert long.argv == [sys.executable, "-m", "robolink", "run-together"]
+    assert long.argv == [*own_command(), "run-together"]
     [member] = together.read(long.input)
     assert member.args == ["--ros-args", "-p", f"description:={spell(text)}"]
     assert keyboard.input == short.input == b"", "it reads the keyboard"
-    assert short.argv[3] == "run"
+    assert words(short)[0] == "run"

@@ -10,6 +10,7 @@ import pytest
 from robolink.exceptions import DocumentError, NotFoundError
 from robolink.launch import Entry, read_launch_file
 from robolink.launch.reading.description import Respawn, StartAfter
+from robolink.own_command import own_command
 from robolink.workspace import VARIABLE, built_in_workspace, list_launches
 from tests.launchfiles import make_workspace
 
@@ -305,7 +306,7 @@ def test_a_command_is_found_before_anything_starts(home: Path, monkeypatch: pyte
     monkeypatch.setenv("PATH", str(home))
     text = "nodes: [{run: [robolink, topic, list]}, {run: [python, '{here}/x.py', 5], name: tool, namespace: a}]"
     found = entries(home, text)
-    assert found["robolink"].node.run == [sys.executable, "-m", "robolink", "topic", "list"]
+    assert found["robolink"].node.run == [*own_command(), "topic", "list"]
     tool = found["a/tool"]
     assert tool.node.run == [sys.executable, f"{home / 'configs'}/x.py", "5"]
     assert (tool.source, tool.home) == (None, home)

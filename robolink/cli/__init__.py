@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import contextlib
+import io
 import os
 import sys
 from collections.abc import Collection, Mapping, Sequence
@@ -126,10 +127,11 @@ def _drop_output() -> None:
 
 
 def _complete(args: list[str]) -> int:
-    """Answer the shell. An error would stand in the middle of what is being typed: there is none."""
+    """Answer the shell. An error or a warning would stand in the middle of what is being typed: there is none."""
     os.environ.pop("RUST_LOG", None)
     try:
-        return _run(args)
+        with contextlib.redirect_stderr(io.StringIO()):
+            return _run(args)
     except SystemExit as answered:  # what typer ends with
         return answered.code if isinstance(answered.code, int) else 0
     except (Exception, KeyboardInterrupt):  # noqa: BLE001

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
@@ -14,12 +13,11 @@ from robolink.launch.reading.description import Respawn
 from robolink.launch.reading.entries import read_launch_file
 from robolink.launch.reading.entry import Entry
 from robolink.launch.together import COMMAND, Member, written
+from robolink.own_command import own_command
 from robolink.supervisor import Process
 from robolink.supervisor.rules import Restarts, Rules
 from robolink.workspace import VARIABLE, Folder, own_process_needed
 from robolink.yamlfile import spell
-
-PYTHON = (sys.executable, "-m", "robolink")
 
 _ROOM = 16_000
 """Characters of a command line: one of Windows ends at 32,767, and quotes count; Linux takes 131,071 an argument."""
@@ -91,7 +89,7 @@ def as_process(launched: Launched) -> Process:
     """Give what the supervisor runs: a command is itself, a node is run by robolink."""
     argv, stdin = _words(launched), b""
     if not argv or (launched.members and sum(map(len, argv)) > _ROOM and not launched.interactive):
-        argv, stdin = [*PYTHON, COMMAND], written(launched.members)
+        argv, stdin = [*own_command(), COMMAND], written(launched.members)
     return Process(
         launched.name,
         argv,
@@ -109,7 +107,7 @@ def _words(launched: Launched) -> list[str]:
     if not launched.members:
         return list(launched.command)
     member = launched.members[0]
-    return [] if launched.entries[0].node.process else [*PYTHON, "run", member.node, "--", *member.args]
+    return [] if launched.entries[0].node.process else [*own_command(), "run", member.node, "--", *member.args]
 
 
 def arguments(entry: Entry) -> Iterator[str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -14,9 +13,9 @@ from contextlib import suppress
 
 import msgspec
 
+from robolink.own_command import own_command
 from robolink.simulating.result import SimulationResult
 
-ROBOLINK = (sys.executable, "-m", "robolink")
 INTERRUPTED = (130, -signal.SIGINT, 0xC000013A)
 """The exit codes of a process that Ctrl-C has ended; the last is what Windows gives to one that had not begun."""
 
@@ -56,7 +55,7 @@ def run_seeds(
     runs: dict[Future[SeedRun], SeedRun] = {}
     with ThreadPoolExecutor(max_workers=workers) as pool:
         try:
-            started += [pool.submit(running.run, seed, [*ROBOLINK, *words(seed)]) for seed in seeds]
+            started += [pool.submit(running.run, seed, [*own_command(), *words(seed)]) for seed in seeds]
             for each in as_completed(started):
                 if not (run := each.result()).interrupted:
                     runs[each] = run

@@ -2,9 +2,9 @@
 
 A workspace is a folder with two of `nodes/`, `configs/` and `interfaces/`, or a ROS 2 one: a folder whose `src/` holds
 packages, or, where there is neither, a lone package. A name is looked up (1) as a path, (2) in the nearest workspace:
-the one asked for, `ROBOLINK_WORKSPACE`, or the working directory's or a parent's, (3) among the entry points
-`robolink.nodes` of installed packages, (4) in the workspace that comes with robolink. `_` and `-` in names are the
-same.
+the one asked for, `ROBOLINK_WORKSPACE`, or the working directory's or a parent's (if it can be trusted: `trust`),
+(3) among the entry points `robolink.nodes` of installed packages, (4) in the workspace that comes with robolink.
+`_` and `-` in names are the same.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from pathlib import Path
 from robolink.exceptions import NotFoundError
 from robolink.workspace.packages import BUILT_IN, is_ros_workspace, named_executables, source_packages
 from robolink.workspace.source import Folder, NodeSource, canonical
+from robolink.workspace.trust import is_trusted
 
 VARIABLE = "ROBOLINK_WORKSPACE"
 ENTRY_POINTS = "robolink.nodes"
@@ -134,11 +135,12 @@ def user_workspace(workspace: Folder = None) -> Path | None:
 
 
 def workspace_of(path: Path) -> Path | None:
-    """Give the nearest folder at or above `path` that is a workspace."""
+    """Give the nearest folder at or above `path` that is a workspace; None, with a warning, if it is not trusted."""
     path = path.resolve()
     above = (path, *path.parents)
     nearest_one = next((each for each in above if _is_workspace(each)), None)
-    return nearest_one or next((each for each in above if (each / "package.xml").is_file()), None)
+    found = nearest_one or next((each for each in above if (each / "package.xml").is_file()), None)
+    return found if found is None or found == built_in_workspace() or is_trusted(found) else None
 
 
 def built_in_workspace() -> Path:

@@ -22,6 +22,7 @@ import msgspec
 from robolink.exceptions import RobolinkError
 from robolink.launch.planning import arguments, environment
 from robolink.launch.reading.entry import Entry
+from robolink.own_command import own_command
 from robolink.supervisor.rules import described
 
 COMMAND = "look-into"
@@ -121,7 +122,7 @@ def _child(request: Request) -> Iterator[subprocess.Popen[bytes]]:
         asked.write(msgspec.json.encode(request))
         asked.seek(0)
         child = subprocess.Popen(
-            [sys.executable, "-m", "robolink", COMMAND],
+            [*own_command(), COMMAND],
             stdin=asked,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
+from robolink.own_command import own_command
 from robolink.workspace import (
     Folder,
     NodeSource,
@@ -29,11 +30,7 @@ LAUNCH_FOLDER = "launch"
 """Where a ROS 2 package has its launch files."""
 
 WHERE_PROGRAMS_ARE = "a name is looked up on the PATH, a path from the working directory ({here} is the file's folder)"
-_OURS = {
-    "robolink": (sys.executable, "-m", "robolink"),
-    "python": (sys.executable,),
-    "python3": (sys.executable,),
-}
+_PYTHON = ("python", "python3")
 
 NOT_FOUND = (NotFoundError, OSError, ValueError, RuntimeError)
 """What looking for a file raises: it is not there, or what is asked for can be no file's name."""
@@ -177,12 +174,19 @@ def command_of(run: Sequence[str], path: str | None) -> list[str] | None:
 
     `robolink` and `python` are those of this process where the PATH has none.
     """
-    found, ours = shutil.which(run[0], path=path), _OURS.get(run[0])
+    found, ours = shutil.which(run[0], path=path), _ours(run[0])
     if found is not None and ours is not None and Path(found).parent.name == "WindowsApps":
         found = None  # what Windows has in place of a Python that is not installed: it leads to a shop
     if found is not None:  # Windows itself would look on our PATH, and for no `.bat`
         return [found if sys.platform == "win32" else run[0], *run[1:]]
     return None if ours is None else [*ours, *run[1:]]
+
+
+def _ours(name: str) -> tuple[str, ...] | None:
+    """Give how this process's own Python or robolink is started, None for another name."""
+    if name == "robolink":
+        return own_command()
+    return (sys.executable,) if name in _PYTHON else None
 
 
 def _around(folder: Path, home: Path | None) -> list[Path]:
