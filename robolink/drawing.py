@@ -9,11 +9,12 @@ matplotlib is an optional part: `pip install 'robolink[plot]'`.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import RobolinkError
-from robolink.plane import Pose, placed_on
+from robolink.plane import Area, Pose, placed_on
 from robolink.sim.description import (
     Bumper,
     Looking,
@@ -41,6 +42,12 @@ _INCH = 100.0
 
 _NARROWEST = 2.5
 """Inches that a picture has at least in both directions."""
+
+_LEAST_RADII = 10.0
+"""Of so many radii of its largest robot a picture has at least room in both directions."""
+
+_NOWHERE = ((0.0,), (0.0,))
+"""Where a world without anything in it is: x and y."""
 
 _NAMED = 30
 """Of so many robots, the names are written beside them."""
@@ -91,6 +98,8 @@ def draw_world(axes: Axes, description: WorldDescription) -> list[Patch]:
         _draw_obstacle(axes, obstacle)
     for robot in description.robots:
         _draw_robot(axes, robot, named=len(description.robots) <= _NAMED)
+    area = _extent(description)
+    axes.update_datalim([area[:2], area[2:]])
     axes.set_aspect("equal")
     axes.autoscale_view()
     axes.set_xlabel("x [m]")
@@ -131,18 +140,37 @@ def _draw_robot(axes: Axes, robot: RobotDescription, *, named: bool) -> None:
         if isinstance(sensor, Looking):
             _draw_view(axes, robot, sensor)
     style = {"facecolor": ROBOT, "edgecolor": WALL, "linewidth": 0.8, "zorder": 6}
-    outline = _outline(robot.shape, robot.pose.place, style)
-    axes.add_patch(outline)
+    parts = [_outline(robot.shape, robot.pose.place, style)]
     for wheel in robot.wheels:
         tyre = Shape(box=(2 * wheel.radius, max(wheel.radius / 2, 0.005)))
-        axes.add_patch(_outline(tyre, placed_on(robot.pose.place, wheel.at.place), {"facecolor": WALL, "zorder": 7}))
+        parts.append(_outline(tyre, placed_on(robot.pose.place, wheel.at.place), {"facecolor": WALL, "zorder": 7}))
+    for part in parts:
+        axes.add_patch(part)
     front = robot.shape.circle or max(x for x, _ in robot.shape.corners())
     nose = placed_on(robot.pose.place, Pose(front))
     axes.plot([robot.pose.x, nose.x], [robot.pose.y, nose.y], color="white", linewidth=1.6, zorder=8)
     if named:
-        box = outline.get_path().transformed(outline.get_patch_transform()).get_extents()
-        place = ((box.x0 + box.x1) / 2, box.y0)
-        axes.annotate(robot.name, place, (0, -3), textcoords="offset points", ha="center", va="top", zorder=9, size=8)
+        _write_name(axes, robot.name, parts)
+
+
+def _write_name(axes: Axes, name: str, parts: Sequence[Patch]) -> None:
+    """Write a robot's name below all its parts, readable on whatever lies there."""
+    from matplotlib.patheffects import withStroke
+    from matplotlib.transforms import Bbox
+
+    box = Bbox.union([each.get_path().transformed(each.get_patch_transform()).get_extents() for each in parts])
+    written = axes.annotate(
+        name,
+        ((box.x0 + box.x1) / 2, box.y0),
+        (0, -3),
+        textcoords="offset points",
+        ha="center",
+        va="top",
+        zorder=9,
+        size=8,
+        color=WALL,
+    )
+    written.set_path_effects([withStroke(linewidth=2, foreground="white")])
 
 
 def _draw_view(axes: Axes, robot: RobotDescription, sensor: Looking) -> None:
@@ -167,17 +195,26 @@ def _outline(shape: Shape, pose: Pose, style: dict[str, Any]) -> Patch:
 
 def _figure_size(description: WorldDescription, longer: float) -> Point:
     """Give a figure's width and height, in inches, that the world fills, and that leave room for what is written."""
-    width, height = _extent(description)
-    scale = longer / max(width, height)
-    return max(width * scale, _NARROWEST), max(height * scale, _NARROWEST)
+    area = _extent(description)
+    scale = longer / max(area.width, area.height)
+    return max(area.width * scale, _NARROWEST), max(area.height * scale, _NARROWEST)
 
 
-def _extent(description: WorldDescription) -> Point:
+def _extent(description: WorldDescription) -> Area:
+    """Find the box around all that stands in a world, and so large that no robot fills it."""
     points = [point for wall in description.walls for segment in wall.segments() for point in segment]
     points += [(each.start.x, each.start.y) for each in description.obstacles]
     points += [point for each in description.obstacles for point in each.path or ()]
     points += [(each.pose.x, each.pose.y) for each in description.robots]
-    if not points:
-        return 1.0, 1.0
-    xs, ys = zip(*points, strict=True)
-    return max(max(xs) - min(xs), 1.0), max(max(ys) - min(ys), 1.0)
+    least = _LEAST_RADII * max((each.shape.outer_radius() for each in description.robots), default=0.1)
+    (x_min, x_max), (y_min, y_max) = (
+        _widened(each, least) for each in (zip(*points, strict=True) if points else _NOWHERE)
+    )
+    return Area(x_min, y_min, x_max, y_max)
+
+
+def _widened(values: Sequence[float], least: float) -> tuple[float, float]:
+    """Return the least and the greatest of some values, moved apart until they are `least` from each other."""
+    low, high = min(values), max(values)
+    more = max(0.0, least - (high - low)) / 2
+    return low - more, high + more

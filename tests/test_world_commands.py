@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
+from matplotlib.text import Annotation
 
 from robolink import drawing
 from robolink.cli import complete, main
@@ -257,6 +258,30 @@ def test_an_outline_is_turned_with_its_pose() -> None:
     (x1, y1), (x2, y2) = np.asarray(nose.get_xydata()).tolist()
     assert (x1, y1, x2) == pytest.approx((1.0, 2.0, 1.0))
     assert y2 > 2.1
+
+
+WITH_WHEELS = """
+robots:
+  - name: r
+    pose: [1, 2, 0]
+    shape: {box: [0.3, 0.3]}
+    wheels:
+      - {motor: left, at: [0, 0.15, 0], radius: 0.15}
+      - {motor: right, at: [0, -0.15, 0], radius: 0.15}
+"""
+
+
+def test_a_robot_alone_in_its_world_does_not_fill_the_picture_and_its_name_is_below_its_wheels() -> None:
+    axes = Figure().add_subplot()
+    drawing.draw_world(axes, load_world("w.yaml", text=WITH_WHEELS))
+    (x1, x2), (y1, y2) = axes.get_xlim(), axes.get_ylim()
+    assert x2 - x1 > 5 * 0.3
+    assert y2 - y1 > 5 * 0.3
+    assert ((x1 + x2) / 2, (y1 + y2) / 2) == pytest.approx((1.0, 2.0), abs=0.01)
+    (name,) = axes.texts
+    assert isinstance(name, Annotation)
+    assert name.xy == pytest.approx((1.0, 2.0 - 0.15 - 0.075 / 2))
+    assert name.get_path_effects()
 
 
 @pytest.mark.parametrize(
