@@ -103,6 +103,42 @@ def test_a_file_of_ones_own(tmp_path: Path) -> None:
         assert json.loads(config.get_json("timestamping/enabled")) is True
 
 
+@pytest.mark.parametrize(
+    "override", ['mode="client"', 'connect/endpoints=["tcp/10.0.0.1:7447"]', "listen={endpoints: ['tcp/0.0.0.0:7']}"]
+)
+def test_overrides_that_name_a_network_are_asked_for_that(override: str) -> None:
+    """Nothing stays on that keeps a session on this machine: neither the access control nor the rendezvous."""
+    environ = {"ZENOH_CONFIG_OVERRIDE": f"scouting/delay=7; {override}"}
+    found = network.wanted("localhost", environ)
+    assert found == ("ZENOH_CONFIG_OVERRIDE", override)
+    assert not network.meets_at_port(found.value, environ)
+    config = network.load(None, 0, environ)
+    assert not json.loads(config.get_json("access_control/enabled"))
+    assert str(network.FIRST_PORT) not in config.get_json("connect/endpoints")
+    assert config.get_json("scouting/delay") == "7"
+
+
+def test_overrides_that_name_a_mode_only_go_where_ros_2_goes() -> None:
+    for mode in ("peer", "client"):
+        config = network.load(None, 0, {"ZENOH_CONFIG_OVERRIDE": f'mode="{mode}"'})
+        assert json.loads(config.get_json("connect/endpoints")) == [network.ROS_ROUTER]
+        assert config.get_json("mode") == f'"{mode}"'
+        assert "0.0.0.0" not in config.get_json("listen/endpoints")
+
+
+def test_another_network_that_was_named_stays_what_it_is() -> None:
+    environ = {"ZENOH_CONFIG_OVERRIDE": 'connect/endpoints=["tcp/10.0.0.1:7447"]'}
+    assert network.wanted("subnet", environ) == ("network", "subnet")
+    assert network.wanted("off", environ) == ("network", "off")
+
+
+def test_overridden_access_control_is_not_mixed_with_ours() -> None:
+    environ = {"ZENOH_CONFIG_OVERRIDE": 'access_control/enabled=true;access_control/default_permission="allow"'}
+    found = json.loads(network.load(None, 0, environ).get_json("access_control"))
+    assert (found["enabled"], found["default_permission"], found["rules"]) == (True, "allow", None)
+    assert network.meets_at_port(network.wanted(None, environ).value, environ)
+
+
 def test_overrides_have_the_last_word() -> None:
     environ = {"ZENOH_CONFIG_OVERRIDE": 'mode="client"; scouting/delay=7;'}
     config = network.load(None, 0, environ)

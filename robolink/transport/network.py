@@ -58,7 +58,9 @@ SOUGHT_EVERY = 0.1
 _OFTEN = f"retry_period_init_ms=50;retry_period_max_ms={SOUGHT_EVERY * 1000:.0f};retry_period_increase_factor=2"
 _HIGHEST_DOMAIN = 232
 _RANGES = {"": "localhost", "SYSTEM_DEFAULT": "localhost", "LOCALHOST": "localhost", "SUBNET": "subnet", "OFF": "off"}
+_OVERRIDE = "ZENOH_CONFIG_OVERRIDE"
 _ENDPOINT = re.compile(r"(tcp|tls|quic|ws)/\S+:\d+")
+_NAMES_A_NETWORK = re.compile(r"mode|(connect|listen)(/endpoints.*)?")
 _LOOPBACK = {"linux": "lo", "darwin": "lo0"}
 
 
@@ -68,7 +70,7 @@ class Wanted(NamedTuple):
     asked_by: str
     """The option or variable to name in an error."""
     value: str
-    """One of NAMES, the endpoint of a router, or the path of a file."""
+    """One of NAMES, the endpoint of a router, the path of a file, or overrides that name a network of their own."""
 
 
 def domain_id(environ: Mapping[str, str]) -> int:
@@ -90,7 +92,14 @@ def wanted(network: str | None, environ: Mapping[str, str]) -> Wanted:
     """Find out which network is asked for: by argument, by variable, or else this machine's own.
 
     The variables are ROBOLINK_NETWORK, ZENOH_SESSION_CONFIG_URI and ROS_AUTOMATIC_DISCOVERY_RANGE, in this order.
+    Whoever names endpoints or a mode in ZENOH_CONFIG_OVERRIDE asks for that network, and not for this machine's own.
     """
+    found = _asked_for(network, environ)
+    named = _network_of_overrides(environ)
+    return Wanted(_OVERRIDE, named) if named and found.value == "localhost" else found
+
+
+def _asked_for(network: str | None, environ: Mapping[str, str]) -> Wanted:
     if network:
         return Wanted("network", network)
     for variable in ("ROBOLINK_NETWORK", "ZENOH_SESSION_CONFIG_URI"):
@@ -206,6 +215,14 @@ def _client(endpoint: str) -> dict[str, Any]:
     }
 
 
+def _as_ros(mode: str) -> dict[str, Any]:
+    """Give what a session has that is to be told by overrides where to go: what rmw_zenoh's sessions have."""
+    if mode.strip("\"'") == "client":
+        return _client(ROS_ROUTER)
+    peer = _meeting("127.0.0.1", 0, False, [ROS_ROUTER])
+    return peer | {"scouting": _scouting(gossip=_ON)}
+
+
 _ON: Mapping[str, object] = {"enabled": True}
 _OFF: Mapping[str, object] = {"enabled": False}
 
@@ -245,18 +262,40 @@ def load(network: str | None, domain: int, environ: Mapping[str, str], *, holds_
     ZENOH_CONFIG_OVERRIDE, `path=json5;path=json5`, has the last word.
     """
     asked_by, value = wanted(network, environ)
-    if value in NAMES or _ENDPOINT.fullmatch(value):
-        import zenoh
-
-        config = zenoh.Config.from_json5(json.dumps(settings(value, domain, holds_port=holds_port)))
+    overrides = _overrides(environ)
+    if asked_by == _OVERRIDE:
+        config = _config(_as_ros(dict(overrides).get("mode", "")))
+    elif value in NAMES or _ENDPOINT.fullmatch(value):
+        wished = settings(value, domain, holds_port=holds_port)
+        if any(path.startswith("access_control") for path, _ in overrides):  # theirs, and not a mixture with ours
+            wished.pop("access_control", None)
+        config = _config(wished)
     else:
         config = _from_file(asked_by, value)
-    return _overridden(config, environ.get("ZENOH_CONFIG_OVERRIDE", ""))
+    return _overridden(config, overrides)
+
+
+def _config(wished: dict[str, Any]) -> zenoh.Config:
+    import zenoh
+
+    config: zenoh.Config = zenoh.Config.from_json5(json.dumps(wished))
+    return config
+
+
+def _overrides(environ: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Split ZENOH_CONFIG_OVERRIDE, `path=json5;path=json5`, into paths and values."""
+    parts = (each.partition("=") for each in environ.get(_OVERRIDE, "").split(";") if each.strip())
+    return [(path.strip(), value.strip()) for path, _, value in parts]
+
+
+def _network_of_overrides(environ: Mapping[str, str]) -> str:
+    """Give those overrides that name endpoints or a mode; empty where none does."""
+    return ";".join(f"{path}={value}" for path, value in _overrides(environ) if _NAMES_A_NETWORK.fullmatch(path))
 
 
 def meets_at_port(value: str, environ: Mapping[str, str]) -> bool:
     """Tell whether the sessions of this network find each other at the rendezvous port of their domain."""
-    return value in ("localhost", "subnet") and "endpoints" not in environ.get("ZENOH_CONFIG_OVERRIDE", "")
+    return value in ("localhost", "subnet") and not _network_of_overrides(environ)
 
 
 def _from_file(asked_by: str, value: str) -> zenoh.Config:
@@ -283,15 +322,14 @@ def file_of(value: str) -> Path:
     return Path(re.sub(r"^file://(/(?=[A-Za-z]:))?", "", value)).expanduser()
 
 
-def _overridden(config: zenoh.Config, overrides: str) -> zenoh.Config:
+def _overridden(config: zenoh.Config, overrides: list[tuple[str, str]]) -> zenoh.Config:
     import zenoh
 
-    for override in filter(None, map(str.strip, overrides.split(";"))):
-        path, _, value = override.partition("=")
+    for path, value in overrides:
         try:
-            config.insert_json5(path.strip(), value.strip())
+            config.insert_json5(path, value)
         except zenoh.ZError as error:
-            raise TransportError(f"ZENOH_CONFIG_OVERRIDE: {override!r}: {reason(error)}") from None
+            raise TransportError(f"{_OVERRIDE}: '{path}={value}': {reason(error)}") from None
     return config
 
 

@@ -1,0 +1,94 @@
+"""Networks that lead to another machine: who is met there, and what doctor says where nobody is."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack
+from typing import Any
+
+import pytest
+
+from robolink.transport import network
+from tests import stalls
+from tests.domains import free_domain
+
+pytestmark = [
+    pytest.mark.processes,
+    pytest.mark.skipif(bool(stalls.no_hosts()), reason=stalls.no_hosts() or "there are two hosts"),
+]
+
+THERE = "10.78.0.1"
+
+ROUTER = """
+import json, sys, zenoh
+listen = {"mode": "router", "listen": {"endpoints": ["tcp/0.0.0.0:7447"]}}
+session = zenoh.open(zenoh.Config.from_json5(json.dumps(listen | {"scouting": {"multicast": {"enabled": False}}})))
+"""
+NODE = """
+import os, sys
+from robolink.transport.zenoh import ZenohTransport
+domain = int(os.environ["ROS_DOMAIN_ID"])
+session = ZenohTransport(domain)
+token = session.announce(f"@ros2_lv/{domain}/{session.session_id}/0/0/NN/%/%/" + sys.argv[1])
+"""
+WAIT = "\nprint('ready', flush=True)\nsys.stdin.read()\n"
+
+
+class Machines:
+    """Two machines that a cable joins; `here` is the one on which commands are tried."""
+
+    def __init__(self, stack: ExitStack) -> None:
+        self._stack = stack
+        self.here, self.there = stack.enter_context(stalls.two_routed_hosts())
+        self.domain = stack.enter_context(free_domain())
+
+    def start(self, host: str, code: str, *arguments: str, **environ: str) -> None:
+        """Run a program there until the test ends; it is ready."""
+        command = ["ip", "netns", "exec", host, sys.executable, "-c", code + WAIT, *arguments]
+        pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+        child = self._stack.enter_context(subprocess.Popen(command, env=self._environ(environ), **pipes))
+        self._stack.callback(child.kill)
+        assert child.stdout.readline() == "ready\n"
+
+    def doctor(self, **environ: str) -> dict[str, Any]:
+        """Run `robolink doctor --json --report` here; give it, with the checks by name."""
+        command = ["ip", "netns", "exec", self.here, sys.executable, "-m", "robolink", "doctor", "--json", "--report"]
+        environ_ = self._environ(environ)
+        done = subprocess.run(command, env=environ_, capture_output=True, text=True, check=False, timeout=60)
+        assert done.stderr == ""
+        found: dict[str, Any] = json.loads(done.stdout)
+        return found | {"checks": {each["name"]: each for each in found["checks"]}}
+
+    def _environ(self, given: dict[str, str]) -> dict[str, str]:
+        clean = {name: each for name, each in os.environ.items() if not name.startswith(("ROS_", "ZENOH_", "ROBOLINK"))}
+        return clean | {"ROS_DOMAIN_ID": str(self.domain)} | given
+
+
+@pytest.fixture
+def machines() -> Iterator[Machines]:
+    with ExitStack() as stack:
+        yield Machines(stack)
+
+
+def nodes(found: dict[str, Any]) -> list[str]:
+    """The nodes that a doctor has seen."""
+    return sorted(value.split()[0] for _, value in found["report"]["NODE LIST"])
+
+
+@pytest.mark.parametrize("mode", ['mode="client";', ""])
+def test_an_override_that_names_an_endpoint_joins_it(machines: Machines, mode: str) -> None:
+    for name in "ab":
+        machines.start(machines.there, NODE, name, ROBOLINK_NETWORK="subnet")
+    override = f'{mode}connect/endpoints=["tcp/{THERE}:{network.FIRST_PORT + machines.domain}"]'
+    assert nodes(machines.doctor(ZENOH_CONFIG_OVERRIDE=override)) == ["/a", "/b"]
+
+
+def test_an_override_that_names_a_ros_2_router_joins_it(machines: Machines) -> None:
+    machines.start(machines.there, ROUTER)
+    machines.start(machines.there, NODE, "far")
+    override = f'mode="client";connect/endpoints=["tcp/{THERE}:7447"]'
+    assert nodes(machines.doctor(ZENOH_CONFIG_OVERRIDE=override)) == ["/far"]
