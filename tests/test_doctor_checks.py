@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from robolink.cli.doctor import checks, graph_checks, look, probes
 from robolink.cli.doctor.facts import ClockOffset, Facts, Seen, Settings, Space, read_settings
 from robolink.cli.doctor.probes import Holder, Port
-from robolink.cli.doctor.verdict import ERROR, OK, UNKNOWN, WARNING, Verdict, listed
+from robolink.cli.doctor.verdict import ERROR, LONGEST, OK, UNKNOWN, WARNING, Verdict, listed
 from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.transport.reach import Link, Reach
 from robolink.wire import (
     NO_HASH,
     EndpointKind,
@@ -148,6 +149,35 @@ def test_who_holds_the_rendezvous_port(role: str | None, level: str, said: str) 
         Facts(settings=Settings(domain=3), ports=ports, holders={17450: Holder(12, "python talker.py")})
     )
     assert (found.level, said in " ".join([found.summary, *found.errors])) == (level, True)
+
+
+SUBNET = Reach(listens=("tcp/0.0.0.0:17447",), multicast="224.0.0.224:17447")
+AWAY = Link("peer", "tcp/10.0.0.1:40000", "tcp/10.0.0.2:17447")
+ITSELF = Link("peer", "tcp/10.0.0.1:40000", "tcp/10.0.0.1:17447")
+
+
+@pytest.mark.parametrize(
+    ("reach", "seen", "level", "said"),
+    [
+        (Reach(listens=("tcp/127.0.0.1:0",)), Seen(), OK, "nodes meet this machine only"),
+        (SUBNET, Seen(links=(ITSELF,), tokens=(node("a"),)), WARNING, "no other machine has answered"),
+        (SUBNET, Seen(links=(ITSELF, AWAY), tokens=(node("a"),)), OK, "linked to 1 session there"),
+        (SUBNET, Seen(links=(AWAY,)), WARNING, "linked to 1 session there, but nobody there has a node"),
+        (SUBNET, Seen(links=(AWAY,), other_domains={3: 1}), OK, "linked to 1 session there"),
+        (SUBNET, Seen(error="no network"), UNKNOWN, "the local network"),
+        (Reach("client", ("tcp/127.0.0.1:7447",)), Seen(), WARNING, "no other machine has answered"),
+    ],
+)
+def test_who_asks_for_others_is_told_that_nobody_is_there(reach: Reach, seen: Seen, level: str, said: str) -> None:
+    found = checks.reach(Facts(reach=reach, seen=seen))
+    assert (found.level, said in " ".join([found.summary, *found.warnings])) == (level, True)
+
+
+def test_a_long_way_to_nobody_is_said_in_a_line() -> None:
+    network = "connect/endpoints=[" + "'tcp/10.0.0.1:7447'," * 999
+    (said,) = checks.reach(Facts(settings=Settings(network=network), reach=SUBNET)).findings
+    assert len(said) <= LONGEST
+    assert "\n" not in said
 
 
 def test_the_rendezvous_is_not_judged_where_it_is_not_used() -> None:

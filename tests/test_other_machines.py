@@ -52,6 +52,7 @@ class Machines:
         pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
         child = self._stack.enter_context(subprocess.Popen(command, env=self._environ(environ), **pipes))
         self._stack.callback(child.kill)
+        assert child.stdout
         assert child.stdout.readline() == "ready\n"
 
     def doctor(self, **environ: str) -> dict[str, Any]:
@@ -92,3 +93,31 @@ def test_an_override_that_names_a_ros_2_router_joins_it(machines: Machines) -> N
     machines.start(machines.there, NODE, "far")
     override = f'mode="client";connect/endpoints=["tcp/{THERE}:7447"]'
     assert nodes(machines.doctor(ZENOH_CONFIG_OVERRIDE=override)) == ["/far"]
+
+
+def test_doctor_says_that_multicast_does_not_pass_and_what_does(machines: Machines) -> None:
+    machines.start(machines.there, NODE, "far", ROBOLINK_NETWORK="subnet")
+    found = machines.doctor(ROBOLINK_NETWORK="subnet")
+    (said,) = found["checks"]["reach"]["warnings"]
+    assert said.startswith("network subnet: no other machine has answered (the local network (multicast 224.0.0.224:")
+    assert "multicast does not pass" in said
+    port = network.FIRST_PORT + machines.domain
+    assert said.endswith(f"--network tcp/HOST:{port}")
+    found = machines.doctor(ROBOLINK_NETWORK=f"tcp/{THERE}:{port}")
+    assert (nodes(found), found["checks"]["reach"]["level"]) == (["/far"], "ok")
+
+
+def test_doctor_says_that_a_router_passes_nothing_on_to_a_peer(machines: Machines) -> None:
+    machines.start(machines.there, ROUTER)
+    machines.start(machines.there, NODE, "far")
+    found = machines.doctor(ZENOH_CONFIG_OVERRIDE=f'connect/endpoints=["tcp/{THERE}:7447"]')
+    (said,) = found["checks"]["reach"]["warnings"]
+    assert said.endswith(
+        'but nobody there has a node; a router of ROS 2 passes things on to its clients only: add mode="client"'
+    )
+
+
+def test_doctor_says_that_nobody_answers_at_an_endpoint(machines: Machines) -> None:
+    found = machines.doctor(ZENOH_CONFIG_OVERRIDE=f'connect/endpoints=["tcp/{THERE}:7447"]')
+    (said,) = found["checks"]["reach"]["warnings"]
+    assert f"no other machine has answered (whoever answers at tcp/{THERE}:7447)" in said

@@ -10,10 +10,13 @@ from __future__ import annotations
 import functools
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from robolink.exceptions import TransportError
 from robolink.qos import QoSProfile
+
+if TYPE_CHECKING:
+    from robolink.transport.reach import Link
 
 LARGEST_PAYLOAD = (1 << 30) - (1 << 16)
 """Bytes of one message: rmw_zenoh's limit of 1 GiB, less what the network adds."""
@@ -129,6 +132,10 @@ class Transport(ABC):
         (some 50 ms; half a second where a peer is frozen, 3 s at the most on a busy machine).
         Not from within `on_change` nor a sink.
         """
+
+    def links(self) -> list[Link]:
+        """List the connections to other sessions; a transport without a network has none."""
+        return []
 
     @abstractmethod
     def read(self, arrived: Any) -> Sample:

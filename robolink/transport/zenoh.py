@@ -25,6 +25,7 @@ from robolink.transport import lifetime, network
 from robolink.transport import zenoh_declare as declare
 from robolink.transport import zenoh_handles as handles
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample, refuse_giant
+from robolink.transport.reach import Link
 
 QUIET = 0.03
 """Seconds without news after which no more peers are expected."""
@@ -115,6 +116,13 @@ class ZenohTransport(Transport):
             return sorted(_settled(arrived, functools.partial(self._try, pattern, declare.ask, pattern), self._peers))
         finally:
             declare.quietly(subscriber.undeclare)
+
+    def links(self) -> list[Link]:
+        """List the connections to other sessions."""
+        with lifetime.inside:
+            info = self._session.info
+            roles = {str(each.zid): str(each.whatami) for each in info.transports()}
+            return [Link(roles.get(str(each.zid), "peer"), str(each.src), str(each.dst)) for each in info.links()]
 
     def read(self, arrived: Any) -> Sample:
         """Turn what a subscription's or a call's sink got into bytes. Raises TransportError on an error reply."""

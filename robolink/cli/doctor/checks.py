@@ -69,7 +69,8 @@ def settings(facts: Facts) -> Verdict:
         )
     if wanted.transport != "zenoh":
         warnings.append(f"ROBOLINK_TRANSPORT={wanted.transport[:80]}: nodes see only their own process")
-    in_force = [f"{name}={environ[name][:80]}" for name in _NOTED if environ.get(name)]
+    noted = [name for name in _NOTED if environ.get(name) and name != wanted.asked_by]
+    in_force = [f"{name}={environ[name][:80]}" for name in noted]
     domain = f"domain {wanted.domain} ({'ROS_DOMAIN_ID' if environ.get('ROS_DOMAIN_ID') else 'the default'})"
     network = f"network {wanted.network} ({wanted.asked_by or 'the default'})"
     return Verdict(", ".join([domain, network, *in_force]), wanted.errors, tuple(warnings))
@@ -81,6 +82,39 @@ def loopback(facts: Facts) -> Verdict:
         return Verdict("this machine can connect to itself")
     hint = ": try 'ip link set lo up'" if facts.platform == "linux" else ""
     return Verdict("", (f"no connection to 127.0.0.1{hint}",))
+
+
+def reach(facts: Facts) -> Verdict:
+    """Who asks for other machines meets somebody there."""
+    settings, seen, whom = facts.settings, facts.seen, facts.reach
+    if settings.transport != "zenoh":
+        return Verdict("not used with these settings")
+    if seen.error:
+        return Verdict(str(whom), unknown=True)
+    client = whom.mode == "client"
+    if not whom.leaves_machine and not client:
+        return Verdict(f"nodes meet {whom}")
+    far = [each for each in seen.links if client or each.leaves_machine]
+    if not far:
+        return Verdict("", (), (_nobody(facts),))
+    linked = f"nodes meet {whom}: linked to {count(len(far), 'session')} there"
+    if seen.tokens or seen.other_domains:  # then the domain is what is to be looked at
+        return Verdict(linked)
+    routed = not client and any(each.role == ROUTER for each in far)
+    hint = '; a router of ROS 2 passes things on to its clients only: add mode="client"' if routed else ""
+    return Verdict("", (), (f"{linked}, but nobody there has a node{hint}",))
+
+
+def _nobody(facts: Facts) -> str:
+    """Say that other machines are asked for and none answers, and what to do."""
+    settings, whom = facts.settings, facts.reach
+    answers = f"network {settings.network[:120]}: no other machine has answered ({whom})"
+    if whom.multicast:
+        return (
+            f"{answers}: start a node there with --network {settings.network[:120]}; if one runs there, multicast does "
+            f"not pass between you (Wi-Fi, a VPN, another subnet): here, say --network tcp/HOST:{settings.port}"
+        )
+    return f"{answers}: is it on, and do its firewall and yours let that port through?"
 
 
 def rendezvous(facts: Facts) -> Verdict:
@@ -187,6 +221,7 @@ CHECKS = (
     Check("versions", "platform", versions),
     Check("settings", "network", settings),
     Check("loopback", "network", loopback),
+    Check("reach", "network", reach),
     Check("rendezvous", "network", rendezvous),
     Check("router", "network", router),
     Check("domains", "network", domains),

@@ -14,6 +14,7 @@ from robolink.cli.doctor.probes import Holder, Port, holder, listening, loopback
 from robolink.context import LAST_DOMAIN
 from robolink.exceptions import TransportError
 from robolink.transport import lifetime, network
+from robolink.transport.reach import Link, Reach, reach
 from robolink.wire import EndpointToken, NodeToken
 
 ANSWER_WITHIN = 0.3
@@ -83,6 +84,8 @@ class Seen(NamedTuple):
     other_domains: Mapping[int, int] = {}
     """Number of nodes on each domain but the own one, as far as they are visible from it."""
     clocks: tuple[ClockOffset, ...] = ()
+    links: tuple[Link, ...] = ()
+    """The connections to other sessions."""
     error: str = ""
     """Why nothing could be looked at."""
 
@@ -105,6 +108,8 @@ class Facts(NamedTuple):
     namesakes: tuple[str, ...] = ()
     """Other distributions, with their versions, that install a module `robolink`."""
     settings: Settings = Settings()
+    reach: Reach = Reach()
+    """Whom a session with these settings can meet."""
     loopback: bool = True
     router_port: int = 7447
     """Where a ROS 2 router listens."""
@@ -131,6 +136,7 @@ def gather() -> Facts:
         versions=versions(),
         namesakes=namesakes(),
         settings=settings,
+        reach=_reach(settings),
         loopback=loopback_works(),
         router_port=int(network.ROS_ROUTER.rpartition(":")[2]),
         shared_memory=shared_memory(),
@@ -174,6 +180,12 @@ def _try(errors: list[str], otherwise: ResultT, action: Callable[[], ResultT]) -
 def _shares_memory(domain: int, environ: Mapping[str, str]) -> bool:
     config = network.load(None, domain, environ)
     return bool(config.get_json("transport/shared_memory/enabled") == "true")
+
+
+def _reach(settings: Settings) -> Reach:
+    if settings.errors or settings.transport != "zenoh":
+        return Reach()
+    return reach(network.load(None, settings.domain, os.environ))
 
 
 def versions() -> dict[str, str]:

@@ -84,7 +84,8 @@ def _seen(transport: Transport, domain: int) -> Seen:
             tokens.append(token)
         elif isinstance(token, NodeToken):
             others[token.domain] += 1
-    return Seen(transport.session_id, tuple(tokens), tuple(malformed), others, _clocks(transport, tokens))
+    clocks = _clocks(transport, tokens)
+    return Seen(transport.session_id, tuple(tokens), tuple(malformed), others, clocks, tuple(transport.links()))
 
 
 def _listed(transport: Transport) -> list[str]:

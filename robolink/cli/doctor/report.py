@@ -54,6 +54,8 @@ def _network(facts: Facts) -> list[tuple[str, str]]:
         ("network", settings.network),
         ("asked for by", settings.asked_by or "nobody (the default)"),
         ("transport", settings.transport),
+        ("nodes meet", str(facts.reach)),
+        *(("link", f"{each.role} at {each.there}") for each in facts.seen.links),
         ("domain id", str(settings.domain)),
         ("rendezvous port", f"{settings.port} ({_on(facts, settings.port)})" if settings.meets else "not used"),
         ("ROS 2 router's port", f"{facts.router_port} ({_on(facts, facts.router_port)})"),

@@ -1,0 +1,125 @@
+"""The reach of a Zenoh session: which machines its configuration lets it speak to, and which it is linked to."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    import zenoh
+
+_LOCAL_PROTOCOLS = ("unixpipe", "unixsock-stream", "vsock")
+_LOOPBACK_INTERFACES = ("lo", "lo0")
+
+
+class Reach(NamedTuple):
+    """Whom a session can meet, by its configuration."""
+
+    mode: str = "peer"
+    connects: tuple[str, ...] = ()
+    """The endpoints that it connects to."""
+    listens: tuple[str, ...] = ()
+    """The endpoints on which others may connect to it."""
+    multicast: str = ""
+    """The group in which it looks for others; empty if it does not."""
+    interfaces: tuple[str, ...] = ()
+    """The interfaces that access control confines it to; empty if it does not."""
+
+    @property
+    def leaves_machine(self) -> bool:
+        """Whether it may speak to other machines by itself; a router that it finds may lead there in any case."""
+        if self.interfaces and set(self.interfaces) <= set(_LOOPBACK_INTERFACES):
+            return False
+        return bool(self.multicast) or not all(map(on_this_machine, (*self.connects, *self.listens)))
+
+    def __str__(self) -> str:
+        if self.mode == "client" and self.connects:
+            return f"whoever is behind {' or '.join(self.connects)}, as its client"
+        if not (self.connects or self.listens or self.multicast):
+            return "no other process"
+        if not self.leaves_machine:
+            return f"this machine only{f' (interface {self.interfaces[0]})' if self.interfaces else ''}"
+        there = [each for each in self.connects if not on_this_machine(each)]
+        parts = [
+            f"the local network (multicast {self.multicast})" if self.multicast else "",
+            f"whoever answers at {' and '.join(there)}" if there else "",
+            f"whoever connects to {' or '.join(self.listens)}"
+            if self.listens and not (self.multicast or there)
+            else "",
+        ]
+        return ", ".join(filter(None, parts))
+
+
+class Link(NamedTuple):
+    """A connection to another session."""
+
+    role: str
+    """`router`, `peer` or `client`: what the other one is."""
+    here: str
+    """This side's address, such as ``tcp/10.0.0.1:40000``."""
+    there: str
+
+    @property
+    def leaves_machine(self) -> bool:
+        """Whether the other session is on another machine: there the two addresses differ."""
+        return host_of(self.here) != host_of(self.there)
+
+
+def reach(config: zenoh.Config) -> Reach:
+    """Read from a configuration whom a session with it can meet."""
+    mode = json.loads(config.get_json("mode")) or "peer"
+
+    def read(path: str) -> Any:
+        value = json.loads(config.get_json(path))
+        return value.get(mode) if isinstance(value, dict) else value
+
+    enabled = read("scouting/multicast/enabled")
+    group = json.loads(config.get_json("scouting/multicast/address")) or "224.0.0.224:7446"
+    return Reach(
+        mode,
+        tuple(_shown(each) for each in read("connect/endpoints") or ()),
+        () if mode == "client" else tuple(_shown(each) for each in read("listen/endpoints") or ()),
+        "" if enabled is False else group,
+        _interfaces(json.loads(config.get_json("access_control"))),
+    )
+
+
+def on_this_machine(endpoint: str) -> bool:
+    """Whether an endpoint or address can lead to this machine only.
+
+    >>> on_this_machine("tcp/[::1]:7447"), on_this_machine("tcp/localhost:0"), on_this_machine("tls/0.0.0.0:0")
+    (True, True, False)
+    """
+    import ipaddress  # late: it costs every node's start 2 ms
+
+    host = host_of(endpoint)
+    if host == "localhost" or endpoint.partition("/")[0] in _LOCAL_PROTOCOLS:
+        return True
+    try:
+        return ipaddress.ip_address(host.partition("%")[0]).is_loopback
+    except ValueError:
+        return False
+
+
+def host_of(endpoint: str) -> str:
+    """Give the host of an endpoint.
+
+    >>> host_of("tls/[fe80::1%eth0]:7447#iface=eth0")
+    'fe80::1%eth0'
+    """
+    address = re.split(r"[#?]", endpoint.partition("/")[2])[0]
+    return address.rpartition(":")[0].strip("[]")
+
+
+def _shown(endpoint: str) -> str:
+    """Leave out an endpoint's settings: it is where that counts."""
+    return re.split(r"[#?]", endpoint)[0]
+
+
+def _interfaces(control: dict[str, Any]) -> tuple[str, ...]:
+    """Find the interfaces without which access control lets nothing through."""
+    if not control["enabled"] or control["default_permission"] != "deny":
+        return ()
+    named = [subject.get("interfaces") for subject in control["subjects"] or ()]
+    return tuple(sorted({each for some in named for each in some})) if named and all(named) else ()
