@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import threading
 import traceback
 from collections.abc import Callable
 from types import TracebackType
@@ -16,6 +17,7 @@ from robolink.task import Future, Task
 from robolink.task_runner import TaskRunner
 
 if TYPE_CHECKING:
+    from robolink.context import Context
     from robolink.executors import Executor
 
 
@@ -45,6 +47,20 @@ async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
 
 class ExecutorRunning(ExecutorQueue):
     """The part of an executor that runs what was taken."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self._spinners: list[int] = []
+
+    @property
+    def spinning(self) -> bool:
+        """Whether any thread spins."""
+        return bool(self._spinners)
+
+    @property
+    def spins_here(self) -> bool:
+        """Whether the calling thread is the one, or one of those, that spin: it is inside a callback then."""
+        return threading.get_ident() in self._spinners
 
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
         """Run a function or coroutine in this executor; its result comes through the task."""

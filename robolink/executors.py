@@ -45,7 +45,6 @@ class Executor(ExecutorRunning):
     def __init__(self, *, context: Context | None = None) -> None:
         super().__init__(context if context is not None else get_default_context())
         self._is_shutdown = False
-        self._spinners: list[int] = []
         self._left = threading.Condition(self._lock)
         self._pause = self._context.time.wait
         self._context.on_shutdown(self.wake)
@@ -54,16 +53,6 @@ class Executor(ExecutorRunning):
     def context(self) -> Context:
         """The context whose end ends the spinning."""
         return self._context
-
-    @property
-    def spinning(self) -> bool:
-        """Whether any thread spins."""
-        return bool(self._spinners)
-
-    @property
-    def spins_here(self) -> bool:
-        """Whether the calling thread is the one, or one of those, that spin: it is inside a callback then."""
-        return threading.get_ident() in self._spinners
 
     def can_execute(self, entity: Entity) -> bool:
         """Whether its callback group would let an entity run now."""
