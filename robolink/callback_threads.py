@@ -113,6 +113,10 @@ class CallbackThreads:
         """Whether the calling thread is in a callback of this executor."""
         return threading.get_ident() in self._running
 
+    def holds(self, group: CallbackGroup) -> bool:
+        """Whether a callback in the calling thread keeps a group busy."""
+        return threading.get_ident() in self._holding(group)
+
     def can_serve(self) -> bool:
         """Whether somebody waits and may serve meanwhile."""
         return any(desk.idle and desk.serves for desk in self._desks)

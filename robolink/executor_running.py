@@ -5,13 +5,15 @@ from __future__ import annotations
 import inspect
 import threading
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, cast
 
 from robolink.entity import Entity
 from robolink.exceptions import ExternalShutdownException, InvalidHandle, RobolinkError
 from robolink.executor_queue import ExecutorQueue
+from robolink.impl.rcutils_logger import RcutilsLogger
 from robolink.logging import get_logger
 from robolink.task import Future, Task
 from robolink.task_runner import TaskRunner
@@ -19,6 +21,13 @@ from robolink.task_runner import TaskRunner
 if TYPE_CHECKING:
     from robolink.context import Context
     from robolink.executors import Executor
+
+
+_HELD = (
+    "a callback spins and waits without a timeout_sec: {} is ready, but cannot run before that callback has returned, "
+    "since their callback group runs one at a time. Return instead of spinning, give the spin a timeout_sec, or give "
+    "one of the two a callback group of its own"
+)
 
 
 class TimeoutException(RobolinkError):  # noqa: N818 - rclpy's name
@@ -51,6 +60,7 @@ class ExecutorRunning(ExecutorQueue):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._spinners: list[int] = []
+        self._has_told_of_held = False
 
     @property
     def spinning(self) -> bool:
@@ -61,6 +71,19 @@ class ExecutorRunning(ExecutorQueue):
     def spins_here(self) -> bool:
         """Whether the calling thread is the one, or one of those, that spin: it is inside a callback then."""
         return threading.get_ident() in self._spinners
+
+    @contextmanager
+    def beside(self, other: Executor | None) -> Iterator[None]:
+        """Be spun by a thread that may be in a callback of another executor, which counts as a callback here too."""
+        thread = threading.get_ident()
+        inside = other is not None and other is not self and other.spins_here
+        if inside:
+            self._spinners.append(thread)
+        try:
+            yield
+        finally:
+            if inside:
+                self._spinners.remove(thread)
 
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
         """Run a function or coroutine in this executor; its result comes through the task."""
@@ -86,6 +109,19 @@ class ExecutorRunning(ExecutorQueue):
         with self._lock:
             return bool(self._blocked)
 
+    def _tell_of_held(self) -> bool:
+        """In a callback that spins without an end: warn when what is ready waits for that very callback; never stop."""
+        with self._lock:
+            held = next((each for each in self._blocked if self._is_held_here(each)), None)
+        if held is not None and not self._has_told_of_held:
+            self._has_told_of_held = True
+            _logger_of(held).warning(_HELD.format(_named(held.origin)))
+        return False
+
+    def _is_held_here(self, entity: Entity) -> bool:
+        """Whether a callback under way in this thread keeps the group of an entity busy."""
+        return not entity.gate.can_execute(entity)
+
     def run(self, entity: Entity, taken: Any) -> None:
         """Run what was taken. Raises what the user's callback raises."""
         coroutine = None
@@ -110,16 +146,25 @@ class ExecutorRunning(ExecutorQueue):
         if isinstance(error, InvalidHandle) and not self._context.ok():
             return  # another thread has ended the context meanwhile
         error.__robolink_logged__ = True  # type: ignore[attr-defined]
-        owner = entity.origin.node
-        name = "robolink" if owner is None else owner.get_logger().name
         text = "".join(traceback.format_exception(type(error), error, _of_the_user(error.__traceback__)))
-        get_logger(name).error(f"an exception in a callback ends the spinning:\n{text.rstrip()}")
+        _logger_of(entity).error(f"an exception in a callback ends the spinning:\n{text.rstrip()}")
 
     def _run_on(self, entity: Entity, coroutine: Any) -> None:
         """Run a callback that is a coroutine; its group is busy until it ends."""
         executor = cast("Executor", self)
         task: Task[Any] = Task(coroutine, executor=executor)
         TaskRunner(task, executor, entity).execute(task)
+
+
+def _logger_of(entity: Entity) -> RcutilsLogger:
+    owner = entity.origin.node
+    return get_logger("robolink") if owner is None else owner.get_logger()
+
+
+def _named(entity: Entity) -> str:
+    kind = type(entity).__name__.lower()
+    name = getattr(entity, "topic_name", None) or getattr(entity, "srv_name", None)
+    return f"the {kind} of {name}" if name else f"a {kind}"
 
 
 def _of_the_user(trace: TracebackType | None) -> TracebackType | None:

@@ -226,6 +226,8 @@ class Executor(ExecutorRunning):
     def _spin(self, deadline: int | None = None, stop: Callable[[], bool] | None = None, *, once: bool = False) -> None:
         """Run callbacks until `stop()`, the deadline, or the end of the context or of this executor."""
         time, thread, ok = self._context.time, threading.get_ident(), self._context.ok
+        if deadline is None and stop is None and self.spins_here:
+            stop = self._tell_of_held
         self._spinners.append(thread)
         try:
             while True:
@@ -309,6 +311,9 @@ class MultiThreadedExecutor(Executor):
     def spins_here(self) -> bool:
         """Whether the calling thread spins or runs a callback."""
         return self._threads.runs_here() or super().spins_here
+
+    def _is_held_here(self, entity: Entity) -> bool:
+        return super()._is_held_here(entity) and self._threads.holds(entity.gate)
 
     def poll(self, entity: Entity) -> None:
         """Make an entity ready again in a moment."""

@@ -156,7 +156,8 @@ def _with_node(node: Node, executor: Executor | None, act: Callable[[Executor], 
     before = node.executor
     added = chosen.add_node(node)
     try:
-        act(chosen)
+        with chosen.beside(before):
+            act(chosen)
     finally:
         if added:
             _give_back(node, chosen, before)

@@ -10,12 +10,13 @@ import pytest
 
 import robolink as rclpy
 from robolink import Context, Future, Node
-from robolink.executors import SingleThreadedExecutor
+from robolink.callback_groups import ReentrantCallbackGroup
+from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.utilities import set_default_context
-from tests.spins import numbers, spin_for
+from tests.spins import numbers, spin_for, spin_until
 
 PATIENCE = 30.0
 
@@ -227,3 +228,57 @@ def test_utilities_say_what_this_is() -> None:
     assert utilities.get_rmw_implementation_identifier() in utilities.get_available_rmw_implementations()
     assert utilities.remove_ros_args(["prog", "--ros-args", "-r", "a:=b", "--", "x"]) == ["prog", "x"]
     assert [utilities.timeout_sec_to_nsec(each) for each in (None, -1, 0, 1.5)] == [-1, -1, 0, 1_500_000_000]
+
+
+@pytest.mark.parametrize("elsewhere", [False, True])
+def test_a_callback_that_spins_without_an_end_is_told_what_it_holds_up(
+    default: Context, elsewhere: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    node, woke = rclpy.create_node("node"), list[int]()
+
+    def tick() -> None:
+        rclpy.spin_once(node)
+        woke.append(default.time.now() // 10**6)
+        rclpy.shutdown()
+
+    node.create_timer(0.1, tick)
+    node.create_timer(0.45, lambda: None, callback_group=ReentrantCallbackGroup())
+    rclpy.spin(node, SingleThreadedExecutor() if elsewhere else None)
+    assert woke == [450]
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "[node]: a callback spins and waits without a timeout_sec: a timer is ready, but cannot run" in line
+
+
+def test_a_callback_in_a_thread_that_spins_without_an_end_is_told_too(
+    context: Context, capsys: pytest.CaptureFixture[str]
+) -> None:
+    executor, node, seen = MultiThreadedExecutor(2, context=context), Node("node", context=context), list[str]()
+    publisher = node.create_publisher(Int32, "number", 10)
+    node.create_subscription(Int32, "number", lambda _: executor.spin_once(), 10)
+    executor.add_node(node)
+    for _ in range(2):
+        publisher.publish(Int32())
+
+    def is_told() -> bool:
+        seen.append(capsys.readouterr().err)
+        return "the subscription of /number is ready, but cannot run" in "".join(seen)
+
+    with executor:
+        spin_until(executor, is_told)
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0.3])
+def test_a_callback_that_spins_for_a_time_is_left_alone(
+    default: Context, seconds: float, capsys: pytest.CaptureFixture[str]
+) -> None:
+    node, woke = rclpy.create_node("node"), list[int]()
+
+    def tick() -> None:
+        rclpy.spin_once(node, timeout_sec=seconds)
+        woke.append(default.time.now() // 10**6)
+        rclpy.shutdown()
+
+    node.create_timer(0.1, tick)
+    rclpy.spin(node)
+    assert woke == [100 + int(seconds * 1000)]
+    assert capsys.readouterr().err == ""
