@@ -12,12 +12,16 @@ from robolink.laser import seconds_between
 from robolink.node import Node
 from robolink.parameter_descriptors import described
 
+FIRST_SCAN = 5.0
+"""Seconds that the first scan may take without a word: the robot, which stands, is often started beside its driver."""
+
 
 class ScanController(Node):
     """Turns each scan into a velocity command; stops the robot when there are no scans, and at its own end.
 
     A subclass says in `decide` what to do. The topics are `scan` and `cmd_vel`; the parameter `timeout` holds the
-    seconds without a scan after which the robot stops until the next one.
+    seconds without a scan after which the robot stops until the next one. That none has come at all is told after
+    `FIRST_SCAN` seconds.
     """
 
     is_driving = False
@@ -30,7 +34,7 @@ class ScanController(Node):
         self.last_scan: LaserScan | None = None
         self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
         self.create_subscription(LaserScan, "scan", self.on_scan, 10)
-        self.watchdog = self.create_timer(timeout, self.on_silence)
+        self.watchdog = self.create_timer(max(timeout, FIRST_SCAN), self.on_silence)
 
     def decide(self, scan: LaserScan, seconds: float) -> tuple[Twist, str]:
         """Give the next command, and why in words; `seconds` after the last scan, 0 where that cannot be told."""
@@ -54,7 +58,7 @@ class ScanController(Node):
         self.watchdog.cancel()
         self.forget()
         self.stop()
-        seconds, topic = self.get_parameter("timeout").value, self.resolve_topic_name("scan")
+        seconds, topic = self.watchdog.timer_period_ns / 1e9, self.resolve_topic_name("scan")
         self.get_logger().warning(f"no scan on {topic} for {seconds:g} s: the robot stands until one comes")
 
     def stop(self) -> None:
