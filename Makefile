@@ -1,7 +1,9 @@
-# Every target makes the virtual environment when it is missing: a fresh clone needs nothing but Python.
+# Every target makes the virtual environment when it is missing: a fresh clone needs nothing but Python. A demo needs
+# a quarter of what developers do, so that is installed first, and the rest when something asks for it.
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+DEMO := $(VENV)/.demo
 READY := $(VENV)/.ready
 # Two cores for three processes: one of them waits for robots that drive for two minutes.
 PARALLEL ?= -n 3 --dist loadfile --no-loadscope-reorder
@@ -11,7 +13,7 @@ export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: demo test lint types floors check format bench clean
 
-demo: $(READY)  ## A robot wanders in a simulated room, until Ctrl-C
+demo: $(DEMO)  ## A robot wanders in a simulated room, until Ctrl-C
 	$(BIN)/robolink launch wander
 
 test: $(READY)  ## Every test, on two cores; ARGS go to pytest
@@ -48,11 +50,11 @@ bench: $(READY)  ## Speed beside peers, in one run each
 	$(BIN)/python benchmarks/fleet.py
 	$(BIN)/python benchmarks/tf2.py
 
+$(DEMO): pyproject.toml
+	@$(PYTHON) tools/make.py --venv $(VENV) install-demo
+
 $(READY): pyproject.toml
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet --editable '.[dev]'
-	@touch $@
+	@$(PYTHON) tools/make.py --venv $(VENV) install-test
 
 clean:
 	rm -rf $(VENV) dist .mypy_cache .pytest_cache .ruff_cache .import_linter_cache

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import importlib.util
 import io
 import json
 import os
@@ -341,65 +340,3 @@ def test_a_log_that_somebody_reads_goes_on_when_it_is_full(tmp_path: Path, monke
 )
 def test_a_file_is_named_by_its_path_or_its_address(value: str, file: str) -> None:
     assert network.file_of(value) == Path(file)
-
-
-# Without make
-
-
-class Commands(list[list[str]]):
-    """Notes commands in place of running them; the second fails where `fails` says so."""
-
-    def __init__(self, *, fails: bool = False) -> None:
-        super().__init__()
-        self._fails = fails
-
-    def __call__(self, command: list[str]) -> int:
-        self.append(command)
-        return int(self._fails and len(self) == 2)
-
-
-def _make() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("make_without_make", ROOT / "tools" / "make.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def test_without_make_the_same_is_done(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    make, commands = _make(), Commands()
-    monkeypatch.setattr(make, "VENV", tmp_path)
-    monkeypatch.setattr(make, "run", commands)
-    assert make.main(["demo"]) == 0
-    python = str(make.python())
-    pip = [python, "-m", "pip", "install", "--quiet"]
-    assert commands == [
-        [sys.executable, "-m", "venv", str(tmp_path)],
-        [*pip, "--upgrade", "pip"],
-        [*pip, "--editable", ".[dev]"],
-        [python, "-m", "robolink", "launch", "wander"],
-    ]
-    commands.clear()
-    assert make.main(["test", "-x"]) == 0
-    [[*_, last]] = commands
-    assert last == "-x"
-    text = (ROOT / "Makefile").read_text(encoding="utf-8")
-    parallel = re.search(r"^PARALLEL \?= (.*)$", text, re.MULTILINE)
-    assert parallel is not None
-    assert commands == [[python, "-m", "pytest", *parallel[1].split(), "-x"]]
-    assert "$(BIN)/robolink launch wander\n" in text
-
-
-def test_what_does_not_install_is_not_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    make, commands = _make(), Commands(fails=True)
-    monkeypatch.setattr(make, "VENV", tmp_path)
-    monkeypatch.setattr(make, "run", commands)
-    assert make.main(["demo"]) == 1
-    assert len(commands) == 2
-    assert not (tmp_path / ".ready").exists()
-
-
-def test_wrong_use_says_what_there_is(capsys: pytest.CaptureFixture[str]) -> None:
-    assert _make().main(["tset"]) == 2
-    assert capsys.readouterr().err == "usage: python tools/make.py demo | test\n"

@@ -1,59 +1,155 @@
-"""What `make demo` and `make test` do, for systems without make: `python tools/make.py demo` or `test`."""
+"""Installs robolink into a virtual environment and runs it: `make demo` and `make test`, also where there is no make.
 
-from __future__ import annotations
+    python tools/make.py demo
+    python tools/make.py test [ARGUMENTS OF PYTEST]...
+    python tools/make.py [--venv FOLDER] install-demo | install-test     the first half of each, for the Makefile
 
+It runs with Python 3.6 and its standard library, so that whoever has an older Python than robolink needs is told so.
+"""
+
+import shutil
 import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import Dict, List, NamedTuple, Tuple
 
-ROOT = Path(__file__).parent.parent
-VENV = ROOT / ".venv"
-COMMANDS = {
+OLDEST = (3, 10)
+NEWEST = 20
+"""As far as this Python's younger sisters are looked for: 3.20."""
+EDITABLE_SINCE = (21, 3)
+"""The pip that can install a pyproject.toml as editable; the first Pythons 3.10 brought an older one."""
+
+ROOT = Path(__file__).resolve().parent.parent
+USAGE = "usage: python tools/make.py demo | test"
+
+
+class Stage(NamedTuple):
+    """What is installed for a command: the file that says it is there, what pip is to install, and that in words."""
+
+    marker: str
+    wanted: str
+    words: str
+
+
+STAGES: Dict[str, Stage] = {
+    "demo": Stage(".demo", ".", "installing what it needs, some 160 MB"),
+    "test": Stage(".ready", ".[dev]", "installing what it needs and its developers' tools, some 540 MB"),
+}
+INSTALLING = {"install-" + name: name for name in STAGES}
+COMMANDS: Dict[str, List[str]] = {
     "demo": ["-m", "robolink", "launch", "wander"],
     "test": ["-m", "pytest", "-n", "3", "--dist", "loadfile", "--no-loadscope-reorder"],
 }
 """What Python is given; the Makefile says the same."""
-INSTALLING = [
-    ["-m", "pip", "install", "--quiet", "--upgrade", "pip"],
-    ["-m", "pip", "install", "--quiet", "--editable", ".[dev]"],
-]
 
 
-def main(words: list[str]) -> int:
-    """Do what is asked for, in a virtual environment that is made if it is missing; give the exit code."""
-    if not words or words[0] not in COMMANDS:
-        print(f"usage: python tools/make.py {' | '.join(COMMANDS)}", file=sys.stderr)  # noqa: T201
+def main(words: List[str]) -> int:
+    """Carry out what the words ask for; return the exit code."""
+    venv = ROOT / ".venv"
+    if words[:1] == ["--venv"] and len(words) > 1:
+        venv, words = Path(words[1]).absolute(), words[2:]
+    what = words[0] if words else ""
+    if what in INSTALLING:
+        return install(INSTALLING[what], venv, "make {} PYTHON={}")
+    if what not in COMMANDS:
+        print(USAGE, file=sys.stderr)
         return 2
-    if sys.version_info < (3, 10):  # noqa: UP036 - who runs this may have any Python
-        print("robolink needs Python 3.10 or newer", file=sys.stderr)  # noqa: T201
-        return 1
-    return prepare() or run([str(python()), *COMMANDS[words[0]], *words[1:]])
+    code = install(what, venv, "{1} tools/make.py {0}")
+    if code:
+        return code
+    if what == "demo":
+        tell("a robot wanders in a simulated room: Ctrl-C ends it")
+    return run([str(python_of(venv))] + COMMANDS[what] + words[1:])
 
 
-def prepare() -> int:
-    """Make the virtual environment, unless it is newer than what is to be in it; give the exit code."""
-    ready, wanted = VENV / ".ready", ROOT / "pyproject.toml"
-    if ready.exists() and ready.stat().st_mtime >= wanted.stat().st_mtime:
+def install(name: str, venv: Path, other: str) -> int:
+    """Install what a command needs, unless it is there and newer than pyproject.toml; return the exit code.
+
+    `other` is how the command is given another Python.
+    """
+    if is_there(name, venv):
         return 0
-    steps = [[sys.executable, "-m", "venv", str(VENV)], *([str(python()), *each] for each in INSTALLING)]
-    for step in steps:
-        if code := run(step):
+    lack = lacking(name, other)
+    if lack:
+        print(lack, file=sys.stderr)
+        return 1
+    for words, step in steps(name, venv):
+        tell(words)
+        code = run(step)
+        if code:
+            print("robolink is not installed: the step above failed", file=sys.stderr)
             return code
-    ready.touch()
+    for each in ("demo", name):  # who has the tools has all that a demo needs
+        (venv / STAGES[each].marker).touch()
     return 0
 
 
-def python() -> Path:
-    """Give the virtual environment's Python."""
-    return VENV / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
+def is_there(name: str, venv: Path) -> bool:
+    """Return whether what a command needs is installed, as pyproject.toml has it today."""
+    marker = venv / STAGES[name].marker
+    return marker.exists() and marker.stat().st_mtime >= (ROOT / "pyproject.toml").stat().st_mtime
 
 
-def run(command: list[str]) -> int:
-    """Run a command until its end; give its exit code. A Ctrl-C, which it gets as well, is for it alone."""
+def lacking(name: str, other: str) -> str:
+    """Return why this Python cannot install robolink, and what could; nothing if it can."""
+    this = "{}.{}.{}".format(*sys.version_info[:3])
+    if sys.version_info[:2] < OLDEST:
+        names = ["python{}.{}".format(OLDEST[0], minor) for minor in range(NEWEST, OLDEST[1] - 1, -1)]
+        found = next(filter(runs, names), "")
+        advice = "here is a newer one: " + other.format(name, found) if found else "install one from python.org"
+        wanted = "{}.{}".format(*OLDEST)
+        return "robolink needs Python {} or newer, and {} is {}; {}".format(wanted, sys.executable, this, advice)
+    try:
+        __import__("ensurepip"), __import__("venv")
+    except ImportError:
+        return "this Python ({}) lacks venv: on Debian and Ubuntu, sudo apt install python3-venv".format(this)
+    return ""
+
+
+def runs(python: str) -> bool:
+    """Return whether there is a Python of this name; pyenv has names for what is not chosen."""
+    return shutil.which(python) is not None and not subprocess.call([python, "-c", ""], stderr=subprocess.DEVNULL)
+
+
+def steps(name: str, venv: Path) -> List[Tuple[str, List[str]]]:
+    """List what is to be run for an installation, each with the line that tells of it."""
+    import ensurepip
+
+    python = str(python_of(venv))
+    pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    made = []
+    whole = any((venv / each.marker).exists() for each in STAGES.values())
+    if not whole or not python_of(venv).exists():
+        this = "{}.{}.{}".format(*sys.version_info[:3])
+        made.append(("making a virtual environment with Python {} in {}".format(this, venv), venv_command(venv)))
+        if tuple(int(each) for each in ensurepip.version().split(".")[:2]) < EDITABLE_SINCE:
+            made.append(("installing a newer pip", [*pip, "--upgrade", "pip"]))
+    stage = STAGES[name]
+    made.append((stage.words, [*pip, "--editable", stage.wanted]))
+    return made
+
+
+def venv_command(venv: Path) -> List[str]:
+    """Return the command that makes a virtual environment."""
+    return [sys.executable, "-m", "venv", str(venv)]
+
+
+def python_of(venv: Path) -> Path:
+    """Return a virtual environment's Python."""
+    return venv / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
+
+
+def tell(words: str) -> None:
+    """Print what comes now, at once."""
+    print("robolink: " + words, flush=True)
+
+
+def run(command: List[str]) -> int:
+    """Run a command until its end; return its exit code. A Ctrl-C, which it gets as well, is for it alone."""
     before = signal.signal(signal.SIGINT, lambda number, frame: None)
     try:
-        return subprocess.call(command, cwd=ROOT)
+        return subprocess.call(command, cwd=str(ROOT))
     finally:
         signal.signal(signal.SIGINT, before)
 
