@@ -3,7 +3,7 @@
     draw_world(axes, load_world("configs/worlds/lab.yaml"))
     save_world(load_world("configs/worlds/lab.yaml"), Path("lab.png"))
 
-matplotlib is an optional part: `pip install 'robolink[plot]'`.
+matplotlib is an optional part: `pip install matplotlib`.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def check_picture(path: Path) -> None:
     try:
         import matplotlib as _  # noqa: F401
     except ImportError:
-        raise DrawingError("drawing needs matplotlib, which is not installed: pip install 'robolink[plot]'") from None
+        raise DrawingError("drawing needs matplotlib, which is not installed: pip install matplotlib") from None
 
 
 def save_world(description: WorldDescription, path: Path, size: int = 1000) -> None:

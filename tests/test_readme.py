@@ -14,7 +14,8 @@ from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.testing import System
 
-README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
 PROGRAMS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
 (SYSTEM,) = re.findall(r"```yaml\n(.*?)```", README, re.DOTALL)
 
@@ -60,3 +61,11 @@ def test_the_system_drives_as_fast_as_it_is_told(tmp_path: Path) -> None:
     with System(seed=1) as system:
         system.launch(tmp_path / "lap.yaml", {"speed": 0.5})
         system.expect("cmd_vel", lambda twist: twist.linear.x > 0.45, within=30.0)
+
+
+def test_nothing_is_asked_of_a_package_index_where_robolink_is_not() -> None:
+    """A clone and a repository's address are what there is; `pip install robolink` fails, or finds somebody else's."""
+    texts = [ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *(ROOT / "robolink").rglob("*.py")]
+    found = [each for text in texts for each in re.findall(r"pip install [^`#\n]*", text.read_text(encoding="utf-8"))]
+    assert len(found) > 5
+    assert [each for each in found if re.search(r"(?<![/.\w])robolink\b(?! @ git\+)", each)] == []

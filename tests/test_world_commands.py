@@ -229,7 +229,7 @@ def test_without_matplotlib_it_is_said_how_to_get_it(
 
     monkeypatch.setattr(builtins, "__import__", without)
     assert main(["world", "draw", "hall", "hall.png"]) == 1
-    report = "robolink: drawing needs matplotlib, which is not installed: pip install 'robolink[plot]'\n"
+    report = "robolink: drawing needs matplotlib, which is not installed: pip install matplotlib\n"
     assert capsys.readouterr() == ("", report)
 
 

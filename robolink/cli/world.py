@@ -56,7 +56,7 @@ def draw_world(
     ] = 1000,
     workspace: Workspace = "",
 ) -> None:
-    """Draw a world as it begins, into a picture (needs matplotlib: pip install 'robolink[plot]')."""
+    """Draw a world as it begins, into a picture (needs matplotlib: pip install matplotlib)."""
     from robolink.cli.pictures import check_picture
     from robolink.drawing import save_world
     from robolink.sim.webots import warnings_to

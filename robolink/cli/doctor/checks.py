@@ -42,7 +42,7 @@ def versions(facts: Facts) -> Verdict:
     warnings = tuple(
         f"{each} also installs a module 'robolink', and the one that comes last overwrites the other's: "
         f"give it a virtual environment of its own, here 'pip uninstall {each.split()[0]}' "
-        "and 'pip install --force-reinstall robolink'"
+        "and install robolink again, with 'pip install --force-reinstall'"
         for each in facts.namesakes
     )
     return Verdict(", ".join([*shown[:1], f"Python {_dotted(facts.python)}", *shown[1:4]]), tuple(errors), warnings)
