@@ -33,18 +33,16 @@ a debugger, a laptop that sleeps) and for cables: with 5 s such a node left the 
 (5 s after the cable was back, not 0.4). It costs others nothing: what finds no room for such a peer is dropped.
 """
 
-WAIT_BEFORE_DROP_US = 50_000
+WAIT_BEFORE_DROP_US = 130_000
 """Microseconds that a publisher waits for room on the way to a peer before it drops what is for that one.
 
 Zenoh's own 1 ms is too short: a busy machine lets no thread run that fast, and a burst of a hundred scans lost a tenth.
+A subscriber that takes a flood as fast as it can was away for 100 ms at a time; with 50 ms here it lost a twentieth.
 A peer that stands still holds up one message by this; the next ones are dropped at once.
 """
 
-WAIT_FOR_THE_REST_US = 100_000
-"""Microseconds more for a message of several batches (64 kB), so that no `publish` waits longer than 0.15 s.
-
-Zenoh's own 50 ms are not enough for 70 MB on a busy machine.
-"""
+WAIT_FOR_THE_REST_US = 60_000
+"""Microseconds more for a message of several batches (64 kB), so that no `publish` waits longer than 0.19 s."""
 
 LARGEST_MESSAGE = 1 << 30
 """Bytes, with all that Zenoh adds: rmw_zenoh's limit. A session throws away, without a word, what is larger."""
