@@ -33,9 +33,9 @@ def stranger(port: int = 0, says: bytes | None = None) -> Iterator[int]:
 
 
 @contextmanager
-def zenoh_router(port: int) -> Iterator[str]:
+def zenoh_router(port: int, host: str = "127.0.0.1") -> Iterator[str]:
     """A router as ROS 2's; its session id."""
-    listen = {"mode": "router", "listen": {"endpoints": [f"tcp/127.0.0.1:{port}"]}}
+    listen = {"mode": "router", "listen": {"endpoints": [f"tcp/{host}:{port}"]}}
     settings = listen | {"scouting": {"multicast": {"enabled": False}}}
     session: Any = zenoh.open(zenoh.Config.from_json5(json.dumps(settings)))
     try:

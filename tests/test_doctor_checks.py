@@ -200,6 +200,16 @@ def test_the_routers_port(ports: dict[int, Port], level: str, said: str) -> None
     assert (found.level, said in " ".join([found.summary, *found.errors])) == (level, True)
 
 
+def test_a_router_that_lets_others_in_is_a_warning() -> None:
+    answers = Facts(ports={7447: Port(7447, probes.ROUTER)})
+    said = only(checks.router(answers._replace(router_open_at=("10.0.0.5",))).warnings)
+    assert "also listens at 10.0.0.5: through it other machines hear and command your nodes" in said
+    assert "ZENOH_CONFIG_OVERRIDE='listen/endpoints=[\"tcp/127.0.0.1:7447\"]'" in said
+    assert "is another user's, mallory" in only(checks.router(answers._replace(router_owner="mallory")).warnings)
+    asked_for = answers._replace(router_open_at=("10.0.0.5",), reach=SUBNET)
+    assert checks.router(asked_for).level == OK
+
+
 def test_a_router_that_is_asked_for_must_answer() -> None:
     asked = Settings(network="tcp/10.0.0.1:7447", meets=False)
     assert "nothing listens at tcp/10.0.0.1:7447" in only(checks.router(Facts(settings=asked)).errors)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from contextlib import ExitStack
@@ -13,8 +14,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.cli.doctor import probes
-from robolink.cli.doctor.probes import Port, holder, listening, read_answer
+from robolink.cli.doctor.probes import Port, also_open_at, holder, listening, owner, read_answer
 from tests.ports import PATIENCE, free_port, stranger, zenoh_router
+
+OWN_USER = os.getuid() if sys.platform != "win32" else 0
 
 
 @given(st.binary(max_size=80))
@@ -88,3 +91,33 @@ def test_a_proc_that_cannot_be_read_says_nothing(tmp_path: Path) -> None:
     (tmp_path / "net" / "tcp").write_text("header\n garbage\n 0: 0100007F:4427 00000000:0000 0A 0 0 0 0 0 4711\n")
     (tmp_path / "12" / "fd").mkdir(parents=True)
     assert holder(17447, tmp_path) is None
+
+
+@pytest.mark.skipif(not probes._own_addresses(), reason="this machine has no address but the loopback's")
+def test_a_router_that_other_machines_reach_is_told_from_one_that_they_do_not() -> None:
+    for host, reached in (("127.0.0.1", False), ("0.0.0.0", True)):
+        port = free_port()
+        with zenoh_router(port, host):
+            found = also_open_at(listening([port], PATIENCE)[port], within=5.0)
+        assert bool(found) == reached
+        assert set(found) <= set(probes._own_addresses())
+
+
+def test_something_else_at_another_address_is_not_the_router(monkeypatch: pytest.MonkeyPatch) -> None:
+    port = free_port()
+    monkeypatch.setattr(probes, "_own_addresses", lambda: ["127.0.0.1", "no such host.invalid"])
+    with zenoh_router(port) as session:
+        assert also_open_at(Port(port, probes.ROUTER, session), within=5.0) == ("127.0.0.1",)
+        assert also_open_at(Port(port, probes.ROUTER, "another"), within=5.0) == ()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux says whose a port is")
+@pytest.mark.parametrize(
+    ("user", "named"), [(0, ""), (getattr(os, "getuid", int)(), ""), (4_000_000_000, "user 4000000000")]
+)
+def test_the_user_behind_a_port_is_named_unless_it_may_be_trusted(user: int, named: str, tmp_path: Path) -> None:
+    (tmp_path / "net").mkdir()
+    row = f" 0: 0100007F:1D17 00000000:0000 0A 0 0 0 {user} 0 4711"
+    (tmp_path / "net" / "tcp").write_text(f"header\n{row}\n garbage\n")
+    assert owner(7447, tmp_path) == named
+    assert owner(7448, tmp_path) == ""

@@ -145,9 +145,26 @@ def router(facts: Facts) -> Verdict:
     elif port is not None and facts.platform == "win32" and asked == "localhost":
         hint = f"ROBOLINK_NETWORK=tcp/127.0.0.1:{port.number}"
         warnings.append(f"a ROS 2 router answers; on Windows nodes join it only when asked to: {hint}")
+    elif port is not None and not facts.reach.leaves_machine:
+        warnings += _ways_in(facts)
     answers = f"a ROS 2 router answers on port {facts.router_port}: {_whose(facts, port)}" if port else ""
     none = f"no ROS 2 router on port {facts.router_port}: none is needed but to meet ROS 2 nodes"
     return Verdict(answers or none, tuple(errors), tuple(warnings))
+
+
+def _ways_in(facts: Facts) -> list[str]:
+    """Tell by what a router lets others hear nodes that are to stay among themselves."""
+    router = f"the router on port {facts.router_port}"
+    found = []
+    if facts.router_open_at:
+        own = f'listen/endpoints=["tcp/127.0.0.1:{facts.router_port}"]'
+        found.append(
+            f"{router} also listens at {listed(facts.router_open_at)}: through it other machines hear and command your "
+            f"nodes; start it with ZENOH_CONFIG_OVERRIDE='{own}' to keep it on this one"
+        )
+    if facts.router_owner:
+        found.append(f"{router} is another user's, {facts.router_owner}: it hears and may command your nodes")
+    return found
 
 
 def _whose(facts: Facts, port: Port) -> str:

@@ -10,7 +10,7 @@ import threading
 from collections.abc import Callable, Mapping
 from typing import NamedTuple, TypeVar
 
-from robolink.cli.doctor.probes import Holder, Port, holder, listening, loopback_works
+from robolink.cli.doctor.probes import Holder, Port, also_open_at, holder, listening, loopback_works, owner
 from robolink.context import LAST_DOMAIN
 from robolink.exceptions import TransportError
 from robolink.transport import lifetime, network
@@ -117,6 +117,10 @@ class Facts(NamedTuple):
     """What listens on this machine, of the ports that matter here."""
     holders: Mapping[int, Holder | None] = {}
     """Whose they are, where that can be found out."""
+    router_open_at: tuple[str, ...] = ()
+    """Addresses at which other machines reach the router on this one."""
+    router_owner: str = ""
+    """The user whose it is, if that is somebody else and not root."""
     far_router: Port | None = None
     """The router that the settings name, if it listens."""
     other_domains: Mapping[int, int | None] = {}
@@ -228,9 +232,12 @@ def _with_ports(facts: Facts) -> Facts:
     """Add who listens: on the ports of all domains, the ROS 2 router's, and the router that is asked for."""
     numbers = [facts.router_port, *(network.FIRST_PORT + domain for domain in range(LAST_DOMAIN + 1))]
     ports = listening(numbers, ANSWER_WITHIN)
+    router = ports.get(facts.router_port)
     return facts._replace(
         ports=ports,
         holders={number: holder(number) for number in ports if number in (facts.router_port, facts.settings.port)},
+        router_open_at=also_open_at(router, ANSWER_WITHIN) if router and router.speaks_zenoh else (),
+        router_owner=owner(facts.router_port) if router else "",
         far_router=_far_router(facts.settings.network),
     )
 

@@ -9,7 +9,7 @@ import selectors
 import socket
 import sys
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,6 +24,9 @@ _HELLO = bytes([0x01, 0x09, 0x71]) + b"robolink"
 """Zenoh's InitSyn, version 9: from a peer (1) whose id has 7 + 1 bytes. Whoever answers keeps nothing."""
 
 _INIT_ACK, _CLOSE = 0x21, 0x03
+
+MOST_ADDRESSES = 8
+"""So many addresses of this machine are tried."""
 
 _LONGEST = 2 + 0xFFFF
 
@@ -129,6 +132,26 @@ def read_answer(received: bytes) -> tuple[str, str, bool]:
     return _ROLES[role], f"{int.from_bytes(received[5 : 5 + size], 'little'):x}", True
 
 
+def also_open_at(port: Port, within: float) -> tuple[str, ...]:
+    """List this machine's other addresses at which the same session answers: there other machines can reach it."""
+    found = []
+    for address in _own_addresses():
+        with contextlib.suppress(OSError):
+            other = listening([port.number], within, address).get(port.number)
+            found += [address] if other is not None and other.session == port.session else []
+    return tuple(found)
+
+
+def _own_addresses() -> list[str]:
+    """List this machine's addresses, but for the loopback's and those of one link only, which lead to the same."""
+    import psutil
+
+    families = (socket.AF_INET, socket.AF_INET6)
+    each_of_all = (each for addresses in psutil.net_if_addrs().values() for each in addresses)
+    found = {each.address for each in each_of_all if each.family in families}
+    return sorted(each for each in found if not each.startswith(("127.", "::1", "fe80:")))[:MOST_ADDRESSES]
+
+
 def loopback_works() -> bool:
     """Whether this machine can connect to itself."""
     try:
@@ -142,8 +165,7 @@ def holder(number: int, root: Path = Path("/proc")) -> Holder | None:
     """Find the process that listens on a port: on Linux, where it is one of the user's own. Else None."""
     if not sys.platform.startswith("linux"):
         return None
-    inodes = {inode for table in ("net/tcp", "net/tcp6") for inode in _listeners(root / table, number)}
-    wanted = {f"socket:[{inode}]" for inode in inodes}
+    wanted = {f"socket:[{inode}]" for _, inode in _listeners(root, number)}
     for folder in root.glob("[0-9]*/fd") if wanted else ():
         with contextlib.suppress(OSError):
             if any(os.readlink(each) in wanted for each in folder.iterdir()):  # noqa: PTH115 - no path: socket:[n]
@@ -151,14 +173,30 @@ def holder(number: int, root: Path = Path("/proc")) -> Holder | None:
     return None
 
 
-def _listeners(table: Path, number: int) -> list[str]:
-    """The inodes of the sockets that listen on a port, from a table of the kernel's."""
+def owner(number: int, root: Path = Path("/proc")) -> str:
+    """Name another user who listens on a port, where Linux tells it; empty for oneself, for root and if not known."""
+    if sys.platform == "win32" or not sys.platform.startswith("linux"):
+        return ""
+    import pwd
+
+    others = sorted({int(user) for user, _ in _listeners(root, number)} - {0, os.getuid()})
     try:
-        lines = table.read_text(encoding="utf-8").splitlines()[1:]
-    except OSError:
-        return []
-    rows = [line.split() for line in lines]
-    return [row[9] for row in rows if len(row) > 9 and row[3] == "0A" and int(row[1].rpartition(":")[2], 16) == number]
+        return pwd.getpwuid(others[0]).pw_name if others else ""
+    except (KeyError, OverflowError):
+        return f"user {others[0]}"
+
+
+def _listeners(root: Path, number: int) -> Iterator[tuple[str, str]]:
+    """The users and inodes of the sockets that listen on a port, from the kernel's tables."""
+    for table in ("net/tcp", "net/tcp6"):
+        try:
+            lines = (root / table).read_text(encoding="utf-8").splitlines()[1:]
+        except OSError:
+            continue
+        rows = [line.split() for line in lines]
+        for row in (each for each in rows if len(each) > 9 and each[3] == "0A"):
+            if int(row[1].rpartition(":")[2], 16) == number:
+                yield row[7], row[9]
 
 
 def _command(process: Path) -> str:
