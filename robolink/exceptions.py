@@ -18,6 +18,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from robolink.terminal import shown as shown  # what errors quote of others' text
+
 
 class RobolinkError(Exception):
     """The root of all errors of robolink."""
@@ -80,6 +82,9 @@ class AmbiguousNameError(NotFoundError):
         RobolinkError.__init__(self, f"which {kind} '{name}'? There are {', '.join(meant)}: give a whole name")
 
 
+_LONGEST_NAME = 255
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Give `` (did you mean 'x'?)`` for the known name closest to `name`, or nothing.
 
@@ -88,17 +93,11 @@ def nearest(name: str, known: Iterable[str]) -> str:
     """
     import difflib  # late: every command imports this module, few need it
 
+    if len(name) > _LONGEST_NAME:  # a stranger's; looking at it would take seconds
+        return ""
     names = list(known)
     close = difflib.get_close_matches(name, names, n=1) or [each for each in names if each.lower() == name.lower()]
     return f" (did you mean '{close[0]}'?)" if close else ""
-
-
-def shown(text: str, longest: int = 100) -> str:
-    """Give a stranger's text as an error shows it: on one line, nothing that moves a terminal, not endless."""
-    part = text if len(text) <= longest else text[: longest - 3] + "..."
-    if part.isprintable():
-        return part
-    return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in part)
 
 
 class NotInitializedException(RobolinkError, RuntimeError):

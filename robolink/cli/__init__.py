@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from robolink.cli.hashing import begin_steadily
 from robolink.cli.interrupts import not_lost
-from robolink.exceptions import NameValidationException, RobolinkError
+from robolink.exceptions import NameValidationException, RobolinkError, shown
 
 if TYPE_CHECKING:
     from robolink.interfaces import Source
@@ -67,7 +67,7 @@ def complain(error: object, code: int = 1, place: str = "") -> int:
     text = " ".join(str(error).split("\n"))
     if len(text) > LONGEST_LINE:
         text = f"{text[: LONGEST_LINE // 2]} ... {text[-LONGEST_LINE // 4 :]}"
-    line = "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
+    line = shown(text, len(text))
     at = f" (at {place})" if place else ""
     print(f"robolink: {line}{at}", file=sys.stderr)  # noqa: T201 - this is what the user is told
     return code

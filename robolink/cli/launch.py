@@ -12,6 +12,7 @@ from robolink.cli import complete
 from robolink.cli.launch_words import ASSIGN, LaunchFile, launch_file
 from robolink.cli.layout import aligned
 from robolink.cli.options import choice, seconds
+from robolink.cli.output import say, tell
 
 FORMATS = ["mermaid", "dot"]
 
@@ -114,7 +115,7 @@ def _list(workspace: str | None) -> None:
     from robolink.workspace import list_launches
 
     for each in list_launches(workspace=workspace):
-        typer.echo(each.stem)
+        say(each.stem)
 
 
 def _ask(ctx: typer.Context, words: Sequence[str], options: Options, status: bool) -> None:
@@ -145,10 +146,10 @@ def _show_arguments(asked: LaunchFile, as_json: bool) -> None:
     if as_json:
         import msgspec
 
-        typer.echo(msgspec.json.encode(found))
+        say(msgspec.json.encode(found).decode())
         return
     if not found:
-        typer.echo(f"{asked.path.stem} has no arguments")
+        say(f"{asked.path.stem} has no arguments")
     rows = []
     for each in found:
         must = "must be given" if each.default is None else f"default: {each.default}"
@@ -156,7 +157,7 @@ def _show_arguments(asked: LaunchFile, as_json: bool) -> None:
         description = f"{each.description} " if each.description else ""
         rows.append((each.name, f"{description}({must}{choices})"))
     for line in aligned(rows):
-        typer.echo(line)
+        say(line)
 
 
 def _validate(asked: LaunchFile, options: Options) -> int:
@@ -171,14 +172,14 @@ def _validate(asked: LaunchFile, options: Options) -> int:
         import msgspec
 
         told = {"mistakes": [found(each) for each in report.mistakes], "notes": report.notes}
-        typer.echo(msgspec.json.encode(told))
+        say(msgspec.json.encode(told).decode())
         return 1 if report.mistakes else 0
     for note in report.notes:
-        typer.echo(f"robolink: {note}", err=True)
+        tell(f"robolink: {note}")
     for mistake in report.mistakes:
-        typer.echo(mistake)
+        say(str(mistake))
     if not report.mistakes:
-        typer.echo(f"no mistake found in {asked.path}")
+        say(f"no mistake found in {asked.path}")
     return 1 if report.mistakes else 0
 
 
@@ -192,8 +193,8 @@ def _draw(asked: LaunchFile, options: Options, format_: str) -> None:
     for each in entries:
         look = looks.get(each.name)
         if look is not None and (look.error or look.unseen):
-            typer.echo(f"robolink: {each.name} is drawn as far as it was made: {look.error or look.unseen}", err=True)
-    typer.echo(drawn(entries, looks, format_), nl=False)
+            tell(f"robolink: {each.name} is drawn as far as it was made: {look.error or look.unseen}")
+    say(drawn(entries, looks, format_).removesuffix("\n"))
 
 
 def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
@@ -205,7 +206,7 @@ def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
         ctx.fail("--in-process goes without --top, --watch and --json: there are no processes to tell of")
     entries = read_launch_file(asked.path, asked.given, workspace=options.workspace)
     if not entries:
-        typer.echo(f"robolink: {asked.path}: `if` and `unless` leave nothing to start", err=True)
+        tell(f"robolink: {asked.path}: `if` and `unless` leave nothing to start")
         return 0
     if options.in_process:
         from robolink import oneprocess
@@ -229,6 +230,7 @@ def _event_printer() -> Callable[[Any], None]:
     import msgspec
 
     from robolink.supervisor.telling.writer import Writer
+    from robolink.terminal import fit
 
     writer = Writer(sys.stdout)
-    return lambda event: writer.write(msgspec.json.encode(event) + b"\n")
+    return lambda event: writer.write(fit(msgspec.json.encode(event).decode()).encode() + b"\n")

@@ -10,6 +10,7 @@ import typer
 import typer.core
 import typer.main
 
+from robolink.cli.output import say
 from robolink.exceptions import nearest
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def _version(wanted: bool) -> None:
     if wanted:
         from importlib.metadata import version
 
-        typer.echo(f"robolink {version('robolink')}")
+        say(f"robolink {version('robolink')}")
         raise typer.Exit
 
 

@@ -12,8 +12,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robolink.cli.layout import aligned, shown_time
+from robolink.cli.output import say, say_json
 from robolink.exceptions import NotFoundError, shown
 from robolink.names import meant, the_one
+from robolink.terminal import fit
 
 if TYPE_CHECKING:
     from robolink.supervisor.door.asking import Launcher
@@ -42,11 +44,11 @@ def status(launch: str = "", *, json: bool = False) -> None:
         except LauncherError as error:
             found.append((launcher, str(error)))
     if json:
-        _say_json([_data(*each) for each in found])
+        say_json([_data(*each) for each in found])
     elif not found:
-        _say("no launcher is running")
+        say("no launcher is running")
     else:
-        _say("\n\n".join("\n".join(_block(*each)) for each in found))
+        say("\n\n".join("\n".join(_block(*each)) for each in found))
 
 
 def stop(name: str = "") -> None:
@@ -62,21 +64,21 @@ def stop(name: str = "") -> None:
     launcher = _only(name)
     if not launcher.stop(STOPPED_WITHIN):
         raise LauncherError(f"{launcher} is still stopping after {STOPPED_WITHIN:g} s")
-    _say(f"{launcher} has stopped")
+    say(f"{launcher} has stopped")
 
 
 def stop_one(node: str, launch: str = "") -> None:
     """Stop a node and wait until it has stopped; all others go on. `launch` says in which launcher."""
     launcher, before = _node(node, launch, "stop")
     launcher.stop_one(before.name)
-    _say(f"{before.name} of {launcher} {_stopped(launcher, before)}")
+    say(f"{before.name} of {launcher} {_stopped(launcher, before)}")
 
 
 def restart(node: str, launch: str = "") -> None:
     """Start a node anew; `launch` says in which launcher."""
     launcher, before = _node(node, launch, "restart")
     launcher.restart(before.name)
-    _say(f"restarting {before.name} of {launcher}")
+    say(f"restarting {before.name} of {launcher}")
 
 
 def top(launch: str = "", *, json: bool = False, every: float = 2.0) -> None:
@@ -88,14 +90,14 @@ def top(launch: str = "", *, json: bool = False, every: float = 2.0) -> None:
     launcher = _only(launch, " by --status --top NAME")
     if json:
         for answer, usage in _measured(launcher, every):
-            _say_json(_used(launcher, answer, usage))
+            say_json(_used(launcher, answer, usage))
     elif sys.stdout.isatty():
         _show_in_place(launcher, every)
     else:
         for answer, usage in _measured(launcher, every):
-            _say("\n".join([*aligned(_table(answer.nodes, usage)), ""]))
+            say("\n".join([*aligned(_table(answer.nodes, usage)), ""]))
     if not json:
-        _say(f"{launcher} has ended")
+        say(f"{launcher} has ended")
 
 
 def names_for(words: Sequence[str], within: float) -> list[str]:
@@ -291,7 +293,7 @@ def _show_in_place(launcher: Launcher, every: float) -> None:
     with Live(auto_refresh=False) as live:
         for answer, usage in _measured(launcher, every):
             lines = "\n".join(aligned(_table(answer.nodes, usage)))
-            live.update(Text(lines, no_wrap=True, overflow="ellipsis"), refresh=True)
+            live.update(Text(fit(lines), no_wrap=True, overflow="ellipsis"), refresh=True)
 
 
 def _table(nodes: Sequence[Status], usage: Mapping[str, Usage]) -> list[list[str]]:
@@ -330,15 +332,3 @@ def _used(launcher: Launcher, answer: Answer, usage: Mapping[str, Usage]) -> dic
             }
         )
     return {"at": time.time(), "launch": launcher.name, "pid": launcher.pid, "nodes": nodes}
-
-
-def _say(text: str) -> None:
-    import typer
-
-    typer.echo(text)
-
-
-def _say_json(value: Any) -> None:
-    import msgspec
-
-    _say(msgspec.json.encode(value).decode())

@@ -12,6 +12,7 @@ import typer
 
 from robolink.cli import complete
 from robolink.cli.options import seconds
+from robolink.cli.output import say, tell
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -152,10 +153,10 @@ def _once(ctx: typer.Context, asked: Asked, seed: int | None, as_json: bool, ver
         )
     result = failed_by(result, asked.fail_on)
     if as_json:
-        typer.echo(result.as_json())
+        say(result.as_json())
     else:
         for line in result.lines():
-            typer.echo(line)
+            say(line)
     return INTERRUPTED if result.interrupted else 1 if result.failures else 0
 
 
@@ -194,7 +195,7 @@ def _watching(progress: Progress, verbose: bool) -> Watching:
         if console is not None and record.severity >= least:
             console(record)
 
-    return Watching(show, lambda text: typer.echo(text, err=True), progress.show)
+    return Watching(show, tell, progress.show)
 
 
 def _repeat(ctx: typer.Context, asked: Asked, seeds: range, as_json: bool) -> int:
@@ -205,16 +206,16 @@ def _repeat(ctx: typer.Context, asked: Asked, seeds: range, as_json: bool) -> in
     def done(run: SeedRun) -> None:
         progress.show(progress.shown + 1)
         if run.failures and not as_json:
-            typer.echo(_told(run, asked))
+            say(_told(run, asked))
 
     with Progress(len(seeds), "seeds") as progress:
         runs = run_seeds(lambda seed: [*_command(asked, seed), "--json"], seeds, workers=count_cores(), on_done=done)
     failed, interrupted = [each for each in runs if each.failures], len(runs) < len(seeds)
     if as_json:
-        typer.echo(_summary(runs, asked))
+        say(_summary(runs, asked))
     else:
         rest = f"; interrupted before the other {len(seeds) - len(runs)}" if interrupted else ""
-        typer.echo(f"{len(runs) - len(failed)} of {len(runs)} seeds passed{rest}")
+        say(f"{len(runs) - len(failed)} of {len(runs)} seeds passed{rest}")
     return INTERRUPTED if interrupted else 1 if failed else 0
 
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robolink.cli import complete
+from robolink.cli.output import say, tell
+from robolink.terminal import fit
 
 if TYPE_CHECKING:
     from robolink.sim import WorldDescription
@@ -35,11 +37,11 @@ def check_worlds(
         import json
 
         report = [{"file": path, "problems": [str(each) for each in checked.errors]} for path, checked in found]
-        typer.echo(json.dumps(report, ensure_ascii=False))
+        say(json.dumps(report, ensure_ascii=False))
     else:
         for path, checked in found:
             for line in _lines(path, checked):
-                typer.echo(line)
+                say(line)
     if any(checked.errors for _, checked in found):
         raise typer.Exit(1)
 
@@ -80,10 +82,10 @@ def list_all(
     if as_json:
         import json
 
-        typer.echo(json.dumps([{"name": each.stem, "file": str(each)} for each in found], ensure_ascii=False))
+        say(json.dumps([{"name": each.stem, "file": str(each)} for each in found], ensure_ascii=False))
         return
     for each in found:
-        typer.echo(each.stem)
+        say(each.stem)
 
 
 @app.command("schema")
@@ -99,7 +101,7 @@ def show_schema(
     from robolink.sim.schema import schema_text
 
     if out is None:
-        typer.echo(schema_text(), nl=False)
+        say(schema_text().removesuffix("\n"))
     else:
         out.write_text(schema_text(), encoding="utf-8", newline="\n")
 
@@ -130,11 +132,7 @@ def _checked(name: str, workspace: str) -> tuple[str, Checked]:
 def _lines(path: str, checked: Checked) -> list[str]:
     if checked.description is not None:
         return [f"{path}: OK: {summary(checked.description)}"]
-    return [_one_line(str(error)) for error in checked.errors]
-
-
-def _one_line(text: str) -> str:
-    return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
+    return [fit(str(error), lines=False) for error in checked.errors]
 
 
 def summary(description: WorldDescription) -> str:
@@ -160,4 +158,4 @@ def _counted(count: int, word: str) -> str:
 
 def _warn(text: str) -> None:
     """Write what a world warns of to standard error, as one line."""
-    typer.echo(f"robolink: {_one_line(text)}", err=True)
+    tell(f"robolink: {fit(text, lines=False)}")

@@ -13,6 +13,7 @@ from contextlib import suppress
 from typing import NamedTuple, TextIO, TypeAlias
 
 from robolink.impl.logging_severity import LoggingSeverity
+from robolink.terminal import fit
 
 DEFAULT_FORMAT = "[{severity}] [{time}] [{name}]: {message}"
 
@@ -90,6 +91,7 @@ class Console:
 
     As in ROS, RCUTILS_CONSOLE_OUTPUT_FORMAT is the format, RCUTILS_COLORIZED_OUTPUT=0 or 1 decides about
     colours (else NO_COLOR, else whether it is a terminal), and RCUTILS_LOGGING_USE_STDOUT=1 chooses stdout.
+    A message may hold text of others: of what a terminal obeys it keeps line breaks and colours.
     """
 
     def __init__(self, environ: Mapping[str, str] = os.environ) -> None:
@@ -145,8 +147,8 @@ def _escapes_switched_on() -> bool:
 
 _TOKENS: dict[str, Callable[[Record], str]] = {
     "severity": lambda record: record.severity.name,
-    "name": lambda record: record.name,
-    "message": lambda record: record.message,
+    "name": lambda record: fit(record.name, lines=False),
+    "message": lambda record: fit(record.message, colours=True),
     "function_name": lambda record: record.function,
     "file_name": lambda record: record.file,
     "line_number": lambda record: str(record.line),

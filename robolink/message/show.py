@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.message.convert import to_builtins
 from robolink.message.slot_types import IDL_NAMES
+from robolink.terminal import fit, is_fit
 
 if TYPE_CHECKING:
     from robolink.message.annotations import FieldType
@@ -37,7 +38,7 @@ USUAL = Style()
 
 
 def as_yaml(value: Any, style: Style = USUAL) -> str:
-    """YAML of a message or of a field of one, without the last line break."""
+    """YAML of a message or of a field of one, without the last line break; fit for a terminal, and the same text."""
     import yaml
 
     text = yaml.dump(
@@ -48,7 +49,7 @@ def as_yaml(value: Any, style: Style = USUAL) -> str:
         allow_unicode=True,
         width=WIDEST,
     )
-    return text.removesuffix("\n...\n").removesuffix("\n")
+    return fit(text.removesuffix("\n...\n").removesuffix("\n"))
 
 
 @functools.cache
@@ -58,10 +59,10 @@ def _dumper() -> Any:
     base: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # libyaml's, where there is one: five times as fast
 
     class Dumper(base):  # type: ignore[misc]
-        """Writes text whose line breaks only Unicode knows with escapes: bare, it would be read back as others."""
+        """Writes text that a terminal would obey in double quotes, within which escapes are read back."""
 
     def text_node(dumper: Any, text: str) -> Any:
-        quote = '"' if any(each in text for each in "\x85\u2028\u2029") else None
+        quote = None if is_fit(text) else '"'
         return dumper.represent_scalar("tag:yaml.org,2002:str", text, style=quote)
 
     Dumper.add_representer(str, text_node)

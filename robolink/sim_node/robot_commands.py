@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robolink.exceptions import nearest
+from robolink.exceptions import nearest, shown
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import JointState
 from robolink.node import Node
@@ -67,8 +67,9 @@ class RobotCommands:
             return
         wanted = dict(zip(command.name, command.velocity, strict=True))
         if unknown := [name for name in wanted if name not in self.motors]:
-            known = f"{nearest(unknown[0], self.motors)}; there is: {', '.join(self.motors)}"
-            self._refuse("motor", f"ignored a joint_command's motor '{unknown[0]}', which the robot has not{known}")
+            asked = f"'{shown(unknown[0])}', which the robot has not{nearest(unknown[0], self.motors)}"
+            known = ", ".join(self.motors)
+            self._refuse("motor", f"ignored a joint_command's motor {asked}; there is: {known}")
         if known_ones := {name: speed for name, speed in wanted.items() if name in self.motors}:
             self.robot.turn_wheels(known_ones)
             self._steps_left = self._timeout + 1  # `step` is called once before the command's own first step
@@ -94,4 +95,4 @@ def joint_refusal(command: JointState) -> str:
     if not names:
         return " that names no motor"
     bad = [name for name, speed in zip(command.name, command.velocity, strict=True) if not abs(speed) <= ABSURD_WHEEL]
-    return f" whose velocity of '{bad[0]}' is not finite or absurd" if bad else ""
+    return f" whose velocity of '{shown(bad[0])}' is not finite or absurd" if bad else ""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from robolink.terminal import shown
 from robolink.tf2.cache import LATEST, StaticCache, TimeCache, seconds
 
 AT_ONCE = 100_000
@@ -73,7 +75,7 @@ def _key(name: str) -> str:
 def _quoted(text: str) -> str:
     if text.isprintable():
         return "'" + text.replace("'", "''") + "'"
-    return '"' + text.encode("unicode_escape").decode().replace('"', '\\"') + '"'
+    return '"' + shown(text.replace("\\", "\\\\").replace('"', '\\"'), sys.maxsize) + '"'
 
 
 def as_text(caches: Caches) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 import zenoh
 
-from robolink.exceptions import TransportClosedError, TransportError
+from robolink.exceptions import TransportClosedError, TransportError, shown
 from robolink.transport import lifetime
 from robolink.transport.base import Sample, Sink, refuse_giant
 from robolink.transport.network import reason
@@ -260,4 +260,4 @@ def content_of_reply(reply: zenoh.Reply) -> Sample:
         return Sample(sample.payload.to_bytes(), content(sample.attachment))
     error = reply.err
     text = content(error.payload).decode(errors="replace") if error is not None else ""
-    raise TransportError(f"the server replied with an error: {text[:200]}")
+    raise TransportError(f"the server replied with an error: {shown(text, 200)}")

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from robolink.cli import complete
+from robolink.terminal import fit
 
 app = typer.Typer(no_args_is_help=True, help="See in which states managed nodes are, and move them on.")
 
@@ -66,7 +67,7 @@ def get(
         say_json({name: {"id": state.id, "label": state.label} for name, state in states.items()})
     else:
         for name, state in states.items():
-            say(f"{'' if node else name + ': '}{state.label} [{state.id}]")
+            say(fit(f"{'' if node else name + ': '}{state.label} [{state.id}]", lines=False))
     if failed:
         raise typer.Exit(1)
 
@@ -89,8 +90,9 @@ def list_transitions(
         say_json([ask.as_data(each) for each in found])
         return
     for each in found:
-        start, goal = each.start_state.label, each.goal_state.label
-        say(f"- {each.transition.label} [{each.transition.id}]\n\tStart: {start}\n\tGoal: {goal}")
+        labels = (each.transition.label, each.start_state.label, each.goal_state.label)
+        label, start, goal = [fit(label, lines=False) for label in labels]
+        say(f"- {label} [{each.transition.id}]\n\tStart: {start}\n\tGoal: {goal}")
 
 
 @app.command("set")

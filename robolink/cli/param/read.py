@@ -16,6 +16,7 @@ from robolink.cli.param.values import Type, as_file, in_json, label, plain, type
 from robolink.cli.session import looking, node_of
 from robolink.exceptions import RobolinkError
 from robolink.parameter import parameter_value_to_python
+from robolink.terminal import fit
 
 if TYPE_CHECKING:
     from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor
@@ -56,7 +57,8 @@ def show_list(node: str, wanted: Wanted, *, as_json: bool) -> None:
         if not node and parameters:
             say(f"{name}:")
         for each, type_ in parameters.items():
-            say(f"  {each} (type: {type_})" if wanted.types else f"  {each}")
+            line = f"  {each} (type: {type_})" if wanted.types else f"  {each}"
+            say(fit(line, lines=False))
 
 
 def _of_all(wanted: Wanted) -> dict[str, Found]:
@@ -118,7 +120,7 @@ def _described(descriptor: ParameterDescriptor) -> dict[str, Any]:
 
 
 def _lines(descriptor: ParameterDescriptor) -> list[str]:
-    lines = [f"Parameter name: {descriptor.name}", f"  Type: {type_name(descriptor.type)}"]
+    lines = [f"Parameter name: {fit(descriptor.name, lines=False)}", f"  Type: {type_name(descriptor.type)}"]
     if descriptor.description:
         lines.append(f"  Description: {descriptor.description}")
     lines.append("  Constraints:")

@@ -14,6 +14,7 @@ from robolink.parameter import (
     parameter_value_to_python,
 )
 from robolink.parameter_file import PARAMETERS_KEY, parse_parameter_value, parse_scalar
+from robolink.terminal import fit, is_fit
 
 Type = Parameter.Type
 
@@ -90,7 +91,7 @@ def as_file(node: str, values: dict[str, Any]) -> str:
 
     document = {node: {PARAMETERS_KEY: nested(values)}}
     text = yaml.dump(document, Dumper=_dumper(), default_flow_style=False, allow_unicode=True, width=2**31 - 1)
-    return str(text).removesuffix("\n")
+    return fit(str(text).removesuffix("\n"))
 
 
 def nested(values: dict[str, Any]) -> dict[str, Any]:
@@ -122,8 +123,8 @@ def _dumper() -> Any:
 
     def text_node(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
         is_text = parse_scalar(text) == text
-        odd = any(each in text for each in "\x85\u2028\u2029")  # breaks of a line for YAML alone
-        return dumper.represent_scalar("tag:yaml.org,2002:str", text, style='"' if odd else None if is_text else "'")
+        style = '"' if not is_fit(text) else None if is_text else "'"  # within double quotes escapes are read back
+        return dumper.represent_scalar("tag:yaml.org,2002:str", text, style=style)
 
     Dumper.add_representer(str, text_node)
     return Dumper

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.cli import show
-from robolink.cli.output import say, tell
+from robolink.cli.output import clear, say, tell
 from robolink.cli.session import node_of, opened
 from robolink.cli.topic import silence
 from robolink.cli.topic.lenient import Leniently
@@ -29,9 +29,6 @@ if TYPE_CHECKING:
 PATIENCE = silence.PATIENCE
 MOST_KEPT = 10_000
 """Of what a latched publisher says that it has kept, so many are asked for."""
-
-CLEAR = "\x1b[H\x1b[2J"
-"""What empties a terminal."""
 
 
 class NothingCameError(RobolinkError, TimeoutError):
@@ -59,7 +56,7 @@ class Format(NamedTuple):
             return ",".join([*before, show.as_csv(value, self.style)])
         shown = repr(value) if self.raw else show.as_yaml(value, self.style)
         before = [show.as_yaml(dict(sorted(info.items())))] if self.info else []
-        return (CLEAR + "\n" if self.clear else "") + "\n---\n".join([*before, shown, ""]).removesuffix("\n")
+        return "\n---\n".join([*before, shown, ""]).removesuffix("\n")
 
 
 class Wish(NamedTuple):
@@ -153,7 +150,10 @@ class _Echo:
             self.first.set_result(None)
         try:
             if self.form.raw or self.passes(message):
-                say(self.form.text(message, info))
+                text = self.form.text(message, info)
+                if self.form.clear and not (self.form.json or self.form.csv):
+                    clear()
+                say(text)
                 self.shown += 1
         except (RobolinkError, OSError) as error:
             self.done.set_exception(error)

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import sys
 from collections.abc import Iterable
 from typing import TextIO
 
 from robolink.supervisor.telling.courier import Courier, Troubles
 from robolink.supervisor.telling.writer import Writer
+from robolink.terminal import fit
 
 _COLOURS = ("36", "33", "32", "35", "34", "96", "93", "92", "95", "94")
 OWN_NAME = "launch"
+_PLAIN = re.compile(rb"[\t -~]*")
 
 
 class Printer:
@@ -26,13 +29,13 @@ class Printer:
         )
 
     def line(self, name: str, line: bytes) -> None:
-        """Print one line of a process, as it is; waits while too much waits."""
-        whole = self._prefixes[name] + line.rstrip(b"\r\n") + b"\n"
+        """Print one line of a process, of what a terminal obeys only its colours; waits while too much waits."""
+        whole = self._prefixes[name] + _fit(line.rstrip(b"\r\n")) + b"\n"
         self._courier.put(whole, len(whole))
 
     def say(self, text: str) -> None:
         """Print a line of our own; never waits: rather the line is lost."""
-        whole = self._prefixes[OWN_NAME] + text.encode(errors="replace") + b"\n"
+        whole = self._prefixes[OWN_NAME] + fit(text).encode() + b"\n"
         self._courier.put_own(whole, len(whole))
 
     def close(self, timeout: float = 1.0) -> None:
@@ -40,10 +43,14 @@ class Printer:
         self._courier.close(timeout)
 
 
+def _fit(line: bytes) -> bytes:
+    return line if _PLAIN.fullmatch(line) else fit(line.decode(errors="replace"), colours=True).encode()
+
+
 def complain(text: str) -> None:
     """Print a line of our own on stderr, if anybody reads that."""
     with contextlib.suppress(OSError, ValueError, AttributeError):  # closed; or there is none
-        sys.stderr.write(f"[{OWN_NAME}] {text}\n")
+        sys.stderr.write(f"[{OWN_NAME}] {fit(text)}\n")
         sys.stderr.flush()
 
 

@@ -1,0 +1,58 @@
+r"""Terminal escaping: text of others, made so that a terminal shows it and obeys nothing in it.
+
+What moves a cursor, colours, rings, or turns the order of letters round is written as an escape sequence that Python,
+YAML (in double quotes) and JSON (but for ``\x1b``, which JSON's writers never leave) read back as the same character.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+
+_UNFIT = "\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u206f\ud800-\udfff"
+"""C0 but for tab and line feed, DEL, C1, what sets the direction of text, separators of lines, lone surrogates."""
+
+_OF_LINES = f"[{_UNFIT}]"
+_OF_A_LINE = f"[\t\n{_UNFIT}]"
+_BUT_COLOURS = rf"(\x1b\[[0-9;:]{{0,40}}m)|[{_UNFIT}]"
+
+
+@functools.cache
+def _compiled(pattern: str) -> re.Pattern[str]:  # on first use: it takes longer than the rest of this file
+    return re.compile(pattern)
+
+
+_SHORT = {"\t": "\\t", "\n": "\\n", "\r": "\\r"}
+
+
+def fit(text: str, *, lines: bool = True, colours: bool = False) -> str:
+    r"""Return `text` as a terminal can be given it, with escapes in place of what is no plain letter.
+
+    With `lines`, tabs and line feeds stay; without, it is one line. With `colours`, what sets a colour (SGR) stays too.
+    Text that is fit stays as it is, so that nothing is lost by doing it twice.
+
+    >>> fit("a\x1b[2Jb")
+    'a\\x1b[2Jb'
+    """
+    if colours:
+        return _compiled(_BUT_COLOURS).sub(lambda match: match[1] or escaped(match[0]), text)
+    return _compiled(_OF_LINES if lines else _OF_A_LINE).sub(lambda match: escaped(match[0]), text)
+
+
+def is_fit(text: str) -> bool:
+    """Whether `fit` leaves these lines as they are."""
+    return _compiled(_OF_LINES).search(text) is None
+
+
+def shown(text: str, longest: int = 100) -> str:
+    """Return `text` as an error quotes it: on one line, only letters that can be seen, `longest` of them at most."""
+    part = text if len(text) <= longest else text[: longest - 3] + "..."
+    return part if part.isprintable() else "".join(each if each.isprintable() else escaped(each) for each in part)
+
+
+def escaped(char: str) -> str:
+    r"""Return the escape sequence of one character: ``\n``, ``\x1b``, ``\u202e``, ``\U000e0001``."""
+    code = ord(char)
+    if code < 0x7F:
+        return _SHORT.get(char) or f"\\x{code:02x}"
+    return f"\\u{code:04x}" if code <= 0xFFFF else f"\\U{code:08x}"
