@@ -38,7 +38,7 @@ def planned(home: Path, text: str, **given: str) -> list[Process]:
 
 def words(process: Process) -> list[str]:
     """What stands behind the words that start a robolink."""
-    return process.argv[len(own_command()) :]
+    return list(process.argv[len(own_command()) :])
 
 
 def test_a_node_is_run_with_all_that_is_said_of_it(home: Path) -> None:
