@@ -17,7 +17,7 @@ from robolink.cli.doctor import probes
 from robolink.cli.doctor.probes import Port, also_open_at, holder, listening, owner, read_answer
 from tests.ports import PATIENCE, free_port, stranger, zenoh_router
 
-OWN_USER = os.getuid() if sys.platform != "win32" else 0
+OWN_USER: int = getattr(os, "getuid", int)()
 
 
 @given(st.binary(max_size=80))
