@@ -52,6 +52,17 @@ COMMANDS = {
 }
 
 
+OF_ROS2 = {
+    "bag": "'robolink topic echo TOPIC --json' writes messages as lines; where there is ROS 2, its own hears ours too",
+    "component": "nodes of a launch file share a process where it says 'process: NAME' (docs/launch.md)",
+    "daemon": "there is none to start or stop: each command looks by itself",
+    "multicast": "nothing is sent by multicast but with --network subnet; 'robolink doctor' looks at the network",
+    "pkg": "nothing is built; 'robolink run --list' shows what can be run, and a package is a folder in src/",
+    "security": "TLS and access rules are Zenoh's: --network FILE.json5 (docs/ros2.md)",
+}
+"""ros2's commands that robolink has not, and what to do instead."""
+
+
 class Root(typer.core.TyperGroup):
     """A group that knows its commands by name, and imports only the one that is asked for."""
 
@@ -72,6 +83,8 @@ class Root(typer.core.TyperGroup):
 
     def resolve_command(self, ctx: Context, args: list[str]) -> Any:
         """Find the command; the nearest name is told for an unknown one."""
+        if args[0] in OF_ROS2:
+            ctx.fail(f"ros2's '{args[0]}' is not here: {OF_ROS2[args[0]]}")
         if args[0] not in COMMANDS:
             ctx.fail(f"no command named '{args[0]}'{nearest(args[0], COMMANDS)}")
         return super().resolve_command(ctx, args)
@@ -92,7 +105,11 @@ class Root(typer.core.TyperGroup):
             formatter.write_dl([(name, entry.help) for name, entry in COMMANDS.items() if not entry.hidden])
 
 
-app = typer.Typer(cls=Root, rich_markup_mode=None, no_args_is_help=True, pretty_exceptions_enable=False)
+_SETTINGS = {"help_option_names": ["-h", "--help"]}  # of all commands below it, too
+
+app = typer.Typer(
+    cls=Root, context_settings=_SETTINGS, rich_markup_mode=None, no_args_is_help=True, pretty_exceptions_enable=False
+)
 
 
 def _version(wanted: bool) -> None:

@@ -37,7 +37,8 @@ class RunCommand(typer.core.TyperCommand):
         """Part the arguments; `ctx.meta` keeps those for ROS, and how many came after `--`."""
         at = args.index(ROS_ARGS) if ROS_ARGS in args else len(args)
         ctx.meta[META] = args[at:]
-        options = [(name, each) for each in self.get_params(ctx) for name in each.opts if name.startswith("-")]
+        names = ((name, each) for each in self.get_params(ctx) for name in each.opts if name.startswith("-"))
+        options = [(name, each) for name, each in names if name != "-h" or args[:1] == ["-h"]]  # else the program's
         parts = part(args[:at], {name: not getattr(each, "is_flag", False) for name, each in options})
         ctx.meta[FIXED] = len(parts.fixed)
         rest = [] if parts.is_cut_off else ["--", *parts.words, *parts.fixed]

@@ -41,6 +41,7 @@ from robolink.workspace import (
     list_packages,
     load_node,
     named_executables,
+    ros_program_error,
     user_workspace,
     workspace_of,
 )
@@ -117,6 +118,9 @@ def found(asked: Asked, workspace: str | None) -> tuple[NodeSource, list[str]]:
     try:
         return find_node(name, workspace=workspace), words
     except NotFoundError:
+        of_ros = ros_program_error(name, *words[: min(asked.before, 1)]) if folder is None else None
+        if of_ros is not None:
+            raise of_ros from None
         if folder is None and asked.before > 0 and canonical(name).isidentifier():
             raise _neither(name, workspace) from None
         if folder is None or not executables(folder):

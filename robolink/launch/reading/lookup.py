@@ -21,6 +21,7 @@ from robolink.workspace import (
     find_package,
     find_ros_node,
     list_packages,
+    ros_program_error,
     user_workspace,
     workspace_of,
 )
@@ -64,7 +65,20 @@ def _by_name(name: str, workspace: Folder) -> Path:
     except NotFoundError:
         if _is_node(name, workspace):
             raise LaunchKindError(f"'{name}' is a node, and no launch file: robolink run {name}") from None
+        folder = find_package(name, workspace=workspace)
+        if folder is not None and (folder / LAUNCH_FOLDER).is_dir():
+            raise LaunchKindError(_which_of(folder, name)) from None
         raise
+
+
+def _which_of(folder: Path, package: str) -> str:
+    """Say what a package has in its launch folder, for somebody who named only the package."""
+    there = [each for each in sorted((folder / LAUNCH_FOLDER).glob("*")) if each.suffix in (*YAML, *_PROGRAMS)]
+    names = [each.name for each in there if each.suffix in YAML]
+    if names:
+        return f"{package} is a package: say which of its launch files, {' or '.join(names)}"
+    others = f"of its own only {', '.join(each.name for each in there)}, and " if there else "none, "
+    return f"{package} is a package and has {others}robolink launches YAML"
 
 
 def _is_node(name: str, workspace: Folder) -> bool:
@@ -133,7 +147,8 @@ def _executable(package: str, name: str, home: Path | None) -> NodeSource:
     if source is not None:
         return source
     if folder is None:
-        raise NotFoundError("package", package, list_packages(workspace=home), "the workspace")
+        of_ros = ros_program_error(package, name)
+        raise of_ros or NotFoundError("package", package, list_packages(workspace=home), "the workspace")
     raise NotFoundError("executable", name, executables(folder), f"package {package}")
 
 
