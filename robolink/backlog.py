@@ -7,6 +7,7 @@ its publishers' numbers, and says once that there are some; and it says when mor
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from typing import Any
 
 from robolink.wire import Attachment, unpack_attachment
@@ -22,10 +23,14 @@ TOO_OLD_NS = 1_000_000_000
 
 
 class Gaps:
-    """The last number of each sender's messages."""
+    """The last number of each sender's messages; only the gaps of those are told for whom `counts(gid)` holds.
 
-    def __init__(self) -> None:
+    Lyrical's publishers of images number what they send to several keys in one go: those have gaps, and lose nothing.
+    """
+
+    def __init__(self, counts: Callable[[bytes], bool] | None = None) -> None:
         self._last: dict[bytes, int] = {}
+        self._counts = counts
 
     def before(self, sender: Attachment) -> int:
         """Give how many of its messages are missing before this one; not to be called by two threads at once."""
@@ -37,15 +42,17 @@ class Gaps:
         self._last[gid] = max(last, sequence)  # new ones last: the oldest gives way
         if len(self._last) > MOST_SENDERS:
             del self._last[next(iter(self._last))]
-        return max(0, sequence - last - 1)
+        if sequence <= last + 1 or (self._counts is not None and not self._counts(gid)):
+            return 0
+        return sequence - last - 1
 
 
 class Backlog:
     """Looks at what is delivered, in its order, and has warnings ready for whoever takes it."""
 
-    def __init__(self, topic: str) -> None:
+    def __init__(self, topic: str, gaps: Gaps) -> None:
         self._topic = topic
-        self._gaps = Gaps()
+        self._gaps = gaps
         self._warns_at = MANY_WAIT
         self.lost = 0
         """Messages that were published and did not arrive, as far as the numbers of later ones tell."""

@@ -10,15 +10,18 @@ from robolink.disagreement import Disagreements
 from robolink.exceptions import RobolinkError, TransportClosedError
 from robolink.logging import get_logger
 from robolink.message import type_hash, type_name
+from robolink.message.description import has_buffer_fields
 from robolink.qos import QoSProfile
 from robolink.transport.base import Handle
 from robolink.wire import (
+    CPU_BACKEND,
     NO_HASH,
     OTHER_END,
     DataKey,
     EndpointKind,
     EndpointToken,
     attachments,
+    buffer_key,
     format_key,
     format_token,
     gid_of,
@@ -48,6 +51,10 @@ class Endpoint:
         self.type_name = type_name(ros_type)
         self.type_hash = NO_HASH if owner.context.speaks_humble else type_hash(ros_type)
         self.key = format_key(DataKey(self.domain_id, name, self.type_name, self.type_hash))
+        self.buffer_key = ""
+        """Where Lyrical's publishers may send to this subscription instead; "" where they do not."""
+        if kind is EndpointKind.SUBSCRIPTION and self.type_hash != NO_HASH and has_buffer_fields(ros_type):
+            self.buffer_key = buffer_key(self.key)
         self.transport = owner.context.transport
         self.token = EndpointToken(
             self.domain_id,
@@ -62,6 +69,7 @@ class Endpoint:
             self.type_name,
             self.type_hash,
             qos,
+            CPU_BACKEND if self.buffer_key else "",
         )
         self._text = format_token(self.token)
         self.gid = gid_of(self._text)

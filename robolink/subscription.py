@@ -94,10 +94,11 @@ class Subscription(Receiver, Generic[MsgT]):
         self._handles: list[Handle] = []
         self._backlog: Backlog | None = None
         if depth == 0:
-            self._backlog, self.straight = Backlog(topic), False
+            self._backlog, self.straight = Backlog(topic, self._make_gaps()), False
         self._listen_for_events(event_callbacks or SubscriptionEventCallbacks())
         self._endpoint.speak_humble = self._speak_humble
-        self._handles.append(self._endpoint.transport.subscribe(self._endpoint.key, qos_profile, self.sink))
+        for key in filter(None, (self._endpoint.key, self._endpoint.buffer_key)):
+            self._handles.append(self._endpoint.transport.subscribe(key, qos_profile, self.sink))
         self._endpoint.announce()
 
     @property
@@ -199,9 +200,17 @@ class Subscription(Receiver, Generic[MsgT]):
     def _on_disagreement(self) -> None:
         tell_handlers(self.event_handlers, {QoSSubscriptionEventType.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE}, total=1)
 
+    def _make_gaps(self) -> Gaps:
+        """Look for gaps of all senders, or of those that send to one key alone, where some may send to several."""
+        return Gaps(self._sends_to_one_key) if self._endpoint.buffer_key else Gaps()
+
+    def _sends_to_one_key(self, gid: bytes) -> bool:
+        sender = self._endpoint.context.graph.endpoint_of(gid)
+        return sender is not None and not sender.names_backends
+
     def _count_lost(self) -> None:
         """Look for gaps between the numbers of the messages that are taken."""
-        read, gaps = self._read, Gaps()
+        read, gaps = self._read, self._make_gaps()
         lock = threading.Lock()  # callbacks of a reentrant group run side by side
 
         def read_and_count(taken: Any) -> Sample:

@@ -124,6 +124,19 @@ def _plain(description: TypeDescription) -> dict[str, Any]:
 
 
 @once_per_type
+@once_per_type
+def has_buffer_fields(cls: type[Any]) -> bool:
+    """Whether a message, or one inside it, has a field `uint8[]`: Lyrical sends such messages in another way.
+
+    rosidl has the same function; its `rosidl::Buffer` may lie elsewhere than in main memory.
+    """
+    return any(
+        (kind.shape == "sequence" and kind.base in ("uint8", "char"))
+        or (kind.message is not None and has_buffer_fields(kind.message))
+        for kind in cls.__ros_fields__.values()
+    )
+
+
 def type_hash(cls: type[Any]) -> str:
     """The RIHS01 hash of a message, service or action class."""
     return hash_of(described(cls))

@@ -9,7 +9,7 @@ from robolink.wire.attachment import (
     pack_attachment,
     unpack_attachment,
 )
-from robolink.wire.keys import NO_HASH, DataKey, demangle_type, format_key, mangle_type, parse_key
+from robolink.wire.keys import NO_HASH, DataKey, buffer_key, demangle_type, format_key, mangle_type, parse_key
 from robolink.wire.profiles import format_qos, parse_qos
 from robolink.wire.text import LONGEST
 from robolink.wire.tokens import (
@@ -37,6 +37,7 @@ __all__ = [
     "EndpointToken",
     "NodeToken",
     "attachments",
+    "buffer_key",
     "demangle_type",
     "format_key",
     "format_qos",

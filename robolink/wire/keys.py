@@ -11,6 +11,8 @@ from robolink.wire.text import LONGEST, format_number, matched, not_too_long, pa
 NO_HASH = "TypeHashNotSupported"
 """What Humble says in place of a type hash."""
 
+_BUFFERS = "/_buf_cpu"
+
 CHUNK = r"[A-Za-z0-9_.~-]+"
 """A part of a name between two slashes, as a pattern."""
 
@@ -58,9 +60,14 @@ def format_key(key: DataKey) -> str:
     return not_too_long(text, "a key")
 
 
+def buffer_key(key: str) -> str:
+    """Where Lyrical's publishers send what holds a `uint8[]` while all subscriptions announce CPU_BACKEND."""
+    return key + _BUFFERS
+
+
 def parse_key(text: str) -> DataKey:
-    """Read a key expression; raises WireError for what `format_key` cannot have made."""
-    fields = not_too_long(text, "a key").split("/")
+    """Read a key expression; raises WireError for what `format_key` cannot have made, nor `buffer_key` of that."""
+    fields = not_too_long(text, "a key").removesuffix(_BUFFERS).split("/")
     if len(fields) < 4:
         raise WireError(f"a key is DOMAIN/NAME/TYPE/HASH, got {shown(text)}")
     domain, *name, dds_type, type_hash = fields

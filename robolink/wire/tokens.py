@@ -21,7 +21,8 @@ _ID = re.compile(_FIELD)
 _MORE = re.compile(rf"{_FIELD}(?:/{_FIELD})*")
 _NODE, _NODE_FIELDS, _ENDPOINT_FIELDS = "NN", 9, 13
 
-CPU_BACKEND = "backends:cpu:"
+_BACKENDS = "backends:"
+CPU_BACKEND = f"{_BACKENDS}cpu:"
 """What Lyrical adds to the token of an end whose type holds a `uint8[]`: where the bytes may lie, here main memory."""
 
 
@@ -86,6 +87,11 @@ class EndpointToken(NamedTuple):
     def full_node_name(self) -> str:
         """Namespace and name of the node that owns it."""
         return join(self.namespace, self.node_name)
+
+    @property
+    def names_backends(self) -> bool:
+        """Whether it says where the bytes of its `uint8[]` may lie, as Lyrical's ends of such types do."""
+        return self.more.startswith(_BACKENDS)
 
     def understands(self, other: EndpointToken) -> bool:
         """Whether both mean the same type: by name and hash, or by name where one is a Humble peer's."""

@@ -124,7 +124,7 @@ def test_bad_tokens(node: Robot, peer: Peer, log_lines: list[Record]) -> None:
         f"{place}/x",
         f"{place}/0/0/NN/%/%/na me",
         f"{place}/0/0/XX/%/%/node",
-        f"{place}/0/-1/NN/%/%/node",
+        f"@ros2_lv/{peer.domain}/XYZ/0/1/NN/%/%/node",
         f"{place}/0/1/MP/%/%/node/%chatter/String/RIHS01_0/::,10:,:,:,,",
         f"{place}/0/1/MP/%/%/node/%chatter/{STRING.dds_name}/{STRING.hash}/:::::",
         f"{place}/0/1/MP/%/%/node/%{'a' * 30_000}/{STRING.dds_name}/{STRING.hash}/::,10:,:,:,,",

@@ -21,7 +21,7 @@ from robolink import systemclock
 from robolink.exceptions import RobolinkError
 from robolink.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from robolink.transport.base import Handle
-from robolink.wire import DataKey, EndpointKind, EndpointToken, format_key
+from robolink.wire import CPU_BACKEND, DataKey, EndpointKind, EndpointToken, buffer_key, format_key
 
 if TYPE_CHECKING:
     from robolink.node import Node
@@ -45,7 +45,7 @@ class Arrivals:
             gc=False,
         )
         self._listeners: dict[str, Callable[[EndpointToken], Take]] = {}
-        self._heard: set[tuple[str, str, str]] = set()
+        self._heard: set[str] = set()
         self._declared: list[Handle] = []
         self._error: BaseException | None = None
         self._thread = threading.Thread(target=self._drain, name="robolink arrivals", daemon=True)
@@ -61,10 +61,10 @@ class Arrivals:
         if self._error is not None:
             raise self._error
         for publisher in self._unheard():
-            found = (publisher.name, publisher.type_name, publisher.type_hash)
-            if found not in self._heard:
-                self._heard.add(found)
-                self._subscribe(publisher, self._listeners[publisher.name](publisher))
+            keys = _keys(publisher) - self._heard
+            if keys:
+                self._heard |= keys
+                self._subscribe(publisher, keys, self._listeners[publisher.name](publisher))
 
     def wait(self, until: float) -> None:
         """Wait until this moment of `time.monotonic`, and follow meanwhile. Raises KeyboardInterrupt at the end."""
@@ -93,12 +93,12 @@ class Arrivals:
     def _unheard(self) -> list[EndpointToken]:
         graph = self._context.graph
         publishers = (each for name in self._listeners for each in graph.endpoints(EndpointKind.PUBLISHER, name=name))
-        return [each for each in publishers if (each.name, each.type_name, each.type_hash) not in self._heard]
+        return [each for each in publishers if not _keys(each) <= self._heard]
 
-    def _subscribe(self, publisher: EndpointToken, take: Take) -> None:
+    def _subscribe(self, publisher: EndpointToken, keys: set[str], take: Take) -> None:
         transport, owner = self._context.transport, self._node._owner_
-        key = format_key(DataKey(publisher.domain, publisher.name, publisher.type_name, publisher.type_hash))
-        self._declared.append(transport.subscribe(key, QOS, functools.partial(self._arrival, take)))
+        for key in sorted(keys):
+            self._declared.append(transport.subscribe(key, QOS, functools.partial(self._arrival, take)))
         own = EndpointToken(
             publisher.domain,
             transport.session_id,
@@ -110,6 +110,7 @@ class Arrivals:
             owner.node_name,
             *publisher[8:11],
             QOS,
+            CPU_BACKEND if publisher.names_backends else "",
         )
         self._declared.append(self._context.graph.announce(own))
 
@@ -121,3 +122,9 @@ class Arrivals:
                 self._error = error
                 self._context.graph.wake()
                 return
+
+
+def _keys(publisher: EndpointToken) -> set[str]:
+    """Where a publisher's messages may come."""
+    key = format_key(DataKey(publisher.domain, publisher.name, publisher.type_name, publisher.type_hash))
+    return {key, buffer_key(key)} if publisher.names_backends else {key}
