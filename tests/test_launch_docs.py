@@ -47,7 +47,7 @@ def test_its_commands_have_these_options() -> None:
     assert used <= known
     assert all(line.startswith("robolink launch ") for line in COMMANDS)
     unsaid = {name for name in known if name.startswith("--") and name not in PAGE}
-    assert {each for each in unsaid if "completion" not in each} == {"--workspace"}
+    assert {each for each in unsaid if "completion" not in each} == set()
 
 
 def test_every_key_is_there() -> None:
