@@ -15,7 +15,9 @@ from robolink.cli.simulate import app
 from robolink.faults.description import ClockFault, Crash, MessageFault, Partition
 from robolink.faults.file import check_nodes, read_faults
 from robolink.launch import read_launch_file
-from robolink.workspace import find_launch
+from robolink.simulating import simulate
+from robolink.workspace import find_faults, find_launch
+from tests.simulations import workspace
 
 PAGE = (Path(__file__).parent.parent / "docs" / "simulate.md").read_text(encoding="utf-8")
 
@@ -51,3 +53,15 @@ def test_it_has_every_key() -> None:
     kinds: list[type[msgspec.Struct]] = [MessageFault, Partition, Crash, ClockFault]
     keys = {each.encode_name for kind in kinds for each in msgspec.structs.fields(kind)}
     assert {each for each in keys if not re.search(rf"\b{each}\b(:|`)", PAGE)} == set()
+
+
+@pytest.mark.parametrize("faults", ["rough", "radio"])
+@pytest.mark.parametrize("system", ["follow", "wander", "lab", "goto", "square", "walker", "first_nodes", "talk"])
+def test_the_faults_that_come_along_fit_any_system(system: str, faults: str, tmp_path: Path) -> None:
+    workspace(tmp_path)
+    entries = read_launch_file(tmp_path / "configs/talk.yaml" if system == "talk" else find_launch(system))
+    document = read_faults(find_faults(faults))
+    check_nodes(document, [each.name for each in entries])
+    result = simulate(entries, duration=21.0, seed=1, faults=document.value)
+    assert result.failures == []
+    assert system == "walker" or sum(each.lost + each.late for each in result.faults) > 0  # it has one node
