@@ -84,17 +84,20 @@ class Endpoint:
         self.on_other: Callable[[bool], object] = lambda came: None
         """Called for each end that comes or goes, with whether it came."""
         self.speak_humble: Callable[[str], object] = lambda key: None
-        """Called once, with the second key to use, when a Humble peer is at the other end."""
+        """Called once, with the second key to use, when a Humble peer is at the other end; for a service, anywhere."""
         self.humble_key = self.key if self.type_hash == NO_HASH else ""
         """The key that Humble peers use, once there has been one."""
         self._disagreements = owner.disagreements
-        self._following: Handle | None = None
+        self._following: list[Handle] = []
         self._announced: Handle | None = None
 
     def announce(self) -> None:
         """Get to know the other ends, and show this one to everybody."""
         graph = self.context.graph
-        self._following = graph.follow(self.name, OTHER_END[self.token.kind], self._on_other_end)
+        if self.token.kind is EndpointKind.SERVICE and not self.humble_key:
+            # Before a Humble client of it comes: Humble calls as soon as it sees a server, and waits for ever then.
+            self._following.append(graph.follow_first_humble(lambda gid, token, alive: self._meet(token)))
+        self._following.append(graph.follow(self.name, OTHER_END[self.token.kind], self._on_other_end))
         self._announced = graph.announce(self.token, self._text)
 
     def count_others(self) -> int:
@@ -139,6 +142,6 @@ class Endpoint:
 
     def close(self) -> None:
         """Announce it no longer, and hear of nobody. Safe to call twice."""
-        for handle in (self._following, self._announced):
+        for handle in (*self._following, self._announced):
             if handle is not None:
                 handle.close()

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, TypeVar
 from robolink.exceptions import WireError
 from robolink.logging import get_logger
 from robolink.wire import (
+    NO_HASH,
     EndpointKind,
     EndpointToken,
     NodeToken,
@@ -32,6 +33,9 @@ Follower = Callable[[bytes, EndpointToken, bool], object]
 """Told the gid and token of an endpoint of one topic or service, and whether it came or went."""
 Place = tuple[str, EndpointKind]
 """A topic's or service's name, and which of its ends are meant."""
+
+FIRST_HUMBLE: Place = ("", EndpointKind.SERVICE)
+"""Where those follow who want to know of the first Humble peer; no service has this name."""
 
 SETTLED_WITHIN = 0.1
 """Seconds; it takes 2 ms."""
@@ -55,6 +59,7 @@ class Graph:
         self._index = _Index()
         self._changed = threading.Condition()
         self._followers: dict[Place, tuple[_Following, ...]] = {}
+        self._humble: tuple[bytes, EndpointToken] | None = None
         self._news: deque[Callable[[], object]] = deque()
         self._telling = threading.Lock()
         self._settling = threading.Lock()
@@ -100,6 +105,9 @@ class Graph:
             self._changed.notify_all()
             if isinstance(token, EndpointToken):
                 followers = self._followers.get((token.name, token.kind), ())
+                if self._humble is None and token.type_hash == NO_HASH:
+                    self._humble = gid, token
+                    followers += self._followers.pop(FIRST_HUMBLE, ())
                 self._news.extend(each.news(gid, token, alive) for each in followers)
         self._tell()
 
@@ -117,6 +125,20 @@ class Graph:
             self._followers[place] = (*self._followers.get(place, ()), following)
             self._news.extend(following.news(gid, token, True) for gid, token in self._index.at(place).items())
         self._tell()
+        return following
+
+    def follow_first_humble(self, follower: Follower) -> Handle:
+        """Call `follower(gid, token, True)` once, for an end of a Humble peer: at once if there has been one.
+
+        Else when the first comes, as with `follow`.
+        """
+        following = _Following(follower, functools.partial(self._stop_following, FIRST_HUMBLE))
+        with self._changed:
+            known = self._humble
+            if known is None:
+                self._followers[FIRST_HUMBLE] = (*self._followers.get(FIRST_HUMBLE, ()), following)
+        if known is not None:
+            following.news(*known, True)()
         return following
 
     def _tell(self) -> None:

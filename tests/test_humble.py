@@ -19,7 +19,7 @@ from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.interfaces.std_srvs.srv import SetBool
 from robolink.message import decode, encode
 from robolink.qos import DurabilityPolicy, QoSProfile
-from robolink.transport import Transport
+from robolink.transport import Sample, Transport
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.wire import (
     NO_HASH,
@@ -186,28 +186,63 @@ def test_one_that_only_listens_from_now_on_hears_too(peer: Peer, make_context: C
     assert peer.received(1) == [2]
 
 
+def answer_to(peer: Peer, executor: SingleThreadedExecutor, attachment: bytes) -> Sample:
+    """Call the peer's service with `true` until it is answered: Zenoh needs an instant to know who serves."""
+    answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    found: list[Sample] = []
+
+    def answered() -> bool:
+        peer.session.call(peer.key(EndpointKind.CLIENT), encode(SetBool.Request(data=True)), attachment, answers.put)
+        spin_until(executor, lambda: not answers.empty())
+        arrived = answers.get()
+        found.extend([] if arrived is None else [peer.session.read(arrived)])
+        return bool(found)
+
+    spin_until(executor, answered)
+    return found[0]
+
+
 def test_a_service_answers_it(peer: Peer, make_context: Callable[..., Context]) -> None:
     node, executor = spinning(make_context())
     node.create_service(SetBool, "topic", lambda request, _: SetBool.Response(success=request.data))
     peer.announce(EndpointKind.CLIENT)
-    asked = pack_attachment(7, 5, peer.gid)
-    answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
-
-    first: list[Any] = []
-
-    def got_one() -> bool:
-        key = peer.key(EndpointKind.CLIENT)
-        peer.session.call(key, encode(SetBool.Request(data=True)), asked, answers.put)
-        spin_until(executor, lambda: not answers.empty())
-        arrived = answers.get()
-        first.extend([arrived] if arrived is not None else [])
-        return bool(first)
-
-    spin_until(executor, got_one)
-    payload, attachment = peer.session.read(first[0])
+    payload, attachment = answer_to(peer, executor, pack_attachment(7, 5, peer.gid))
     assert decode(SetBool.Response, payload).success
     answer = unpack_attachment(attachment)
     assert (answer.sequence, answer.gid) == (7, peer.gid)
+
+
+@pytest.mark.parametrize("first", ["peer", "node"])
+def test_a_client_that_calls_at_once_is_answered(peer: Peer, make_context: Callable[..., Context], first: str) -> None:
+    """Whatever of Humble is seen before, such as the /rosout of the client's node, makes all services ready for it."""
+    rosout = Peer(peer.session, "/rosout")
+    if first == "peer":
+        rosout.announce(EndpointKind.PUBLISHER)
+    node, executor = spinning(make_context())
+    if first == "peer":
+        spin_until(executor, lambda: node.count_publishers("/rosout") == 2)
+    service = node.create_service(SetBool, "topic", lambda request, _: SetBool.Response(success=request.data))
+    if first == "node":
+        rosout.announce(EndpointKind.PUBLISHER)
+    spin_until(executor, lambda: bool(service._endpoint.humble_key))
+    payload, _ = answer_to(peer, executor, pack_attachment(7, 5, b"c" * 16))
+    assert decode(SetBool.Response, payload).success
+
+
+def test_without_humble_nothing_is_served_twice(bus: Bus, context: Context) -> None:
+    Node("node", context=context).create_service(SetBool, "topic", lambda request, response: response)
+    assert not [key for key in bus.servers if key.endswith(NO_HASH)]
+
+
+def test_a_destroyed_service_leaves_humbles_key(bus: Bus, context: Context) -> None:
+    node = Node("node", context=context)
+    kept = [node.create_service(SetBool, name, lambda request, response: response) for name in ("topic", "other")]
+    node.destroy_service(kept.pop(0))
+    Peer(MemoryTransport(bus=bus), "/elsewhere").announce(EndpointKind.PUBLISHER)
+    served = [key for key, servers in bus.servers.items() if servers and key.endswith(NO_HASH)]
+    assert [key for key in served if "SetBool" in key] == [f"0/other/std_srvs::srv::dds_::SetBool_/{NO_HASH}"]
+    node.destroy_service(kept.pop())
+    assert not [key for key, servers in bus.servers.items() if servers and "SetBool" in key]
 
 
 def test_its_service_is_called(peer: Peer, make_context: Callable[..., Context]) -> None:
