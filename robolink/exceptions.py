@@ -16,9 +16,15 @@ RobolinkError
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import itertools
+from collections.abc import Iterable, Sequence
 
 from robolink.terminal import shown as shown  # what errors quote of others' text
+
+LONGEST_NAME, MOST_NAMES = 255, 2000
+"""How much is looked through for a name that may have been meant: each comparison takes time."""
+MOST_TOLD = 20
+"""How many of a file's mistakes are told."""
 
 
 class RobolinkError(Exception):
@@ -82,9 +88,6 @@ class AmbiguousNameError(NotFoundError):
         RobolinkError.__init__(self, f"which {kind} '{name}'? There are {', '.join(meant)}: give a whole name")
 
 
-_LONGEST_NAME = 255
-
-
 def nearest(name: str, known: Iterable[str]) -> str:
     """Give `` (did you mean 'x'?)`` for the known name closest to `name`, or nothing.
 
@@ -93,11 +96,19 @@ def nearest(name: str, known: Iterable[str]) -> str:
     """
     import difflib  # late: every command imports this module, few need it
 
-    if len(name) > _LONGEST_NAME:  # a stranger's; looking at it would take seconds
+    if len(name) > LONGEST_NAME:
         return ""
-    names = list(known)
+    names = list(itertools.islice((each for each in known if len(each) <= LONGEST_NAME), MOST_NAMES))
     close = difflib.get_close_matches(name, names, n=1) or [each for each in names if each.lower() == name.lower()]
     return f" (did you mean '{close[0]}'?)" if close else ""
+
+
+def few(errors: Sequence[DocumentError]) -> list[DocumentError]:
+    """Return the first errors of a file, and in place of the others one that says how many they are."""
+    if len(errors) <= MOST_TOLD + 1:
+        return list(errors)
+    rest = DocumentError(f"and {len(errors) - MOST_TOLD:,} more mistakes", errors[MOST_TOLD].file)
+    return [*errors[:MOST_TOLD], rest]
 
 
 class NotInitializedException(RobolinkError, RuntimeError):

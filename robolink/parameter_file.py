@@ -67,8 +67,10 @@ class _Reader:
     def __init__(self, name: str) -> None:
         self.name = name
         self.seen: set[int] = set()
+        self.text = ""
 
     def compose(self, text: str) -> yaml.Node | None:
+        self.text = text
         try:
             return yamltext.compose(text, self.name)
         except DocumentError as error:
@@ -142,11 +144,16 @@ class _Reader:
         self.check_alias(node)
         self.check_text(node)
         text: str = node.value
-        if node.style is not None or _is_tagged_string(node):
+        if node.style or self.is_tagged_string(node):
             return text
         if not text:
             raise self.error(node, f"{what}no value (write '' for an empty string)")
         return parse_scalar(text)
+
+    def is_tagged_string(self, node: yaml.ScalarNode) -> bool:
+        """Whether a plain scalar carries the tag `!!str`; without one its tag says nothing here."""
+        is_text = node.tag == "tag:yaml.org,2002:str"
+        return is_text and _TAG.match(self.text, node.start_mark.index) is not None
 
     def check_alias(self, node: yaml.Node) -> None:
         """Refuse aliases, as rcl does: a node that is met twice stands for one."""
@@ -170,16 +177,6 @@ def _found(node: yaml.Node) -> str:
 
 
 _TAG = re.compile(r"(?:&\S*\s+)?!")
-
-
-def _is_tagged_string(node: yaml.ScalarNode) -> bool:
-    """Say whether a plain scalar carries the tag `!!str`; without one its tag says nothing here."""
-    mark = node.start_mark
-    return (
-        node.tag == "tag:yaml.org,2002:str"
-        and mark.buffer is not None
-        and _TAG.match(mark.buffer, mark.pointer) is not None
-    )
 
 
 _TRUE = re.compile(r"[Yy]|yes|Yes|YES|true|True|TRUE|on|On|ON")

@@ -7,6 +7,7 @@ Every error is one line: `empty.yaml:3:11: robots[0].radius: expected float, got
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 from collections.abc import Sequence
@@ -15,7 +16,8 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 import msgspec
 
-from robolink.exceptions import DocumentError, nearest
+from robolink.exceptions import DocumentError, few, nearest
+from robolink.plainfile import read_plain
 from robolink.yamlmistakes import Hook, Reader, Step, steps_of
 
 if TYPE_CHECKING:
@@ -23,8 +25,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-LONGEST = 64 * 2**20
-"""Bytes that a file may have."""
+_MOST = 1000
 
 
 class DocumentNotFoundError(DocumentError, FileNotFoundError):
@@ -70,12 +71,15 @@ def read(
 def mistakes(
     path: str | os.PathLike[str], type_: type[T], *, text: str | None = None, hook: Hook | None = None
 ) -> list[DocumentError]:
-    """Find everything that `read` would refuse, one error for each part that is wrong; none if it would not."""
+    """Find everything that `read` would refuse, one error for each part that is wrong; none if it would not.
+
+    Of many the first are given, and one that says how many more there are (of a thousand that are looked for).
+    """
     try:
         reader = Reader(read_text(path) if text is None else text, os.fspath(path), hook)
     except DocumentError as error:
         return [error]
-    return list(reader.mistakes(reader.data, type_))
+    return few(list(itertools.islice(reader.mistakes(reader.data, type_), _MOST)))
 
 
 def load(path: str | os.PathLike[str], type_: type[T], *, text: str | None = None) -> T:
@@ -110,19 +114,21 @@ def spell(data: Data) -> str:
     return "null" if data is None else repr(data).lower()
 
 
-def read_text(path: str | os.PathLike[str]) -> str:
-    """Read a text file: UTF-8, or UTF-16 with its mark, as PowerShell writes it; the errors are those of `read`."""
+def read_text(path: str | os.PathLike[str], most: int | None = None) -> str:
+    """Read a text file: UTF-8, or UTF-16 with its mark, as PowerShell writes it; the errors are those of `read`.
+
+    `most` is how many bytes it may have, by default what YAML may have (`yamltext.MAX_BYTES`).
+    """
+    from robolink import yamltext
+
     file = Path(path)
     try:
-        with file.open("rb") as stream:
-            raw = stream.read(LONGEST + 1)
+        raw = read_plain(file, yamltext.MAX_BYTES if most is None else most)
     except FileNotFoundError:
         raise DocumentNotFoundError(f"no file '{file}'{nearest(file.name, siblings(file))}") from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise DocumentError(f"cannot be read: {reason}", str(file)) from None
-    if len(raw) > LONGEST:  # a device, say, which never ends
-        raise DocumentError(f"longer than {LONGEST // 2**20} MiB", str(file))
     encoding = "utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
     try:
         return raw.decode(encoding)

@@ -42,7 +42,8 @@ class Reader:
     def __init__(self, text: str, name: str, hook: Hook | None = None) -> None:
         from robolink import yamltext
 
-        self._name, self._hook = name, hook
+        self._text, self._name, self._hook = text, name, hook
+        self._children: dict[int, dict[str, tuple[yaml.Node, yaml.Node]]] = {}
         self._root = yamltext.compose(text, name)
         self.data: Data = yamltext.plain(self._root, name)
 
@@ -74,16 +75,14 @@ class Reader:
 
         node = self._root
         for step in steps:
-            entry = _child(node, step)
+            entry = self._child(node, step)
             node = None if entry is None else entry[1]
         return node.value if isinstance(node, yaml.ScalarNode) else None
 
     def spelled(self, steps: Sequence[Step]) -> str:
         """Give what stands at the end of these steps as the text has it, a mapping with its braces."""
         node = self._node(steps)
-        if node is None or node.start_mark.buffer is None:
-            return ""
-        return node.start_mark.buffer[node.start_mark.pointer : node.end_mark.pointer]
+        return "" if node is None else self._text[node.start_mark.index : node.end_mark.index]
 
     def line(self, steps: Sequence[Step]) -> int:
         """Give the line, from 1, of what stands at the end of these steps."""
@@ -139,11 +138,25 @@ class Reader:
         """Walk down to the node at the end of the steps, or as far as the text goes."""
         node = self._root
         for index, step in enumerate(steps):
-            entry = _child(node, step)
+            entry = self._child(node, step)
             if entry is None:
                 break
             node = entry[0] if key and index == len(steps) - 1 else entry[1]
         return node
+
+    def _child(self, node: yaml.Node | None, step: Step) -> tuple[yaml.Node, yaml.Node] | None:
+        """Give the key and the value that a step leads to (in a list, the value twice), or None."""
+        import yaml
+
+        from robolink import yamltext
+
+        if isinstance(node, yaml.SequenceNode) and isinstance(step, int) and step < len(node.value):
+            return node.value[step], node.value[step]
+        if not isinstance(node, yaml.MappingNode) or not isinstance(step, str):
+            return None
+        if id(node) not in self._children:
+            self._children[id(node)] = {pair[0].value: pair for pair in reversed(list(yamltext.pairs(node)))}
+        return self._children[id(node)].get(step)
 
     def _members(self, type_: object, data: Data) -> Iterator[object]:
         """Yield the types that the data may be, with what the hook chooses in the place of its own types."""
@@ -170,12 +183,18 @@ class Reader:
     def _culprit(self, data: Data, holder: dict[str, Data], type_: object, report: str) -> str | None:
         """Find the key of `holder`, a mapping inside `data`, that alone gives the same report; leave only that one."""
         whole = dict(holder)
-        for key in whole:
-            holder.clear()
-            holder[key] = whole[key]
-            if self._report(data, type_) == report:
-                return key
-        return None
+        keys = list(whole)
+        while len(keys) > 1:  # by halves: a stranger's mapping may have thousands
+            first = keys[: len(keys) // 2]
+            keys = first if self._report_of(holder, whole, first, data, type_) == report else keys[len(first) :]
+        return keys[0] if keys and self._report_of(holder, whole, keys, data, type_) == report else None
+
+    def _report_of(
+        self, holder: dict[str, Data], whole: Mapping[str, Data], keys: Sequence[str], data: Data, type_: object
+    ) -> str:
+        holder.clear()
+        holder.update((key, whole[key]) for key in keys)
+        return self._report(data, type_)
 
     def _report(self, data: Data, type_: object) -> str:
         try:
@@ -197,19 +216,6 @@ def _spelled(steps: Sequence[Step]) -> str:
     """Spell a path for a reader: `robots[0].pose`."""
     parts = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps)
     return "".join(parts).removeprefix(".")
-
-
-def _child(node: yaml.Node | None, step: Step) -> tuple[yaml.Node, yaml.Node] | None:
-    """Give the key and the value that a step leads to (in a list, the value twice), or None."""
-    import yaml
-
-    from robolink import yamltext
-
-    if isinstance(node, yaml.SequenceNode) and isinstance(step, int) and step < len(node.value):
-        return node.value[step], node.value[step]
-    if isinstance(node, yaml.MappingNode):
-        return next((pair for pair in yamltext.pairs(node) if pair[0].value == step), None)
-    return None
 
 
 def _at(data: Data, steps: Sequence[Step]) -> Data:

@@ -8,12 +8,28 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import yaml
+from yaml.composer import Composer
+from yaml.resolver import Resolver
 
 from robolink.exceptions import DocumentError, shown
+from robolink.plainfile import size
 
+try:
+    from yaml._yaml import CParser
+except ImportError:  # a PyYAML that was built without libyaml
+    CParser = None  # type: ignore[assignment,misc]
+
+MAX_BYTES = 5_000_000
+"""How long a YAML file may be."""
+MAX_NODES = 100_000
+"""How many values, keys, lists and mappings a document may have."""
+MAX_SLOW_NODES = 20_000
+"""The same where PyYAML has no libyaml, which reads five times as fast."""
+SHORT = 20_000
+"""Characters up to which PyYAML's own parser is used, whose reports of what is wrong are the clearer ones."""
 MAX_DEPTH = 64
 MAX_REPEATED = 100_000
 """How many values aliases may add: a few lines of nested aliases could fill the memory otherwise."""
@@ -35,43 +51,86 @@ _PLAIN = [
 ]
 
 
-class _Loader(yaml.SafeLoader):
-    """PyYAML's loader with YAML 1.2's scalars and a limit on nesting."""
+class _Bounded(Composer):
+    """A composer with YAML 1.2's scalars, and with limits on nesting and on the number of nodes."""
 
     yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}
-    _depth = 0
+    most = MAX_NODES
+    _depth = _count = 0
+    peek_event: Callable[[], Any]
+    dispose: Callable[[], None]
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
         self._depth += 1
+        self._count += 1
         if parent is not None and self._depth > MAX_DEPTH:
             raise yaml.MarkedYAMLError(None, None, f"nested more than {MAX_DEPTH} levels deep", parent.start_mark)
+        if parent is not None and self._count > self.most:
+            mark = self.peek_event().start_mark
+            raise yaml.MarkedYAMLError(None, None, f"more than {self.most} values: that is too large a document", mark)
         node = super().compose_node(parent, index)
         self._depth -= 1
         return node
 
 
+class _Loader(_Bounded, yaml.SafeLoader):
+    """PyYAML's loader, which reads what is short; and all where there is no libyaml."""
+
+    most = MAX_SLOW_NODES
+
+
+if CParser is not None:
+
+    class _FastLoader(_Bounded, CParser, Resolver):
+        """libyaml's parser, which gives the same places."""
+
+        def __init__(self, text: str) -> None:
+            CParser.__init__(self, text)
+            Composer.__init__(self)
+            Resolver.__init__(self)
+
+
 for _name, _pattern, _first in _PLAIN:
-    _Loader.add_implicit_resolver(_TAG + _name, re.compile(rf"(?:{_pattern})\Z"), _first)
+    for _each in _first:
+        _Bounded.yaml_implicit_resolvers.setdefault(_each, []).append((_TAG + _name, re.compile(rf"(?:{_pattern})\Z")))
 
 
 def compose(text: str, name: str) -> yaml.Node | None:
     """Parse one document into nodes; `None` when it is empty. `name` stands in errors: `name:line:column`.
 
-    Raises `DocumentError`, and nothing else, whatever the text.
+    The marks of nodes count characters from the text's beginning as `index`. Raises `DocumentError`, and nothing
+    else, whatever the text.
     """
-    try:
-        loader = _Loader(text)
-    except yaml.reader.ReaderError as error:
-        raise DocumentError(_unreadable(error), name, *_place(text, error.position)) from None
+    if len(text) > MAX_BYTES:
+        raise DocumentError(f"longer than {size(MAX_BYTES)}", name)
+    if strange := yaml.reader.Reader.NON_PRINTABLE.search(text):
+        message = f"character U+{ord(strange[0]):04X} is not allowed in YAML"
+        raise DocumentError(message, name, *_place(text, strange.start()))
+    loader = _loader(text)
     try:
         return loader.get_single_node()
     except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark or loader.get_mark()
+        mark = error.problem_mark or error.context_mark or _mark(loader)
         raise DocumentError(_problem(error), name, *place(mark)) from None
-    except (ValueError, OverflowError) as error:  # what PyYAML lets through: '\UFFFFFFFF', '%YAML 9999...'
-        raise DocumentError(shown(str(error)), name, *place(loader.get_mark())) from None
+    except (
+        yaml.YAMLError,
+        ValueError,
+        OverflowError,
+    ) as error:  # what PyYAML lets through: '\UFFFFFFFF', '%YAML 9999...'
+        raise DocumentError(shown(str(error)), name, *place(_mark(loader))) from None
     finally:
         loader.dispose()
+
+
+def _loader(text: str) -> _Bounded:
+    is_short = len(text) <= SHORT or text.startswith("\ufeff")  # a mark that libyaml does not count
+    return _Loader(text) if CParser is None or is_short else _FastLoader(text)
+
+
+def _mark(loader: _Bounded) -> yaml.Mark:
+    """Return where a loader stands; libyaml's does not say it."""
+    known = getattr(loader, "get_mark", None)
+    return yaml.Mark("", 0, 0, 0, None, 0) if known is None else known()
 
 
 def plain(node: yaml.Node | None, name: str) -> Data:
@@ -234,11 +293,6 @@ def _shown_tag(node: yaml.Node) -> str:
 def _place(text: str, position: int) -> tuple[int, int]:
     before = text[:position]
     return before.count(chr(10)) + 1, position - before.rfind(chr(10))
-
-
-def _unreadable(error: yaml.reader.ReaderError) -> str:
-    code = error.character if isinstance(error.character, int) else ord(error.character)
-    return f"character U+{code:04X} is not allowed in YAML"
 
 
 _CLEARER = {

@@ -186,8 +186,8 @@ BAD = [
     ({"image": "."}, "map.yaml:1:8: image: '.' cannot be read: "),
 ]
 BROKEN = [
-    (b"", "neither PGM (P2, P5) nor PNG, but it begins with b''"),
-    (b"GIF89a....", "neither PGM (P2, P5) nor PNG, but it begins with b'GIF89a..'"),
+    (b"", "neither PGM (P2, P5) nor PNG: save it as one of these"),
+    (b"GIF89a....", "neither PGM (P2, P5) nor PNG: save it as one of these"),
     (b"P5 4", "after P5 a PGM has its width, height and largest value"),
     (b"P5 0 4 255\n", "0 x 4 pixels: expected 1 to 100 million"),
     (b"P5 99999 99999 255\n", "99999 x 99999 pixels: expected 1 to 100 million"),

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from robolink import yamlfile
+from robolink import yamltext
 from robolink.exceptions import DocumentError
 from robolink.yamlfile import DocumentNotFoundError, load, mistakes, parse, read, spell
 
@@ -168,11 +168,11 @@ def test_a_file_that_cannot_be_read_is_one_line(tmp_path: Path) -> None:
 
 def test_a_file_without_end_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "long.yaml").write_bytes(b"#" * 2**20)
-    monkeypatch.setattr(yamlfile, "LONGEST", 2**20)
+    monkeypatch.setattr(yamltext, "MAX_BYTES", 2**20)
     with pytest.raises(DocumentError, match=r"1:1: expected mapping, got nothing"):
         load(tmp_path / "long.yaml", World)
-    monkeypatch.setattr(yamlfile, "LONGEST", 2**20 - 1)
-    with pytest.raises(DocumentError, match=r"long\.yaml: longer than 0 MiB"):
+    monkeypatch.setattr(yamltext, "MAX_BYTES", 2**20 - 1)
+    with pytest.raises(DocumentError, match=r"long\.yaml: cannot be read: it is longer than 1\.04858 MB"):
         load(tmp_path / "long.yaml", World)
 
 

@@ -8,7 +8,6 @@ Those of the packages in its `src/` belong to them. They are known by name (`rob
 from __future__ import annotations
 
 import functools
-import stat
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,6 +17,7 @@ from typing import Any
 
 from robolink import interfaces
 from robolink.exceptions import DefinitionError, MessageError, NotFoundError
+from robolink.plainfile import read_plain
 from robolink.workspace.find import built_in_workspace, user_workspace
 from robolink.workspace.modules import FINDER, Fill
 from robolink.workspace.packages import source_packages
@@ -141,14 +141,11 @@ def _read(path: Path) -> str:
     """Read an interface file, without the mark at its beginning that some editors of Windows write."""
     from robolink.message.definition import LONGEST_TEXT
 
-    try:
-        found = path.stat()
-        if stat.S_ISREG(found.st_mode) and found.st_size <= 4 * LONGEST_TEXT:  # no character takes more bytes
-            return path.read_text(encoding="utf-8-sig")
+    try:  # no character takes more than four bytes
+        return read_plain(path, 4 * LONGEST_TEXT).decode("utf-8-sig")
     except (OSError, ValueError) as error:
-        raise DefinitionError(f"{path}:1:1: cannot be read: {error}") from None
-    wrong = f"{found.st_size} bytes are too many" if stat.S_ISREG(found.st_mode) else "it is no file"
-    raise DefinitionError(f"{path}:1:1: cannot be read: {wrong}")
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise DefinitionError(f"{path}:1:1: cannot be read: {reason}") from None
 
 
 WORKSPACE_TYPES = WorkspaceTypes()

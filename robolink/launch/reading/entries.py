@@ -13,7 +13,7 @@ from typing import Any
 
 from msgspec.structs import replace
 
-from robolink.exceptions import DocumentError
+from robolink.exceptions import DocumentError, few
 from robolink.launch.reading import lookup
 from robolink.launch.reading.arguments import read_given, values_of
 from robolink.launch.reading.around import Around
@@ -74,7 +74,7 @@ def read_with_mistakes(
     except DocumentError as error:
         found.append(error)
     by_place = {(each.file != os.fspath(path), each.file, each.line, each.column): each for each in reversed(found)}
-    return entries, [by_place[place] for place in sorted(by_place)]
+    return entries, few([by_place[place] for place in sorted(by_place)])
 
 
 def _read(file: LaunchFile, given: Mapping[str, str], workspace: Folder, refuse: Refuse) -> list[Entry]:

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from robolink.plainfile import read_plain
 from robolink.sim.maps import pgm, png
 from robolink.sim.maps.image import MOST_PIXELS, Image, ImageError
 
-_LARGEST_FILE = 8 * MOST_PIXELS
+LARGEST_FILE = 2 * MOST_PIXELS + 1_000_000
+"""Bytes that an image may have: raw pixels of 16 bits, and what is said around them."""
 
 
 def read_image(path: Path) -> Image:
     """Read a PGM or PNG file of any depth as 8 bits a pixel. Raises `ImageError`, and OSError from reading the file."""
-    with path.open("rb") as stream:
-        raw = stream.read(_LARGEST_FILE + 1)
-    if len(raw) > _LARGEST_FILE:
-        raise ImageError(f"longer than {_LARGEST_FILE // 2**20} MiB")
+    raw = read_plain(path, LARGEST_FILE)
     if raw.startswith(png.SIGNATURE):
         return png.read_png(raw)
     if raw.startswith(pgm.BEGINNINGS):
         return pgm.read_pgm(raw)
-    raise ImageError(f"neither PGM (P2, P5) nor PNG, but it begins with {raw[:8]!r}: save it as one of these")
+    raise ImageError("neither PGM (P2, P5) nor PNG: save it as one of these")

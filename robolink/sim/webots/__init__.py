@@ -60,8 +60,8 @@ def read(path: str | os.PathLike[str], text: str | None = None) -> WebotsWorld:
     `file:line:column` for what is no VRML, impossible sizes, and robots that start inside something.
     """
     from robolink.sim.webots.convert import convert
-    from robolink.sim.webots.vrml import parse
+    from robolink.sim.webots.vrml import LONGEST, parse
 
     name = os.fspath(path)
-    description, notes = convert(parse(yamlfile.read_text(path) if text is None else text, name), name)
+    description, notes = convert(parse(yamlfile.read_text(path, LONGEST) if text is None else text, name), name)
     return WebotsWorld(description, notes)
