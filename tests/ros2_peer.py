@@ -135,8 +135,8 @@ class Received(NamedTuple):
 class Peer:
     """A context of rmw_zenoh: a session, and one counter for its nodes and endpoints."""
 
-    def __init__(self, port: int, domain: int) -> None:
-        config = SESSION | {"connect": SESSION["connect"] | {"endpoints": [f"tcp/localhost:{port}"]}}
+    def __init__(self, port: int, domain: int, mode: str = "peer") -> None:
+        config = SESSION | {"mode": mode, "connect": SESSION["connect"] | {"endpoints": [f"tcp/localhost:{port}"]}}
         self.session: Any = zenoh.open(zenoh.Config.from_json5(json.dumps(config)))
         self.domain, self.zid = domain, str(self.session.info.zid())
         self.counter = itertools.count()
