@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+import functools
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robolink import logging
 from robolink.impl.logging_severity import LoggingSeverity
 from robolink.interfaces.rcl_interfaces.msg import LoggerLevel, SetLoggerLevelsResult
 from robolink.qos import qos_profile_services_default
+from robolink.request_limit import Refusal, look_at, no_room
 
 if TYPE_CHECKING:
     from robolink.interfaces.rcl_interfaces import srv
@@ -29,11 +32,13 @@ class LoggingService:
     def __init__(self, node: Node) -> None:
         from robolink.interfaces.rcl_interfaces import srv  # late: few nodes serve this
 
-        for name, srv_type, answer in (
-            ("get_logger_levels", srv.GetLoggerLevels, self._get),
-            ("set_logger_levels", srv.SetLoggerLevels, self._set),
-        ):
-            node.create_service(srv_type, f"~/{name}", answer, qos_profile=qos_profile_services_default)
+        services: list[tuple[str, type[Any], Callable[[Any, Any], Any], Refusal]] = [
+            ("get_logger_levels", srv.GetLoggerLevels, self._get, no_room),
+            ("set_logger_levels", srv.SetLoggerLevels, self._set, lambda reason: {"results": [_refused(reason)]}),
+        ]
+        for name, srv_type, answer, refusal in services:
+            service = node.create_service(srv_type, f"~/{name}", answer, qos_profile=qos_profile_services_default)
+            service.look_first = functools.partial(look_at, srv_type.Response, refusal)
 
     def _get(self, request: Get.Request, response: Get.Response) -> Get.Response:
         response.levels = [LoggerLevel(name=name, level=logging.get_logger_level(name)) for name in request.names]
@@ -44,8 +49,12 @@ class LoggingService:
         return response
 
 
+def _refused(reason: str) -> SetLoggerLevelsResult:
+    return SetLoggerLevelsResult(successful=False, reason=reason)
+
+
 def _set_level(wanted: LoggerLevel) -> SetLoggerLevelsResult:
     if wanted.level not in LoggingSeverity.__members__.values():
-        return SetLoggerLevelsResult(successful=False, reason=NO_LEVEL)
+        return _refused(NO_LEVEL)
     logging.set_logger_level(wanted.name, wanted.level, detailed_error=True)
     return SetLoggerLevelsResult(successful=True)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import weakref
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robolink.exceptions import ExternalShutdownException, ParameterUninitializedException, nearest, shown
@@ -11,6 +12,7 @@ from robolink.interfaces.rcl_interfaces.msg import ListParametersResult, SetPara
 from robolink.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
 from robolink.parameter import Parameter
 from robolink.qos import qos_profile_parameters
+from robolink.request_limit import Refusal, look_at, no_room
 
 if TYPE_CHECKING:
     from robolink.interfaces.rcl_interfaces import srv
@@ -23,9 +25,6 @@ if TYPE_CHECKING:
     SetAtomically: TypeAlias = srv.SetParametersAtomically
     Describe: TypeAlias = srv.DescribeParameters
 
-MOST = 10_000
-"""Parameters that one request may set: each may be a new one, which costs as much as all those before it."""
-
 MOST_HINTS = 10
 """Unknown names of one request for which the nearest known one is looked up, and how long a name may be for it."""
 LONGEST_HINTED = 100
@@ -36,22 +35,29 @@ class ParameterService:
 
     One name that is not declared, or has no value yet, empties the whole answer of those that ask by name, as in rclpy.
     What cannot be set is answered with the reason. So is an exception in a callback of the node's, which is logged
-    too: a request never ends the node.
+    too: a request never ends the node. One that is too large (`request_limit`) is answered unread.
     """
 
     def __init__(self, node: Node) -> None:
         from robolink.interfaces.rcl_interfaces import srv  # late: it takes a millisecond
 
         self._node = weakref.ref(node)  # the transport holds the services: they must not keep the node alive
-        for name, srv_type, answer in (
-            ("describe_parameters", srv.DescribeParameters, self._describe),
-            ("get_parameters", srv.GetParameters, self._get),
-            ("get_parameter_types", srv.GetParameterTypes, self._get_types),
-            ("list_parameters", srv.ListParameters, self._list),
-            ("set_parameters", srv.SetParameters, self._set_each),
-            ("set_parameters_atomically", srv.SetParametersAtomically, self._set_all),
-        ):
-            node.create_service(srv_type, f"~/{name}", answer, qos_profile=qos_profile_parameters)
+        services: list[tuple[str, type[Any], Callable[[Any, Any], Any], Refusal]] = [
+            ("describe_parameters", srv.DescribeParameters, self._describe, no_room),
+            ("get_parameters", srv.GetParameters, self._get, no_room),
+            ("get_parameter_types", srv.GetParameterTypes, self._get_types, no_room),
+            ("list_parameters", srv.ListParameters, self._list, no_room),
+            ("set_parameters", srv.SetParameters, self._set_each, _refused_once),
+            (
+                "set_parameters_atomically",
+                srv.SetParametersAtomically,
+                self._set_all,
+                lambda reason: {"result": _refused(reason)},
+            ),
+        ]
+        for name, srv_type, answer, refusal in services:
+            service = node.create_service(srv_type, f"~/{name}", answer, qos_profile=qos_profile_parameters)
+            service.look_first = functools.partial(look_at, srv_type.Response, refusal)
 
     def _alive(self) -> Node:
         node = self._node()
@@ -91,19 +97,17 @@ class ParameterService:
         return response
 
     def _set_each(self, request: Set.Request, response: Set.Response) -> Set.Response:
-        given, unknown = request.parameters, 0
-        for each in given:
+        unknown = 0
+        for each in request.parameters:
             unknown += not self._alive().has_parameter(each.name)
-            response.results.append(self._set([each], len(given), hint=unknown <= MOST_HINTS))
+            response.results.append(self._set([each], hint=unknown <= MOST_HINTS))
         return response
 
     def _set_all(self, request: SetAtomically.Request, response: SetAtomically.Response) -> SetAtomically.Response:
-        response.result = self._set(request.parameters, len(request.parameters), hint=True)
+        response.result = self._set(request.parameters, hint=True)
         return response
 
-    def _set(self, messages: Sequence[ParameterMsg], asked: int, *, hint: bool) -> SetParametersResult:
-        if asked > MOST:
-            return _refused(f"one request may set {MOST} parameters, got {asked}")
+    def _set(self, messages: Sequence[ParameterMsg], *, hint: bool) -> SetParametersResult:
         node = self._alive()
         try:
             parameters: list[Parameter[Any]] = [Parameter.from_parameter_msg(each) for each in messages]
@@ -134,6 +138,15 @@ class ParameterService:
             return ""
         near = nearest(missing, node.get_parameters_by_prefix("")) if hint and len(missing) <= LONGEST_HINTED else ""
         return f"Parameter not declared: {shown(missing)}{near}"
+
+
+def _refused_once(reason: str) -> dict[str, Any]:
+    """Give a single result, however many were asked for."""
+    return {"results": [_refused(reason)]}
+
+
+def _refused_all(reason: str) -> dict[str, Any]:
+    return {"result": _refused(reason)}
 
 
 def _refused(reason: str) -> SetParametersResult:

@@ -51,7 +51,9 @@ class Service(ServiceEnd):
         self.callback = callback
         self.qos_profile = qos_profile
         self.malformed = 0
-        """How many requests could not be decoded."""
+        """How many requests could not be decoded, or were refused undecoded."""
+        self.look_first: Callable[[bytes], tuple[Any, str]] | None = None
+        """Looks at a request before it is decoded: the response that refuses it, with the reason; or (None, '')."""
         self._endpoint = Endpoint(owner, EndpointKind.SERVICE, srv_name, srv_type, qos_profile)
         self._transport = self._endpoint.transport
         self._handles = [self._transport.serve(self._endpoint.key, self.sink)]
@@ -88,10 +90,15 @@ class Service(ServiceEnd):
         """Decode the request, call the callback, answer. A request that cannot be decoded ends without an answer."""
         query = self._transport.accept(taken)
         try:
-            request = self._decode(query.payload)
             asker = unpack_attachment(query.attachment)
+            if self.look_first is not None:
+                refusal, reason = self.look_first(query.payload)
+                if reason:
+                    self._refuse(reason)
+                    return self.send_response(refusal, RequestHeader(query, asker.sequence, asker.gid))
+            request = self._decode(query.payload)
         except (DecodeError, WireError) as error:
-            self._refuse(error)
+            self._refuse(f"it is no {self._endpoint.type_name}: {error}")
             query.close()
             return None
         header = RequestHeader(query, asker.sequence, asker.gid)
@@ -131,12 +138,11 @@ class Service(ServiceEnd):
             asked = header.sequence_number, header.client_gid
             self.introspection.tell(ServiceEventInfo.RESPONSE_SENT, response, *asked)
 
-    def _refuse(self, error: Exception) -> None:
+    def _refuse(self, reason: str) -> None:
         self.malformed += 1
         if self.malformed == 1:
             get_logger(self.logger_name).warning(
-                f"{self.srv_name}: refused a request that is no {self._endpoint.type_name}: {error}"
-                " (the next ones are only counted)"
+                f"{self.srv_name}: refused a request: {reason} (the next ones are only counted)"
             )
 
     def destroy(self) -> None:

@@ -20,7 +20,7 @@ from robolink.interfaces.rcl_interfaces import srv
 from robolink.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
 from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor, ParameterValue, SetParametersResult
 from robolink.parameter import parameter_value_to_python
-from robolink.parameter_service import MOST
+from robolink.request_limit import LARGEST, MOST_NAMES, why_refused
 from tests.spins import done
 
 Type = Parameter.Type
@@ -202,18 +202,43 @@ def test_a_callback_that_answers_nonsense_does_not_end_the_node(ask: Asker, answ
     assert ask.robot.get_parameter("name").value == "a"
 
 
-def test_huge_requests_are_answered(ask: Asker) -> None:
+def test_as_many_as_one_request_may_name_are_answered(ask: Asker) -> None:
     ask.robot.declare_parameter("a.b.c", 1)
-    many = [f"x{number}" for number in range(MOST + 1)]
-    assert reasons(ask.set(*(message(each, 1) for each in many))) == [
-        f"one request may set {MOST} parameters, got {MOST + 1}"
-    ] * len(many)
-    assert set(reasons(ask.set(*(message(each, 1) for each in many[1:])))) == {
-        f"Parameter not declared: {each}" for each in many[1:]
+    many = [f"x{number}" for number in range(MOST_NAMES)]
+    assert set(reasons(ask.set(*(message(each, 1) for each in many)))) == {
+        f"Parameter not declared: {each}" for each in many
     }
-    assert ask("list_parameters", prefixes=[*many, "a"], depth=2**64 - 1).result.names == ["a.b.c"]
-    assert ask("list_parameters", prefixes=[*many, "a"], depth=1).result.names == []
-    assert not len(ask("get_parameters", names=["y" * 1_000_000] * 10).values)
+    assert ask("list_parameters", prefixes=[*many[1:], "a"], depth=2**64 - 1).result.names == ["a.b.c"]
+    assert ask("list_parameters", prefixes=[*many[1:], "a"], depth=1).result.names == []
+    assert not len(ask("get_parameters", names=["y" * 300_000] * 10).values)
+    assert len(ask("get_parameter_types", names=["a.b.c"] * MOST_NAMES).types) == MOST_NAMES
+
+
+@pytest.mark.parametrize("name", ["get_parameters", "get_parameter_types", "describe_parameters", "list_parameters"])
+def test_too_many_names_are_answered_with_nothing(ask: Asker, name: str, log_lines: list[Record]) -> None:
+    ask.robot.declare_parameter("speed", 0.5)
+    field = "prefixes" if name == "list_parameters" else "names"
+    for names in (["speed"] * (MOST_NAMES + 1), ["x" * LARGEST]):
+        assert ask(name, **{field: names}) == SERVICES[name].Response()
+    told = [each.message for each in log_lines if "refused a request" in each.message]
+    reason = "one request may name 10,000, this one names 10,001"
+    assert told == [f"/lab/robot/{name}: refused a request: {reason} (the next ones are only counted)"]
+
+
+@pytest.mark.usefixtures("log_lines")
+def test_too_many_to_set_are_refused_with_the_reason_once(ask: Asker) -> None:
+    ask.robot.declare_parameter("speed", 0.5)
+    many = [message("speed", 0.7)] * (MOST_NAMES + 1)
+    reason = "one request may name 10,000, this one names 10,001"
+    assert reasons(ask.set(*many)) == [reason]
+    assert reasons([ask("set_parameters_atomically", parameters=many).result]) == [reason]
+    assert ask.robot.get_parameter("speed").value == 0.5
+    assert reasons(ask.set(message("speed", "x" * LARGEST)))[0].startswith("one request may have 3,145,728 bytes")
+
+
+@given(st.binary(max_size=12))
+def test_any_payload_is_looked_at(payload: bytes) -> None:
+    assert why_refused(payload) == "" or len(payload) > 4
 
 
 def test_undeclared_parameters_where_they_are_allowed() -> None:

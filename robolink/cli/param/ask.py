@@ -74,6 +74,8 @@ class Asked:
         """Set parameters one by one; give a result for each."""
         request = srv.SetParameters.Request(parameters=parameters)
         results = list(self._call(srv.SetParameters, "set_parameters", request).results)
+        if len(results) == 1 < len(parameters) and results[0].reason:
+            raise ParameterCommandError(f"{self.name}/set_parameters: {shown(results[0].reason, 200)}")
         if len(results) != len(parameters):
             raise ParameterCommandError(
                 f"{self.name}/set_parameters: expected {len(parameters)} results, got {len(results)}"

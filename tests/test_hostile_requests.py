@@ -1,0 +1,25 @@
+"""Requests that no client would send: each is answered soon, and takes little memory."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+from tests.hostile_requests import requests
+
+WITHIN = 2.0
+"""Seconds."""
+
+MOST = 300.0
+"""MB of the whole process, the request's own bytes included."""
+
+
+def test_each_is_answered_in_two_seconds_with_less_than_300_mb() -> None:
+    command = [sys.executable, "-m", "tests.hostile_requests"]
+    ran = subprocess.run(command, capture_output=True, text=True, timeout=240, check=False)
+    assert ran.returncode == 0, ran.stderr[-2000:]
+    told = [json.loads(line) for line in ran.stdout.splitlines()]
+    assert len(told) == len(list(requests()))
+    assert [each for each in told if each["seconds"] >= WITHIN] == []
+    assert [each for each in told if each["peak"] >= MOST][:1] == []
