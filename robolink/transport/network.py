@@ -53,7 +53,9 @@ MOST_PENDING = 10_000
 SOUGHT_EVERY = 0.1
 """Seconds: so often a session whose rendezvous has gone looks whether somebody else has taken the port."""
 
-_OFTEN = f"retry_period_init_ms=50;retry_period_max_ms={SOUGHT_EVERY * 1000:.0f};retry_period_increase_factor=2"
+OFTEN = f"retry_period_init_ms=50;retry_period_max_ms={SOUGHT_EVERY * 1000:.0f};retry_period_increase_factor=2"
+"""The settings of an endpoint that is sought so often."""
+
 _HIGHEST_DOMAIN = 232
 _RANGES = {"": "localhost", "SYSTEM_DEFAULT": "localhost", "LOCALHOST": "localhost", "SUBNET": "subnet", "OFF": "off"}
 _OVERRIDE = "ZENOH_CONFIG_OVERRIDE"
@@ -182,7 +184,7 @@ def _subnet(port: int, holds_port: bool) -> dict[str, Any]:
 
 def _holder(port: int, holds_port: bool) -> list[str]:
     """Give whom to seek at the rendezvous port: nobody, for who is there; else whoever has it, now and later."""
-    return [] if holds_port else [f"tcp/127.0.0.1:{port}#{_OFTEN}"]
+    return [] if holds_port else [f"tcp/127.0.0.1:{port}#{OFTEN}"]
 
 
 def _meeting(host: str, port: int, holds_port: bool, peers: list[str]) -> dict[str, Any]:
@@ -218,6 +220,7 @@ def _as_ros(mode: str) -> dict[str, Any]:
     if mode.strip("\"'") == "client":
         return _client(ROS_ROUTER)
     peer = _meeting("127.0.0.1", 0, False, [ROS_ROUTER])
+    peer["listen"]["exit_on_failure"] = True  # where it is to listen is the user's word
     return peer | {"scouting": _scouting(gossip=_ON)}
 
 

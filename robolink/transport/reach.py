@@ -68,21 +68,27 @@ class Link(NamedTuple):
 
 def reach(config: zenoh.Config) -> Reach:
     """Read from a configuration whom a session with it can meet."""
-    mode = json.loads(config.get_json("mode")) or "peer"
-
-    def read(path: str) -> Any:
-        value = json.loads(config.get_json(path))
-        return value.get(mode) if isinstance(value, dict) else value
-
-    enabled = read("scouting/multicast/enabled")
+    mode = mode_of(config)
+    enabled = read(config, "scouting/multicast/enabled")
     group = json.loads(config.get_json("scouting/multicast/address")) or "224.0.0.224:7446"
     return Reach(
         mode,
-        tuple(_shown(each) for each in read("connect/endpoints") or ()),
-        () if mode == "client" else tuple(_shown(each) for each in read("listen/endpoints") or ()),
+        tuple(shown(each) for each in read(config, "connect/endpoints") or ()),
+        () if mode == "client" else tuple(shown(each) for each in read(config, "listen/endpoints") or ()),
         "" if enabled is False else group,
         _interfaces(json.loads(config.get_json("access_control"))),
     )
+
+
+def mode_of(config: zenoh.Config) -> str:
+    """Give the mode of sessions with this configuration: `peer`, `client` or `router`."""
+    return json.loads(config.get_json("mode")) or "peer"
+
+
+def read(config: zenoh.Config, path: str) -> Any:
+    """Read a setting that may be one value or one for each mode."""
+    value = json.loads(config.get_json(path))
+    return value.get(mode_of(config)) if isinstance(value, dict) else value
 
 
 def on_this_machine(endpoint: str) -> bool:
@@ -112,7 +118,7 @@ def host_of(endpoint: str) -> str:
     return address.rpartition(":")[0].strip("[]")
 
 
-def _shown(endpoint: str) -> str:
+def shown(endpoint: str) -> str:
     """Leave out an endpoint's settings: it is where that counts."""
     return re.split(r"[#?]", endpoint)[0]
 

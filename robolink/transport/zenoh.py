@@ -21,7 +21,7 @@ import zenoh
 from robolink.exceptions import TransportError
 from robolink.qos import DurabilityPolicy, QoSProfile, resolved
 from robolink.queues import get_within
-from robolink.transport import lifetime, network
+from robolink.transport import beside, lifetime, network
 from robolink.transport import zenoh_declare as declare
 from robolink.transport import zenoh_handles as handles
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample, refuse_giant
@@ -256,16 +256,42 @@ def _join(domain: int, asked: str | None, environ: Mapping[str, str]) -> _Joined
         show_log()
     port = network.FIRST_PORT + network.checked_domain(domain)
     value = network.wanted(asked, environ).value
-
-    def open_session(holds_port: bool) -> zenoh.Session:
-        return zenoh.open(network.load(asked, domain, environ, holds_port=holds_port))
-
+    load = functools.partial(network.load, asked, domain, environ)
     try:
         if network.meets_at_port(value, environ):
-            return _meet(port, open_session)
-        return _Joined(open_session(False))  # nobody would look for it at the rendezvous port
+            return _meet(port, lambda holds_port: zenoh.open(load(holds_port=holds_port)))
+        return _listen_beside(functools.partial(load, holds_port=False))  # nobody looks for it at the rendezvous port
     except zenoh.ZError as error:
         raise TransportError(f"cannot join the network '{value}': {network.reason(error)}") from None
+
+
+def _listen_beside(load: Callable[[], zenoh.Config]) -> _Joined:
+    """Listen where a configuration says, or join the process of this machine that does so already."""
+    taken: list[str] = []
+    for _ in range(2):  # twice, since another process may come first, or the holder leave in between
+        config = load()
+        fixed = beside.fixed_listeners(config)
+        claim = network.PortClaim(beside.port_of(fixed[0])) if fixed else None
+        taken = [each for each in fixed if (claim and not claim.granted) or beside.is_taken(each)]
+        if taken:
+            beside.step_aside(config, taken, network.OFTEN)
+        with contextlib.ExitStack() as undo:
+            if claim:
+                undo.callback(claim.release)
+            try:
+                session = zenoh.open(config)
+            except zenoh.ZError:
+                if taken or not any(map(beside.is_taken, fixed)):
+                    raise
+                continue
+            if not taken or _linked(session):
+                undo.pop_all()
+                return _Joined(session, claim, bool(fixed) and not taken)
+            lifetime.finish(functools.partial(_close, session), CLOSE_WITHIN)
+    raise TransportError(
+        f"{' and '.join(taken) or 'its port'} is taken, and who listens there has not let this process in: "
+        "stop it, or listen elsewhere in this process's configuration"
+    )
 
 
 def _meet(port: int, open_session: Callable[[bool], zenoh.Session]) -> _Joined:
