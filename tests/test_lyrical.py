@@ -13,19 +13,31 @@ from robolink.cli import main
 from robolink.cli.topic import meters
 from robolink.executors import SingleThreadedExecutor
 from robolink.impl.log_output import Record
+from robolink.interfaces.builtin_interfaces.msg import Time
+from robolink.interfaces.lifecycle_msgs.msg import State, Transition, TransitionEvent
 from robolink.interfaces.sensor_msgs.msg import CompressedImage, Image, LaserScan, PointCloud2
 from robolink.interfaces.std_msgs.msg import ByteMultiArray, Header, String, UInt8MultiArray
 from robolink.interfaces.stereo_msgs.msg import DisparityImage
 from robolink.interfaces.unique_identifier_msgs.msg import UUID
-from robolink.message import encode
+from robolink.message import Message, encode
 from robolink.message.description import has_buffer_fields
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.wire import EndpointKind, pack_attachment
 from tests.lyrical_peer import CPU, LyricalPublisher
-from tests.seen_by_commands import a_node_that_commands_see, press_ctrl_c, when_said
+from tests.seen_by_commands import a_node_that_commands_see, latch, press_ctrl_c, spinning, when_said
 from tests.spins import spin_for, spin_until
 from tests.transports import Network
+
+
+class LyricalTransitionEvent(Message, type_name="lifecycle_msgs/msg/TransitionEvent"):
+    """Lyrical's: what was `uint64 timestamp` in Kilted and before is a Time."""
+
+    stamp: Time
+    transition: Transition
+    start_state: State
+    goal_state: State
+
 
 LATCHED = QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
@@ -231,3 +243,39 @@ def test_commands_measure_it(
         thread.join()
     assert "average rate: " in capsys.readouterr().out
     assert f"{camera.key}/_buf_cpu" in camera.used
+
+
+# Types that differ
+
+
+def test_the_events_of_its_lifecycle_nodes_are_of_another_type_and_that_is_told(
+    bus: Bus, context: Context, log_lines: list[Record]
+) -> None:
+    """They cannot be received as Kilted's and Jazzy's type; nothing fails, and both sides are told."""
+    lyrical = Context(transport=MemoryTransport(bus=bus))
+    lyrical.init([], domain_id=0)
+    with lyrical:
+        publisher = Node("arm", context=lyrical).create_publisher(LyricalTransitionEvent, "arm/transition_event", 10)
+        node, executor = Node("watcher", context=context), SingleThreadedExecutor(context=context)
+        executor.add_node(node)
+        got: list[Any] = []
+        node.create_subscription(TransitionEvent, "arm/transition_event", got.append, 10)
+        publisher.publish(LyricalTransitionEvent())
+        spin_for(executor, 0.05)
+    assert got == []
+    (told,) = [each.message for each in log_lines if each.name == "watcher"]
+    assert "subscribes to it as lifecycle_msgs/msg/TransitionEvent, and so /arm publishes it" in told
+    assert "bring both to the same version of lifecycle_msgs" in told
+
+
+def test_the_events_of_its_lifecycle_nodes_are_echoed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The command asks the node for the type that it does not have."""
+    with a_node_that_commands_see(monkeypatch) as node:
+        event = LyricalTransitionEvent(stamp=Time(sec=7), transition=Transition(id=3, label="activate"))
+        latch(node, "/arm/transition_event", event)
+        with spinning(node):
+            code = main(["topic", "echo", "/arm/transition_event", "--once", "--field", "stamp", "--csv"])
+        assert code == 0
+    assert capsys.readouterr() == ("7,0\n", "")
