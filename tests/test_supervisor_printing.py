@@ -42,6 +42,34 @@ def test_lines_are_prefixed_and_coloured_on_a_terminal_only(monkeypatch: pytest.
         assert output.getvalue() == expected
 
 
+def test_lines_of_a_log_have_their_severitys_colour_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A node writes its log to the launcher without colours: there is no terminal at its end."""
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.delenv("RCUTILS_COLORIZED_OUTPUT", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    lines = [
+        "[WARN] [1.0] [n]: é",
+        "[ERROR] [1.0] [n]: b",
+        "[INFO] [1.0] [n]: c",
+        "[FATAL] \x1b[1mown",
+        "a [WARN] ",
+        "",
+    ]
+    coloured = ["\x1b[33m[WARN] [1.0] [n]: é\x1b[0m", "\x1b[31m[ERROR] [1.0] [n]: b\x1b[0m", *lines[2:]]
+
+    def printed(output: io.StringIO) -> list[str]:
+        printer = Printer(output, ["a"])
+        for each in lines:
+            printer.line("a", f"{each}\n".encode())
+        printer.close(PATIENCE)
+        return [each.partition(" ")[2] for each in output.getvalue().splitlines()]
+
+    assert printed(Terminal()) == coloured
+    assert printed(io.StringIO()) == lines
+    monkeypatch.setenv("RCUTILS_COLORIZED_OUTPUT", "0")
+    assert printed(Terminal()) == lines
+
+
 def test_no_color_is_respected(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NO_COLOR", "1")
     output = Terminal()

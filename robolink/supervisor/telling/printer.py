@@ -15,6 +15,10 @@ from robolink.terminal import fit
 
 _COLOURS = ("36", "33", "32", "35", "34", "96", "93", "92", "95", "94")
 OWN_NAME = "launch"
+_LOGGED = re.compile(rb"\[(DEBUG|WARN|ERROR|FATAL)\] ")
+"""How a line of a node's log begins, in ROS's usual format."""
+_SEVERITIES = {b"DEBUG": b"32", b"WARN": b"33", b"ERROR": b"31", b"FATAL": b"31"}
+"""The colours in which a node writes to a terminal; it does not to a launcher, so that log files have none."""
 _PLAIN = re.compile(rb"[\t -~]*")
 
 
@@ -22,7 +26,9 @@ class Printer:
     """Writes from a thread of its own, so that a terminal that stands still holds up no decision."""
 
     def __init__(self, output: TextIO, names: Iterable[str], troubles: Troubles | None = None) -> None:
-        self._prefixes = prefixes([*names, OWN_NAME], wants_colour(output))
+        has_colour = wants_colour(output)
+        self._prefixes = prefixes([*names, OWN_NAME], has_colour)
+        self._colours_logs = has_colour and os.environ.get("RCUTILS_COLORIZED_OUTPUT") != "0"
         writer = Writer(output)
         self._courier: Courier[bytes] = Courier(
             lambda lines: writer.write(b"".join(lines)), troubles or Troubles(), name="printer"
@@ -30,7 +36,8 @@ class Printer:
 
     def line(self, name: str, line: bytes) -> None:
         """Print one line of a process, of what a terminal obeys only its colours; waits while too much waits."""
-        whole = self._prefixes[name] + _fit(line.rstrip(b"\r\n")) + b"\n"
+        text = _fit(line.rstrip(b"\r\n"))
+        whole = self._prefixes[name] + (_coloured(text) if self._colours_logs else text) + b"\n"
         self._courier.put(whole, len(whole))
 
     def say(self, text: str) -> None:
@@ -45,6 +52,14 @@ class Printer:
 
 def _fit(line: bytes) -> bytes:
     return line if _PLAIN.fullmatch(line) else fit(line.decode(errors="replace"), colours=True).encode()
+
+
+def _coloured(line: bytes) -> bytes:
+    """Return a line in the colour of its severity, if it is of a log and has no colours of its own."""
+    logged = _LOGGED.match(line)
+    if logged is None or b"\x1b" in line:
+        return line
+    return b"\x1b[%sm%s\x1b[0m" % (_SEVERITIES[logged[1]], line)
 
 
 def complain(text: str) -> None:
