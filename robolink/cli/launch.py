@@ -112,10 +112,10 @@ def launch(
 
 
 def _list(workspace: str | None) -> None:
-    from robolink.workspace import list_launches
+    from robolink.workspace import list_launches, purpose_of
 
-    for each in list_launches(workspace=workspace):
-        say(each.stem)
+    for line in aligned([(each.stem, purpose_of(each)) for each in list_launches(workspace=workspace)]):
+        say(line)
 
 
 def _ask(ctx: typer.Context, words: Sequence[str], options: Options, status: bool) -> None:

@@ -73,19 +73,21 @@ def draw_world(
 @app.command("list")
 def list_all(
     workspace: Workspace = "",
-    as_json: Annotated[bool, typer.Option("--json", help="JSON: names and files.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON: names, files and descriptions.")] = False,
 ) -> None:
     """List the worlds that there are."""
-    from robolink.workspace import list_worlds
+    from robolink.cli.layout import aligned
+    from robolink.workspace import list_worlds, purpose_of
 
-    found = list_worlds(workspace=workspace or None)
+    found = [(each, purpose_of(each)) for each in list_worlds(workspace=workspace or None)]
     if as_json:
         import json
 
-        say(json.dumps([{"name": each.stem, "file": str(each)} for each in found], ensure_ascii=False))
+        listed = [{"name": each.stem, "file": str(each), "description": purpose} for each, purpose in found]
+        say(json.dumps(listed, ensure_ascii=False))
         return
-    for each in found:
-        say(each.stem)
+    for line in aligned([(each.stem, purpose) for each, purpose in found]):
+        say(line)
 
 
 @app.command("schema")
