@@ -164,10 +164,10 @@ def __getattr__(name: str) -> Any:
 
         value = version("robolink")
     else:
+        from robolink.exceptions import imported_as
         from robolink.lacking import lacking
 
-        imported_as = "rclpy" if sys.modules.get("rclpy") is sys.modules["robolink"] else "robolink"
-        raise lacking(imported_as, name, lambda: [*__all__, *_ROOMS], sys._getframe(1))
+        raise lacking(imported_as(), name, lambda: [*__all__, *_ROOMS], sys._getframe(1))
     globals()[name] = value
     return value
 

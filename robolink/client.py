@@ -12,7 +12,6 @@ from robolink.entity import ANY_TIME, NOTHING, Entity
 from robolink.exceptions import (
     DecodeError,
     ExternalShutdownException,
-    InvalidHandle,
     ServiceError,
     TransportError,
     WireError,
@@ -217,7 +216,7 @@ class Client(ServiceEnd):
         if not isinstance(request, self.srv_type.Request):
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
         if self._destroyed:
-            raise InvalidHandle(f"the client of {self.srv_name} has been destroyed")
+            raise self._gone_(f"the client of {self.srv_name}")
         packed = self._encode(request), self._endpoint.attachment()
         if self.introspection is not None:
             asked = unpack_attachment(packed[1])

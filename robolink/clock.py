@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 from robolink.clock_type import ClockType
 from robolink.defaults import get_defaults
 from robolink.duration import Duration
-from robolink.exceptions import NotInitializedException
+from robolink.exceptions import NotInitializedException, imported_as
 from robolink.time import Time
 from robolink.timebase import TimeBase
 
@@ -57,7 +57,7 @@ class TimeJump:
 
     def __init__(self, clock_change: ClockChange, delta: Duration) -> None:
         if not isinstance(clock_change, ClockChange):
-            raise TypeError("clock_change must be an instance of rclpy.clock.ClockChange")
+            raise TypeError(f"clock_change must be a {imported_as()}.clock.ClockChange, got {clock_change!r:.80}")
         self._clock_change, self._delta = clock_change, delta
 
     @property
@@ -201,7 +201,7 @@ class Clock:
 
             context = get_default_context()
         if not context.ok():
-            raise NotInitializedException()
+            raise NotInitializedException(ended_by=context.ended_by)
         return context
 
 
@@ -261,7 +261,7 @@ class ROSClock(Clock):
     def set_ros_time_override(self, time: Time) -> None:
         """Say what time it is while /clock is active. Raises TypeError for what is no Time."""
         if not isinstance(time, Time):
-            raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time)}")
+            raise TypeError(f"the time must be a {imported_as()}.time.Time, got {time!r:.80}")
 
         def move() -> None:
             self._override = time.nanoseconds

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from robolink import humble, signals
 from robolink.arguments import Arguments, parse_arguments
 from robolink.defaults import get_defaults
-from robolink.exceptions import NotInitializedException, RobolinkError
+from robolink.exceptions import NotInitializedException, RobolinkError, imported_as
 from robolink.given_parameters import GivenParameters
 from robolink.inbox import Inbox, Sweeper
 from robolink.timebase import SystemTime, TimeBase
@@ -117,7 +117,7 @@ class Context:
         """The session on the network, opened when it is first needed. Raises TransportError when that fails."""
         with self._lock:
             if self._closed or not self._initialized:
-                raise NotInitializedException()
+                raise NotInitializedException(ended_by=self.ended_by)
             if self._transport is None:
                 from robolink.transport import connect
 
@@ -191,6 +191,18 @@ class Context:
     def ok(self) -> bool:
         """Whether it is initialized and has not ended."""
         return self._ok
+
+    @property
+    def closed(self) -> bool:
+        """Whether `shutdown` has been called, which destroys the nodes and leaves the network."""
+        return self._closed
+
+    @property
+    def ended_by(self) -> str:
+        """What has ended it, in words; '' when it has not begun or not ended."""
+        if self.interrupted:
+            return "a signal (Ctrl-C or SIGTERM)"
+        return f"{imported_as()}.shutdown()" if self._closed else ""
 
     def interrupt(self) -> None:
         """End the spinning, as Ctrl-C does, but stay connected: a program may still send its last words.

@@ -7,9 +7,12 @@ to be sure that it has not been destroyed get what they ask for.
 from __future__ import annotations
 
 import weakref
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from robolink.exceptions import InvalidHandle
+from robolink.exceptions import InvalidHandle, imported_as
+
+if TYPE_CHECKING:
+    from robolink.context import Context
 
 HandleT = TypeVar("HandleT", bound="Handle")
 
@@ -27,7 +30,8 @@ class Handle:
         """Raise InvalidHandle, a RuntimeError, if the owner has been destroyed."""
         owner = self._owner()
         if owner is None or owner._destroyed:
-            raise InvalidHandle(f"cannot use the handle of a {self._kind} that has been destroyed")
+            name = f"the {self._kind} of this handle"
+            raise InvalidHandle(f"{name} has been destroyed") if owner is None else owner._gone_(name)
         return self
 
     def __exit__(self, *_: Any) -> None:
@@ -38,6 +42,17 @@ class Destroyable:
     """What can be destroyed, once and for all."""
 
     _destroyed = False
+
+    def _gone_(self, name: str) -> InvalidHandle:
+        """Give the error for who uses this after its end, and say if the end of the context was that."""
+        context = self._used_in_
+        by = f": {imported_as()}.shutdown() ends all that nodes have" if context is not None and context.closed else ""
+        return InvalidHandle(f"{name} has been destroyed{by}")
+
+    @property
+    def _used_in_(self) -> Context | None:
+        """The context that it belongs to, as far as that is known."""
+        return None
 
     __handle: Handle | None = None
 

@@ -11,6 +11,7 @@ from robolink.destroyable import Destroyable
 from robolink.inbox import Inbox, Mailbox
 
 if TYPE_CHECKING:
+    from robolink.context import Context
     from robolink.executors import Executor
     from robolink.node import Node
 
@@ -54,6 +55,11 @@ class Entity(Destroyable):
     @node.setter
     def node(self, node: Node) -> None:
         self._node = weakref.ref(node)
+
+    @property
+    def _used_in_(self) -> Context | None:
+        node = self.node
+        return None if node is None else node.context
 
     def attach(self, executor: Executor, queued: int = 0) -> None:
         """Belong to this executor from now on; it is `queued` times among what is ready there already."""

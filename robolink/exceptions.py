@@ -17,6 +17,7 @@ RobolinkError
 from __future__ import annotations
 
 import itertools
+import sys
 from collections.abc import Iterable, Sequence
 
 from robolink.terminal import shown as shown  # what errors quote of others' text
@@ -111,11 +112,17 @@ def few(errors: Sequence[DocumentError]) -> list[DocumentError]:
     return [*errors[:MOST_TOLD], rest]
 
 
-class NotInitializedException(RobolinkError, RuntimeError):
-    """robolink was used before `init()` or after `shutdown()`."""
+def imported_as() -> str:
+    """Give the name by which the program knows robolink: errors speak of `rclpy` to whoever wrote that."""
+    return "rclpy" if sys.modules.get("rclpy", "") is sys.modules["robolink"] else "robolink"
 
-    def __init__(self, message: str | None = None) -> None:
-        super().__init__("robolink.init() has not been called" + (f": {message}" if message else ""))
+
+class NotInitializedException(RobolinkError, RuntimeError):
+    """robolink was used before `init()`, or after the end of its context by what `ended_by` names."""
+
+    def __init__(self, message: str | None = None, *, ended_by: str = "") -> None:
+        why = f"{ended_by} has ended the context" if ended_by else f"{imported_as()}.init() has not been called"
+        super().__init__(why + (f": {message}" if message else ""))
 
 
 class NoTypeSupportImportedException(RobolinkError, TypeError):

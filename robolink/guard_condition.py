@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup
 from robolink.entity import NOTHING, Entity
-from robolink.exceptions import InvalidHandle
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -30,7 +29,7 @@ class GuardCondition(Entity):
     def trigger(self) -> None:
         """Have the callback called. From any thread."""
         if self._destroyed:
-            raise InvalidHandle("the guard condition has been destroyed")
+            raise self._gone_("the guard condition")
         self._triggered = True
         executor = self.executor  # another thread may take it away meanwhile
         if executor is not None:

@@ -12,7 +12,6 @@ from robolink.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGro
 from robolink.client import Client
 from robolink.clock import Clock, ROSClock
 from robolink.context import Context
-from robolink.destroyable import Destroyable
 from robolink.disagreement import Disagreements
 from robolink.endpoint import Owner
 from robolink.entity import Entity
@@ -58,7 +57,7 @@ EntityT = TypeVar("EntityT", bound=Entity)
 HIDDEN_NODE_PREFIX = "_"
 
 
-class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
+class Node(NodeParameters, NodeGraph, NodeEntities):
     """A participant of the system: subclass it, or take it as it is.
 
     What it has beyond rclpy's names is spelled `_so_`, as `enum` does it: a subclass is free to use any other name.
@@ -81,7 +80,7 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
     ) -> None:
         self._context = get_default_context() if context is None else context
         if not self._context.ok():
-            raise NotInitializedException("cannot create node")
+            raise NotInitializedException("cannot create node", ended_by=self._context.ended_by)
         self._arguments_ = self._read_arguments_(cli_args, use_global_arguments)
         self._name_, self._namespace_ = self._resolve_own_name_(node_name, namespace)
         self._init_own_()
@@ -185,6 +184,10 @@ class Node(NodeParameters, NodeGraph, NodeEntities, Destroyable):
         return resolve_name(self._arguments_.remap_rules, RemapKind.SERVICE, service, self._name_, self._namespace_)
 
     # What it has
+
+    @property
+    def _used_in_(self) -> Context:
+        return self._context
 
     @property
     def context(self) -> Context:

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from robolink.client import Client
+from robolink.destroyable import Destroyable
 from robolink.entity import Entity
 from robolink.event_handler import EventHandler, with_callbacks
-from robolink.exceptions import InvalidHandle
 from robolink.guard_condition import GuardCondition
 from robolink.publisher import Publisher
 from robolink.service import Service
@@ -24,10 +24,8 @@ if TYPE_CHECKING:
 EntityT = TypeVar("EntityT", bound=Entity)
 
 
-class NodeEntities:
+class NodeEntities(Destroyable):
     """The part of a node that keeps what it has made, and unmakes it."""
-
-    _destroyed = False
 
     def _init_entities_(self) -> None:
         self._publishers: list[Publisher[Any]] = []
@@ -111,7 +109,7 @@ class NodeEntities:
         group.append(made)  # first, so that another thread that destroys the node just now finds it
         if self._destroyed:
             _destroy(made, group)
-            raise InvalidHandle("a node that has been destroyed makes nothing more")
+            raise self._gone_("the node")
 
     def _add_(self, entity: EntityT, group: list[EntityT]) -> EntityT:
         self._keep_(entity, group)

@@ -15,6 +15,7 @@ from robolink.exceptions import (
     ParameterImmutableException,
     ParameterNotDeclaredException,
     ParameterUninitializedException,
+    imported_as,
 )
 from robolink.interfaces.rcl_interfaces.msg import (
     ListParametersResult,
@@ -298,7 +299,7 @@ class NodeParameters(ParameterCallbacks):
                 return SetParametersResult(successful=False, reason=EMPTY_LIST)
         for each in parameters:
             if not isinstance(each, Parameter):
-                raise TypeError(f"expected a robolink.parameter.Parameter, got {each!r}")
+                raise TypeError(f"expected a {imported_as()}.parameter.Parameter, got {each!r}")
         undeclared = [each.name for each in parameters if each.name not in self._parameters]
         if undeclared and not self._allow_undeclared_parameters:
             raise self._not_declared_(undeclared)

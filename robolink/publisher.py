@@ -8,11 +8,11 @@ from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
 from robolink.callback_groups import CallbackGroup
+from robolink.context import Context
 from robolink.destroyable import Destroyable
 from robolink.duration import Duration
 from robolink.endpoint import Endpoint, Owner
 from robolink.event_handler import PublisherEventCallbacks, QoSPublisherEventType, tell_handlers, warns_of_types
-from robolink.exceptions import InvalidHandle
 from robolink.message import Message, encoder, message_type
 from robolink.qos import DurabilityPolicy, QoSProfile, resolved
 from robolink.wire import NO_HASH, EndpointKind
@@ -61,8 +61,12 @@ class Publisher(Destroyable, Generic[MsgT]):
         else:
             raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
         if self._destroyed:
-            raise InvalidHandle(f"the publisher of {self.topic} has been destroyed")
+            raise self._gone_(f"the publisher of {self.topic}")
         self._put(payload, self._attachment())
+
+    @property
+    def _used_in_(self) -> Context | None:
+        return self._endpoint.context
 
     def _speak_humble(self, key: str) -> None:
         self._outlets.add(key)

@@ -196,7 +196,7 @@ class Timer(Entity):
 
     def _check(self) -> None:
         if self._destroyed:
-            raise InvalidHandle("the timer has been destroyed")
+            raise self._gone_("the timer")
 
     def __enter__(self) -> Timer:
         return self

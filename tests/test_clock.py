@@ -55,7 +55,7 @@ def test_ros_time_is_what_it_was_set_to_while_active() -> None:
     assert clock.wait_ns(101 * SECOND) is None
     clock.set_ros_time_override(ros_time(102))
     assert clock.wait_ns(101 * SECOND) == -SECOND
-    with pytest.raises(TypeError, match=r"rclpy\.time\.Time"):
+    with pytest.raises(TypeError, match=r"\.time\.Time"):
         clock.set_ros_time_override(3)  # type: ignore[arg-type] # what is tested
 
 

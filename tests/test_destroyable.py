@@ -37,7 +37,7 @@ def test_a_handle_is_of_use_until_its_owner_is_destroyed(context: Context, make:
         assert handle is made.handle
         assert handle.pointer == id(made)
     made.destroy()
-    with pytest.raises(InvalidHandle, match=f"handle of a {type(made).__name__} that has been destroyed"), made.handle:
+    with pytest.raises(InvalidHandle, match=f"the {type(made).__name__} of this handle has been"), made.handle:
         pass
 
 
@@ -46,7 +46,7 @@ def test_a_nodes_handle(context: Context) -> None:
     with node.handle:
         pass
     node.destroy_node()
-    with pytest.raises(InvalidHandle, match="handle of a Node that"), node.handle:
+    with pytest.raises(InvalidHandle, match="the Node of this handle has"), node.handle:
         pass
 
 

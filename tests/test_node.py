@@ -11,6 +11,7 @@ import pytest
 from robolink import Context, Node, Parameter
 from robolink.arguments import InvalidROSArgsError
 from robolink.exceptions import (
+    InvalidHandle,
     InvalidNamespaceException,
     InvalidNodeNameException,
     InvalidServiceNameException,
@@ -203,6 +204,36 @@ def test_a_node_needs_a_context_that_is_ok(context: Context) -> None:
     context.shutdown()
     with pytest.raises(NotInitializedException, match="cannot create node"):
         Node("node", context=context)
+
+
+def test_what_the_end_of_the_context_destroyed_says_so(context: Context) -> None:
+    node = Node("node", context=context)
+    publisher, client = node.create_publisher(Int32, "topic", 10), node.create_client(Trigger, "service")
+    timer, guard = node.create_timer(1.0, print), node.create_guard_condition(print)
+    client.destroy()
+    with pytest.raises(InvalidHandle, match=r"^the client of /service has been destroyed$"):
+        client.call_async(Trigger.Request())
+    context.shutdown()
+    for use in (
+        lambda: publisher.publish(Int32()),
+        lambda: client.call_async(Trigger.Request()),
+        timer.reset,
+        guard.trigger,
+        node.handle.__enter__,
+        lambda: node.create_timer(1.0, print),
+    ):
+        with pytest.raises(InvalidHandle, match=r"has been destroyed: robolink\.shutdown\(\) ends all that nodes"):
+            use()
+    with pytest.raises(NotInitializedException, match=r"^robolink\.shutdown\(\) has ended the context$"):
+        node.create_publisher(Int32, "other", 10)
+    with pytest.raises(NotInitializedException, match=r"^robolink\.shutdown\(\) has ended the context: cannot create"):
+        Node("late", context=context)
+
+
+def test_a_node_that_comes_after_a_signal_is_told_so(context: Context) -> None:
+    context.interrupt()
+    with pytest.raises(NotInitializedException, match=r"^a signal \(Ctrl-C or SIGTERM\) has ended the context: cannot"):
+        Node("late", context=context)
 
 
 def test_entities_made_while_spinning_are_spun(virtual: Context, executor: SingleThreadedExecutor) -> None:

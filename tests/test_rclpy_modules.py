@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import os
 import signal
+import sys
 from typing import Any
 
 import pytest
@@ -13,6 +15,7 @@ from hypothesis import strategies as st
 
 import robolink
 from robolink import Context, SignalHandlerOptions
+from robolink.clock import ROSClock
 from robolink.exceptions import DecodeError, EncodeError, NotInitializedException, NoTypeSupportImportedException
 from robolink.impl.implementation_singleton import HOMES, rclpy_implementation
 from robolink.interfaces.example_interfaces.action import Fibonacci
@@ -218,6 +221,16 @@ def test_who_comes_after_the_end_is_told_of_it_at_once() -> None:
 def test_an_exception_may_say_more() -> None:
     assert str(NotInitializedException()) == "robolink.init() has not been called"
     assert str(NotInitializedException("cannot create node")).endswith("called: cannot create node")
+
+
+def test_errors_name_what_the_program_imports(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "rclpy", robolink)
+    assert str(NotInitializedException()) == "rclpy.init() has not been called"
+    with pytest.raises(TypeError, match=r"^the time must be a rclpy\.time\.Time, got 3$"):
+        ROSClock().set_ros_time_override(3)  # type: ignore[arg-type]
+    monkeypatch.delitem(sys.modules, "robolink.qos_event", raising=False)
+    with pytest.warns(UserWarning, match=r"^rclpy\.qos_event is the older name of rclpy\.event_handler"):
+        importlib.import_module("robolink.qos_event")
 
 
 # --- utilities ------------------------------------------------------------------------------------------------
