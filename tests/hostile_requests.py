@@ -99,7 +99,7 @@ def peak() -> float:
         import psutil
 
         return float(psutil.Process().memory_info().peak_wset) / 1e6
-    if sys.platform == "linux":  # what getrusage tells there may be the peak of who started this process
+    if Path("/proc/self/status").exists():  # Linux, where getrusage may tell the peak of who started this process
         status = Path("/proc/self/status").read_text(encoding="ascii", errors="replace")
         return float(status.partition("VmHWM:")[2].split()[0]) / 1e3
     import resource
