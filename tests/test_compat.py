@@ -270,6 +270,29 @@ def test_what_ros_has_and_robolink_has_not(name: str, hint: str) -> None:
 
 
 @pytest.mark.usefixtures("compat")
+@pytest.mark.parametrize("name", ["launch", "launch_ros", "my_robot_interfaces"])
+def test_a_mere_folder_does_not_hide_those_words(name: str, tmp_path: Path) -> None:
+    """A package's `launch/` has no `__init__.py`; what is in it can be imported, and nothing else from there."""
+    (tmp_path / name / "sub").mkdir(parents=True)
+    (tmp_path / name / "mine.py").write_text("HERE = True")
+    sys.path.insert(0, str(tmp_path))
+    importlib.invalidate_caches()
+    for code in (f"from {name} import LaunchDescription", f"import {name}\n{name}.LaunchDescription"):
+        error = raised(code)
+        assert str(error).startswith(f"{VERSION} has no {name}.LaunchDescription; ")
+        assert isinstance(error, ImportError if code.startswith("from") else AttributeError)
+    error = raised(f"from {name}.actions import Node")
+    assert isinstance(error, ModuleNotFoundError)
+    assert str(error).startswith(f"{VERSION} has no {name}.actions; ")
+    scope: dict[str, Any] = {}
+    exec(f"from {name} import mine\nfrom {name}.mine import HERE\nimport {name}.sub\nimport {name}", scope)
+    assert (scope["mine"].HERE, scope["HERE"]) == (True, True)
+    assert not hasattr(scope[name], "__wrapped__")
+    for each in (name, f"{name}.mine", f"{name}.sub"):
+        del sys.modules[each]
+
+
+@pytest.mark.usefixtures("compat")
 def test_others_names_are_left_alone(tmp_path: Path) -> None:
     assert str(raised("import numpyy")) == "No module named 'numpyy'"
     (tmp_path / "cv_bridge.py").write_text("HERE = True")
@@ -315,6 +338,31 @@ def test_a_real_rclpy_is_left_alone_as_a_whole() -> None:
     assert importlib.import_module("geometry_msgs.msg").REAL
     assert str(raised("import rclpy.node")) == "No module named 'rclpy.node'"
     assert str(raised("import std_msgs.msg")) == "No module named 'std_msgs'"
+
+
+@pytest.mark.usefixtures("before")
+@pytest.mark.parametrize("inner", ["rclpy/rclpy/__init__.py", "rclpy/__init__.py", "rclpy.py"])
+def test_a_checkout_of_rclpy_beside_the_script_is_none_that_is_installed(inner: str, tmp_path: Path) -> None:
+    """Its repository has a folder rclpy/ with the package in it, and needs to be built."""
+    (tmp_path / inner).parent.mkdir(parents=True, exist_ok=True)
+    (tmp_path / inner).write_text("raise ImportError('it is not built')")
+    sys.path.insert(0, str(tmp_path))
+    importlib.invalidate_caches()
+    compat = importlib.import_module("robolink.compat")
+    assert compat.is_active()
+    assert importlib.import_module("rclpy") is robolink
+    assert importlib.import_module("rclpy.node").Node is robolink.Node
+
+
+@pytest.mark.usefixtures("before")
+def test_a_real_rclpy_that_is_built_elsewhere_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "rclpy").mkdir()
+    (tmp_path / "rclpy/__init__.py").write_text("REAL = True\n")
+    (tmp_path / "rclpy/_rclpy_pybind11.cpython-312-x86_64-linux-gnu.so").touch()
+    sys.path.insert(0, str(tmp_path))
+    importlib.invalidate_caches()
+    assert not importlib.import_module("robolink.compat").is_active()
+    assert importlib.import_module("rclpy").REAL
 
 
 @pytest.mark.usefixtures("ros")

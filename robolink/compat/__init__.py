@@ -13,7 +13,8 @@ real rclpy is installed, the import above leaves all of them alone. `robolink ru
 run a program wants it on robolink's network, and has `ros2 run` and `python` for the other; a real rclpy is hidden
 from that one process. The variable ROBOLINK_COMPAT, or `activate`, decides otherwise: `always` takes robolink's in
 any case, `never` none, `auto` is the rule of the import. A file of the user's own that has one of these names
-(a `tf_transformations.py` beside the script) is found before robolink's; only rclpy itself is never taken from there.
+(a `tf_transformations.py` beside the script) is found before robolink's; only rclpy itself is never taken from there:
+a checkout of its repository in a folder `rclpy/` is no rclpy that is installed.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from __future__ import annotations
 import os
 import sys
 
-from robolink.compat.maker import MAKER, hidden
+from robolink.compat.maker import MAKER, has_rclpy, hidden
 from robolink.exceptions import RobolinkError
 from robolink.workspace.modules import FINDER
 
@@ -50,7 +51,7 @@ def activate(mode: str = AUTO) -> bool:
     if mode == ALWAYS and is_foreign:
         place = getattr(loaded, "__file__", None) or "elsewhere"
         raise CompatError(f"rclpy has been imported from {place} before: import robolink.compat earlier")
-    if mode == NEVER or (mode == AUTO and (is_foreign or FINDER.real("rclpy") is not None)):
+    if mode == NEVER or (mode == AUTO and (is_foreign or has_rclpy())):
         return False
     FINDER.hides = hidden
     FINDER.add(MAKER)

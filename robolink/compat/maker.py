@@ -37,10 +37,7 @@ def maker(fullname: str) -> Fill | None:
     """Give what fills the module of a name of ROS 2's. Raises LackingModuleError for one that robolink has not."""
     top = fullname.partition(".")[0]
     if top not in TOPS:
-        hint = instead_of(fullname) if top == fullname else ""
-        if hint and FINDER.real(fullname) is None:
-            raise LackingModuleError(fullname, list, hint)
-        return None
+        return _instead(fullname, top)
     if not hidden(fullname):
         return None
     if fullname in ROOMS and not ROOMS[fullname]:
@@ -55,6 +52,32 @@ def maker(fullname: str) -> Fill | None:
 
 
 MAKER = maker
+
+
+def _instead(fullname: str, top: str) -> Fill | None:
+    """Say what to do in place of a name of ROS's that robolink has not; None where somebody has it.
+
+    A folder without `__init__.py`, such as the `launch/` of most packages, holds what is in it and no more.
+    """
+    hint = instead_of(top)
+    if not hint:
+        return None
+    if fullname == top:
+        real = FINDER.real(top)
+        if real is None:
+            raise LackingModuleError(top, list, hint)
+        return functools.partial(_fill_folder, hint) if real.loader is None else None
+    parent = sys.modules.get(fullname.rpartition(".")[0])
+    if _is_ours(parent) and FINDER.real(fullname, list(getattr(parent, "__path__", []))) is None:
+        raise LackingModuleError(fullname, list, hint)
+    return None
+
+
+def _fill_folder(hint: str, module: ModuleType) -> None:
+    def asked(name: str) -> Any:
+        raise lacking(module.__name__, name, list, sys._getframe(1), hint)
+
+    module.__getattr__ = asked  # type: ignore[method-assign]
 
 
 def room_of(fullname: str) -> str:
@@ -82,6 +105,14 @@ def _is_there(room: str) -> bool:
 def _is_ours(module: ModuleType | None) -> bool:
     loader = getattr(getattr(module, "__spec__", None), "loader", None)
     return isinstance(loader, Filling) or getattr(module, "__name__", "").partition(".")[0] == "robolink"
+
+
+def has_rclpy() -> bool:
+    """Whether a real rclpy can be imported, and not just a checkout of it: one that is installed, or else is built."""
+    spec = FINDER.real("rclpy")
+    if spec is None or spec.loader is None:  # none, or a folder without __init__.py
+        return False
+    return not _is_the_users_own("rclpy") or any(Path(spec.origin or "").parent.glob("_rclpy_pybind11*"))
 
 
 def _is_the_users_own(top: str) -> bool:
