@@ -5,13 +5,14 @@ from __future__ import annotations
 import functools
 import threading
 import time
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TypeVar
 
 from robolink.exceptions import WireError
 from robolink.logging import get_logger
+from robolink.terminal import shown
 from robolink.wire import (
     NO_HASH,
     EndpointKind,
@@ -40,6 +41,12 @@ FIRST_HUMBLE: Place = ("", EndpointKind.SERVICE)
 SETTLED_WITHIN = 0.1
 """Seconds; it takes 2 ms."""
 
+MOST_OF_SESSION = 20_000
+"""Tokens of one session that are taken in, 1 kB each; a node has some 15, and Zenoh keeps 5 kB of each in any case."""
+
+MOST = 100_000
+"""Tokens of all sessions of others: whoever announces may call his session as he likes."""
+
 LONG_STANDING = 1.0
 """Seconds after which a session knows what was there before it."""
 
@@ -54,6 +61,8 @@ class Graph:
     def __init__(self, transport: Transport, domain_id: int) -> None:
         self.malformed = 0
         """How many announcements could not be read."""
+        self.too_many = 0
+        """How many were not taken in, since there are more than there may be."""
         self._transport, self._domain_id = transport, domain_id
         self._own = own_tokens(domain_id, transport.session_id)
         self._index = _Index()
@@ -94,8 +103,26 @@ class Graph:
                     " (the next ones are only counted)"
                 )
             return False
-        self._change(gid_of(text), token, alive)
+        gid = gid_of(text)
+        if alive and not self._has_room(gid, token):
+            return False
+        self._change(gid, token, alive)
         return True
+
+    def _has_room(self, gid: bytes, token: Token) -> bool:
+        """Whether one more is taken in. What is refused is not seen later either, unless it is announced again."""
+        with self._changed:
+            full = self._index.is_full(token.session)
+            if not full or gid in self._index.tokens:
+                return True
+            self.too_many += 1
+            first = self.too_many == 1
+        if first:
+            get_logger("robolink.graph").warning(
+                f"{full} on domain {self._domain_id}: further ones are not seen, that of"
+                f" {shown(token.full_node_name)} is the first"
+            )
+        return False
 
     def _change(self, gid: bytes, token: Token, alive: bool) -> None:
         with self._changed:
@@ -244,9 +271,19 @@ class _Index:
         self.endpoints: dict[bytes, EndpointToken] = {}
         self.by_place: dict[Place, dict[bytes, EndpointToken]] = {}
         self.by_node: dict[tuple[str, str], dict[bytes, Token]] = {}
+        self.of_session: Counter[str] = Counter()
+
+    def is_full(self, session: str) -> str:
+        """Say why nothing more of a session is taken in; nothing if it is."""
+        if self.of_session[session] >= MOST_OF_SESSION:
+            return f"session {session} announces more than {MOST_OF_SESSION:,} nodes, topics and services"
+        if len(self.tokens) >= MOST:
+            return f"there are more than {MOST:,} nodes, topics and services"
+        return ""
 
     def add(self, gid: bytes, token: Token) -> None:
         self.tokens[gid] = token
+        self.of_session[token.session] += 1
         self.by_node.setdefault((token.node_name, token.namespace), {})[gid] = token
         if isinstance(token, EndpointToken):
             self.endpoints[gid] = token
@@ -256,6 +293,9 @@ class _Index:
 
     def remove(self, gid: bytes, token: Token) -> None:
         del self.tokens[gid]
+        self.of_session[token.session] -= 1
+        if not self.of_session[token.session]:
+            del self.of_session[token.session]
         _drop(self.by_node, (token.node_name, token.namespace), gid)
         if isinstance(token, EndpointToken):
             del self.endpoints[gid]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from enum import Enum
 from typing import NamedTuple
 
@@ -141,7 +142,7 @@ def parse_token(text: str) -> NodeToken | EndpointToken:
     if len(fields) < known or fields[0] != _GRAPH:
         least = f"at least {_NODE_FIELDS} fields, or {_ENDPOINT_FIELDS} for an endpoint"
         raise WireError(f"a token has {least}, the first of them {_GRAPH}: got {shown(text)}")
-    domain, session = parse_number(fields[1]), matched(_SESSION, fields[2], "a session id")
+    domain, session = parse_number(fields[1]), sys.intern(matched(_SESSION, fields[2], "a session id"))
     node_id, own_id = matched(_ID, fields[3], "a node's id"), matched(_ID, fields[4], "an endpoint's id")
     enclave, namespace, node_name = map(_demangled, fields[6:9])
     more = matched(_MORE, "/".join(fields[known:]), "further fields") if len(fields) > known else ""
