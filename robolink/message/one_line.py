@@ -13,8 +13,8 @@ ELEMENTS = 4
 """Elements of a sequence that are shown."""
 MEASURED = 10_000
 """Numbers of which the least and the greatest are told; of more, an image say, only the first."""
-WIDTH = 160
-"""Characters, after which a line ends in `...`."""
+WIDTH = 110
+"""Characters of a line; a longer one leaves out what stands before a scan's ranges, else what stands last."""
 _TEXTS = Style(longest=60)
 
 
@@ -25,9 +25,21 @@ def short(message: Any) -> str:
     >>> short(Twist(linear=Vector3(x=0.25)))
     'linear.x=0.25'
 
-    A header is left out: it hides what one looks for. Nothing is left of a message that is all zero.
+    A header is left out: it hides what one looks for; of an element of a sequence, such as a transform, its frame
+    stays. Nothing is left of a message that is all zero.
     """
-    return shown("".join(_joined(_leaves(message, type(message)(), ""))), WIDTH)
+    leaves = list(_leaves(message, type(message)(), ""))
+    text = _line(leaves)
+    if len(text) > WIDTH and leaves and isinstance(leaves[-1][1], _Numbers):
+        first, last = leaves[:-1], f", ..., {_line(leaves[-1:])}"
+        while len(first) > 1 and len(_line(first)) + len(last) > WIDTH:
+            first.pop()
+        text = _line(first) + last
+    return shown(text, WIDTH)
+
+
+def _line(leaves: Iterable[tuple[str, Any]]) -> str:
+    return "".join(_joined(leaves))
 
 
 def _joined(leaves: Iterable[tuple[str, Any]]) -> Iterator[str]:
@@ -59,6 +71,8 @@ def _plain(value: Any) -> Any:
     """Give a field as plain data; of a sequence what is short."""
     if isinstance(value, (str, bytes)) or not hasattr(value, "__len__"):
         return shown_data(value, _TEXTS)
+    if hasattr(next(iter(value), None), "__ros_fields__"):
+        return [*map(_element, value[:ELEMENTS]), *([...] if len(value) > ELEMENTS else [])]
     first = shown_data(value[:ELEMENTS], _TEXTS)
     if len(value) <= ELEMENTS:
         return first
@@ -66,6 +80,19 @@ def _plain(value: Any) -> Any:
         [each for each in value if isinstance(each, (int, float)) and math.isfinite(each)] if _is_few(value) else []
     )
     return _Numbers(len(value), min(finite), max(finite)) if finite else [*first, ...]
+
+
+class _Element(str):
+    """A message in a sequence, on one line."""
+
+    __slots__ = ()
+
+
+def _element(message: Any) -> _Element:
+    """Return an element of a sequence: its frame, and what is not the default."""
+    frame = getattr(getattr(message, "header", None), "frame_id", "")
+    framed = [("frame_id", shown_data(frame, _TEXTS))] if frame else []
+    return _Element(f"{{{_line([*framed, *_leaves(message, type(message)(), '')])}}}")
 
 
 class _Numbers(NamedTuple):
@@ -87,6 +114,6 @@ def _text(value: Any) -> str:
         return f"{value:.4g}"
     if isinstance(value, list):
         return f"[{', '.join(map(_text, value))}]"
-    if isinstance(value, dict):  # an element of a sequence of messages
-        return f"{{{', '.join(f'{name}: {_text(each)}' for name, each in value.items())}}}"
+    if isinstance(value, _Element):
+        return value
     return "..." if value is ... else repr(value)

@@ -42,7 +42,7 @@ class Expecting:
         met, tried = self._met(name, predicate, within, given)
         if not met:
             headline = self._story.why_nothing_came(name, tried, span(begin, begin + within), named(predicate))
-            raise ExpectationError(self._story.told(headline, self._concerned(name)))
+            raise ExpectationError(self._story.told(headline, name, others=self._concerned(name)))
         return met[0]
 
     def no_message(self, topic: str, predicate: Predicate | None, during: float, given: type[Message] | None) -> None:
@@ -53,7 +53,7 @@ class Expecting:
         if met:
             which = f"that fulfils {named(predicate) or 'the condition'}" if predicate else "at all"
             headline = f"a message came on {name} at {seconds(self._story.time)}, where none {which} was expected"
-            raise ExpectationError(self._story.told(headline, self._concerned(name)))
+            raise ExpectationError(self._story.told(headline, name, others=self._concerned(name)))
 
     def _met(
         self, name: str, predicate: Predicate | None, within: float, given: type[Message] | None
@@ -98,7 +98,7 @@ class Expecting:
         if not self._run_until(holds, within):
             what = named(condition) or "what was waited for"
             headline = f"{what} did not come true {span(begin, begin + within)}"
-            raise ExpectationError(self._story.told(headline, dict.fromkeys(self._conversation.topics)))
+            raise ExpectationError(self._story.told(headline, others=dict.fromkeys(self._conversation.topics)))
 
     def result(self, future: Future[T], within: float) -> T:
         """Give the result of a future, or raise what it holds."""

@@ -9,7 +9,16 @@ from robolink.names import near
 from robolink.testing.expectations import ExpectationError, Told, nothing_came, seconds, too_early
 from robolink.testing.graph_view import EVERYBODYS_TOPICS, GraphView
 from robolink.testing.recorder import Recorder, Topic
-from robolink.testing.timeline import MOST_LOGS, MOST_OF_ONE, MOST_OF_OTHERS, Moment, logs_of, messages_of
+from robolink.testing.timeline import (
+    BACKGROUND,
+    MOST_LOGS,
+    MOST_OF_BACKGROUND,
+    MOST_OF_ONE,
+    MOST_OF_OTHERS,
+    Moment,
+    logs_of,
+    messages_of,
+)
 
 if TYPE_CHECKING:
     from robolink.message import Message
@@ -82,16 +91,21 @@ class Story:
     def whole(self) -> str:
         """Tell what was last published on each topic, what was logged, what failed, and how to replay it."""
         topics = [each.name for each in self.recorder.topics.values() if each.name not in EVERYBODYS_TOPICS]
-        return self.told(f"the system after {self.time:.3f} s", topics)
+        return self.told(f"the system after {self.time:.3f} s", others=topics)
 
-    def told(self, headline: str, topics: Iterable[str] = (), *, all_logs: bool = False) -> str:
-        """Put together what a test is told: the first topic is what it is about."""
+    def told(
+        self, headline: str, topic: str | None = None, *, others: Iterable[str] = (), all_logs: bool = False
+    ) -> str:
+        """Put together what a test is told: `topic` is what it is about, `others` have to do with it."""
         stage = self._stage
+        most = {each: MOST_OF_BACKGROUND if each in BACKGROUND else MOST_OF_OTHERS for each in others}
+        if topic is not None:
+            most[topic] = MOST_OF_ONE
         moments = [
             each
-            for number, name in enumerate(topics)
-            for topic in self.recorder.named(name)
-            for each in messages_of(self.recorder, topic, self._class_of, MOST_OF_OTHERS if number else MOST_OF_ONE)
+            for name, count in most.items()
+            for found in self.recorder.named(name)
+            for each in messages_of(self.recorder, found, self._class_of, count)
         ]
         moments += logs_of(stage.logs, MOST_LOGS, all_logs)
         moments += [Moment(each.time_ns, "failed", each.program, each.why) for each in stage.failures]

@@ -17,6 +17,9 @@ MOST_OF_ONE = 8
 """Messages that are shown of the topic that it is about."""
 MOST_OF_OTHERS = 3
 """Messages that are shown of any other topic."""
+MOST_OF_BACKGROUND = 1
+"""Messages that are shown of a topic that has much to say in any system, and is seldom what it is about."""
+BACKGROUND = ("/clock", "/diagnostics", "/tf", "/tf_static")
 MOST_LOGS = 5
 
 

@@ -35,6 +35,28 @@ def test_a_failure_shows_what_came_on_the_topics_concerned_and_how_to_replay_it(
     ]
 
 
+def test_no_story_is_buried_in_transforms(tested: System) -> None:
+    tested.launch("follow")
+    tested.run(3.0)
+    lines = tested.story.whole().splitlines()
+    shown = [line.split()[2] for line in lines if " s  /" in line]
+    assert {each: shown.count(each) for each in ("/cmd_vel", "/odom", "/tf", "/tf_static", "/diagnostics")} == {
+        "/cmd_vel": 3,
+        "/odom": 3,
+        "/tf": 1,
+        "/tf_static": 1,
+        "/diagnostics": 1,
+    }
+    assert max(map(len, lines)) <= 150
+
+
+def test_whoever_asks_for_transforms_is_shown_them(tested: System) -> None:
+    tested.launch("follow")
+    with pytest.raises(ExpectationError) as error:
+        tested.expect("/tf", lambda message: not message.transforms, within=1.0)
+    assert sum(" /tf " in line for line in told(error)) == 8
+
+
 def test_a_topic_that_is_not_there_is_told_with_the_nearest(tested: System) -> None:
     tested.start(Counter, namespace="/ada")
     with pytest.raises(ExpectationError) as error:

@@ -11,10 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink import Context, Node, VirtualTime, interfaces
-from robolink.interfaces.geometry_msgs.msg import Point, Polygon, Twist
+from robolink.interfaces.geometry_msgs.msg import Point, Polygon, TransformStamped, Twist
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.std_msgs.msg import Int32, String
+from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.message.one_line import WIDTH, short
 from robolink.names import near
 from robolink.qos import DurabilityPolicy, QoSProfile
@@ -52,6 +53,24 @@ def test_only_what_is_not_the_default_is_shown_by_its_path() -> None:
 )
 def test_a_message_on_one_line(message: Any, text: str) -> None:
     assert short(message) == text
+
+
+def test_a_long_scan_leaves_out_what_is_the_same_each_time_and_no_ranges() -> None:
+    scan = LaserScan(angle_min=-3.142, angle_max=3.124, angle_increment=0.01745, scan_time=0.1, ranges=[0.6, 6.5] * 180)
+    scan.range_min, scan.range_max, scan.time_increment = 0.12, 12.0, 0.000277
+    text = short(scan)
+    assert text.startswith("angle_min=-3.142, angle_max=3.124, ")
+    assert text.endswith(", ..., ranges=360 from 0.6 to 6.5")
+    assert len(text) <= WIDTH
+
+
+def test_a_transform_tells_its_frames_and_what_is_not_zero() -> None:
+    moved = TransformStamped(child_frame_id="base_link")
+    moved.header.frame_id, moved.header.stamp.sec = "odom", 4
+    moved.transform.translation.x, moved.transform.translation.y = 3.749, 0.596
+    assert short(TFMessage(transforms=[moved])) == (
+        "transforms=[{frame_id='odom', child_frame_id='base_link', transform.translation.x=3.749 .y=0.596}]"
+    )
 
 
 def test_a_line_has_an_end() -> None:
