@@ -6,6 +6,8 @@ is 12, `1e3` is 1000.0, mapping keys are strings as they were written, and a key
 
 from __future__ import annotations
 
+import contextlib
+import gc
 import re
 from collections.abc import Callable, Iterator
 from typing import Any, TypeAlias
@@ -108,7 +110,8 @@ def compose(text: str, name: str) -> yaml.Node | None:
         raise DocumentError(message, name, *_place(text, strange.start()))
     loader = _loader(text)
     try:
-        return loader.get_single_node()
+        with _no_collection():
+            return loader.get_single_node()
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark or _mark(loader)
         raise DocumentError(_problem(error), name, *place(mark)) from None
@@ -135,7 +138,20 @@ def _mark(loader: _Bounded) -> yaml.Mark:
 
 def plain(node: yaml.Node | None, name: str) -> Data:
     """Give the plain data that a node stands for; raises `DocumentError` for what has no plain meaning."""
-    return None if node is None else _Builder(name).build(node)
+    with _no_collection():
+        return None if node is None else _Builder(name).build(node)
+
+
+@contextlib.contextmanager
+def _no_collection() -> Iterator[None]:
+    """Keep the garbage collector still, which would look through all nodes again and again as they become more."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
 
 
 def place(mark: yaml.Mark) -> tuple[int, int]:

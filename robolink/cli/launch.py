@@ -161,6 +161,7 @@ def _show_arguments(asked: LaunchFile, as_json: bool) -> None:
 
 
 def _validate(asked: LaunchFile, options: Options) -> int:
+    from robolink.exceptions import few
     from robolink.launch.looking.validate import Report, found, validate
     from robolink.launch.reading.entries import read_with_mistakes
 
@@ -168,6 +169,7 @@ def _validate(asked: LaunchFile, options: Options) -> int:
     report = Report(mistakes, ["no node was looked into: that comes when its file is right"])
     if not mistakes:
         report = validate(entries)
+        report = Report(few(report.mistakes), report.notes)
     if options.json:
         import msgspec
 

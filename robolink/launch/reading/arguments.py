@@ -54,7 +54,8 @@ def values_of(file: LaunchFile, given: Mapping[str, Value], asker: Place | None 
     for name in given:
         if name not in declared:
             raise _asked(file, asker, name, _unknown(name, declared))
-    values = Values({HERE: Value.of(str(file.folder.resolve()))})
+    named = {HERE: Value.of(str(file.folder.resolve()))}
+    values = Values(named, budget=None if asker is None else asker.part.values.budget)
     for name, argument in declared.items():
         if name in given:
             value = _given(file, asker, name, argument, given[name])
@@ -64,7 +65,7 @@ def values_of(file: LaunchFile, given: Mapping[str, Value], asker: Place | None 
             raise _asked(file, asker, name, f"'{name}' must be given{about}: {way}")
         else:
             value = _default(file, name, argument, values)
-        values = values.joined_by({name: value})
+        named[name] = value
     return values
 
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Any, get_args
 
+from robolink.launch.reading import limits
 from robolink.launch.reading.description import NodeDescription, Respawn, When
 from robolink.launch.reading.entry import Entry
 from robolink.launch.reading.part import Part
@@ -48,6 +49,8 @@ def check_shared(part: Part, said: Any) -> None:
     """Check what a node or a group says: process, remappings, environment and respawn. Raises `DocumentError`."""
     if said.process:
         part.check(_check_process_name, said.process, "process")
+    if len(said.remappings) > limits.MOST_REMAPPINGS:
+        raise part.error(["remappings"], f"more than {limits.MOST_REMAPPINGS:,} remappings")
     for match, replacement in said.remappings.items():
         part.check(parse_remap_rule, f"{match}:={replacement}", "remappings", match, key=True)
     for name in said.env:

@@ -14,7 +14,7 @@ from typing import Any
 from msgspec.structs import replace
 
 from robolink.exceptions import DocumentError, few
-from robolink.launch.reading import lookup
+from robolink.launch.reading import limits, lookup
 from robolink.launch.reading.arguments import read_given, values_of
 from robolink.launch.reading.around import Around
 from robolink.launch.reading.checks import check_node, check_shared, check_terminal, check_words
@@ -30,9 +30,6 @@ from robolink.launch.reading.substitution import Step, Values
 from robolink.workspace import Folder, NodeSource
 
 __all__ = ["Entry", "read_launch_file", "read_with_mistakes"]
-
-MOST_PARTS = 100_000
-"""Copies of nodes, groups and includes: files that include others could fill the memory otherwise."""
 
 _HELD = ("nodes", "include", "groups")
 _NOTHING: Mapping[str, str] = MappingProxyType({})
@@ -105,13 +102,19 @@ class _Scope:
     is_off: bool = False
 
 
+class _TooLargeError(DocumentError):
+    """A system is larger than `limits` allow: no more of it is read."""
+
+
 class _Reading:
     """The walk through a launch file and all that it includes."""
 
     def __init__(self, workspace: Folder, refuse: Refuse) -> None:
         self._workspace = workspace
         self._refuse = refuse
-        self._parts = 0
+        self._parts = self._includes = self._commands = self._refused = 0
+        self._processes: set[str] = set()
+        self._homes: dict[Path, Path | None] = {}
         self.is_refused = False
         """Whether something was refused, and left out."""
         self.off: set[str] = set()
@@ -123,7 +126,9 @@ class _Reading:
         for error in unknown_keys(file):
             self._leave_out(error)
         file.value(file.data.get("description", ""), str, ["description"])
-        home = lookup.home_of(file.path, self._workspace)
+        if file.folder not in self._homes:
+            self._homes[file.folder] = lookup.home_of(file.path, self._workspace)
+        home = self._homes[file.folder]
         chain = (*(asker.chain if asker else ()), file.path.resolve())
         scope = _Scope(file, home, chain, asker is not None and asker.is_off)
         yield from self._held(scope, file.data, [], values, around)
@@ -161,15 +166,19 @@ class _Reading:
         """Let mistakes pass where nothing is to be started: that may be for another computer, with other files."""
         try:
             yield
+        except _TooLargeError:
+            raise
         except DocumentError as error:
-            if self._parts > MOST_PARTS:
-                raise
             if not scope.is_off:
                 self._leave_out(error)
 
     def _leave_out(self, error: DocumentError) -> None:
         self._refuse(error)
         self.is_refused = True
+        self._refused += 1
+        if self._refused >= limits.MOST_MISTAKES:
+            message = f"after {limits.MOST_MISTAKES} mistakes nothing more was read"
+            raise _TooLargeError(message, error.file, error.line, error.column)
 
     def _node(self, scope: _Scope, part: Part, around: Around) -> Iterator[Draft]:
         check_words(part)
@@ -177,6 +186,7 @@ class _Reading:
         said: NodeDescription = replace(part.read(NodeDescription), interactive=has_keyboard)
         check_node(part, said)
         whole = around.with_node(part, said)
+        self._count_process(part, whole)
         own = given_in(part, scope.home) if "parameters" in part else []
         if said.node:
             yield Draft(part, said, whole, own, self._source(scope, part, said.node), scope.home, chain=scope.chain)
@@ -204,7 +214,12 @@ class _Reading:
         if path.resolve() in scope.chain:
             names = [each.name for each in scope.chain[scope.chain.index(path.resolve()) :]]
             raise part.error(["file"], f"a file cannot include itself: {' -> '.join([*names, path.name])}")
+        self._includes += 1
+        if self._includes > limits.MOST_INCLUDES:
+            raise _too_large(part, f"more than {limits.MOST_INCLUDES:,} files are included")
         file = LaunchFile(path, above=scope.file.mentioned(part.steps))
+        if too_much := part.values.budget.take(file.length, is_new=False):
+            raise _too_large(part, too_much)
         values = values_of(file, part.values_in("arguments"), Place(part))
         yield from self.file(file, values, around.moved_to(namespace), scope)
 
@@ -220,8 +235,23 @@ class _Reading:
 
     def _count(self, part: Part) -> None:
         self._parts += 1
-        if self._parts > MOST_PARTS:
-            raise part.error([], f"more than {MOST_PARTS} nodes, groups and includes")
+        if self._parts > limits.MOST_PARTS:
+            raise _too_large(part, f"more than {limits.MOST_PARTS:,} nodes, groups and includes")
+
+    def _count_process(self, part: Part, around: Around) -> None:
+        """Count the process that a node or command will run in: its own, or one that it shares."""
+        shared = around.settings.get("process")
+        if shared is None:
+            self._commands += 1
+        else:
+            self._processes.add(shared.value)
+        if self._commands + len(self._processes) > limits.MOST_PROCESSES:
+            raise _too_large(part, f"more than {limits.MOST_PROCESSES:,} processes: `process` lets nodes share one")
+
+
+def _too_large(part: Part, message: str) -> _TooLargeError:
+    error = part.error([], message)
+    return _TooLargeError(error.message, error.file, error.line, error.column)
 
 
 def _names_of(part: Part) -> list[str]:

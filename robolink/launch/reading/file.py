@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -21,19 +22,21 @@ _LONGEST_CHAIN = 100
 class LaunchFile:
     """A YAML file that was read, or `text` in its place.
 
-    `data` is what it says as plain data, `folder` where it stands. `above` says which files included it, nearest
-    first: `lap.yaml:3, fleet.yaml:7`. Raises `DocumentError`, as all its methods do, when the text is no YAML.
+    `data` is what it says as plain data, `length` how many characters it has, `folder` where it stands. `above` says
+    which files included it, nearest first: `lap.yaml:3, fleet.yaml:7`. Raises `DocumentError`, as all its methods do,
+    when the text is no YAML.
     """
 
     def __init__(self, path: Path, text: str | None = None, above: str = "") -> None:
         self.path, self._above = path, above
         try:
             text = read_text(path) if text is None else text
-            self._reader = _reader(text, str(path))
+            self._reader, slip = _reader(text, str(path))
         except DocumentError as error:
             raise self._told(_with_hint(error, text)) from None
-        for steps, message in (*slips(self._reader.data, self._reader.spelled), *misshapen(self._reader.data)):
-            raise self.error(steps, message)
+        if slip is not None:
+            raise self.error(*slip)
+        self.length = len(text)
         self.data: dict[str, Any] = self.value(self._reader.data, dict[str, Any], [])
 
     @property
@@ -67,9 +70,11 @@ class LaunchFile:
 
 
 @functools.lru_cache(maxsize=8)
-def _reader(text: str, name: str) -> Reader:
-    """Read a text; a file that is included for each of a hundred robots is parsed once."""
-    return Reader(text, name)
+def _reader(text: str, name: str) -> tuple[Reader, tuple[Sequence[Step], str] | None]:
+    """Read a text, and find the first slip in it; a file that is included for each of a hundred robots is so once."""
+    reader = Reader(text, name)
+    found = itertools.chain(slips(reader.data, reader.spelled), misshapen(reader.data))
+    return reader, next(found, None)
 
 
 def _with_hint(error: DocumentError, text: str | None) -> DocumentError:

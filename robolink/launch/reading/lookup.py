@@ -160,7 +160,7 @@ def included_file(name: str, home: Path | None, folder: Path) -> Path:
     """
     path = Path(name).expanduser()
     beside_it = (folder / path.with_name(f"{path.name}{suffix}") for suffix in YAML if path.name)
-    found = _first_file([folder / path, *beside_it, *(each / path for each in _around(folder, home)[1:])])
+    found = _first([folder / path, *beside_it, *(each / path for each in _around(folder, home)[1:])])
     if found is not None:
         return found
     try:
@@ -177,7 +177,7 @@ def parameter_file(name: str, home: Path | None, folder: Path) -> Path:
     """
     path = Path(name).expanduser()
     folders = _around(folder, home)
-    found = _first_file(each / path for each in folders)
+    found = _first(each / path for each in folders)
     if found is None:
         beside = (str(path.with_name(each.name)) for each in (folder / path).parent.glob("*") if each.suffix in YAML)
         raise NotFoundError("file", name, beside, " or ".join(map(str, folders)))
@@ -216,6 +216,11 @@ def why_no_command(program: str) -> str:
             return f"'{program}' is nothing that Windows starts by itself: write before it what runs it, as python"
         return f"'{program}' may not be executed: chmod +x it"
     return f"no program '{program}' is found: {WHERE_PROGRAMS_ARE}"
+
+
+def _first(candidates: Iterable[Path]) -> Path | None:
+    """Return what is there first and is no folder: whoever reads it says what else is wrong with it."""
+    return next((each for each in candidates if each.exists() and not each.is_dir()), None)
 
 
 def _first_file(candidates: Iterable[Path]) -> Path | None:

@@ -8,13 +8,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from robolink.exceptions import DocumentError, shown
-from robolink.launch.reading import lookup
+from robolink.launch.reading import limits, lookup
 from robolink.launch.reading.part import Part, Place
 from robolink.launch.reading.substitution import Step
 from robolink.parameter_file import parse_parameter_value, read_parameter_file
 from robolink.parameter_overrides import Override
 from robolink.workspace.find import YAML
 from robolink.yamlfile import spell
+
+_TOO_MANY = f"more than {limits.MOST_PARAMETERS:,} parameters for one node"
 
 
 class Given(NamedTuple):
@@ -60,6 +62,8 @@ def parameters_for(full_name: str, given: Iterable[Given], own: Iterable[Given])
         for override, at in fitting:
             is_wide = each.file is not None and "*" in override.pattern
             found[override.name] = Parameter(override.value, at, is_wide)
+    if len(found) > limits.MOST_PARAMETERS:
+        raise next(reversed(found.values())).place.error(_TOO_MANY)
     return found
 
 
@@ -80,7 +84,10 @@ def _given(part: Part, said: Any, steps: tuple[Step, ...], home: Path | None) ->
 
 def _inline(said: dict[str, Any], place: Place) -> Iterator[tuple[Override, Place]]:
     known: set[str] = set()
-    for name, steps, value in _flattened(said):
+    flat = list(_flattened(said))
+    if len(flat) > limits.MOST_PARAMETERS:
+        raise place.error(_TOO_MANY)
+    for name, steps, value in flat:
         at = Place(place.part, (*place.steps, *steps))
         if "ros__parameters" in steps:
             is_of_files = "`ros__parameters` and what stands above it are for parameter files"

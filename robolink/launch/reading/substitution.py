@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 from robolink.exceptions import RobolinkError, nearest, shown
+from robolink.launch.reading.limits import TextBudget
 from robolink.yamlfile import spell
 
 Step: TypeAlias = "str | int"
@@ -52,12 +53,18 @@ class Value(NamedTuple):
 class Values:
     """What may stand in braces: names, and `env:NAME` for a variable of the environment."""
 
-    def __init__(self, named: Mapping[str, Value], environment: Mapping[str, str] = os.environ) -> None:
+    def __init__(
+        self,
+        named: Mapping[str, Value],
+        environment: Mapping[str, str] = os.environ,
+        budget: TextBudget | None = None,
+    ) -> None:
         self._named, self._environment = named, environment
+        self.budget = TextBudget() if budget is None else budget
 
     def joined_by(self, more: Mapping[str, Value]) -> Values:
         """Give these and more; the new ones count where a name is the same."""
-        return Values({**self._named, **more}, self._environment)
+        return Values({**self._named, **more}, self._environment, self.budget)
 
     def get(self, name: str) -> Value | None:
         """Give what a name stands for, None if nothing."""
@@ -90,13 +97,17 @@ def filled(
     stand there. Braces around anything but a name stay as they are, so that JSON need not be written otherwise; in a
     text with `{{` somewhere, `{{` and `}}` are braces and all others stand for something.
     `steps` lead to the data, for the SubstitutionError that is raised for an unknown name. Keys that become others
-    are noted in `renamed`.
+    are noted in `renamed`. More text than `limits` allow is such an error, too.
     """
+    values.budget.begin()
+    return _filled(data, values, steps, as_text, renamed)
+
+
+def _filled(data: Any, values: Values, steps: Sequence[Step], as_text: bool, renamed: Renamed | None) -> Any:
     if isinstance(data, str):
         return _filled_text(data, values, steps, is_key=False, as_text=as_text)
     if isinstance(data, list):
-        each = enumerate(data)
-        return [filled(item, values, [*steps, at], as_text=as_text, renamed=renamed) for at, item in each]
+        return [_filled(item, values, [*steps, at], as_text, renamed) for at, item in enumerate(data)]
     if isinstance(data, dict):
         return _filled_mapping(data, values, steps, as_text, renamed)
     return data
@@ -120,14 +131,14 @@ def _filled_mapping(
         if name != key and renamed is not None:
             at = (*steps, name)
             renamed[at] = key
-        result[name] = filled(value, values, [*steps, key], as_text=as_text, renamed=renamed)
+        result[name] = _filled(value, values, [*steps, key], as_text, renamed)
     return result
 
 
 def _filled_text(text: str, values: Values, steps: Sequence[Step], *, is_key: bool, as_text: bool) -> Any:
-    if "$(" in text and (theirs := _ROS.search(text)):
-        instead = _ROS_MEANS[theirs[1]].format(theirs[2])
-        raise SubstitutionError(f"`{theirs[0]}` is ROS 2's: {instead}", steps, is_key)
+    _refuse_ros(text, steps, is_key)
+    if too_much := values.budget.take(len(text), is_new=False):
+        raise SubstitutionError(too_much, steps, is_key)
     if "{" not in text and "}" not in text:
         return text
     has_pairs = "{{" in text
@@ -136,6 +147,8 @@ def _filled_text(text: str, values: Values, steps: Sequence[Step], *, is_key: bo
         value = values.get(name)
         if value is None:
             raise SubstitutionError(values.why_not(name), steps, is_key)
+        if too_much := values.budget.take(len(value.text), is_new=True):
+            raise SubstitutionError(too_much, steps, is_key)
         return value
 
     def replaced(match: re.Match[str]) -> str:
@@ -150,6 +163,12 @@ def _filled_text(text: str, values: Values, steps: Sequence[Step], *, is_key: bo
     if whole and _is_name(whole[1]) and not as_text:
         return value_of(whole[1].strip()).data
     return (_BRACES if has_pairs else _IN_BRACES).sub(replaced, text)
+
+
+def _refuse_ros(text: str, steps: Sequence[Step], is_key: bool) -> None:
+    if "$(" in text and (theirs := _ROS.search(text)):
+        instead = _ROS_MEANS[theirs[1]].format(theirs[2])
+        raise SubstitutionError(f"`{theirs[0]}` is ROS 2's: {instead}", steps, is_key)
 
 
 def _is_name(text: str) -> bool:

@@ -1,0 +1,164 @@
+"""Files that a stranger may have written to fill the memory, to take for ever, or to be answered at length.
+
+`python -m tests.hostile_files` prints what each of them costs.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+MEASURE = """
+import json, subprocess, sys, time
+began = time.monotonic()
+done = subprocess.run(sys.argv[1:], stdin=subprocess.DEVNULL, capture_output=True, timeout=120)
+seconds = time.monotonic() - began
+try:
+    import resource
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / (1e6 if sys.platform == "darwin" else 1e3)
+except ImportError:  # Windows
+    peak = 0.0
+print(json.dumps([seconds, peak, done.returncode, done.stdout.decode(), done.stderr.decode()]))
+"""
+"""Runs a command from a small process: what it has in its memory counts for the command, too, until that begins."""
+
+
+class Hostile(NamedTuple):
+    """A file, the command that reads it, and what the answer must hold; `fill` gets the folder."""
+
+    fill: Callable[[Path], object]
+    words: tuple[str, ...]
+    answer: str
+    lines: int = 1
+
+
+class Answer(NamedTuple):
+    """What a command said, in how many seconds, and how many megabytes it had at most (0 where nobody knows)."""
+
+    seconds: float
+    megabytes: float
+    code: int
+    text: str
+
+
+def ask(hostile: Hostile, folder: Path) -> Answer:
+    """Write the file and run the command on it."""
+    hostile.fill(folder)
+    command = [sys.executable, "-m", "robolink", "--network", "off", *hostile.words]
+    done = subprocess.run(
+        [sys.executable, "-I", "-S", "-c", MEASURE, *command],
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        check=True,
+        timeout=150,
+    )
+    seconds, megabytes, code, out, err = json.loads(done.stdout)
+    return Answer(seconds, megabytes, code, err + out)
+
+
+def text(name: str, content: str) -> Callable[[Path], object]:
+    """Fill a folder with one file."""
+    return lambda folder: (folder / name).write_text(content, encoding="utf-8")
+
+
+def launch(content: str, answer: str, lines: int = 1, *, how: str = "--graph") -> Hostile:
+    return Hostile(text("a.yaml", content), ("launch", "./a.yaml", how), answer, lines)
+
+
+def _listed(item: str, count: int) -> str:
+    return "nodes:\n" + "".join(f"- {item.replace('#', str(number))}\n" for number in range(count))
+
+
+def _levels(last: str, way: Callable[[str], str]) -> str:
+    levels = "".join(f"  a{n}: {way(f'{{a{n - 1}}}')}\n" for n in range(1, 10))
+    return f"arguments:\n  a0: xxxxxxxxxx\n{levels}nodes: [{{node: world, {last}}}]\n"
+
+
+def _fan(folder: Path) -> None:
+    for level in range(9):
+        includes = ", ".join(f"{{file: f{level + 1}.yaml, namespace: n{each}}}" for each in range(10))
+        (folder / f"f{level}.yaml").write_text(f"include: [{includes}]")
+    (folder / "f9.yaml").write_text("nodes: [{node: world}]")
+
+
+def _empty_fan(folder: Path) -> None:
+    _fan(folder)
+    (folder / "f9.yaml").write_text("nodes: [{node: world, if: false}]")
+
+
+def _includes_fifo(folder: Path) -> None:
+    if sys.platform != "win32":
+        os.mkfifo(folder / "b.yaml")
+    (folder / "a.yaml").write_text("include: [{file: b.yaml}]")
+
+
+COUNTED = "{count: 100, namespace: 'n{i}', #}"
+GROUPS = COUNTED.replace("#", f"groups: [{COUNTED.replace('#', f'groups: [{COUNTED}]')}]")
+LAUNCH_FILES = {
+    "text that grows": launch(_levels("name: '{a9}'", lambda name: f'"{name * 10}"'), "more than 1,000,000 characters"),
+    "the same, looked at": launch(
+        _levels("name: '{a9}'", lambda name: f'"{name * 10}"'), "more than 1,000,000", 2, how="--validate"
+    ),
+    "lists that grow": launch(
+        _levels("parameters: {a: '{a9}'}", lambda name: "[" + f'"{name}",' * 10 + "]"), "more than 1,000,000 characters"
+    ),
+    "copies of a long text": launch(
+        f"nodes: [{{node: world, count: 900, name: 'w{{i}}', parameters: {{a: {'y' * 1_000_000}}}}}]",
+        "all texts together, with those of the copies, have more than 20,000,000 characters",
+    ),
+    "aliases of a long text": launch(
+        f"nodes: [{{node: world, parameters: {{a: &a {'y' * 4_000_000}, b: [{'*a, ' * 90_000}]}}}}]",
+        "all texts together",
+    ),
+    "300,000 lines": launch(_listed("node: world\n  name: a", 150_000), "a.yaml:40000:9: more than 100000 values"),
+    "30,000 equal names": launch(_listed("node: world", 30_000), "more than 1,000 processes"),
+    "1,000 equal names": launch(_listed("node: world", 1000), "and 979 more mistakes", 22, how="--validate"),
+    "30,000 unknown nodes": launch(_listed("node: x#", 30_000), "and 80 more mistakes", 22, how="--validate"),
+    "45,000 unknown keys": launch(
+        "nodes:\n- node: world\n" + "".join(f"  k{n}: 1\n" for n in range(45_000)), "unknown key 'k0' in a node"
+    ),
+    "45,000 parameters": launch(
+        "nodes:\n- node: world\n  parameters:\n" + "".join(f"    k{n}: 1\n" for n in range(45_000)),
+        "more than 10,000 parameters for one node",
+    ),
+    "45,000 remappings": launch(
+        "nodes:\n- node: world\n  remappings:\n" + "".join(f"    k{n}: k\n" for n in range(45_000)),
+        "more than 1,000 remappings",
+    ),
+    "a million copies": launch(
+        "groups: [" + GROUPS.replace("#", "nodes: [{node: world}]") + "]", "more than 1,000 processes"
+    ),
+    "a million copies of nothing": launch(
+        "groups: [" + GROUPS.replace("#", "nodes: [{node: world, if: false}]") + "]",
+        "more than 20,000 nodes, groups and includes",
+    ),
+    "a fan of includes": Hostile(_fan, ("launch", "./f0.yaml", "--graph"), "more than 1,000 processes"),
+    "a fan of nothing": Hostile(_empty_fan, ("launch", "./f0.yaml", "--graph"), "more than 2,000 files are included"),
+    "100,000 levels": launch("[" * 100_000, "nested more than 64 levels deep"),
+    "6 MB": launch("#" * 6_000_000, "it is longer than 5 MB"),
+    "an include of a FIFO": Hostile(
+        _includes_fifo, ("launch", "./a.yaml", "--graph"), "b.yaml: cannot be read: it is a FIFO, and no file"
+    ),
+}
+"""What launch files may do."""
+
+ALL = {**LAUNCH_FILES}
+
+
+def main() -> None:
+    """Print a table of what each file costs."""
+    for name, hostile in ALL.items():
+        with tempfile.TemporaryDirectory() as folder:
+            seconds, megabytes, code, said = ask(hostile, Path(folder))
+        lines = said.count("\n")
+        print(f"{name:28} {seconds:6.2f} s {megabytes:6.0f} MB {lines:3} lines, exit code {code}")  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()
