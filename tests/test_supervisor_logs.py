@@ -44,6 +44,26 @@ def test_a_run_has_a_folder_and_each_process_its_lines_as_they_came(tmp_path: Pa
     assert re.fullmatch(r"[\d-]+ [\d:.]+ b started\n", (folder / "launch.log").read_text())
 
 
+@posix_only
+def test_only_the_user_may_read_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(logs, "LARGEST", 3)
+    before = os.umask(0)
+    try:
+        run = opened(tmp_path / "new" / "log", "a")
+        run.line("a", b"long\n")
+        run.line("a", b"the next file\n")
+        run.close()
+    finally:
+        os.umask(before)
+    folder = folder_of(run)
+    rights = {each.name: oct(each.stat().st_mode & 0o777) for each in (folder.parent, folder, *folder.iterdir())}
+    assert rights == {
+        "log": "0o700",
+        folder.name: "0o700",
+        **dict.fromkeys(["launch.log", "a.log", "a.log.old"], "0o600"),
+    }
+
+
 @pytest.mark.parametrize(
     ("environ", "home"),
     [

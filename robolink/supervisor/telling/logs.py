@@ -2,6 +2,7 @@
 
 A folder is called by its time and what was launched (`2026-11-21_14-05-59_follow`), `latest` leads to the newest. In
 it `launch.log` holds what the launcher itself says, with its times, and NAME.log what a process printed, as it came.
+Nobody but the user may read them (on Windows the rights of the folder above count): nodes print what was sent to them.
 Old runs are removed; one that goes on is known by a lock on its launch.log.
 """
 
@@ -15,6 +16,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Mapping
+from io import FileIO
 from pathlib import Path
 from typing import BinaryIO
 
@@ -109,7 +111,7 @@ class _File:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._size = 0
-        self.file = path.open("wb", buffering=0)
+        self.file = _private(path)
 
     def write(self, line: bytes) -> None:
         if self._size > LARGEST:
@@ -130,7 +132,12 @@ class _File:
         except PermissionError:  # on Windows, while somebody reads it: then what was is lost, not what comes
             if sys.platform != "win32":
                 raise
-        self.file, self._size = self._path.open("wb", buffering=0), 0
+        self.file, self._size = _private(self._path), 0
+
+
+def _private(path: Path) -> FileIO:
+    """Open an empty file that only the user may read, without a moment in which others may."""
+    return FileIO(path, "w", opener=lambda name, flags: os.open(name, flags, 0o600))
 
 
 def file_names(names: list[str]) -> dict[str, str]:
@@ -165,13 +172,13 @@ def remove_old_runs(home: Path, kept: int) -> None:
 
 def _new_folder(home: Path, name: str) -> Path:
     try:
-        home.mkdir(parents=True, exist_ok=True)
+        home.mkdir(0o700, parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):
         raise NotADirectoryError(f"{home} is no folder: name one by ROBOLINK_LOG_DIR") from None
     for serial in range(1, 1000):
         folder = home / (name if serial == 1 else f"{name}_{serial}")
         with contextlib.suppress(FileExistsError):
-            folder.mkdir()
+            folder.mkdir(0o700)
             return folder
     raise FileExistsError(f"{home / name} is there, and so are a thousand more of this second")
 
