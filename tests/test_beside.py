@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 from robolink.exceptions import TransportError
 from robolink.transport import beside
+from robolink.transport.reach import port_of
 from robolink.transport.zenoh import ZenohTransport
 from tests.ports import free_port
 from tests.transports import GRAPH, until
@@ -71,8 +72,8 @@ def test_a_port_is_taken_while_somebody_listens() -> None:
 
 @given(st.text())
 def test_any_endpoint_has_a_port_or_none(text: str) -> None:
-    assert 0 <= beside.port_of(text) <= 99_999
-    assert beside.port_of(f"tcp/127.0.0.1:7447#{text}") == 7447
+    assert 0 <= port_of(text) <= 99_999
+    assert port_of(f"tcp/127.0.0.1:7447#{text}") == 7447
 
 
 @pytest.fixture
@@ -123,7 +124,7 @@ def test_a_stranger_on_the_port_is_named(shared: str, monkeypatch: pytest.Monkey
     monkeypatch.setattr("robolink.transport.zenoh.LINK_WITHIN", 0.1)
     (endpoint,) = json.loads(Path(shared).read_text())["listen"]["endpoints"]
     refusal = pytest.raises(TransportError, match=f"^{endpoint} is taken, and who listens there has not let this ")
-    with socket.create_server(("127.0.0.1", beside.port_of(endpoint))), refusal:
+    with socket.create_server(("127.0.0.1", port_of(endpoint))), refusal:
         ZenohTransport(0, shared, {})
 
 

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
-from robolink.transport.reach import host_of, mode_of, read, shown
+from robolink.transport.reach import host_of, mode_of, port_of, read, shown
 
 if TYPE_CHECKING:
     import zenoh
@@ -30,16 +30,6 @@ def fixed_listeners(config: zenoh.Config) -> list[str]:
         return []
     listed = read(config, "listen/endpoints") or ()
     return [each for each in listed if each.partition("/")[0] in _STREAMS and port_of(each) > 0]
-
-
-def port_of(endpoint: str) -> int:
-    """Give the port of an endpoint, 0 where there is none.
-
-    >>> port_of("tls/[::]:7447#iface=eth0")
-    7447
-    """
-    number = shown(endpoint).rpartition(":")[2]
-    return int(number) if number.isascii() and number.isdigit() and len(number) < 6 else 0
 
 
 def is_taken(endpoint: str) -> bool:

@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     import zenoh
 
+SECURED = ("tls/", "quic/")
+"""How endpoints begin that certificates belong to."""
+
 _LOCAL_PROTOCOLS = ("unixpipe", "unixsock-stream", "vsock")
 _LOOPBACK_INTERFACES = ("lo", "lo0")
 
@@ -32,6 +35,11 @@ class Reach(NamedTuple):
         if self.interfaces and set(self.interfaces) <= set(_LOOPBACK_INTERFACES):
             return False
         return bool(self.multicast) or not all(map(on_this_machine, (*self.connects, *self.listens)))
+
+    @property
+    def secured(self) -> bool:
+        """Whether it uses TLS for some of that."""
+        return any(each.startswith(SECURED) for each in (*self.connects, *self.listens))
 
     def __str__(self) -> str:
         if self.mode == "client" and self.connects:
@@ -116,6 +124,16 @@ def host_of(endpoint: str) -> str:
     """
     address = re.split(r"[#?]", endpoint.partition("/")[2])[0]
     return address.rpartition(":")[0].strip("[]")
+
+
+def port_of(endpoint: str) -> int:
+    """Give the port of an endpoint, 0 where there is none.
+
+    >>> port_of("tls/[::]:7447#iface=eth0")
+    7447
+    """
+    number = shown(endpoint).rpartition(":")[2]
+    return int(number) if number.isascii() and number.isdigit() and len(number) < 6 else 0
 
 
 def shown(endpoint: str) -> str:

@@ -21,11 +21,11 @@ import zenoh
 from robolink.exceptions import TransportError
 from robolink.qos import DurabilityPolicy, QoSProfile, resolved
 from robolink.queues import get_within
-from robolink.transport import beside, lifetime, network
+from robolink.transport import beside, certificates, lifetime, network
 from robolink.transport import zenoh_declare as declare
 from robolink.transport import zenoh_handles as handles
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample, refuse_giant
-from robolink.transport.reach import Link
+from robolink.transport.reach import Link, port_of
 
 QUIET = 0.03
 """Seconds without news after which no more peers are expected."""
@@ -260,21 +260,24 @@ def _join(domain: int, asked: str | None, environ: Mapping[str, str]) -> _Joined
     try:
         if network.meets_at_port(value, environ):
             return _meet(port, lambda holds_port: zenoh.open(load(holds_port=holds_port)))
-        return _listen_beside(functools.partial(load, holds_port=False))  # nobody looks for it at the rendezvous port
+        config = load(holds_port=False)  # nobody looks for it at the rendezvous port
+        if wrong := certificates.faults(config):
+            raise TransportError(f"cannot join the network '{value}': {'; '.join(wrong)}")
+        return _listen_beside(functools.partial(load, holds_port=False))
     except zenoh.ZError as error:
-        raise TransportError(f"cannot join the network '{value}': {network.reason(error)}") from None
+        reasons = [network.reason(error), *certificates.refusals(load(holds_port=False))]
+        raise TransportError(f"cannot join the network '{value}': {'; '.join(reasons)}") from None
 
 
 def _listen_beside(load: Callable[[], zenoh.Config]) -> _Joined:
     """Listen where a configuration says, or join the process of this machine that does so already."""
-    taken: list[str] = []
+    taken, refusals = list[str](), list[str]()
     for _ in range(2):  # twice, since another process may come first, or the holder leave in between
         config = load()
         fixed = beside.fixed_listeners(config)
-        claim = network.PortClaim(beside.port_of(fixed[0])) if fixed else None
+        claim = network.PortClaim(port_of(fixed[0])) if fixed else None
         taken = [each for each in fixed if (claim and not claim.granted) or beside.is_taken(each)]
-        if taken:
-            beside.step_aside(config, taken, network.OFTEN)
+        holders = beside.step_aside(config, taken, network.OFTEN) if taken else []
         with contextlib.ExitStack() as undo:
             if claim:
                 undo.callback(claim.release)
@@ -288,10 +291,10 @@ def _listen_beside(load: Callable[[], zenoh.Config]) -> _Joined:
                 undo.pop_all()
                 return _Joined(session, claim, bool(fixed) and not taken)
             lifetime.finish(functools.partial(_close, session), CLOSE_WITHIN)
-    raise TransportError(
-        f"{' and '.join(taken) or 'its port'} is taken, and who listens there has not let this process in: "
-        "stop it, or listen elsewhere in this process's configuration"
-    )
+            refusals = certificates.refusals(config, holders)
+    hint = "; ".join(refusals) or "stop it, or listen elsewhere in this process's configuration"
+    where = " and ".join(taken) or "its port"
+    raise TransportError(f"{where} is taken, and who listens there has not let this process in: {hint}")
 
 
 def _meet(port: int, open_session: Callable[[bool], zenoh.Session]) -> _Joined:

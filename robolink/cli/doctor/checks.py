@@ -105,6 +105,13 @@ def reach(facts: Facts) -> Verdict:
     return Verdict("", (), (f"{linked}, but nobody there has a node{hint}",))
 
 
+def certificates(facts: Facts) -> Verdict:
+    """Certificates, where the settings name some, are sound, and those who are connected to accept them."""
+    if not facts.reach.secured:
+        return Verdict("none are used with these settings")
+    return Verdict("sound, and nobody refuses them", facts.certificate_errors, facts.certificate_warnings)
+
+
 def _nobody(facts: Facts) -> str:
     """Say that other machines are asked for and none answers, and what to do."""
     settings, whom = facts.settings, facts.reach
@@ -239,6 +246,7 @@ CHECKS = (
     Check("settings", "network", settings),
     Check("loopback", "network", loopback),
     Check("reach", "network", reach),
+    Check("certificates", "network", certificates),
     Check("rendezvous", "network", rendezvous),
     Check("router", "network", router),
     Check("domains", "network", domains),

@@ -13,7 +13,7 @@ from typing import NamedTuple, TypeVar
 from robolink.cli.doctor.probes import Holder, Port, also_open_at, holder, listening, loopback_works, owner
 from robolink.context import LAST_DOMAIN
 from robolink.exceptions import TransportError
-from robolink.transport import lifetime, network
+from robolink.transport import certificates, lifetime, network
 from robolink.transport.reach import Link, Reach, reach
 from robolink.wire import EndpointToken, NodeToken
 
@@ -110,6 +110,9 @@ class Facts(NamedTuple):
     settings: Settings = Settings()
     reach: Reach = Reach()
     """Whom a session with these settings can meet."""
+    certificate_errors: tuple[str, ...] = ()
+    """What is wrong with the settings' certificates, and why others refuse them."""
+    certificate_warnings: tuple[str, ...] = ()
     loopback: bool = True
     router_port: int = 7447
     """Where a ROS 2 router listens."""
@@ -146,7 +149,7 @@ def gather() -> Facts:
         shared_memory=shared_memory(),
     )
     if settings.transport == "zenoh":
-        facts = _with_ports(facts)
+        facts = _with_certificates(_with_ports(facts))
     return _with_graph(facts)
 
 
@@ -239,6 +242,17 @@ def _with_ports(facts: Facts) -> Facts:
         router_open_at=also_open_at(router, ANSWER_WITHIN) if router and router.speaks_zenoh else (),
         router_owner=owner(facts.router_port) if router else "",
         far_router=_far_router(facts.settings.network),
+    )
+
+
+def _with_certificates(facts: Facts) -> Facts:
+    """Add what keeps a session with these settings out where TLS is used."""
+    if facts.settings.errors:
+        return facts
+    config = network.load(None, facts.settings.domain, os.environ)
+    errors = certificates.faults(config) or certificates.refusals(config)
+    return facts._replace(
+        certificate_errors=tuple(errors), certificate_warnings=tuple(certificates.doubts(config) if not errors else ())
     )
 
 

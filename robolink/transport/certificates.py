@@ -1,0 +1,244 @@
+"""Certificates of a Zenoh configuration (TLS): whether its files are sound, and why another session refuses them.
+
+Zenoh says "Timeout!" or nothing at all. Python's `ssl` shakes hands as Zenoh does, and tells the reason.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robolink.transport.reach import SECURED, host_of, mode_of, port_of, reach, read, shown
+
+if TYPE_CHECKING:
+    import ssl
+
+    import zenoh
+
+ANSWER_WITHIN = 1.0
+"""Seconds in which another side has to shake hands; over the slowest links it takes a tenth."""
+
+SILENT_FOR = 0.3
+"""Seconds without a refusal after which a certificate counts as taken: with TLS 1.3 it comes after the handshake."""
+
+MOST_ASKED = 4
+"""So many endpoints are asked why they refuse."""
+
+_NOT_YET, _EXPIRED = 9, 10
+"""OpenSSL's numbers for what is wrong with a certificate."""
+_WRONG_NAME = (62, 64)
+_SAID = {
+    "UNKNOWN_CA": "it does not trust the authority that signed {}",
+    "CERTIFICATE_EXPIRED": "it says that {} has expired",
+    "CERTIFICATE_REQUIRED": "it asks for a certificate: set enable_mtls, connect_certificate and connect_private_key",
+    "HANDSHAKE_FAILURE": "it asks for a certificate, or for another kind of TLS",
+    "WRONG_VERSION_NUMBER": "it does not speak TLS",
+}
+"""What the other side's refusals mean."""
+
+
+class Own(NamedTuple):
+    """A certificate by which a session proves who it is, and its key."""
+
+    used_to: str
+    """`listen` or `connect`: how the settings' names begin."""
+    certificate: str
+    key: str
+
+
+def uses_tls(config: zenoh.Config) -> bool:
+    """Whether a session with this configuration listens or connects by TLS."""
+    return reach(config).secured
+
+
+def faults(config: zenoh.Config) -> list[str]:
+    """List what is wrong with a configuration's own files, and would keep everybody out; nothing where no TLS is used.
+
+    A file that is not there or holds something else, a key that is another certificate's, and what is out of date.
+    """
+    if not uses_tls(config):
+        return []
+    return [*_faults_of_authority(config), *(fault for own in _own(config) for fault in _faults_of(own))]
+
+
+def doubts(config: zenoh.Config) -> list[str]:
+    """List what may keep others out: own certificates that the own authority has not signed.
+
+    It is right only where the other side trusts another authority.
+    """
+    authority = _settings(config)["root_ca_certificate"]
+    if not uses_tls(config) or not authority or faults(config):
+        return []
+    return [
+        f"{own.used_to}_certificate {own.certificate} is not signed by root_ca_certificate {authority}: "
+        "whoever has the same one refuses it"
+        for own in _own(config)
+        if _verified(own, authority) not in (0, _NOT_YET, _EXPIRED)
+    ]
+
+
+def refusals(config: zenoh.Config, endpoints: list[str] | None = None) -> list[str]:
+    """Shake hands at the endpoints that are connected to by TLS, and list the reasons of those where that fails.
+
+    `endpoints` are asked instead where they are given. Who does not listen at all is not listed.
+    """
+    asked = endpoints if endpoints is not None else read(config, "connect/endpoints") or ()
+    secured = [shown(each) for each in asked if each.startswith("tls/")][:MOST_ASKED]
+    answers = ((each, _refusal(config, each)) for each in secured)
+    return [f"{endpoint}: {answer}" for endpoint, answer in answers if answer]
+
+
+def _settings(config: zenoh.Config) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(config.get_json("transport/link/tls"))
+    return found
+
+
+def _own(config: zenoh.Config) -> Iterator[Own]:
+    """Give the certificates that a session with this configuration uses, as far as they are files."""
+    tls = _settings(config)
+    listens = mode_of(config) != "client" and any(
+        each.startswith(SECURED) for each in read(config, "listen/endpoints") or ()
+    )
+    for used_to, is_used in (("listen", listens), ("connect", tls["enable_mtls"])):
+        certificate, key = tls[f"{used_to}_certificate"], tls[f"{used_to}_private_key"]
+        if is_used and certificate and key:
+            yield Own(used_to, certificate, key)
+
+
+def _faults_of_authority(config: zenoh.Config) -> list[str]:
+    path = _settings(config)["root_ca_certificate"]
+    if not path:
+        return []
+    fault = _unreadable(path) or ("" if _holds_certificates(path) else "holds no certificate in PEM")
+    return [f"root_ca_certificate {path} {fault}"] if fault else []
+
+
+def _faults_of(own: Own) -> list[str]:
+    files = {f"{own.used_to}_certificate": own.certificate, f"{own.used_to}_private_key": own.key}
+    unreadable = [f"{name} {path} {fault}" for name, path in files.items() if (fault := _unreadable(path))]
+    if unreadable:
+        return unreadable
+    certificate, key = (" ".join(each) for each in files.items())
+    if not _holds_certificates(own.certificate):
+        return [f"{certificate} holds no certificate in PEM"]
+    import ssl
+
+    try:
+        _load(ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), own)
+    except ssl.SSLError as error:
+        is_others = error.reason == "KEY_VALUES_MISMATCH"
+        return [f"{key} {'is not the key of' if is_others else 'holds no private key in PEM for'} {own.certificate}"]
+    out_of_date = {_EXPIRED: "has expired", _NOT_YET: "is not valid yet (is this machine's clock right?)"}
+    code = _verified(own, own.certificate)
+    return [f"{certificate} {out_of_date[code]}"] if code in out_of_date else []
+
+
+def _unreadable(path: str) -> str:
+    try:
+        with Path(path).open("rb") as file:
+            file.read(1)
+    except FileNotFoundError:
+        return "is not there"
+    except (OSError, ValueError) as error:
+        return f"cannot be read: {getattr(error, 'strerror', None) or error}"
+    return ""
+
+
+def _holds_certificates(path: str) -> bool:
+    import ssl
+
+    try:
+        ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT).load_verify_locations(path)
+    except (ssl.SSLError, OSError):
+        return False
+    return True
+
+
+def _load(context: ssl.SSLContext, own: Own) -> None:
+    context.load_cert_chain(own.certificate, own.key, password=lambda: "")  # else it asks for one on the terminal
+
+
+def _verified(own: Own, authority: str) -> int:
+    """Shake hands with oneself: OpenSSL's number for what a certificate lacks to whoever trusts `authority`, else 0."""
+    import ssl
+
+    server, client = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    client.check_hostname = False
+    client.verify_mode = ssl.CERT_NONE
+    judge = client if own.used_to == "listen" else server
+    judge.verify_mode = ssl.CERT_REQUIRED
+    judge.verify_flags |= ssl.VERIFY_X509_PARTIAL_CHAIN  # so that a certificate can stand for its own authority
+    judge.load_verify_locations(authority)
+    for side in (server, client):
+        _load(side, own)
+    there, back = ssl.MemoryBIO(), ssl.MemoryBIO()
+    sides = (client.wrap_bio(back, there), server.wrap_bio(there, back, server_side=True))
+    try:
+        for end in sides * 4:
+            _step(end)
+    except ssl.SSLCertVerificationError as error:
+        return error.verify_code
+    except ssl.SSLError:
+        return -1
+    return 0
+
+
+def _step(end: ssl.SSLObject) -> None:
+    import contextlib
+    import ssl
+
+    with contextlib.suppress(ssl.SSLWantReadError):
+        end.do_handshake()
+
+
+def _refusal(config: zenoh.Config, endpoint: str) -> str:
+    """Shake hands with whoever listens there; give why that fails, or nothing."""
+    import socket
+    import ssl
+
+    tls, host = _settings(config), host_of(endpoint)
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    context.check_hostname = tls["verify_name_on_connect"] is not False
+    try:
+        if tls["root_ca_certificate"]:
+            context.load_verify_locations(tls["root_ca_certificate"])
+        else:
+            context.load_default_certs()
+        for own in _own(config):
+            if own.used_to == "connect":
+                _load(context, own)
+        connection = socket.create_connection((host, port_of(endpoint)), ANSWER_WITHIN)
+    except (OSError, UnicodeError):  # nobody is there, or `faults` has told of it
+        return ""
+    with connection:
+        return _handshake(context, connection, host, tls)
+
+
+def _handshake(context: ssl.SSLContext, connection: Any, host: str, tls: dict[str, Any]) -> str:
+    import ssl
+
+    try:
+        with context.wrap_socket(connection, server_hostname=host) as secured:
+            secured.settimeout(SILENT_FOR)
+            secured.recv(1)
+    except ssl.SSLCertVerificationError as error:
+        return _why_not_trusted(error, host, tls)
+    except ssl.SSLError as error:
+        refused = tls["connect_certificate"] or "this side"
+        meant = next((said for part, said in _SAID.items() if part in (error.reason or "")), "")
+        return meant.format(refused) or f"it refuses {refused} ({error.reason or error})"
+    except OSError:  # silent, as who is content is; or it has gone
+        return ""
+    return ""
+
+
+def _why_not_trusted(error: ssl.SSLCertVerificationError, host: str, tls: dict[str, Any]) -> str:
+    if error.verify_code in _WRONG_NAME:
+        return f"its certificate is not for {host}: connect by a name that it has, or set verify_name_on_connect: false"
+    if error.verify_code == _EXPIRED:
+        return "its certificate has expired"
+    if error.verify_code == _NOT_YET:
+        return "its certificate is not valid yet (is this machine's clock right?)"
+    return f"its certificate is not signed by {tls['root_ca_certificate'] or 'an authority that this system trusts'}"
