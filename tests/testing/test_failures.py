@@ -47,14 +47,14 @@ def test_no_story_is_buried_in_transforms(tested: System) -> None:
         "/tf_static": 1,
         "/diagnostics": 1,
     }
-    assert max(map(len, lines)) <= 150
+    assert max(map(len, lines)) <= 160
 
 
 def test_whoever_asks_for_transforms_is_shown_them(tested: System) -> None:
     tested.launch("follow")
     with pytest.raises(ExpectationError) as error:
         tested.expect("/tf", lambda message: not message.transforms, within=1.0)
-    assert sum(" /tf " in line for line in told(error)) == 8
+    assert sum(" s  /tf " in line for line in told(error)) == 8
 
 
 def test_a_topic_that_is_not_there_is_told_with_the_nearest(tested: System) -> None:
