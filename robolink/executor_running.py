@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 import threading
-import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import TracebackType
@@ -17,6 +16,7 @@ from robolink.impl.rcutils_logger import RcutilsLogger
 from robolink.logging import get_logger
 from robolink.task import Future, Task
 from robolink.task_runner import TaskRunner
+from robolink.tracebacks import formatted
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -146,8 +146,8 @@ class ExecutorRunning(ExecutorQueue):
         if isinstance(error, InvalidHandle) and not self._context.ok():
             return  # another thread has ended the context meanwhile
         error.__robolink_logged__ = True  # type: ignore[attr-defined]
-        text = "".join(traceback.format_exception(type(error), error, _of_the_user(error.__traceback__)))
-        _logger_of(entity).error(f"an exception in a callback ends the spinning:\n{text.rstrip()}")
+        text = formatted(error, _of_the_user(error.__traceback__))
+        _logger_of(entity).error(f"an exception in a callback ends the spinning:\n{text}")
 
     def _run_on(self, entity: Entity, coroutine: Any) -> None:
         """Run a callback that is a coroutine; its group is busy until it ends."""

@@ -155,11 +155,10 @@ def _refused(reason: str) -> SetParametersResult:
 
 def _failed(node: Node, parameters: Sequence[Parameter[Any]], error: Exception) -> SetParametersResult:
     """Answer for an exception while parameters were set; where it came after that, they stay set."""
-    import traceback
+    from robolink.tracebacks import formatted
 
     text = shown(f"{type(error).__name__}: {error}", 200)
-    trace = "".join(traceback.format_exception(type(error), error, error.__traceback__)).rstrip()
-    node.get_logger().error(f"a request to set parameters failed:\n{trace}")
+    node.get_logger().error(f"a request to set parameters failed:\n{formatted(error)}")
     is_set = all(node.get_parameter_or(each.name) is each for each in parameters)
     where = "it was set, and then a callback of the node's failed" if is_set else "a callback of the node's failed"
     return SetParametersResult(successful=is_set, reason=f"{where}: {text}")

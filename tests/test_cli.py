@@ -323,6 +323,14 @@ def test_an_error_in_the_users_code_is_shown_from_there_on(write: Write) -> None
     assert err.count("Traceback") == 1
 
 
+@pytest.mark.parametrize("where", ["        self.named()\n", "        self.create_timer(0.01, self.named)\n"])
+def test_a_misspelt_name_is_told_with_the_nearest(write: Write, where: str) -> None:
+    write("nodes/talker.py", TALKER + where + "    def named(self):\n        speed = 1\n        return sped\n")
+    code, _, err = outcome("run", "talker")
+    assert code == 1
+    assert err.splitlines()[-1] == "NameError: name 'sped' is not defined. Did you mean: 'speed'?"
+
+
 def test_what_the_users_code_asked_for_in_vain_is_told_with_its_line(write: Write) -> None:
     path = write("nodes/talker.py", TALKER + "        self.resolve_topic_name('a b')\n")
     line = path.read_text().count("\n")

@@ -503,3 +503,8 @@ def test_run_hides_a_real_rclpy_and_shows_what_is_missing(tmp_path: Path) -> Non
     assert (first, line.strip()) == ("Traceback (most recent call last):", "from rclpy.node import Nod")
     assert f'File "{bad}", line 3' in place
     assert last.endswith(f"{VERSION} has no rclpy.node.Nod (did you mean 'Node'?)")
+    assert err.count('  File "') == 1
+    bad.write_text("import cv_bridge\n")
+    code, out, err = python(*run, "run", str(bad), cwd=tmp_path, **path)
+    assert (code, out, err.count('  File "')) == (1, "", 1)
+    assert f"{VERSION} has no cv_bridge; numpy reads an Image" in err

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import threading
-import traceback
 from collections.abc import Callable
 from enum import Enum
 from typing import TYPE_CHECKING, Any
@@ -21,7 +20,6 @@ from robolink.entity import Entity
 from robolink.exceptions import (
     EncodeError,
     ExternalShutdownException,
-    ROSInterruptException,
     TransportClosedError,
     TransportError,
 )
@@ -33,6 +31,7 @@ from robolink.message import action_type as checked_action_type
 from robolink.publisher import Publisher
 from robolink.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from robolink.service import RequestHeader
+from robolink.tracebacks import formatted
 from robolink.waitable import Waitable
 
 if TYPE_CHECKING:
@@ -239,9 +238,7 @@ class ActionServer(Waitable):
             self._end(handle, self._action_type.Result())
             raise
         except Exception as error:  # noqa: BLE001 - the goal has failed, not the node
-            if not isinstance(error, ROSInterruptException) or self._node.context.ok():
-                text = "".join(traceback.format_exception(error)).rstrip()
-                self._logger.error(f"{self._named(handle)}: an exception in its execute callback\n{text}")
+            self._logger.error(f"{self._named(handle)}: an exception in its execute callback\n{formatted(error)}")
             self._end(handle, self._action_type.Result())
         else:
             self._end(handle, self._checked(handle, result))

@@ -8,7 +8,6 @@ import gc
 import os
 import signal
 import sys
-import traceback
 from collections.abc import Callable
 from pathlib import Path
 from types import FrameType, TracebackType
@@ -25,6 +24,7 @@ from robolink.exceptions import (
 from robolink.lacking import LackingNameError
 from robolink.signals import SignalHandlerOptions, get_current_signal_handlers_options
 from robolink.supervisor.processes.lifeline import watch_lifeline
+from robolink.tracebacks import formatted
 from robolink.workspace import (
     VARIABLE,
     NodeLoadError,
@@ -257,7 +257,18 @@ def _show(error: Exception) -> None:
     trace = error.__traceback__
     while trace is not None and _is_ours(trace):
         trace = trace.tb_next
-    traceback.print_exception(type(error), error, trace or error.__traceback__)
+    if isinstance(error, LackingNameError):
+        _end_in_users_code(trace)
+    print(formatted(error, trace), file=sys.stderr)  # noqa: T201
+
+
+def _end_in_users_code(trace: TracebackType | None) -> None:
+    """Leave out what has looked for a name in vain: the error tells what it found."""
+    last = trace
+    while trace is not None:
+        last, trace = last if _is_ours(trace) else trace, trace.tb_next
+    if last is not None:
+        last.tb_next = None
 
 
 def _is_logged(error: Exception) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import traceback
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from robolink.exceptions import ExternalShutdownException
@@ -13,6 +12,7 @@ from robolink.lifecycle.publisher import LifecyclePublisher
 from robolink.lifecycle.state_machine import LifecycleStateMachine, TransitionError
 from robolink.lifecycle.state_machine import TransitionCallbackReturn as TransitionCallbackReturn
 from robolink.node import Node
+from robolink.tracebacks import formatted
 
 if TYPE_CHECKING:
     from robolink.callback_groups import CallbackGroup
@@ -181,8 +181,8 @@ class LifecycleNodeMixin(ManagedEntity):
             return _checked(getattr(self, name)(before), name, self)
         except (ExternalShutdownException, KeyboardInterrupt):
             raise
-        except Exception:  # noqa: BLE001 - what a callback raises is what on_error is for
-            self._node_.get_logger().error(f"{name} failed:\n{traceback.format_exc().rstrip()}")
+        except Exception as error:  # noqa: BLE001 - what a callback raises is what on_error is for
+            self._node_.get_logger().error(f"{name} failed:\n{formatted(error)}")
             return TransitionCallbackReturn.ERROR
 
     def _tell_entities_(self, name: str, state: LifecycleState) -> TransitionCallbackReturn:

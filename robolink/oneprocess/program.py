@@ -5,7 +5,6 @@ from __future__ import annotations
 import signal
 import sys
 import threading
-import traceback
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
@@ -26,6 +25,7 @@ from robolink.oneprocess.chance import stream
 from robolink.oneprocess.executor import HostedExecutor
 from robolink.oneprocess.loading import load
 from robolink.oneprocess.parts import Killed
+from robolink.tracebacks import formatted
 from robolink.workspace import VARIABLE, NodeSource, workspace_of
 from robolink.workspace.making import check_needs_nothing, made
 
@@ -230,8 +230,7 @@ class Program:
         if isinstance(error, RobolinkError) and not isinstance(error, LackingNameError):
             return f"{self.name}: {error}"
         what = "raised" if self.has_begun or self.is_script else "raised while it was made"
-        text = "".join(traceback.format_exception(type(error), error, _of_the_user(error)))
-        return f"{self.name} {what}:\n{text.rstrip()}"
+        return f"{self.name} {what}:\n{formatted(error, _of_the_user(error))}"
 
     def _clear_away(self) -> None:
         """Destroy what it has, as `robolink run` does at its end."""

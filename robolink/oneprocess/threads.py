@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import threading
-import traceback
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
@@ -17,6 +16,7 @@ from robolink.exceptions import ExternalShutdownException
 from robolink.logging import get_logger
 from robolink.oneprocess.parts import Killed, Runner, Wait
 from robolink.oneprocess.places import frame_of, place_of
+from robolink.tracebacks import formatted
 
 if TYPE_CHECKING:
     from robolink.oneprocess.program import Program
@@ -48,8 +48,7 @@ def take_part(thread: threading.Thread, program: Program, start: Callable[[threa
         except BaseException as error:  # noqa: BLE001 - it ends this thread alone, as in every program
             if runner.killed:  # its locks are another's now, say
                 return
-            text = "".join(traceback.format_exception(type(error), error, error.__traceback__))
-            get_logger("robolink").error(f"a thread of {program.name} ended:\n{text.rstrip()}")
+            get_logger("robolink").error(f"a thread of {program.name} ended:\n{formatted(error)}")
         finally:
             runner.is_done = True
             turns.leave(runner)
