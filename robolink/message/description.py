@@ -124,7 +124,6 @@ def _plain(description: TypeDescription) -> dict[str, Any]:
 
 
 @once_per_type
-@once_per_type
 def has_buffer_fields(cls: type[Any]) -> bool:
     """Whether a message, or one inside it, has a field `uint8[]`: Lyrical sends such messages in another way.
 
@@ -137,6 +136,7 @@ def has_buffer_fields(cls: type[Any]) -> bool:
     )
 
 
+@once_per_type
 def type_hash(cls: type[Any]) -> str:
     """The RIHS01 hash of a message, service or action class."""
     return hash_of(described(cls))
