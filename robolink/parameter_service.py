@@ -48,12 +48,7 @@ class ParameterService:
             ("get_parameter_types", srv.GetParameterTypes, self._get_types, no_room),
             ("list_parameters", srv.ListParameters, self._list, no_room),
             ("set_parameters", srv.SetParameters, self._set_each, _refused_once),
-            (
-                "set_parameters_atomically",
-                srv.SetParametersAtomically,
-                self._set_all,
-                lambda reason: {"result": _refused(reason)},
-            ),
+            ("set_parameters_atomically", srv.SetParametersAtomically, self._set_all, _refused_all),
         ]
         for name, srv_type, answer, refusal in services:
             service = node.create_service(srv_type, f"~/{name}", answer, qos_profile=qos_profile_parameters)
