@@ -41,7 +41,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         callbacks = event_callbacks or PublisherEventCallbacks()
         self.event_handlers = callbacks.create_event_handlers(callback_group, self, topic)
         self._outlets = _Outlets(self._endpoint, qos_profile)
-        self._put, self._attachment = self._outlets.put, self._endpoint.attachment
+        self._put, self._attachment, self._lock = self._outlets.put, self._endpoint.attachment, self._outlets.lock
         self._endpoint.warns = warns_of_types(callbacks)
         self._endpoint.on_disagreement = self._on_disagreement
         self._endpoint.on_other = self._on_other
@@ -62,7 +62,8 @@ class Publisher(Destroyable, Generic[MsgT]):
             raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
         if self._destroyed:
             raise self._gone_(f"the publisher of {self.topic}")
-        self._put(payload, self._attachment())
+        with self._lock:  # or a thread could be overtaken by another between its number and its place on the wire
+            self._put(payload, self._attachment())
 
     @property
     def _used_in_(self) -> Context | None:
@@ -124,7 +125,8 @@ class _Outlets:
         first = self._transport.advertise(endpoint.key, qos)
         self._all = [first]
         self._closed = False
-        self._lock = threading.RLock()  # re-entrant: a signal handler that logs interrupts whoever publishes a log
+        self.lock = threading.RLock()  # re-entrant: a signal handler that logs interrupts whoever publishes a log
+        """Held where something is numbered and put, so that all is sent in the order of its numbers, as in ROS 2."""
         self._kept: deque[tuple[bytes, bytes]] | None = None
         self.put: Callable[[bytes, bytes], None] = first.put
         """Send a payload with its attachment; another function after `add`."""
@@ -136,7 +138,7 @@ class _Outlets:
     def add(self, key: str) -> None:
         """Send to this key too from now on, and at once what late joiners get."""
         outlet = self._transport.advertise(key, self._qos)
-        with self._lock:
+        with self.lock:
             for payload, attachment in self._kept or ():
                 outlet.put(payload, attachment)
             self._all = [*self._all, outlet]
@@ -151,9 +153,8 @@ class _Outlets:
 
     def _put_and_keep(self, payload: bytes, attachment: bytes) -> None:
         assert self._kept is not None
-        with self._lock:
-            self._kept.append((payload, attachment))
-            self._put_to_all(payload, attachment)
+        self._put_to_all(payload, attachment)  # first, since it may be refused
+        self._kept.append((payload, attachment))
 
     def close(self) -> None:
         """Send nothing any more."""

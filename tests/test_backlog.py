@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 
 from robolink import Context, Node
@@ -116,3 +118,26 @@ def test_a_message_without_ros_2s_attachment_is_refused_when_it_is_taken(
     MemoryTransport(bus=bus).advertise(subscription._endpoint.key, KEEP_ALL).put(encode(Int32()), b"nonsense")
     spin_for(executor, 0.1)
     assert (subscription.malformed, subscription.lost) == (1, 0)
+
+
+def test_a_thread_that_publishes_is_not_overtaken_between_a_number_and_the_wire(
+    node: Node, executor: SingleThreadedExecutor
+) -> None:
+    got: list[int] = []
+    subscription = node.create_subscription(Int32, "topic", lambda message: got.append(message.data), KEEP_ALL)
+    publisher = node.create_publisher(Int32, "topic", KEEP_ALL)
+    number = publisher._attachment
+    other = threading.Thread(target=lambda: publisher.publish(Int32(data=2)))
+
+    def be_slow() -> bytes:
+        attachment = number()
+        if not other.ident:
+            other.start()
+            other.join(0.2)  # it does not end before this message is sent
+        return attachment
+
+    publisher._attachment = be_slow
+    publisher.publish(Int32(data=1))
+    other.join()
+    spin_for(executor, 0.1)
+    assert (got, subscription.lost) == ([1, 2], 0)

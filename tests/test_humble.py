@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from robolink import Context, Node
+from robolink.exceptions import TransportError
 from robolink.executors import SingleThreadedExecutor
 from robolink.graph import Graph
 from robolink.humble import MOST_REMEMBERED, Copies, CopyError, DistroError, is_asked_for
@@ -19,7 +20,7 @@ from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.interfaces.std_srvs.srv import SetBool
 from robolink.message import decode, encode
 from robolink.qos import DurabilityPolicy, QoSProfile
-from robolink.transport import Sample, Transport
+from robolink.transport import Sample, Transport, base
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.wire import (
     NO_HASH,
@@ -169,6 +170,20 @@ def test_it_hears(peer: Peer, make_context: Callable[..., Context], first: str) 
         got += peer.received(1)
     assert got[-4:] == [2, 3, 4, 5]
     assert got == sorted(set(got))
+
+
+def test_a_message_that_was_refused_for_its_size_is_not_kept_for_one_that_comes_late(
+    bus: Bus, virtual: Context, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(base, "LARGEST_PAYLOAD", 100_000)
+    node, peer = Node("node", context=virtual), Peer(MemoryTransport(bus=bus))
+    publisher = node.create_publisher(Int32, "topic", LATCHED)
+    publisher.publish(Int32(data=1))
+    with pytest.raises(TransportError, match="100,001 bytes"):
+        publisher.publish(bytes(100_001))
+    peer.subscribe(LATCHED)
+    publisher.publish(Int32(data=2))
+    assert peer.received(2) == [1, 2]
 
 
 def test_one_that_only_listens_from_now_on_hears_too(peer: Peer, make_context: Callable[..., Context]) -> None:
