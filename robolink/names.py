@@ -41,7 +41,7 @@ _TOKEN_NUMBER = (r"(?:\A|/)([0-9])", "must not start with a number in any of its
 
 NODE_NAME_RULES = _rules(
     _EMPTY,
-    (r"[^A-Za-z0-9_]", "must not contain characters other than letters, digits and '_'"),
+    (r"[^A-Za-z0-9_]", "must not contain characters other than a-z, A-Z, digits and '_'"),
     (r"\A[0-9]", "must not start with a number"),
 )
 
@@ -49,7 +49,7 @@ FULL_NAME_RULES = _rules(
     _EMPTY,
     (r"\A[^/]", "must be absolute: begin with '/'"),
     _TRAILING_SLASH,
-    (r"[^A-Za-z0-9_/]", "must not contain characters other than letters, digits, '_' and '/'"),
+    (r"[^A-Za-z0-9_/]", "must not contain characters other than a-z, A-Z, digits, '_' and '/'"),
     (r"/(/)", "must not contain '//'"),
     _TOKEN_NUMBER,
 )
@@ -59,7 +59,7 @@ TOPIC_NAME_RULES = _rules(
     _TRAILING_SLASH,
     (
         r"[^A-Za-z0-9_/~{}]",
-        "must not contain characters other than letters, digits, '_', '/', '~', '{' and '}'",
+        "must not contain characters other than a-z, A-Z, digits, '_', '/', '~', '{' and '}'",
     ),
     (r"\{([0-9])", "must not start with a number in a substitution"),
     (r"\{[A-Za-z0-9_]*([/~{])", "must not contain '/', '~' or '{' within a substitution"),

@@ -116,6 +116,15 @@ def test_each_kind_of_name_has_its_own_error() -> None:
         validate_parameter_name("")
 
 
+@pytest.mark.parametrize(
+    "validate", [validate_node_name, validate_namespace, validate_topic_name, validate_full_topic_name]
+)
+def test_a_letter_with_an_accent_is_told_which_letters_would_do(validate: Callable[[str], object]) -> None:
+    name = "robô" if validate in {validate_node_name, validate_topic_name} else "/robô"
+    with pytest.raises(NameValidationException, match=r"must not contain characters other than a-z, A-Z, digits"):
+        validate(name)
+
+
 @given(rough, st.sampled_from([validate_node_name, validate_namespace, validate_topic_name, validate_full_topic_name]))
 def test_validation_raises_nothing_but_its_error_and_points_into_the_name(name: str, validate: Validate) -> None:
     with suppress(NameValidationException):

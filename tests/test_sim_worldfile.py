@@ -184,7 +184,7 @@ BAD = {
     SENSOR % "lidar: scan, imu: imu": "1:44: robots[0].sensors[0]: one sensor cannot be both lidar and imu",
     ROBOT % "sensors: [scan]": "1:44: robots[0].sensors[0]: expected a mapping such as {lidar: scan}, got 'scan'",
     SENSOR % "lidar: 3": "1:52: robots[0].sensors[0].lidar: expected str, got '3'",
-    SENSOR % "lidar: 'my scan'": "1:52: robots[0].sensors[0].lidar: 'my scan' is no name: letters, digits and '_'",
+    SENSOR % "lidar: 'my scan'": "1:52: robots[0].sensors[0].lidar: 'my scan' is no name: a-z, A-Z, digits and '_'",
     SENSOR % "lidar: scan}, {imu: scan": "1:65: robots[0].sensors[1].imu: two sensors publish on 'scan': give this one",
     SENSOR % "lidar: odom": "sensors[0].lidar: the simulation itself has a topic 'odom': take another name",
     ROBOT % "wheels: [{motor: a, at: [0, 0.1]}, {motor: b, at: [0, -0.1]}], sensors: [{lidar: joint_states}]": (

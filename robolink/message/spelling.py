@@ -18,10 +18,10 @@ LONGEST = 255
 """Characters in a name; rosidl's own limit (HashedTypeDescription.schema.json)."""
 
 RIGHT = {
-    "package": "lower case letters, digits and single underscores, as in my_robot_msgs",
-    "type": "CamelCase letters and digits, as in WheelSpeeds",
-    "field": "lower case letters, digits and single underscores, as in max_speed",
-    "constant": "upper case letters, digits and single underscores, as in MAX_SPEED",
+    "package": "a-z, digits and single underscores, as in my_robot_msgs",
+    "type": "CamelCase of A-Z, a-z and digits, as in WheelSpeeds",
+    "field": "a-z, digits and single underscores, as in max_speed",
+    "constant": "A-Z, digits and single underscores, as in MAX_SPEED",
 }
 
 
@@ -29,7 +29,7 @@ def wrong_name(what: str, name: str) -> str:
     """Say what is wrong with the name of a `what` (a key of PATTERNS); '' when it is right.
 
     >>> wrong_name("field", "maxSpeed")
-    "'maxSpeed' is no field name: lower case letters, digits and single underscores, as in max_speed"
+    "'maxSpeed' is no field name: a-z, digits and single underscores, as in max_speed"
     """
     if len(name) > LONGEST:
         return f"'{shown(name)}' is {len(name)} characters long; a name has at most {LONGEST}"

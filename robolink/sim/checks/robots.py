@@ -64,7 +64,7 @@ def robot_problems(robot: RobotDescription, dt: float) -> Iterator[Problem]:
 
 
 def _bad_name(name: str) -> str:
-    return f"'{shown(name)}' is no name: letters, digits and '_', a letter first, {_LONGEST_NAME} at most"
+    return f"'{shown(name)}' is no name: a-z, A-Z, digits and '_', a letter first, {_LONGEST_NAME} at most"
 
 
 def _outline_problems(robot: RobotDescription) -> Iterator[Problem]:
