@@ -69,3 +69,19 @@ def test_nothing_is_asked_of_a_package_index_where_robolink_is_not() -> None:
     found = [each for text in texts for each in re.findall(r"pip install [^`#\n]*", text.read_text(encoding="utf-8"))]
     assert len(found) > 5
     assert [each for each in found if re.search(r"(?<![/.\w])robolink\b(?! @ git\+)", each)] == []
+
+
+def typed(text: str) -> list[str]:
+    """What a page has its readers type: the lines of its shells, and commands between backquotes."""
+    blocks = "".join(re.findall(r"```(?:sh|console)\n(.*?)```", text, re.DOTALL)).splitlines()
+    prompted = [each.removeprefix("$ ") for each in blocks if each.startswith(("$ ", "robolink ", "ros2 ", "pip "))]
+    return prompted + re.findall(r"`((?:robolink|topic|pytest|pip|ros2|service|param|plot|action) [^`]+)`", text)
+
+
+def test_what_is_typed_means_the_same_in_zsh() -> None:
+    """It takes brackets and stars for patterns of file names, and gives up where no file fits."""
+    pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    commands = [each for page in pages for each in typed(page.read_text(encoding="utf-8"))]
+    assert len(commands) > 50
+    unquoted = {each: re.sub(r"'[^']*'|\"[^\"]*\"|#.*", "", each) for each in commands}
+    assert [each for each, bare in unquoted.items() if re.search(r"[\[\]*?]", bare)] == []

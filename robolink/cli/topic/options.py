@@ -70,7 +70,7 @@ NodeName = Annotated[str, typer.Option("--node-name", "-n", metavar="NAME", help
 
 OneMessage = Annotated[bool, _flag("--once", help="Show one message and end.")]
 Timeout = Annotated[float | None, seconds("--timeout", "End after so many seconds.")]
-Field = Annotated[str, typer.Option("--field", metavar="A.B", help="Show only this field: linear.x, ranges[0].")]
+Field = Annotated[str, typer.Option("--field", metavar="A.B", help="Show only this field: linear.x, 'ranges[0]'.")]
 Csv = Annotated[bool, _flag("--csv", help="All values of a message in a line, between commas.")]
 Raw = Annotated[bool, _flag("--raw", help="The bytes as they came.")]
 MessageInfo = Annotated[bool, _flag("--include-message-info", "-i", help="Also when each was sent.")]
