@@ -15,6 +15,7 @@ from robolink.action.results import Results
 from robolink.action.server_goal_handle import ServerGoalHandle as ServerGoalHandle
 from robolink.action.states import GoalEvent as GoalEvent
 from robolink.action.states import RCLError as RCLError
+from robolink.action.statuses import Statuses
 from robolink.callback_groups import CallbackGroup
 from robolink.entity import Entity
 from robolink.exceptions import (
@@ -23,7 +24,7 @@ from robolink.exceptions import (
     TransportClosedError,
     TransportError,
 )
-from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
+from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatus
 from robolink.interfaces.action_msgs.srv import CancelGoal
 from robolink.interfaces.unique_identifier_msgs.msg import UUID
 from robolink.message import Message, encode
@@ -111,6 +112,7 @@ class ActionServer(Waitable):
         self._lock = threading.RLock()
         """Guards the goals and their states."""
         self._goal_handles: dict[bytes, ServerGoalHandle] = {}
+        self._encoded = Statuses()
         self._destroyed = False
         self._executions = Executions(self._execute_goal)
         self._results = Results(self._answer_result, self._forget, result_timeout, self.callback_group, node)
@@ -182,6 +184,7 @@ class ActionServer(Waitable):
             stamp = self._node.get_clock().now().to_msg()
             handle = ServerGoalHandle(self, GoalInfo(goal_id=goal_id, stamp=stamp), goal)
             self._goal_handles[key] = handle
+            self._encoded.put(handle._goal_info, handle.status)
             self._results.expect(key)
             self._publish_status()
         return handle
@@ -276,6 +279,7 @@ class ActionServer(Waitable):
         """Be told that a goal's result has expired."""
         with self._lock:
             self._goal_handles.pop(key).destroy()
+            self._encoded.drop(key)
 
     # Topics
 
@@ -283,13 +287,18 @@ class ActionServer(Waitable):
         return [GoalStatus(goal_info=each._goal_info, status=each.status) for each in self._goal_handles.values()]
 
     def _publish_status(self) -> None:
-        self._publish(self._status, GoalStatusArray(status_list=self._statuses()))
+        self._publish(self._status, self._encoded.message())
+
+    def _note_status(self, handle: ServerGoalHandle) -> None:
+        """Be told that a goal is in another state."""
+        self._encoded.put(handle._goal_info, handle.status)
+        self._publish_status()
 
     def _publish_feedback(self, goal_id: UUID, feedback: Message) -> None:
         message = self._action_type.Impl.FeedbackMessage(goal_id=goal_id, feedback=feedback)
         self._publish(self._feedback, message)
 
-    def _publish(self, publisher: Publisher[Any], message: Message) -> None:
+    def _publish(self, publisher: Publisher[Any], message: Message | bytes) -> None:
         with contextlib.suppress(TransportClosedError):  # the context ends just now
             publisher.publish(message)
 

@@ -95,8 +95,8 @@ class ServerGoalHandle:
             if self._destroyed:
                 return
             self._status = next_status(self._status, event)
-            server._publish_status()
-            if not self.is_active:
+            server._note_status(self)
+            if not (self.is_active or self._executed):
                 server.notify_goal_done()
 
     def destroy(self) -> None:
