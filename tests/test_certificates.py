@@ -6,7 +6,7 @@ import json
 import shutil
 import subprocess
 from collections.abc import Iterator
-from contextlib import closing
+from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import Any
 
@@ -172,10 +172,17 @@ def test_who_speaks_no_tls_says_so_or_nothing(lab: Lab) -> None:
 
 
 @pytest.mark.usefixtures("patient_looks")
-def test_one_file_with_certificates_serves_all_processes(robot: ZenohTransport, lab: Lab) -> None:
-    with closing(ZenohTransport(0, lab.file("peer"), {})) as second:
-        second.announce("@ros2_lv/0/second")
-        until(lambda: robot.tokens(GRAPH) == ["@ros2_lv/0/second"])
+@pytest.mark.parametrize("host", ["127.0.0.1", "0.0.0.0"])
+def test_one_file_with_certificates_serves_all_processes(lab: Lab, host: str) -> None:
+    """Each is linked to each, though the certificate names the loopback's address only."""
+    path = Path(lab.file("peer"))
+    path.write_text(path.read_text().replace("tls/127.0.0.1", f"tls/{host}"))
+    all_of_them = [f"@ros2_lv/0/{number}" for number in range(4)]
+    with ExitStack() as stack:
+        sessions = [stack.enter_context(closing(ZenohTransport(0, str(path), {}))) for _ in all_of_them]
+        for session, token in zip(sessions, all_of_them, strict=True):
+            session.announce(token)
+        until(lambda: all(session.tokens(GRAPH) == all_of_them for session in sessions))
 
 
 def test_a_process_that_is_not_let_in_says_why(
@@ -190,6 +197,8 @@ def test_a_process_that_is_not_let_in_says_why(
 def test_doctor_tells_of_certificates(
     lab: Lab, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    monkeypatch.setattr("robolink.transport.zenoh.LINK_WITHIN", 0.1)
+
     def verdict(path: str) -> dict[str, Any]:
         monkeypatch.setenv("ROBOLINK_NETWORK", path)
         main(["doctor", "--json"])

@@ -60,7 +60,7 @@ def step_aside(config: zenoh.Config, taken: Collection[str], retry: str) -> list
     `retry` is what Zenoh's endpoints say of how often to try again. Gives the endpoints that it will connect to.
     """
     listed = read(config, "listen/endpoints")
-    free = [_with_port(each, 0) if each in taken else each for each in listed]
+    free = [free for each in listed for free in (_instead(each) if each in taken else [each])]
     holders = [_from_here(each) for each in taken]
     sought = [*(f"{each}#{retry}" for each in holders), *(read(config, "connect/endpoints") or ())]
     config.insert_json5("listen/endpoints", json.dumps(list(dict.fromkeys(free))))
@@ -68,9 +68,12 @@ def step_aside(config: zenoh.Config, taken: Collection[str], retry: str) -> list
     return holders
 
 
-def _with_port(endpoint: str, port: int) -> str:
+def _instead(endpoint: str) -> list[str]:
+    """Give the endpoints on which to listen instead: of the loopback too, since certificates name 127.0.0.1 at best."""
     address = shown(endpoint)
-    return f"{address.rpartition(':')[0]}:{port}{endpoint[len(address) :]}"
+    wildcard = host_of(endpoint) in _ANYWHERE
+    places = [address, _from_here(endpoint)] if wildcard else [address]
+    return [f"{each.rpartition(':')[0]}:0{endpoint[len(address) :]}" for each in places]
 
 
 def _from_here(endpoint: str) -> str:
