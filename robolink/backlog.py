@@ -6,20 +6,23 @@ its publishers' numbers, and says once that there are some; and it says when mor
 
 from __future__ import annotations
 
+import contextlib
+import itertools
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
+from robolink.exceptions import WireError
 from robolink.wire import Attachment, unpack_attachment
 
 MOST_SENDERS = 1000
 """Publishers of a topic whose messages are looked at for gaps."""
 
 MANY_WAIT = 1000
-"""Messages that wait when the first warning comes; each next one comes at ten times as many."""
+"""Messages that wait at least when the first warning comes; each next one comes at ten times as many."""
 
 TOO_OLD_NS = 1_000_000_000
-"""Nanoseconds between the first and the last that wait: less is a burst, and no reason to warn."""
+"""Nanoseconds that the first of them has waited, and that so many have: less is a burst, and no reason to warn."""
 
 
 class Gaps:
@@ -48,12 +51,17 @@ class Gaps:
 
 
 class Backlog:
-    """Looks at what is delivered, in its order, and has warnings ready for whoever takes it."""
+    """Looks at what is delivered, in its order, and has warnings ready for whoever takes it.
 
-    def __init__(self, topic: str, gaps: Gaps) -> None:
+    `steady` gives the nanoseconds of a clock that only goes forward.
+    """
+
+    def __init__(self, topic: str, gaps: Gaps, steady: Callable[[], int]) -> None:
         self._topic = topic
         self._gaps = gaps
+        self._steady = steady
         self._warns_at = MANY_WAIT
+        self._many_since: int | None = None
         self.lost = 0
         """Messages that were published and did not arrive, as far as the numbers of later ones tell."""
         self.warnings: deque[str] = deque()
@@ -68,8 +76,10 @@ class Backlog:
         missing = self._gaps.before(sender)
         if missing:
             self._count(missing)
-        if len(waiting) >= self._warns_at:
-            self._look_at_age(sender.timestamp, waiting)
+        if len(waiting) < MANY_WAIT:
+            self._many_since = None
+        elif len(waiting) >= self._warns_at:
+            self._look_at_time(sender, waiting)
         return missing
 
     def _count(self, missing: int) -> None:
@@ -80,11 +90,30 @@ class Backlog:
             )
         self.lost += missing
 
-    def _look_at_age(self, newest: int, waiting: deque[Any]) -> None:
-        age = newest - unpack_attachment(waiting[0].attachment).timestamp
-        if age >= TOO_OLD_NS:
-            self._warns_at = 10 * len(waiting)
-            self.warnings.append(
-                f"{self._topic}: the callback does not keep up: {len(waiting)} messages wait, the first of them since"
-                f" {age / 1e9:.1f} s, and KEEP_ALL keeps them all: make the callback faster, or use KEEP_LAST"
-            )
+    def _look_at_time(self, newest: Attachment, waiting: deque[Any]) -> None:
+        """Warn if many have waited for long: also by our own clock, as a process that stood still gets all at once."""
+        now = self._steady()
+        if self._many_since is None:
+            self._many_since = now
+        elif now - self._many_since >= TOO_OLD_NS:
+            self._many_since = now
+            age = _age(newest, waiting)
+            if age >= TOO_OLD_NS:
+                self._warns_at = 10 * len(waiting)
+                self._warn_of(len(waiting), age)
+
+    def _warn_of(self, many: int, age: int) -> None:
+        self.warnings.append(
+            f"{self._topic}: the callback does not keep up: {many} messages wait, the first of them since"
+            f" {age / 1e9:.1f} s, and KEEP_ALL keeps them all: make the callback faster, or use KEEP_LAST"
+        )
+
+
+def _age(newest: Attachment, waiting: Iterable[Any]) -> int:
+    """Nanoseconds between the newest and the first of its sender that waits: two senders' clocks may differ."""
+    for each in itertools.islice(waiting, MANY_WAIT):
+        with contextlib.suppress(WireError):
+            sender = unpack_attachment(each.attachment)
+            if sender.gid == newest.gid:
+                return newest.timestamp - sender.timestamp
+    return 0

@@ -94,7 +94,7 @@ class Subscription(Receiver, Generic[MsgT]):
         self._handles: list[Handle] = []
         self._backlog: Backlog | None = None
         if depth == 0:
-            self._backlog, self.straight = Backlog(topic, self._make_gaps()), False
+            self._backlog, self.straight = Backlog(topic, self._make_gaps(), owner.context.time.steady), False
         self._listen_for_events(event_callbacks or SubscriptionEventCallbacks())
         self._endpoint.speak_humble = self._speak_humble
         for key in filter(None, (self._endpoint.key, self._endpoint.buffer_key)):
@@ -133,7 +133,8 @@ class Subscription(Receiver, Generic[MsgT]):
     def execute(self, taken: Any) -> Any:
         """Decode what arrived and call the callback; what cannot be decoded is counted, and warned about once."""
         if self._backlog is not None and self._backlog.warnings:
-            get_logger(self.logger_name).warning(self._backlog.warnings.popleft())
+            with contextlib.suppress(IndexError):  # another thread of a reentrant group was faster
+                get_logger(self.logger_name).warning(self._backlog.warnings.popleft())
         try:
             payload, attachment = self._read(taken)
             if len(attachment) != ATTACHMENT_BYTES or attachment[16] != 16:
