@@ -112,11 +112,13 @@ def test_it_does_not_where_that_is_not_wanted(
 def test_a_process_that_cannot_begin_anew_goes_on(
     begun: list[tuple[list[str], str]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(*_: object) -> None:
+    def fail(command: list[str], environ: dict[str, str]) -> None:
+        begun.append((command, environ[hashing.SEED]))
         raise FileNotFoundError
 
     monkeypatch.setattr(hashing, "_become", fail)
     hashing.begin_steadily(["simulate", "follow"])
+    assert len(begun) == 1, "nothing was begun, so nothing failed"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no becoming another process")
