@@ -77,9 +77,11 @@ def test_what_nobody_knows_is_no_program_of_ros_2() -> None:
     assert isinstance(ros_program_error("tf2_ros", "x"), RosProgramError)
 
 
-@pytest.mark.parametrize("advice", ADVICE)
+@pytest.mark.parametrize("advice", [each for each in ADVICE if "'robolink " in each or "docs/" in each])
 def test_what_is_advised_is_there(advice: str, capsys: Captured) -> None:
-    for command in re.findall(r"'robolink ([^']+)'", advice):
+    commands, pages = re.findall(r"'robolink ([^']+)'", advice), re.findall(r"docs/\w+\.md", advice)
+    assert commands or pages, "it advises nothing that can be looked for"
+    for command in commands:
         words = [each for each in shlex.split(command) if each.isalpha() and each.islower()]
         verbs = 2 if words[0] in {"plot", "tf", "topic", "world"} else 1
         assert main([*words[:verbs], "--help"]) == 0
@@ -89,7 +91,7 @@ def test_what_is_advised_is_there(advice: str, capsys: Captured) -> None:
         for flag in re.findall(r"--\w+", command):
             main([*words[:verbs], "--help"])
             assert flag in capsys.readouterr().out
-    for page in re.findall(r"docs/\w+\.md", advice):
+    for page in pages:
         assert (DOCS.parent / page).is_file()
 
 
