@@ -52,7 +52,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         """Send a message, or one that is serialized already, to all subscriptions.
 
         Raises EncodeError (a TypeError and ValueError) that names the field which does not fit, TypeError for a
-        message of another type, InvalidHandle after `destroy`.
+        message of another type, InvalidHandle after `destroy`, TransportError for more than 1 GiB.
         """
         if isinstance(msg, self.msg_type):
             payload = self._encode(msg)

@@ -88,7 +88,7 @@ class MemoryTransport(Transport):
         refuse_giant(key, payload)
         with self._declaring():
             servers = self.bus.servers.get(key, ())
-            call = _Call(self.bus, sink, len(servers))
+            call = _Call(self.bus, key, sink, len(servers))
             self._calls.add(call)
             for server in servers:
                 server.ask(_Query(payload, attachment, call))
@@ -233,8 +233,8 @@ class _Server(_Declared):
 class _Call:
     """A call under way: ends when every server has closed its query, or when the caller gives up."""
 
-    def __init__(self, bus: Bus, sink: Sink, servers: int) -> None:
-        self.bus, self._waiting = bus, servers
+    def __init__(self, bus: Bus, key: str, sink: Sink, servers: int) -> None:
+        self.bus, self.key, self._waiting = bus, key, servers
         self._sink: Sink | None = sink
         self.abandoned: list[_Query] = []  # held by whoever waits, and forgotten with the wait
         if not servers:
@@ -267,7 +267,7 @@ class _Query:
         self._call, self._open = call, True
 
     def reply(self, payload: bytes, attachment: bytes) -> None:
-        refuse_giant("the answer to a call", payload)
+        refuse_giant(f"the answer to a call of {self._call.key}", payload)
         with self._call.bus.lock:
             if self._open:
                 self._call.give(Sample(payload, attachment))

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
 import zenoh
 
 from robolink.exceptions import TransportClosedError, TransportError, shown
+from robolink.logging import get_logger
 from robolink.transport import lifetime
 from robolink.transport.base import Sample, Sink, refuse_giant
-from robolink.transport.network import reason
+from robolink.transport.network import LONGEST_WAIT, reason
 from robolink.transport.zenoh_declare import Publishers, close_gate, is_matching, quietly
 
 LARGE = 32 * 1024
@@ -117,11 +119,12 @@ class _Gone:
 class ZenohOutlet(Declared):
     """A publisher."""
 
-    __slots__ = ("_asked", "_key", "_topic")
+    __slots__ = ("_asked", "_has_told", "_key", "_topic")
 
     def __init__(self, holdings: Holdings, key: str, publishers: Publishers) -> None:
         # First, since it may be shut from the moment on that the session has it.
         self._key, self._topic, self._asked = key, holdings.topic(key), publishers.asked
+        self._has_told = False
         super().__init__(holdings, publishers.used)
 
     def put(self, payload: bytes, attachment: bytes) -> None:
@@ -135,15 +138,27 @@ class ZenohOutlet(Declared):
             for sink in sinks:
                 sink(sample)
         if not large or self._worth_a_copy():
+            begin = time.monotonic() if large else 0.0
             try:
                 self._entity.put(payload, attachment=attachment)
             except zenoh.ZError as error:
                 raise self._holdings.failure(self._key, error) from None
+            if large and time.monotonic() - begin >= LONGEST_WAIT:
+                self._tell_of_no_room(len(payload))
 
     @property
     def matched(self) -> bool:
         """Whether anybody subscribes, here or elsewhere, as far as is known."""
         return bool(self._topic.sinks) or is_matching(self._asked)
+
+    def _tell_of_no_room(self, size: int) -> None:
+        """Warn, once: Zenoh does not say that it has dropped something, and who is to get it may never get anything."""
+        if not self._has_told:
+            self._has_told = True
+            get_logger("robolink.transport").warning(
+                f"{self._key[:200]}: a message of {size:,} bytes waited {LONGEST_WAIT:g} s for room and may not arrive:"
+                " a subscriber's link is too slow for messages of this size, or it stands still (said once)"
+            )
 
     def _worth_a_copy(self) -> bool:
         keeps_for_late_joiners = self._entity is not self._asked
@@ -240,7 +255,7 @@ class ZenohQuery:
 
     def reply(self, payload: bytes, attachment: bytes) -> None:
         """Answer, from any thread. Nothing happens when the caller is gone. Raises TransportError for giants."""
-        refuse_giant("the answer to a call", payload)
+        refuse_giant(f"the answer to a call of {self._key}", payload)
         quietly(lambda: self._raw.reply(self._key, payload, attachment=attachment))
 
     def close(self) -> None:
