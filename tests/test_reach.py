@@ -9,7 +9,8 @@ import zenoh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.transport import network
+from robolink.exceptions import TransportError
+from robolink.transport import beside, certificates, network
 from robolink.transport.reach import Link, Reach, host_of, on_this_machine, reach
 
 ROBOT = 'connect/endpoints=["tcp/robot:7447#so_sndbuf=8192"]'
@@ -60,6 +61,27 @@ def test_any_endpoint_can_be_looked_at(text: str) -> None:
     host_of(text)
     assert not on_this_machine(f"tcp/10.0.0.1:7447?{text}")
     assert on_this_machine(f"tcp/127.0.0.1:7447#{text}")
+
+
+PATHS = ("mode", "connect", "connect/endpoints", "listen/endpoints", "access_control", "transport/link/tls")
+VALUES = (
+    *("null", "[]", "{}", "true", '"client"', '"nonsense"', "['x']", "['tls/']", "{peer: null}", "[{id: 'a'}]"),
+    *("{endpoints: {peer: ['tcp/1:1'], router: []}}", "{enabled: true, subjects: [{id: 'a'}]}"),
+)
+
+
+@given(st.one_of(st.text(), st.builds("{}={}".format, st.sampled_from(PATHS), st.sampled_from(VALUES))))
+def test_any_override_is_read_or_refused_in_a_line(override: str) -> None:
+    try:
+        config = network.load(None, 0, {"ZENOH_CONFIG_OVERRIDE": override})
+    except TransportError as error:
+        said = str(error)
+    else:
+        said = str(reach(config))
+        assert certificates.doubts(config) == []
+        beside.fixed_listeners(config)
+    assert said
+    assert "\n" not in said
 
 
 def test_a_link_to_an_own_address_stays_on_this_machine() -> None:

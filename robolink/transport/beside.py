@@ -8,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import errno
 import json
-import socket
 import sys
 from collections.abc import Collection
 from typing import TYPE_CHECKING
@@ -34,6 +33,8 @@ def fixed_listeners(config: zenoh.Config) -> list[str]:
 
 def is_taken(endpoint: str) -> bool:
     """Whether somebody listens there already; not so for what is no address of this machine."""
+    import socket  # late: it costs every node's start 2 ms
+
     try:
         found = socket.getaddrinfo(host_of(endpoint), port_of(endpoint), type=socket.SOCK_STREAM)
     except (OSError, UnicodeError):

@@ -297,8 +297,9 @@ def _overrides(environ: Mapping[str, str]) -> list[tuple[str, str]]:
 
 
 def _network_of_overrides(environ: Mapping[str, str]) -> str:
-    """Give those overrides that name endpoints or a mode; empty where none does."""
-    return ";".join(f"{path}={value}" for path, value in _overrides(environ) if _NAMES_A_NETWORK.fullmatch(path))
+    """Give those overrides that name endpoints or a mode, in one line; empty where none does."""
+    named = (f"{path}={value}" for path, value in _overrides(environ) if _NAMES_A_NETWORK.fullmatch(path))
+    return ";".join(" ".join(each.split()) for each in named)
 
 
 def meets_at_port(value: str, environ: Mapping[str, str]) -> bool:
@@ -337,7 +338,8 @@ def _overridden(config: zenoh.Config, overrides: list[tuple[str, str]]) -> zenoh
         try:
             config.insert_json5(path, value)
         except zenoh.ZError as error:
-            raise TransportError(f"{_OVERRIDE}: '{path}={value}': {reason(error)}") from None
+            override = f"{path}={value}"
+            raise TransportError(f"{_OVERRIDE}: {override!r}: {reason(error)}") from None
     return config
 
 

@@ -7,6 +7,7 @@ import re
 from robolink.cli.doctor.facts import ClockOffset, Facts
 from robolink.cli.doctor.probes import REFUSES, ROUTER, SILENT, Port
 from robolink.cli.doctor.verdict import Check, Verdict, count, listed
+from robolink.transport.reach import on_this_machine
 from robolink.wire import NodeToken
 
 OLDEST_PYTHON = (3, 10)
@@ -121,7 +122,9 @@ def _nobody(facts: Facts) -> str:
             f"{answers}: start a node there with --network {settings.network[:120]}; if one runs there, multicast does "
             f"not pass between you (Wi-Fi, a VPN, another subnet): here, say --network tcp/HOST:{settings.port}"
         )
-    return f"{answers}: is it on, and do its firewall and yours let that port through?"
+    if all(map(on_this_machine, whom.connects)):
+        return f"{answers}: connect to one of this machine's addresses there, and let the port through its firewall"
+    return f"{answers}: is it on, and does its firewall let the port through?"
 
 
 def rendezvous(facts: Facts) -> Verdict:
