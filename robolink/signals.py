@@ -11,6 +11,7 @@ from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser
+from robolink.tracebacks import misspelt_field
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -104,6 +105,9 @@ def _end_quietly() -> None:
     def on_error(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         if _received and issubclass(kind, _ENDS):
             raise SystemExit(128 + (signal.SIGTERM if _received == signal.SIGTERM else signal.SIGINT))
+        field = misspelt_field(error)
+        if field:
+            error.args = (f"{error}{field}",)
         show(kind, error, trace)
 
     def on_error_in_thread(args: threading.ExceptHookArgs) -> None:

@@ -3,25 +3,34 @@
 from __future__ import annotations
 
 import contextlib
-import sys
+import inspect
+import linecache
+import re
 import traceback
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from types import TracebackType
+from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import RobolinkError, nearest
+
+if TYPE_CHECKING:
+    import ast
 
 
 def formatted(error: BaseException, trace: TracebackType | None = None) -> str:
     """Return an exception with its traceback, from `trace` on (by default all of it), without a newline at the end."""
-    lines = traceback.format_exception(type(error), error, trace or error.__traceback__)
-    return "".join(lines).rstrip() + (suggestion(error) if sys.version_info < (3, 12) else "")
+    text = "".join(traceback.format_exception(type(error), error, trace or error.__traceback__)).rstrip()
+    return text if "Did you mean" in text.rpartition("\n")[2] else text + suggestion(error)
 
 
 def suggestion(error: BaseException) -> str:
-    """Return the words that name what a NameError or AttributeError probably meant; '' if nothing is near.
+    """Return the words that name what a misspelt name or field of a message probably meant; '' if nothing is near.
 
-    Python 3.10 and 3.11 have them only where the interpreter itself prints the exception.
+    Python 3.10 and 3.11 have them for names only where the interpreter itself prints the exception.
     """
+    field = misspelt_field(error)
+    if field:
+        return field
     name = getattr(error, "name", None)
     if not isinstance(name, str) or isinstance(error, RobolinkError):
         return ""
@@ -31,12 +40,80 @@ def suggestion(error: BaseException) -> str:
     elif isinstance(error, AttributeError):
         with contextlib.suppress(Exception):  # somebody's __dir__
             known = dir(error.obj)
-    found = nearest(name, (each for each in known if isinstance(each, str) and each != name))
-    return found.replace(" (did you mean ", ". Did you mean: ").replace("?)", "?")
+    return _did_you_mean(name, (each for each in known if isinstance(each, str) and each != name))
+
+
+def _did_you_mean(name: str, known: Iterable[str]) -> str:
+    return nearest(name, known).replace(" (did you mean ", ". Did you mean: ").replace("?)", "?")
 
 
 def _names_at(trace: TracebackType | None) -> list[str]:
+    last = _last(trace)
+    return [] if last is None else [*last.tb_frame.f_locals, *last.tb_frame.f_globals, *last.tb_frame.f_builtins]
+
+
+def _last(trace: TracebackType | None) -> TracebackType | None:
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next
-    frame = None if trace is None else trace.tb_frame
-    return [] if frame is None else [*frame.f_locals, *frame.f_globals, *frame.f_builtins]
+    return trace
+
+
+# --- Fields of messages -----------------------------------------------------------------------------------------------
+
+_UNKNOWN_FIELD = re.compile(r"(Unexpected keyword argument|'\w+' object has no attribute) '(\w+)'")
+
+
+def misspelt_field(error: BaseException) -> str:
+    """Return the words that name the field which `String(dta=...)` or `twist.liner = 3` meant; '' for other errors.
+
+    Messages are made and changed by C, which a look at each field would slow down several times over. So which message
+    it was is read from the line that failed.
+    """
+    found = _UNKNOWN_FIELD.fullmatch(str(error)) if isinstance(error, (TypeError, AttributeError)) else None
+    last = _last(error.__traceback__)
+    if found is None or last is None:
+        return ""
+    with contextlib.suppress(Exception):  # a source that is gone, or has changed; anybody's attributes
+        for node in _statement(last):
+            fields = getattr(_meant(node, found[2], last), "__ros_fields__", None)
+            if fields:
+                return _did_you_mean(found[2], fields)
+    return ""
+
+
+def _statement(trace: TracebackType) -> Iterator[ast.AST]:
+    """Yield what stands in the smallest statement around the line that failed."""
+    import ast  # late: most programs have no such error
+
+    tree = ast.parse("".join(linecache.getlines(trace.tb_frame.f_code.co_filename, trace.tb_frame.f_globals)))
+    line = trace.tb_lineno
+    around = [each for each in ast.walk(tree) if isinstance(each, ast.stmt) and each.lineno <= line <= _end(each)]
+    yield from ast.walk(min(around, key=lambda each: _end(each) - each.lineno))
+
+
+def _end(node: ast.stmt) -> int:
+    return node.end_lineno or node.lineno
+
+
+def _meant(node: ast.AST, name: str, trace: TracebackType) -> Any:
+    """Return the class or message of which this part of a statement names a field `name`; None if it names none."""
+    import ast
+
+    if isinstance(node, ast.Call) and name in [each.arg for each in node.keywords]:
+        return _value(node.func, trace)
+    if isinstance(node, ast.Attribute) and node.attr == name:
+        return _value(node.value, trace)
+    return None
+
+
+def _value(node: ast.expr, trace: TracebackType) -> Any:
+    """Return what a name with dots stands for; nothing of the user's is called for it."""
+    import ast
+
+    if isinstance(node, ast.Name):
+        return {**trace.tb_frame.f_globals, **trace.tb_frame.f_locals}[node.id]
+    if isinstance(node, ast.Attribute):
+        owner = _value(node.value, trace)
+        is_message = hasattr(type(owner), "__ros_fields__")
+        return getattr(owner, node.attr) if is_message else inspect.getattr_static(owner, node.attr)
+    return None

@@ -211,6 +211,17 @@ VERSION = "robolink " + robolink.__version__
         ("import rclpy.node; rclpy.node.Nod", AttributeError, "rclpy.node.Nod (did you mean 'Node'?)"),
         ("import rclpy.executor", ModuleNotFoundError, "rclpy.executor (did you mean 'executors'?)"),
         ("from rclpy.executor import X", ModuleNotFoundError, "rclpy.executor (did you mean 'executors'?)"),
+        ("from std_msg.msg import String", ModuleNotFoundError, "std_msg (did you mean 'std_msgs'?)"),
+        ("import geometry_mgs.msg", ModuleNotFoundError, "geometry_mgs (did you mean 'geometry_msgs'?)"),
+        ("import rclp", ModuleNotFoundError, "rclp (did you mean 'rclpy'?)"),
+        (
+            "import sensors_msgs",
+            ModuleNotFoundError,
+            (
+                "sensors_msgs; did you mean 'sensor_msgs'? Else put its files into interfaces/sensors_msgs/msg (srv, "
+                "action) of your workspace, or the package into src/"
+            ),
+        ),
         ("from geometry_msgs.msg import Twits", ImportError, "geometry_msgs.msg.Twits (did you mean 'Twist'?)"),
         (
             "from geometry_msgs.msg import LaserScan",
@@ -486,6 +497,12 @@ def test_tests_of_the_users_own(tmp_path: Path) -> None:
     for process in started:
         out, _ = process.communicate(timeout=60)
         assert process.returncode == 0, out
+
+
+@pytest.mark.usefixtures("compat")
+@pytest.mark.parametrize("module", ["_struct", "json", "rcssmin", "my_robot"])
+def test_a_name_of_others_is_left_to_others(module: str) -> None:
+    assert FINDER.find_spec(module) is None
 
 
 @pytest.mark.processes

@@ -299,6 +299,21 @@ def test_other_errors_are_shown_as_ever(tmp_path: Path, domain: int) -> None:
         assert program.errors[-1].startswith("ZeroDivisionError")
 
 
+MISSPELT = """
+    rclpy.init()
+    node = Talker()
+    node.create_timer(0.01, lambda: String(dta="x"))
+    rclpy.spin(node)
+"""
+
+
+@pytest.mark.processes
+def test_a_misspelt_field_is_shown_with_the_nearest(tmp_path: Path, domain: int) -> None:
+    with Program(tmp_path, HEAD + MISSPELT, domain) as program:
+        assert program.end() == 1
+        assert program.errors[-1] == "TypeError: Unexpected keyword argument 'dta'. Did you mean: 'data'?"
+
+
 @pytest.mark.processes
 def test_last_words_get_through(tmp_path: Path, domain: int) -> None:
     context = Context()

@@ -8,6 +8,9 @@ from typing import Any
 
 import pytest
 
+from robolink.interfaces import std_msgs
+from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
+from robolink.interfaces.std_srvs.srv import SetBool
 from robolink.lacking import LackingAttributeError
 from robolink.tracebacks import formatted, suggestion
 
@@ -47,6 +50,52 @@ def test_a_misspelt_name_is_told_with_the_nearest(act: Callable[[], object], mea
     assert text.count("Did you mean") == 1
 
 
+class Robot:
+    """Has messages at hand in the ways in which nodes have them."""
+
+    def __init__(self) -> None:
+        self.twist = Twist()
+
+    def change(self) -> None:
+        self.twist.liner = Vector3()  # type: ignore[attr-defined]
+
+    def change_below(self) -> None:
+        self.twist.linear.xx = 3.0  # type: ignore[attr-defined]
+
+    def make(self) -> None:
+        std_msgs.msg.String(
+            dta="text",
+        )
+
+
+def make_a_request() -> None:
+    request = SetBool.Request
+    if request(dat=True):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("act", "meant"),
+    [
+        (Robot().change, "linear"),
+        (Robot().change_below, "x"),
+        (Robot().make, "data"),
+        (make_a_request, "data"),
+    ],
+)
+def test_a_misspelt_field_is_told_with_the_nearest(act: Callable[[], object], meant: str) -> None:
+    error = raised_by(act)
+    assert formatted(error).splitlines()[-1].endswith(f"'. Did you mean: '{meant}'?")
+
+
+def not_a_message() -> None:
+    dict.fromkeys(dta="x")  # type: ignore[call-overload]
+
+
+def one_that_only_code_gives() -> None:
+    [Twist()][0].liner = 3  # type: ignore[attr-defined]
+
+
 class Hostile:
     """A class whose names cannot be listed."""
 
@@ -60,6 +109,9 @@ class Hostile:
         raised_by(lambda: Hostile().name),  # type: ignore[attr-defined]
         raised_by(lambda: math.quite_another),  # type: ignore[attr-defined]
         raised_by(lambda: 1 // 0),
+        raised_by(not_a_message),
+        raised_by(one_that_only_code_gives),
+        TypeError("Unexpected keyword argument 'dta'"),
         NameError("a text alone"),
         AttributeError("a text alone"),
         LackingAttributeError("rclpy.ko", lambda: ["ok"]),

@@ -20,6 +20,8 @@ from robolink.workspace.modules import FINDER, Fill, Filling
 MESSAGES = frozenset(package for kind in KINDS for package in STANDARD[kind])
 TOPS = frozenset({*MESSAGES, *(name for name in ROOMS if "." not in name)})
 """The top-level names that are robolink's."""
+LIKE = 0.85
+"""How much alike a name of nobody's is to one of ROS 2's that was meant; 1 is the same."""
 PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
 
 
@@ -61,16 +63,34 @@ def _instead(fullname: str, top: str) -> Fill | None:
     """
     hint = instead_of(top)
     if not hint:
+        _refuse_misspelt(fullname)
         return None
     if fullname == top:
         real = FINDER.real(top)
         if real is None:
-            raise LackingModuleError(top, list, hint)
+            alike = _alike(top)
+            raise LackingModuleError(top, list, f"did you mean '{alike}'? Else {hint}" if alike else hint)
         return functools.partial(_fill_folder, hint) if real.loader is None else None
     parent = sys.modules.get(fullname.rpartition(".")[0])
     if _is_ours(parent) and FINDER.real(fullname, list(getattr(parent, "__path__", []))) is None:
         raise LackingModuleError(fullname, list, hint)
     return None
+
+
+def _refuse_misspelt(name: str) -> None:
+    """Raise LackingModuleError for `std_msg` and the like, which nobody has."""
+    if name[:1] == "_" or "." in name or not ("_" in name or name[:2] == "rc"):  # most imports are not ours: no look
+        return
+    alike = _alike(name)
+    if alike and FINDER.real(name) is None:
+        raise LackingModuleError(name, lambda: [alike])
+
+
+def _alike(name: str) -> str:
+    """Give the name of ROS 2's that this one hardly differs from, '' if there is none."""
+    import difflib  # late: few programs need it
+
+    return "".join(difflib.get_close_matches(name, sorted(TOPS), n=1, cutoff=LIKE))
 
 
 def _fill_folder(hint: str, module: ModuleType) -> None:
