@@ -174,6 +174,8 @@ def test_private_modules_have_the_parts_of_services_and_actions() -> None:
         ("tf2_sensor_msgs", "do_transform_cloud", "tf2.point_cloud"),
         ("tf_transformations", "quaternion_from_euler", "transformations"),
         ("message_filters", "ApproximateTimeSynchronizer", "message_filters"),
+        ("sensor_msgs_py.numpy_compat", "structured_to_unstructured", "numpy_compat"),
+        ("sensor_msgs_py.numpy_compat", "unstructured_to_structured", "numpy_compat"),
         ("sensor_msgs_py.point_cloud2", "read_points", "point_cloud2"),
         ("rosidl_runtime_py", "set_message_fields", "rosidl_runtime"),
         ("rosidl_runtime_py.utilities", "get_message", "rosidl_runtime.utilities"),

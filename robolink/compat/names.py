@@ -15,6 +15,7 @@ ROOMS = {
     "tf_transformations": "robolink.transformations",
     "message_filters": "robolink.message_filters",
     "sensor_msgs_py": "",
+    "sensor_msgs_py.numpy_compat": "robolink.numpy_compat",
     "sensor_msgs_py.point_cloud2": "robolink.point_cloud2",
     "rosidl_parser": "",
     "rosidl_parser.definition": "robolink.message.slot_types",
