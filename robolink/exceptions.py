@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import itertools
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from robolink.terminal import shown as shown  # what errors quote of others' text
 
@@ -104,12 +104,16 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return f" (did you mean '{close[0]}'?)" if close else ""
 
 
-def few(errors: Sequence[DocumentError]) -> list[DocumentError]:
-    """Return the first errors of a file, and in place of the others one that says how many they are."""
-    if len(errors) <= MOST_TOLD + 1:
-        return list(errors)
-    rest = DocumentError(f"and {len(errors) - MOST_TOLD:,} more mistakes", errors[MOST_TOLD].file)
-    return [*errors[:MOST_TOLD], rest]
+def few(errors: Iterable[DocumentError], looked_for: int | None = None) -> list[DocumentError]:
+    """Return the first errors of a file, and in place of the others one that says how many they are.
+
+    No more than `looked_for` are counted, where finding each takes time.
+    """
+    found = list(itertools.islice(errors, looked_for))
+    if len(found) <= MOST_TOLD + 1:
+        return found
+    more = f"{len(found) - MOST_TOLD:,}" if looked_for is None or len(found) < looked_for else "many"
+    return [*found[:MOST_TOLD], DocumentError(f"and {more} more mistakes", found[MOST_TOLD].file)]
 
 
 def imported_as() -> str:

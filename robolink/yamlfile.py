@@ -7,7 +7,6 @@ Every error is one line: `empty.yaml:3:11: robots[0].radius: expected float, got
 
 from __future__ import annotations
 
-import itertools
 import math
 import os
 from collections.abc import Sequence
@@ -25,7 +24,8 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-_MOST = 1000
+MOST_MISTAKES = 100
+"""How many mistakes of a file are looked for."""
 
 
 class DocumentNotFoundError(DocumentError, FileNotFoundError):
@@ -73,13 +73,13 @@ def mistakes(
 ) -> list[DocumentError]:
     """Find everything that `read` would refuse, one error for each part that is wrong; none if it would not.
 
-    Of many the first are given, and one that says how many more there are (of a thousand that are looked for).
+    Of many the first are given, and one that says how many more there are.
     """
     try:
         reader = Reader(read_text(path) if text is None else text, os.fspath(path), hook)
     except DocumentError as error:
         return [error]
-    return few(list(itertools.islice(reader.mistakes(reader.data, type_), _MOST)))
+    return few(reader.mistakes(reader.data, type_), MOST_MISTAKES)
 
 
 def load(path: str | os.PathLike[str], type_: type[T], *, text: str | None = None) -> T:

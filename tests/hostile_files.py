@@ -7,9 +7,12 @@ from __future__ import annotations
 
 import json
 import os
+import random
+import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -21,10 +24,11 @@ done = subprocess.run(sys.argv[1:], stdin=subprocess.DEVNULL, capture_output=Tru
 seconds = time.monotonic() - began
 try:
     import resource
-    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / (1e6 if sys.platform == "darwin" else 1e3)
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    peak, cpu = used.ru_maxrss / (1e6 if sys.platform == "darwin" else 1e3), used.ru_utime + used.ru_stime
 except ImportError:  # Windows
-    peak = 0.0
-print(json.dumps([seconds, peak, done.returncode, done.stdout.decode(), done.stderr.decode()]))
+    peak = cpu = 0.0
+print(json.dumps([seconds, cpu, peak, done.returncode, done.stdout.decode(), done.stderr.decode()]))
 """
 """Runs a command from a small process: what it has in its memory counts for the command, too, until that begins."""
 
@@ -39,9 +43,10 @@ class Hostile(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """What a command said, in how many seconds, and how many megabytes it had at most (0 where nobody knows)."""
+    """What a command said, in how many seconds, those of the CPU, and the most megabytes (0 where nobody knows)."""
 
     seconds: float
+    cpu: float
     megabytes: float
     code: int
     text: str
@@ -58,8 +63,8 @@ def ask(hostile: Hostile, folder: Path) -> Answer:
         check=True,
         timeout=150,
     )
-    seconds, megabytes, code, out, err = json.loads(done.stdout)
-    return Answer(seconds, megabytes, code, err + out)
+    seconds, cpu, megabytes, code, out, err = json.loads(done.stdout)
+    return Answer(seconds, cpu, megabytes, code, err + out)
 
 
 def text(name: str, content: str) -> Callable[[Path], object]:
@@ -148,16 +153,89 @@ LAUNCH_FILES = {
 }
 """What launch files may do."""
 
-ALL = {**LAUNCH_FILES}
+MAP = "image: {}\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.2\nnegate: 0\n"
+
+
+def mapped(fill: Callable[[Path], object], answer: str) -> Hostile:
+    """Check a world with a map whose image, `image`, `fill` makes."""
+
+    def whole(folder: Path) -> None:
+        (folder / "m.yaml").write_text(MAP.format("image"))
+        (folder / "a.yaml").write_text("map: {yaml: m.yaml}")
+        fill(folder / "image")
+
+    return Hostile(whole, ("world", "check", "./a.yaml"), answer)
+
+
+def world(content: str, answer: str, lines: int = 1) -> Hostile:
+    return Hostile(text("a.yaml", content), ("world", "check", "./a.yaml"), answer, lines)
+
+
+def png(width: int, height: int, colour: int, depth: int, bytes_a_pixel: int, filtering: int = 0) -> bytes:
+    """Make a PNG whose pixels are all alike, as they are stored."""
+    packer = zlib.compressobj(1)
+    line = bytes([filtering]) + b"\x55" * (width * bytes_a_pixel)
+    packed = b"".join(packer.compress(line) for _ in range(height)) + packer.flush()
+    header = struct.pack(">IIBBBBB", width, height, depth, colour, 0, 0, 0)
+    chunks = ((b"IHDR", header), (b"IDAT", packed), (b"IEND", b""))
+    parts = (
+        (struct.pack(">I", len(body)), kind, body, struct.pack(">I", zlib.crc32(kind + body))) for kind, body in chunks
+    )
+    return b"\x89PNG\r\n\x1a\n" + b"".join(b"".join(each) for each in parts)
+
+
+def _mkfifo(path: Path) -> None:
+    if sys.platform != "win32":
+        os.mkfifo(path)
+
+
+def _noise(path: Path) -> None:
+    path.write_bytes(b"P5 5000 5000 255\n" + random.Random(1).randbytes(100_000) * 250)
+
+
+def _obstacles(count: int, *, apart: float) -> str:
+    places = (f"[{apart * (n % 70)}, {apart * (n // 70)}]" for n in range(count))
+    return "obstacles:\n" + "".join(f"- {{circle: 0.1, pose: {each}}}\n" for each in places)
+
+
+WORLDS = {
+    "a map's image is a FIFO": mapped(_mkfifo, "'image' cannot be read: it is a FIFO, and no file"),
+    "a map's image is a device": mapped(
+        lambda path: path.symlink_to("/dev/zero"), "'image' cannot be read: it is a device, and no file"
+    ),
+    "100 million pixels of 8 bytes": mapped(
+        lambda path: path.write_bytes(png(10_000, 10_000, 6, 16, 8)), "10000 x 10000 pixels: expected 1 to 25 million"
+    ),
+    "7 million pixels of 8 bytes": mapped(
+        lambda path: path.write_bytes(png(2_600, 2_600, 6, 16, 8)), "2600 x 2600 pixels of 64 bits: at most 50 MB"
+    ),
+    "an image that is a secret": mapped(
+        lambda path: path.write_text("root:secret"), "neither PGM (P2, P5) nor PNG: save it as one of these"
+    ),
+    "25 million pixels of noise": mapped(_noise, "is the map all noise?"),
+    "200,000 obstacles": world(_obstacles(200_000, apart=0.5), "cannot be read: it is longer than 5 MB"),
+    "14,000 obstacles": world(_obstacles(14_000, apart=0.5), "obstacles: expected list of length <= 5000"),
+    "5,000 in one place": world(_obstacles(5_000, apart=0.0), "and many more mistakes", 21),
+    "12,000 walls": world(
+        "walls:\n" + "".join(f"- polyline: [[{n}, 0], [{n}, 5]]\n" for n in range(10_100)),
+        "walls: expected list of length <= 10000",
+    ),
+    "9,000 wrong walls": world(
+        "walls:\n" + "".join(f"- [[{n}, 0], [{n}, 5]]\n" for n in range(9_000)), "and many more mistakes", 21
+    ),
+}
+"""What worlds and their maps may do."""
+
+ALL = {**LAUNCH_FILES, **WORLDS}
 
 
 def main() -> None:
     """Print a table of what each file costs."""
     for name, hostile in ALL.items():
         with tempfile.TemporaryDirectory() as folder:
-            seconds, megabytes, code, said = ask(hostile, Path(folder))
+            seconds, cpu, megabytes, code, said = ask(hostile, Path(folder))
         lines = said.count("\n")
-        print(f"{name:28} {seconds:6.2f} s {megabytes:6.0f} MB {lines:3} lines, exit code {code}")  # noqa: T201
+        print(f"{name:30} {seconds:5.2f} s, CPU {cpu:5.2f} s {megabytes:4.0f} MB {lines:3} lines, exit code {code}")  # noqa: T201
 
 
 if __name__ == "__main__":

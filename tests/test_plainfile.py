@@ -85,5 +85,6 @@ def test_a_file_of_mistakes_only_is_answered_shortly() -> None:
     text = "[" + "x, " * 40_000 + "]"
     found = mistakes("a.yaml", list[int], text=text)
     assert len(found) == 21
+    assert str(found[-1]) == "a.yaml: and many more mistakes"
     assert str(found[0]) == "a.yaml:1:2: [0]: expected int, got 'x'"
     assert yamltext.MAX_NODES > 40_000

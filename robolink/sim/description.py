@@ -330,6 +330,10 @@ class Lidar(Looking, Struct, frozen=True, forbid_unknown_fields=True):
     intensities: bool = False
 
 
+MOST_WALLS, MOST_OBSTACLES, MOST_ROBOTS, MOST_SENSORS = 10_000, 5_000, 1_000, 100
+"""How many of each a world file may list, and a robot of sensors; a map has walls of its own."""
+
+
 class RobotDescription(Struct, frozen=True, forbid_unknown_fields=True):
     """A robot: where it starts, its outline, what drives it and what it senses.
 
@@ -344,7 +348,7 @@ class RobotDescription(Struct, frozen=True, forbid_unknown_fields=True):
     wheels: Annotated[tuple[Wheel, ...], Meta(max_length=64)] = ()
     odom: Odom = Odom()
     ground_truth: GroundTruth = GroundTruth()
-    sensors: tuple[Sensor, ...] = ()
+    sensors: Annotated[tuple[Sensor, ...], Meta(max_length=MOST_SENSORS)] = ()
 
 
 class WorldDescription(Struct, frozen=True, forbid_unknown_fields=True):
@@ -352,9 +356,9 @@ class WorldDescription(Struct, frozen=True, forbid_unknown_fields=True):
 
     world: Settings = Settings()
     map: Map | None = None
-    walls: tuple[Wall, ...] = ()
-    obstacles: tuple[Obstacle, ...] = ()
-    robots: tuple[RobotDescription, ...] = ()
+    walls: Annotated[tuple[Wall, ...], Meta(max_length=MOST_WALLS)] = ()
+    obstacles: Annotated[tuple[Obstacle, ...], Meta(max_length=MOST_OBSTACLES)] = ()
+    robots: Annotated[tuple[RobotDescription, ...], Meta(max_length=MOST_ROBOTS)] = ()
 
 
 SENSORS: dict[str, type[Sensor]] = {

@@ -14,17 +14,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from robolink import yamlfile
-from robolink.exceptions import DocumentError, RobolinkError, few, nearest
+from robolink.exceptions import MOST_TOLD, DocumentError, RobolinkError, few, nearest
 from robolink.sim.checks.worlds import mass_problems, misfits, problems
 from robolink.sim.description import SENSORS, Sensor, WorldDescription
 from robolink.yamlfile import Document
 
 if TYPE_CHECKING:
     from robolink.sim.maps.gridmap import GridMap
-
-
-MOST_MISTAKES = 1000
-"""How many mistakes of a world are looked for."""
 
 
 def load_world(path: str | os.PathLike[str], *, text: str | None = None) -> WorldDescription:
@@ -68,7 +64,7 @@ def check_world(path: str | os.PathLike[str], *, text: str | None = None) -> Che
         description = _with_map(document, grid)
     except DocumentError as error:
         errors.append(error)
-    errors += few([*itertools.islice(_mistakes(document, description, grid), MOST_MISTAKES)])
+    errors += few(_mistakes(document, description, grid), MOST_TOLD + 2)  # finding what overlaps takes time
     return Checked(None if errors else description, errors)
 
 

@@ -31,6 +31,7 @@ TAKEN = (
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 _LONGEST_NAME = 64
+_MOST_THREES = 2000
 _ABREAST = 1e-4
 """Metres: wheels nearer to each other than that, across the way that they roll, turn nothing."""
 _CROOKED = 0.02
@@ -135,10 +136,15 @@ def _driving_problems(robot: RobotDescription) -> Iterator[Problem]:
     if kind == "diff" and max(sides) - min(sides) < _ABREAST:
         reason = f"all stand {sides[0]:g} m to the left: put one on each side"
         yield Problem("", f"these wheels cannot turn the robot, {reason}" if len(sides) > 1 else _lonely())
-    if kind == "omni" and not any(_independent(*three) for three in itertools.combinations(robot.wheels, 3)):
+    if kind == "omni" and not any(_independent(*three) for three in _threes(robot.wheels)):
         yield Problem(
             "", "these wheels cannot drive it ahead, sideways and round: it takes three that roll different ways"
         )
+
+
+def _threes(wheels: Sequence[Wheel]) -> Iterator[tuple[Wheel, ...]]:
+    """Yield wheels by three: all ways to choose from a few, and of many, which all roll alike, only some."""
+    return itertools.islice(itertools.combinations(wheels, 3), _MOST_THREES)
 
 
 def _lonely() -> str:

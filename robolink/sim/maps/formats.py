@@ -6,10 +6,10 @@ from pathlib import Path
 
 from robolink.plainfile import read_plain
 from robolink.sim.maps import pgm, png
-from robolink.sim.maps.image import MOST_PIXELS, Image, ImageError
+from robolink.sim.maps.image import MOST_BYTES, Image, ImageError
 
-LARGEST_FILE = 2 * MOST_PIXELS + 1_000_000
-"""Bytes that an image may have: raw pixels of 16 bits, and what is said around them."""
+LARGEST_FILE = MOST_BYTES + 10_000_000
+"""Bytes that an image may have: its pixels where they cannot be packed, and what is said around them."""
 
 
 def read_image(path: Path) -> Image:

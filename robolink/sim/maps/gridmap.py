@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -62,7 +62,10 @@ class GridMap(NamedTuple):
         return 0 <= row < height and 0 <= column < width and bool(self.occupied[row, column])
 
     def walls(self) -> npt.NDArray[np.float64]:
-        """Give the edges of the occupied cells, joined where they go on, as rows x1, y1, x2, y2 in metres."""
+        """Give the edges of the occupied cells, joined where they go on, as rows x1, y1, x2, y2 in metres.
+
+        Raises ValueError if they are too many.
+        """
         x, y = (cell_edges(self.occupied) * self.resolution).reshape(-1, 2).T
         cos, sin = math.cos(self.origin.theta), math.sin(self.origin.theta)
         # Not as a product of matrices, whose last bits are those of the machine's library.
@@ -94,7 +97,7 @@ def map_walls(grid: GridMap) -> MapWalls:
     """Give a map's walls as a part of a world. Raises ValueError if they are too many."""
     segments = grid.walls()
     if len(segments) > MOST_WALLS:
-        raise ValueError(f"{len(segments)} pieces of wall, at most {MOST_WALLS}: is the map all noise?")
+        raise ValueError(_too_many(len(segments)))
     return MapWalls(tuple((x, y) for x, y in segments.reshape(-1, 2).tolist()))
 
 
@@ -102,18 +105,22 @@ def occupancy(image: Image, file: MapFile) -> npt.NDArray[np.int8]:
     """Give what the pixels of an image mean, the first row at the bottom."""
     shade = np.arange(256)
     if file.mode == "raw":
-        meaning = np.where(shade <= OCCUPIED, shade, UNKNOWN)
-        return meaning.astype(np.int8)[image.shades][::-1]
+        return _looked_up(image, np.where(shade <= OCCUPIED, shade, UNKNOWN))[::-1]
     share = shade.astype(np.float32) / np.float32(255)
     if not file.negate:
         share = np.float32(1) - share
     free, occupied = np.float32(file.free_thresh), np.float32(file.occupied_thresh)
     between = np.round((share - free) / (occupied - free) * 100) if file.mode == "scale" else UNKNOWN
-    meaning = np.where(share >= occupied, OCCUPIED, np.where(share <= free, FREE, between))
-    cells = meaning.astype(np.int8)[image.shades]
+    cells = _looked_up(image, np.where(share >= occupied, OCCUPIED, np.where(share <= free, FREE, between)))
     if image.transparent is not None:
         cells[image.transparent] = UNKNOWN
     return cells[::-1]
+
+
+def _looked_up(image: Image, meaning: npt.NDArray[Any]) -> npt.NDArray[np.int8]:
+    """Replace each shade by its meaning, byte by byte: indexing by an array would take eight bytes for each."""
+    cells = bytearray(image.shades.tobytes().translate(meaning.astype(np.int8).tobytes()))
+    return np.frombuffer(cells, np.int8).reshape(image.shades.shape)
 
 
 def cell_edges(occupied: npt.NDArray[np.bool_]) -> npt.NDArray[np.float64]:
@@ -127,9 +134,16 @@ def cell_edges(occupied: npt.NDArray[np.bool_]) -> npt.NDArray[np.float64]:
     return rows.astype(np.float64)
 
 
+def _too_many(count: int) -> str:
+    return f"{count} pieces of wall, at most {MOST_WALLS}: is the map all noise?"
+
+
 def _runs(lines: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
-    """Find the runs of True along each line: rows of line, start, end."""
+    """Find the runs of True along each line: rows of line, start, end. Raises ValueError if they are too many."""
     padded = np.pad(lines, ((0, 0), (1, 1)))
-    changes = np.flatnonzero(padded[:, 1:] != padded[:, :-1])
+    differ = padded[:, 1:] != padded[:, :-1]
+    if (count := np.count_nonzero(differ) // 2) > MOST_WALLS:
+        raise ValueError(_too_many(count))
+    changes = np.flatnonzero(differ)
     line, place = np.divmod(changes, lines.shape[1] + 1)
     return np.column_stack((line[::2], place[::2], place[1::2]))

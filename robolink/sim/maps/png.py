@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from robolink.sim.maps.image import Image, ImageError, Shades, check_size, eight_bits
+from robolink.sim.maps.image import Image, ImageError, Shades, check_size, eight_bits, in_blocks
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 LUMA = (77, 150, 29)
@@ -24,6 +24,7 @@ _CHANNELS = {_GRAY: 1, _RGB: 3, _PALETTE: 1, _GRAY_ALPHA: 2, _RGBA: 4}
 _DEPTHS = {_GRAY: (1, 2, 4, 8, 16), _PALETTE: (1, 2, 4, 8)}
 _SOME_DEPTHS = (8, 16)
 _PAETH = 4
+_NOTHING = memoryview(b"")
 
 
 class _Header(NamedTuple):
@@ -43,41 +44,42 @@ class _Header(NamedTuple):
 
 def read_png(raw: bytes) -> Image:
     """Read a PNG file's bytes. Raises `ImageError`."""
-    chunks: dict[bytes, list[bytes]] = {}
-    for kind, body in _chunks(raw):
+    chunks: dict[bytes, list[memoryview]] = {}
+    for kind, body in _chunks(memoryview(raw)):
         chunks.setdefault(kind, []).append(body)
-    header = _header(chunks.get(b"IHDR", [b""])[0])
-    samples = _samples(header, _lines(header, b"".join(chunks.get(b"IDAT", []))))
-    clear = np.frombuffer(chunks.get(b"tRNS", [b""])[0], np.uint8)
+    header = _header(chunks.get(b"IHDR", [_NOTHING])[0])
+    samples = _samples(header, _lines(header, chunks.get(b"IDAT", [])))
+    clear = np.frombuffer(chunks.get(b"tRNS", [_NOTHING])[0], np.uint8)
     if header.colour == _PALETTE:
-        return _from_palette(samples[..., 0], chunks.get(b"PLTE", [b""])[0], clear)
+        return _from_palette(samples[..., 0], chunks.get(b"PLTE", [_NOTHING])[0], clear)
     transparent = None
     if header.colour in (_GRAY_ALPHA, _RGBA):
         transparent = samples[..., -1] < 2**header.depth - 1
         samples = samples[..., :-1]
     elif len(clear) == 2 * samples.shape[2]:  # one colour that stands for nothing
         transparent = np.all(samples == clear.view(">u2"), axis=2)
-    return Image(_shades(eight_bits(samples, 2**header.depth - 1)), transparent)
+    largest = 2**header.depth - 1
+    return Image(in_blocks(lambda block: _shades(eight_bits(block, largest)), samples), transparent)
 
 
-def _chunks(raw: bytes) -> Iterator[tuple[bytes, bytes]]:
+def _chunks(raw: memoryview) -> Iterator[tuple[bytes, memoryview]]:
     """Yield the parts of the file, each with its kind."""
     at = len(SIGNATURE)
-    while raw[at + 4 : at + 8] != b"IEND":
+    while bytes(raw[at + 4 : at + 8]) != b"IEND":
         if len(raw) < at + 12 or len(raw) < (end := at + 12 + int.from_bytes(raw[at : at + 4], "big")):
             raise ImageError("it ends too early")
         if zlib.crc32(raw[at + 4 : end - 4]) != int.from_bytes(raw[end - 4 : end], "big"):
             raise ImageError(f"it is damaged: a wrong checksum at byte {at}")
-        yield raw[at + 4 : at + 8], raw[at + 8 : end - 4]
+        yield bytes(raw[at + 4 : at + 8]), raw[at + 8 : end - 4]
         at = end
 
 
-def _header(body: bytes) -> _Header:
+def _header(body: memoryview) -> _Header:
     if len(body) != 13:
         raise ImageError("a PNG without its header")
     header = _Header(*struct.unpack(">IIBBBBB", body))
-    check_size(header.width, header.height)
     known = header.colour in _CHANNELS and header.depth in _DEPTHS.get(header.colour, _SOME_DEPTHS)
+    check_size(header.width, header.height, header.depth * _CHANNELS[header.colour] if known else 1)
     if not known or header.compression or header.filtering:
         raise ImageError(f"no kind of PNG that there is: {header.depth} bits of colour type {header.colour}")
     if header.interlacing:
@@ -85,13 +87,23 @@ def _header(body: bytes) -> _Header:
     return header
 
 
-def _lines(header: _Header, packed: bytes) -> npt.NDArray[np.uint8]:
-    """Unpack the lines of pixels, as bytes, and undo their filters."""
-    size = header.height * (header.line + 1)
+def _unpacked(packed: Sequence[memoryview], size: int) -> bytes:
+    """Unpack at most `size` bytes, however much is packed there."""
+    reader, parts, left = zlib.decompressobj(), [], size
     try:
-        unpacked = zlib.decompressobj().decompress(packed, size)
+        for each in packed:
+            if left > 0:
+                parts.append(reader.decompress(each, left))
+                left -= len(parts[-1])
     except zlib.error as error:
         raise ImageError(f"it is damaged: {error}") from None
+    return parts[0] if len(parts) == 1 else b"".join(parts)
+
+
+def _lines(header: _Header, packed: Sequence[memoryview]) -> npt.NDArray[np.uint8]:
+    """Unpack the lines of pixels, as bytes, and undo their filters."""
+    size = header.height * (header.line + 1)
+    unpacked = _unpacked(packed, size)
     if len(unpacked) < size:
         raise ImageError(f"it ends too early: {len(unpacked) // (header.line + 1)} of {header.height} lines")
     lines = np.frombuffer(unpacked, np.uint8).reshape(header.height, header.line + 1)
@@ -145,13 +157,15 @@ def _samples(header: _Header, lines: npt.NDArray[np.uint8]) -> npt.NDArray[Any]:
     return values
 
 
-def _from_palette(index: npt.NDArray[Any], palette: bytes, clear: npt.NDArray[np.uint8]) -> Image:
+def _from_palette(index: npt.NDArray[Any], palette: memoryview, clear: npt.NDArray[np.uint8]) -> Image:
     colours = np.frombuffer(palette, np.uint8, count=len(palette) // 3 * 3).reshape(-1, 3)
     if int(index.max()) >= len(colours):
         raise ImageError(f"it is damaged: colour {index.max()} of a palette of {len(colours)}")
     opaque = np.full(256, 255, np.uint8)
     opaque[: len(clear)] = clear[:256]
-    return Image(_shades(colours)[index], (opaque < 255)[index] if len(clear) else None)
+    shades = _shades(colours)
+    transparent = in_blocks(lambda block: opaque[block], index) < 255 if len(clear) else None
+    return Image(in_blocks(lambda block: shades[block], index), transparent)
 
 
 def _shades(colours: Shades) -> Shades:
