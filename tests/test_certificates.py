@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import subprocess
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
@@ -17,35 +16,20 @@ from robolink.cli import main
 from robolink.exceptions import TransportError
 from robolink.transport import certificates
 from robolink.transport.zenoh import ZenohTransport
+from tests.authority import can_make, make_authority, make_certificate
 from tests.ports import free_port, stranger
 from tests.transports import GRAPH, until
 
-pytestmark = pytest.mark.skipif(shutil.which("openssl") is None, reason="there is no `openssl` to make certificates")
-
-KEY = ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes"]
-
-
-def openssl(folder: Path, *words: str) -> None:
-    subprocess.run(["openssl", *words], cwd=folder, check=True, capture_output=True)
-
-
-def make(folder: Path, name: str, authority: str, days: str = "30") -> None:
-    """Make a certificate for 127.0.0.1 and its key."""
-    (folder / "names").write_text("subjectAltName=IP:127.0.0.1\n")
-    openssl(folder, "req", *KEY, "-keyout", f"{name}.key", "-out", f"{name}.csr", "-subj", f"/CN={name}")
-    signed_by = ["-CA", f"{authority}.pem", "-CAkey", f"{authority}.key", "-CAcreateserial", "-extfile", "names"]
-    openssl(folder, "x509", "-req", "-in", f"{name}.csr", *signed_by, "-out", f"{name}.pem", "-days", days)
+pytestmark = pytest.mark.skipif(not can_make(), reason="there is no `openssl` to make certificates")
 
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Two authorities, lab and other, and a certificate of each: robot and stranger."""
     folder = tmp_path_factory.mktemp("certificates")
-    for authority in ("lab", "other"):
-        made = ["-keyout", f"{authority}.key", "-out", f"{authority}.pem", "-subj", f"/CN={authority}", "-days", "30"]
-        openssl(folder, "req", "-x509", *KEY, *made, "-addext", "basicConstraints=critical,CA:TRUE")
-    make(folder, "robot", "lab")
-    make(folder, "stranger", "other")
+    for authority, name in (("lab", "robot"), ("other", "stranger")):
+        make_authority(folder, authority)
+        make_certificate(folder, name, authority)
     return folder
 
 
@@ -113,7 +97,7 @@ def test_a_file_that_will_not_do_is_named(
 
 def test_an_expired_certificate_is_named(lab: Lab) -> None:
     try:
-        make(lab.files, "old", "lab", days="-1")
+        make_certificate(lab.files, "old", "lab", days="-1")
     except subprocess.CalledProcessError:
         pytest.skip("this openssl makes no certificates that have expired")
     assert certificates.faults(lab.config("client", "old")) == [

@@ -8,12 +8,14 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from robolink.transport import network
 from tests import stalls
+from tests.authority import can_make, make_authority, make_certificate
 from tests.domains import free_domain
 
 pytestmark = [
@@ -21,7 +23,7 @@ pytestmark = [
     pytest.mark.skipif(bool(stalls.no_hosts()), reason=stalls.no_hosts() or "there are two hosts"),
 ]
 
-THERE = "10.78.0.1"
+HERE, THERE = "10.77.0.1", "10.78.0.1"
 
 ROUTER = """
 import json, sys, zenoh
@@ -121,3 +123,36 @@ def test_doctor_says_that_nobody_answers_at_an_endpoint(machines: Machines) -> N
     found = machines.doctor(ZENOH_CONFIG_OVERRIDE=f'connect/endpoints=["tcp/{THERE}:7447"]')
     (said,) = found["checks"]["reach"]["warnings"]
     assert f"no other machine has answered (whoever answers at tcp/{THERE}:7447)" in said
+
+
+@pytest.fixture
+def certified(tmp_path: Path) -> dict[str, str]:
+    """The documentation's configurations with certificates: of the machine there, which listens, and of this one."""
+    make_authority(tmp_path, "lab")
+    found = {}
+    for name, address, listens in (("there", THERE, "17447"), ("here", HERE, "0")):
+        make_certificate(tmp_path, name, "lab", address)
+        own = {f"{use}_certificate": str(tmp_path / f"{name}.pem") for use in ("listen", "connect")}
+        own |= {f"{use}_private_key": str(tmp_path / f"{name}.key") for use in ("listen", "connect")}
+        tls = {"enable_mtls": True, "root_ca_certificate": str(tmp_path / "lab.pem")} | own
+        wished = {
+            "listen": {"endpoints": [f"tls/0.0.0.0:{listens}"]},
+            "connect": {"endpoints": [f"tls/{THERE}:17447"] if name == "here" else []},
+            "scouting": {"multicast": {"enabled": False}},
+            "transport": {"link": {"protocols": ["tls"], "tls": tls}},
+        }
+        path = tmp_path / f"{name}.json5"
+        path.write_text(json.dumps(wished))
+        found[name] = str(path)
+    return found
+
+
+@pytest.mark.skipif(not can_make(), reason="there is no `openssl` to make certificates")
+def test_certified_machines_meet_with_one_file_each(machines: Machines, certified: dict[str, str]) -> None:
+    for name in "ab":
+        machines.start(machines.there, NODE, name, ZENOH_SESSION_CONFIG_URI=certified["there"])
+        machines.start(machines.here, NODE, name.upper(), ZENOH_SESSION_CONFIG_URI=certified["here"])
+    found = machines.doctor(ZENOH_SESSION_CONFIG_URI=certified["here"])
+    assert nodes(found) == ["/A", "/B", "/a", "/b"]
+    assert found["checks"]["certificates"]["level"] == "ok"
+    assert found["checks"]["reach"]["summary"].endswith("linked to 2 sessions there")

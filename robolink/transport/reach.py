@@ -67,6 +67,8 @@ class Link(NamedTuple):
     here: str
     """This side's address, such as ``tcp/10.0.0.1:40000``."""
     there: str
+    session: str = ""
+    """The other session's id; two links may lead to one."""
 
     @property
     def leaves_machine(self) -> bool:

@@ -122,7 +122,8 @@ class ZenohTransport(Transport):
         with lifetime.inside:
             info = self._session.info
             roles = {str(each.zid): str(each.whatami) for each in info.transports()}
-            return [Link(roles.get(str(each.zid), "peer"), str(each.src), str(each.dst)) for each in info.links()]
+            found = [(str(each.zid), str(each.src), str(each.dst)) for each in info.links()]
+        return [Link(roles.get(session, "peer"), here, there, session) for session, here, there in found]
 
     def read(self, arrived: Any) -> Sample:
         """Turn what a subscription's or a call's sink got into bytes. Raises TransportError on an error reply."""

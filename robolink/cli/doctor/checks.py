@@ -98,7 +98,7 @@ def reach(facts: Facts) -> Verdict:
     far = [each for each in seen.links if client or each.leaves_machine]
     if not far:
         return Verdict("", (), (_nobody(facts),))
-    linked = f"nodes meet {whom}: linked to {count(len(far), 'session')} there"
+    linked = f"nodes meet {whom}: linked to {count(len({each.session for each in far}), 'session')} there"
     if seen.tokens or seen.other_domains:  # then the domain is what is to be looked at
         return Verdict(linked)
     routed = not client and any(each.role == ROUTER for each in far)
