@@ -122,7 +122,7 @@ ITSELF = Link("peer", "tcp/10.0.0.1:40000", "tcp/10.0.0.1:17447")
 @pytest.mark.parametrize(
     ("reach", "seen", "level", "said"),
     [
-        (Reach(listens=("tcp/127.0.0.1:0",)), Seen(), OK, "nodes meet this machine only"),
+        (Reach(listens=("tcp/127.0.0.1:0",)), Seen(), OK, "nodes meet those on this machine only"),
         (SUBNET, Seen(links=(ITSELF,), tokens=(node("a"),)), WARNING, "no other machine has answered"),
         (SUBNET, Seen(links=(ITSELF, AWAY), tokens=(node("a"),)), OK, "linked to 1 session there"),
         (SUBNET, Seen(links=(AWAY,)), WARNING, "linked to 1 session there, but nobody there has a node"),

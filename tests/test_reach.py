@@ -40,7 +40,7 @@ def test_networks_say_whom_they_reach(name: str, override: str, leaves: bool, sa
 def test_nobody_leaves_this_machine_unless_asked_to(platform: str, said: str) -> None:
     config = zenoh.Config.from_json5(json.dumps(network.settings("localhost", 0, platform=platform)))
     found = reach(config)
-    assert (found.leaves_machine, str(found)) == (False, f"this machine only{said}")
+    assert (found.leaves_machine, str(found)) == (False, f"those on this machine only{said}")
 
 
 def test_access_control_for_other_interfaces_too_confines_nobody() -> None:

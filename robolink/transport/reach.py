@@ -47,7 +47,7 @@ class Reach(NamedTuple):
         if not (self.connects or self.listens or self.multicast):
             return "no other process"
         if not self.leaves_machine:
-            return f"this machine only{f' (interface {self.interfaces[0]})' if self.interfaces else ''}"
+            return f"those on this machine only{f' (interface {self.interfaces[0]})' if self.interfaces else ''}"
         there = [each for each in self.connects if not on_this_machine(each)]
         parts = [
             f"the local network (multicast {self.multicast})" if self.multicast else "",
