@@ -18,6 +18,12 @@ from robolink.wire import Attachment, unpack_attachment
 MOST_SENDERS = 1000
 """Publishers of a topic whose messages are looked at for gaps."""
 
+LATE_BY = 100
+"""A longer gap is no change of order: its messages are not expected any more."""
+
+MOST_LATE = 1000
+"""Messages of all senders that may still come late."""
+
 MANY_WAIT = 1000
 """Messages that wait at least when the first warning comes; each next one comes at ten times as many."""
 
@@ -33,10 +39,14 @@ class Gaps:
 
     def __init__(self, counts: Callable[[bytes], bool] | None = None) -> None:
         self._last: dict[bytes, int] = {}
+        self._missing: dict[tuple[bytes, int], None] = {}
         self._counts = counts
 
     def before(self, sender: Attachment) -> int:
-        """Give how many of its messages are missing before this one; not to be called by two threads at once."""
+        """Give how many of its messages are missing before this one; -1 for one that was missing, and only comes late.
+
+        Not to be called by two threads at once.
+        """
         sequence, _, gid = sender
         if self._last.get(gid) == sequence - 1:  # the usual case, and quick: it runs for every message
             self._last[gid] = sequence
@@ -45,9 +55,19 @@ class Gaps:
         self._last[gid] = max(last, sequence)  # new ones last: the oldest gives way
         if len(self._last) > MOST_SENDERS:
             del self._last[next(iter(self._last))]
-        if sequence <= last + 1 or (self._counts is not None and not self._counts(gid)):
+        if sequence <= last:
+            return -1 if self._missing.pop((gid, sequence), self) is None else 0
+        if sequence == last + 1 or (self._counts is not None and not self._counts(gid)):
             return 0
+        self._expect(gid, range(last + 1, sequence))
         return sequence - last - 1
+
+    def _expect(self, gid: bytes, missing: range) -> None:
+        """Remember what may come late."""
+        if len(missing) <= LATE_BY:
+            self._missing.update(((gid, number), None) for number in missing)
+            while len(self._missing) > MOST_LATE:
+                del self._missing[next(iter(self._missing))]
 
 
 class Backlog:
@@ -62,33 +82,35 @@ class Backlog:
         self._steady = steady
         self._warns_at = MANY_WAIT
         self._many_since: int | None = None
+        self._has_told = False
         self.lost = 0
         """Messages that were published and did not arrive, as far as the numbers of later ones tell."""
         self.warnings: deque[str] = deque()
         """What is to be logged: not here, where a lock is held, but by whoever runs the callback."""
 
     def add(self, attachment: bytes, waiting: deque[Any]) -> int:
-        """Look at a message that is about to wait behind others; give how many are missing before it.
+        """Look at a message that is about to wait behind others; give what `Gaps.before` does.
 
         Raises WireError for an attachment that is not ROS 2's.
         """
         sender = unpack_attachment(attachment)
         missing = self._gaps.before(sender)
         if missing:
-            self._count(missing)
+            self.lost += missing
+            if not self._has_told:
+                self._has_told = True
+                self._tell_of_loss(missing)
         if len(waiting) < MANY_WAIT:
             self._many_since = None
         elif len(waiting) >= self._warns_at:
             self._look_at_time(sender, waiting)
         return missing
 
-    def _count(self, missing: int) -> None:
-        if not self.lost:
-            self.warnings.append(
-                f"{self._topic}: {missing} messages that were published did not arrive: this process or its link stood"
-                " still, or it took them too slowly (more are only counted, in `Subscription.lost`)"
-            )
-        self.lost += missing
+    def _tell_of_loss(self, missing: int) -> None:
+        self.warnings.append(
+            f"{self._topic}: {missing} messages that were published did not arrive, or not in their order: this process"
+            " or its link stood still, or it took them too slowly (more are only counted, in `Subscription.lost`)"
+        )
 
     def _look_at_time(self, newest: Attachment, waiting: deque[Any]) -> None:
         """Warn if many have waited for long: also by our own clock, as a process that stood still gets all at once."""

@@ -126,7 +126,7 @@ class Subscription(Receiver, Generic[MsgT]):
                 arrived = self._endpoint.transport.read(arrived)
             with contextlib.suppress(WireError):  # told when it is taken
                 missing = self._backlog.add(arrived.attachment, self.mailbox.waiting)
-                if missing:
+                if missing > 0:
                     tell_handlers(self.event_handlers, _LOST, total=missing)
         super().deliver(arrived)
 
@@ -218,7 +218,7 @@ class Subscription(Receiver, Generic[MsgT]):
             sample = read(taken)
             with lock:
                 missing = gaps.before(unpack_attachment(sample.attachment))
-            if missing:
+            if missing > 0:
                 tell_handlers(self.event_handlers, _LOST, total=missing)
             return sample
 

@@ -8,7 +8,7 @@ from collections import deque
 import pytest
 
 from robolink import Context, Node
-from robolink.backlog import Backlog, Gaps
+from robolink.backlog import MOST_LATE, Backlog, Gaps
 from robolink.callback_groups import ReentrantCallbackGroup
 from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.impl.log_output import Record
@@ -18,7 +18,7 @@ from robolink.qos import HistoryPolicy, QoSProfile
 from robolink.subscription import Subscription
 from robolink.transport.base import Outlet, Sample
 from robolink.transport.memory import Bus, MemoryTransport
-from robolink.wire import pack_attachment
+from robolink.wire import Attachment, pack_attachment
 from tests.spins import spin_for
 
 KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
@@ -57,9 +57,31 @@ def test_what_is_lost_is_told_once_and_counted(
     assert subscription.lost == 10
     (line,) = log_lines
     assert line.message == (
-        "/topic: 2 messages that were published did not arrive: this process or its link stood still, or"
-        " it took them too slowly (more are only counted, in `Subscription.lost`)"
+        "/topic: 2 messages that were published did not arrive, or not in their order: this process or its"
+        " link stood still, or it took them too slowly (more are only counted, in `Subscription.lost`)"
     )
+
+
+def test_what_only_comes_late_is_not_lost(
+    bus: Bus, node: Node, executor: SingleThreadedExecutor, log_lines: list[Record]
+) -> None:
+    subscription = node.create_subscription(Int32, "topic", lambda _: None, KEEP_ALL)
+    sender = Sender(bus, subscription)
+    lost = []
+    for number in (3, 5, 4, 9, 7, 7, 2, 12, 9, 10):
+        sender.send(number)
+        spin_for(executor, 0.1)
+        lost.append(subscription.lost)
+    assert lost == [0, 1, 0, 3, 2, 2, 2, 4, 4, 3]
+    assert len(log_lines) == 1
+
+
+def test_a_stranger_with_gaps_costs_neither_memory_nor_time() -> None:
+    gaps = Gaps()
+    for number in range(2000):
+        assert gaps.before(Attachment(number * 100, 0, b"a" * 16)) == (99 if number else 0)
+    assert gaps.before(Attachment(2**62, 0, b"a" * 16)) == 2**62 - 199_901
+    assert len(gaps._missing) == MOST_LATE
 
 
 def test_callbacks_side_by_side_lose_nothing(bus: Bus, two: MultiThreadedExecutor, context: Context) -> None:
