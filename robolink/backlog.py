@@ -43,7 +43,7 @@ class Gaps:
         self._counts = counts
 
     def before(self, sender: Attachment) -> int:
-        """Give how many of its messages are missing before this one; -1 for one that was missing, and only comes late.
+        """How many of its messages are missing before this one; -1 for one that was missing, and only comes late.
 
         Not to be called by two threads at once.
         """
@@ -89,7 +89,7 @@ class Backlog:
         """What is to be logged: not here, where a lock is held, but by whoever runs the callback."""
 
     def add(self, attachment: bytes, waiting: deque[Any]) -> int:
-        """Look at a message that is about to wait behind others; give what `Gaps.before` does.
+        """Look at a message that is about to wait behind others; returns what `Gaps.before` does.
 
         Raises WireError for an attachment that is not ROS 2's.
         """
@@ -108,8 +108,9 @@ class Backlog:
 
     def _tell_of_loss(self, missing: int) -> None:
         self.warnings.append(
-            f"{self._topic}: {missing} messages that were published did not arrive, or not in their order: this process"
-            " or its link stood still, or it took them too slowly (more are only counted, in `Subscription.lost`)"
+            f"{self._topic}: messages were published that did not arrive, or not in their order ({missing} so far):"
+            " this process or its link stood still, or it took them too slowly (more are only counted, in"
+            " `Subscription.lost`)"
         )
 
     def _look_at_time(self, newest: Attachment, waiting: deque[Any]) -> None:

@@ -89,7 +89,7 @@ class Pulse(robolink.Node):
             self._heard[other].hear(header.stamp.sec + header.stamp.nanosec / 1e9, time.time())
 
     def report(self) -> dict[str, Any]:
-        """Give what was sent and heard."""
+        """What was sent and heard, for JSON."""
         return {
             "sent": self._sent,
             "blocked": self._blocked,
@@ -105,7 +105,7 @@ class Pulse(robolink.Node):
         }
 
     def join(self) -> float:
-        """Subscribe to what is latched; give the seconds until it came."""
+        """Subscribe to what is latched; returns the seconds until it came."""
         came, begin = threading.Event(), time.perf_counter()
         subscription = self.create_subscription(UInt8MultiArray, "latched", lambda _: came.set(), LATCHED)
         came.wait(JOIN_WITHIN)

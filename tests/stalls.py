@@ -77,7 +77,7 @@ class Pulses:
             self.tell(name, "mark")
 
     def line(self, name: str) -> str:
-        """Give the next line that one prints."""
+        """The next line that one prints."""
         output = self.processes[name].stdout
         assert output is not None
         return output.readline().strip()
@@ -90,7 +90,7 @@ class Pulses:
         keys.flush()
 
     def harm(self, names: Sequence[str] = WATCHED) -> dict[str, Harm]:
-        """End these, and give what happened to each by the fault of what came between them."""
+        """End these; returns what happened to each by the fault of what came between them."""
         for name in names:
             self.tell(name, "stop")
         time.sleep(1.0)  # what is under way arrives
@@ -120,7 +120,7 @@ def play(
     environ: dict[str, str] | None = None,
     prefixes: dict[str, list[str]] | None = None,
 ) -> dict[str, Harm]:
-    """Start the three in this order, let something happen to `c`, and give what it did to these."""
+    """Start the three in this order, let something happen to `c`; returns what it did to these."""
     with ExitStack() as stack:
         pulses = Pulses(stack, environ or {}, prefixes)
         for name in order:
@@ -213,7 +213,7 @@ def _ip(*words: str) -> None:
 
 
 def cut_the_cable(order: str, seconds: float, *options: str, names: Sequence[str] = WATCHED) -> dict[str, Harm]:
-    """Have `c` on another machine, and its cable out for so long; give what that did to these."""
+    """Have `c` on another machine, and its cable out for so long; returns what that did to these."""
     with two_hosts() as (here, there):
 
         def pull(pulses: Pulses) -> None:
@@ -231,7 +231,7 @@ def cut_the_cable(order: str, seconds: float, *options: str, names: Sequence[str
 
 
 def join_late(size: int, *, shared_memory: bool) -> tuple[float, dict[str, Harm]]:
-    """Have `c` subscribe late to a message of so many bytes; give the seconds that took, and what it did to others."""
+    """Have `c` subscribe late to a message of so many bytes; returns after how many seconds it came, and the harm."""
     override = {} if shared_memory else {"ZENOH_CONFIG_OVERRIDE": "transport/shared_memory/enabled=false"}
     with ExitStack() as stack:
         pulses = Pulses(stack, override)

@@ -57,7 +57,7 @@ def test_what_is_lost_is_told_once_and_counted(
     assert subscription.lost == 10
     (line,) = log_lines
     assert line.message == (
-        "/topic: 2 messages that were published did not arrive, or not in their order: this process or its"
+        "/topic: messages were published that did not arrive, or not in their order (2 so far): this process or its"
         " link stood still, or it took them too slowly (more are only counted, in `Subscription.lost`)"
     )
 

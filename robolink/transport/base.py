@@ -18,8 +18,11 @@ from robolink.qos import QoSProfile
 if TYPE_CHECKING:
     from robolink.transport.reach import Link
 
-LARGEST_PAYLOAD = (1 << 30) - (1 << 16)
-"""Bytes of one message: rmw_zenoh's limit of 1 GiB, less what the network adds."""
+LARGEST_MESSAGE = 1 << 30
+"""Bytes, with all that Zenoh adds: rmw_zenoh's limit. A session throws away, without a word, what is larger."""
+
+LARGEST_PAYLOAD = LARGEST_MESSAGE - (1 << 16)
+"""Bytes of one message, less what the network adds."""
 
 Sink = Callable[[Any], object]
 """Called on any thread with something that `Transport.read` or `Transport.accept` understands. Must not block."""

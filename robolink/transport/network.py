@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.exceptions import TransportError, nearest
+from robolink.transport.base import LARGEST_MESSAGE
 
 if TYPE_CHECKING:
     import zenoh
@@ -50,9 +51,6 @@ even the 2), and within a machine 280 MB. What is latched is asked for again, an
 
 LONGEST_WAIT = (WAIT_BEFORE_DROP_US + WAIT_FOR_THE_REST_US) / 1e6
 """Seconds: the two together."""
-
-LARGEST_MESSAGE = 1 << 30
-"""Bytes, with all that Zenoh adds: rmw_zenoh's limit. A session throws away, without a word, what is larger."""
 
 MOST_PENDING = 10_000
 """Connections that may be silent at once, as in rmw_zenoh. With Zenoh's own 100 nobody else was let in for 10 s."""
