@@ -158,7 +158,7 @@ TRIED: dict[str, list[Tried]] = {
     "interface show": [tried("interface show robolink_test/msg/Whisper")],
     "interface proto": [tried("interface proto robolink_test/msg/Whisper")],
     "interface package": [Tried(["interface", "package", EVIL])],
-    "run": [Tried(["run", EVIL])],
+    "run": [Tried(["run", EVIL]), tried("run --list"), tried("run nodes/evil.py"), tried("run nodes/ends.py")],
 }
 
 EXCUSED = {
@@ -242,6 +242,10 @@ def _write(folder: Path) -> None:
     quoted = json.dumps(EVIL)
     (folder / "params.yaml").write_text(f"/lab/robot:\n  ros__parameters:\n    {quoted}: {quoted}\n", encoding="utf-8")
     (folder / "evil.world.yaml").write_text(f"{quoted}: {quoted}\n", encoding="utf-8")
+    (folder / "nodes").mkdir()
+    (folder / "configs").mkdir()
+    (folder / "nodes" / "evil.py").write_text(f'"""\u202eevil"""\nraise ValueError({EVIL!a})\n', encoding="utf-8")
+    (folder / "nodes" / "ends.py").write_text(f"def main():\n    raise SystemExit({EVIL!a})\n", encoding="utf-8")
     arguments = f"arguments:\n  a: {{default: {quoted}, description: {quoted}}}\n"
     (folder / "args.launch.yaml").write_text(f"{arguments}nodes:\n  - run: nothing\n", encoding="utf-8")
     (folder / "evil.launch.yaml").write_text(f"nodes:\n  - run: {quoted}\n    {quoted}: 1\n", encoding="utf-8")
@@ -289,7 +293,7 @@ def test_no_command_lets_a_control_character_through(
         assert ALLOWED.fullmatch(text), repr(text)
     came = "1 announcement could not be read" in err if each.refused else "evil" in out + err
     assert came, "nothing of the text came: this tries nothing"
-    assert "Traceback" not in err
+    assert "Traceback" not in err or each.words[:1] == ["run"]
     if "--json" in each.words and out:
         json.loads(out.splitlines()[0])
 

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from robolink.cli import runner
+from robolink.cli.output import tell
 from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.launch.together import Member
 from robolink.workspace import NodeLoadError, NodeSource, find_node, load_node
@@ -73,7 +74,7 @@ def make(member: Member, source: NodeSource, context: Context) -> Node:
     except RobolinkError as error:
         raise NodeLoadError(f"{member.name}: {error}").with_traceback(error.__traceback__) from None
     except Exception:
-        print(f"robolink: {member.name} raised while it was made:", file=sys.stderr)  # noqa: T201
+        tell(f"robolink: {member.name} raised while it was made:")
         raise
     for name, level in context.arguments.log_levels:
         set_logger_level(name or node.get_logger().name, level)

@@ -31,10 +31,10 @@ def clear() -> None:
     _write(_CLEAR)
 
 
-def tell(text: str) -> None:
-    """Write lines for the person at the keyboard to standard error."""
+def tell(text: str, *, colours: bool = False) -> None:
+    """Write lines for the person at the keyboard to standard error; with `colours`, what sets some may be in them."""
     if sys.stderr is not None:
-        sys.stderr.write(fit(text) + "\n")
+        sys.stderr.write(fit(text, colours=colours) + "\n")
         sys.stderr.flush()
 
 

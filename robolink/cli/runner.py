@@ -14,6 +14,7 @@ from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.cli import complain
+from robolink.cli.output import say, tell
 from robolink.exceptions import (
     ExternalShutdownException,
     InterruptedByUser,
@@ -151,7 +152,7 @@ def show_nodes(workspace: str | None) -> None:
     for package, nodes in list_executables(workspace=workspace).items():
         rows += [(f"{package} {each.name}", each) for each in nodes if each.path not in shown]
     for line in aligned([(name, _purpose(each)) for name, each in rows]):
-        print(line)  # noqa: T201
+        say(line)
 
 
 def spin(node_class: Callable[[], Node]) -> None:
@@ -226,7 +227,7 @@ def _exit_code(act: Callable[[], Any]) -> int:
         result = error.code
     if result is None or isinstance(result, int):
         return result or 0
-    print(result, file=sys.stderr)  # noqa: T201
+    tell(str(result))
     return 1
 
 
@@ -259,7 +260,7 @@ def _show(error: Exception) -> None:
         trace = trace.tb_next
     if isinstance(error, LackingNameError):
         _end_in_users_code(trace)
-    print(formatted(error, trace), file=sys.stderr)  # noqa: T201
+    tell(formatted(error, trace), colours=True)
 
 
 def _end_in_users_code(trace: TracebackType | None) -> None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from robolink.launch import processes
 from robolink.oneprocess.host import Host
 from robolink.oneprocess.supervision import Supervision
+from robolink.terminal import fit
 
 if TYPE_CHECKING:
     from robolink.launch import Entry
@@ -41,7 +42,7 @@ def run(entries: Sequence[Entry], *, duration: float | None = None) -> int:
 
 
 def _say(text: str) -> None:
-    print(f"[launch] {text}\n", end="", flush=True)  # noqa: T201 - it is for people; in one go, as nodes print too
+    print(f"[launch] {fit(text)}\n", end="", flush=True)  # noqa: T201 - it is for people; in one go, as nodes print too
 
 
 @contextmanager
