@@ -16,7 +16,7 @@ from robolink.testing.expectations import ClosedError, ExpectationError, NodeFai
 from robolink.testing.expecting import Expecting
 from robolink.testing.parameters import Parameters
 from robolink.testing.robots import RobotsElsewhere, SimulatedRobot, chosen
-from robolink.testing.stage import Failure, Named, Stage, Startable, Wanted, full, startable
+from robolink.testing.stage import Failure, Named, Startable, Wanted, full, make_stage, startable
 from robolink.testing.story import Story
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class System:
             raise ValueError(f"expected a seed from 0 to {MOST_SEED}, got {seed!r}")
         self.seed, self.allow_failures = seed, allow_failures
         self._is_closed, self._reported = False, 0
-        self._stage = _stage(transport, seed)
+        self._stage = make_stage(transport, seed)
         self.clock = SystemClock(self)
         self.story = Story(self._stage, replay or f"System(seed={seed})")
         """What a test is told when something did not come true; `story.whole()` tells all of it."""
@@ -374,15 +374,3 @@ class System:
                 self.check_faults()
         finally:
             self.close()
-
-
-def _stage(transport: str, seed: int) -> Stage:
-    if transport == "zenoh":
-        from robolink.testing.processes import Processes
-
-        return Processes()
-    if transport == "memory":
-        from robolink.testing.one_process import OneProcess
-
-        return OneProcess(seed)
-    raise ValueError(f"no transport '{transport}' for tests: expected memory or zenoh")
