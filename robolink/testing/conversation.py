@@ -42,7 +42,7 @@ class Conversation:
     def hear(self) -> None:
         """Put what has come into the lists."""
         for ear, heard, given in self._kept:
-            heard.extend(self._story.decoded(topic, payload, given) for topic, payload in ear.take())
+            heard.extend(self._story.decoded(topic, sample.payload, given) for topic, sample in ear.take())
 
     @property
     def topics(self) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
@@ -32,6 +33,12 @@ class Expecting:
     ) -> None:
         self._stage, self._story, self._conversation, self._run_until = stage, story, conversation, run_until
         self._read_logs = 0
+        self._begin = 0
+        self._found: dict[str, int] = {}
+
+    def begin(self) -> None:
+        """Have messages count that are heard from now on."""
+        self._begin = self._story.recorder.now()
 
     # Messages
 
@@ -63,13 +70,19 @@ class Expecting:
         if isinstance(predicate, type):
             raise TypeError(f"{predicate.__name__} is no condition: give it as type={predicate.__name__}")
         met: list[Any] = []
-        tried = 0
-        with self._story.recorder.listening(name) as ear:
+        tried, recorder = 0, self._story.recorder
+        with recorder.listening(name) as ear:
+            begin, own = max(self._begin, self._found.get(name, 0)), self._story.graph.own_name
+            earlier = recorder.since(name, begin, but=own)
+            waiting, twice = deque(earlier), {sample.attachment for _, sample in earlier if sample.attachment}
 
             def came() -> bool:
                 nonlocal tried
-                for topic, payload in ear.take():
-                    message = self._story.decoded(topic, payload, given)
+                waiting.extend(each for each in ear.take() if each[1].attachment not in twice)
+                while waiting:
+                    topic, sample = waiting.popleft()
+                    self._found[name] = recorder.after(name, sample)
+                    message = self._story.decoded(topic, sample.payload, given)
                     tried += 1
                     if predicate is None or predicate(message):
                         met.append(message)

@@ -100,6 +100,26 @@ class Recorder:
                 self._ears.remove(ear)
             ear.close()
 
+    def now(self) -> int:
+        """Give a number that is above those of all that was heard so far, and below those of what comes."""
+        return next(self._numbers)
+
+    def since(self, name: str, number: int, *, but: str) -> list[tuple[Topic, Sample]]:
+        """Give what is still kept of a topic from this number on, in the order in which it was heard.
+
+        What the node `but` has published is left out.
+        """
+        kept = [(each, topic) for topic in self.named(name) for each in topic.kept.copy() if each.number >= number]
+        kept.sort(key=lambda one: one[0].number)
+        found = [(topic, self.sample(each)) for each, topic in kept]
+        return [each for each in found if self.sender(each[1]) != but]
+
+    def after(self, name: str, sample: Sample) -> int:
+        """Give the number from which on all was heard later than this sample."""
+        kept = [each for topic in self.named(name) for each in topic.kept.copy()] if sample.attachment else []
+        numbers = (each.number for each in kept if self.sample(each).attachment == sample.attachment)
+        return next(numbers, next(self._numbers)) + 1
+
     def tell_of_topics(self, follower: Callable[[Topic], object]) -> None:
         """Call `follower(topic)` for each topic that there is, and for each that comes."""
         with self._lock:
@@ -171,12 +191,12 @@ class Ear:
         put = self._arrived.append
         self._handles.append(self._transport.subscribe(topic.key, _LATCHED, lambda arrived: put((topic, arrived))))
 
-    def take(self) -> list[tuple[Topic, bytes]]:
-        """Give what has come since the last time, in its order, as bytes."""
+    def take(self) -> list[tuple[Topic, Sample]]:
+        """Give what has come since the last time, in its order."""
         taken = []
         while self._arrived:
             topic, arrived = self._arrived.popleft()
-            taken.append((topic, self._transport.read(arrived).payload))
+            taken.append((topic, self._transport.read(arrived)))
         return taken
 
     def close(self) -> None:

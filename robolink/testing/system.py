@@ -92,7 +92,7 @@ class System:
         wanted = Wanted(startable(what), name, namespace, parameters or {}, remappings or {}, tuple(args))
         started = self._stage.start(wanted)
         self._parameters.note_given(started, wanted.parameters)
-        self._conversation.hear()
+        self._begin()
         return started
 
     def launch(
@@ -114,25 +114,26 @@ class System:
         self._check_open()
         self._stage.launch(read(file, arguments or {}, set or {}), faults)
         self._parameters.note_set(set or {})
-        self._conversation.hear()
+        self._begin()
 
     def stop(self, node: str | Named) -> None:
         """End a node's program as Ctrl-C does: it may still say its last words."""
         __tracebackhide__ = True
         self._stage.stop(self._stage.program_of(node))
-        self._conversation.hear()
+        self._begin()
 
     def crash(self, node: str | Named) -> None:
         """End a node's program at once, as `kill -9` does. That is no failure of the test."""
         __tracebackhide__ = True
         self._stage.crash(self._stage.program_of(node))
+        self._begin()
 
     def restart(self, node: str | Named) -> Any:
         """Start a node's program anew, with all that it was started with; give what `start` gave."""
         __tracebackhide__ = True
         self._check_open()
         started = self._stage.restart(self._stage.program_of(node))
-        self._conversation.hear()
+        self._begin()
         return started
 
     @property
@@ -151,6 +152,7 @@ class System:
         """Publish a message from the test's own node; it arrives when time passes next."""
         __tracebackhide__ = True
         self._check_open()
+        self._begin()
         self._conversation.publish(topic, message, qos)
 
     def messages(self, topic: str, type: type[Message] | None = None) -> list[Any]:  # noqa: A002 - what it is
@@ -173,7 +175,8 @@ class System:
     ) -> Any:
         """Wait for a message for which `predicate(message)` is true, or for any; give it.
 
-        Only what is published from now on counts, and what publishers keep for those who come late. Raises
+        What counts is published since the test last published, called, set, started or ended something or let time
+        pass, and after what `expect` found last on the topic; and what publishers keep for those who come late. Raises
         ExpectationError after `within` seconds, with the last messages of the topics concerned.
         """
         __tracebackhide__ = True
@@ -190,6 +193,7 @@ class System:
         """Let so many seconds pass. Raises ExpectationError as soon as a message comes that fulfils the condition."""
         __tracebackhide__ = True
         self._expecting.no_message(topic, predicate, during, type)
+        self._begin()
 
     # Anything else that is waited for
 
@@ -200,6 +204,7 @@ class System:
         """
         __tracebackhide__ = True
         self._expecting.condition(condition, within)
+        self._begin()
 
     def result(self, future: Future[T], within: float = 60.0) -> T:
         """Let time pass until a future is done; give its result, or raise what it holds.
@@ -207,7 +212,9 @@ class System:
         Raises ExpectationError after `within` seconds.
         """
         __tracebackhide__ = True
-        return self._expecting.result(future, within)
+        result = self._expecting.result(future, within)
+        self._begin()
+        return result
 
     def expect_log(self, words: str, within: float = PATIENCE) -> Record:
         """Wait for a log line that has these words in it; give it.
@@ -234,6 +241,7 @@ class System:
         __tracebackhide__ = True
         self._check_open()
         kind = find(srv_type, "srv") if isinstance(srv_type, str) else srv_type
+        self._begin()
         return self._expecting.answer(kind, name, request, within)
 
     def parameter(self, node: str | Named, name: str, within: float = PATIENCE) -> Any:
@@ -244,6 +252,7 @@ class System:
     def set_parameter(self, node: str | Named, name: str, value: Any, within: float = PATIENCE) -> None:
         """Set a node's parameter. Raises InvalidParameterValueException with the reason when the node refuses."""
         __tracebackhide__ = True
+        self._begin()
         self._parameters.set_value(full(node), name, value, within)
 
     # The graph
@@ -304,6 +313,7 @@ class System:
         """Let so many seconds pass. Raises NodeFailure when a program fails meanwhile."""
         __tracebackhide__ = True
         self._run_until(lambda: False, seconds)
+        self._begin()
 
     def check(self) -> None:
         """Raise NodeFailure when a program has failed since the test waited last."""
@@ -335,6 +345,11 @@ class System:
         if self.time > begin:
             self._parameters.check_given()
         return met
+
+    def _begin(self) -> None:
+        """Have only what comes from now on count; what came before is in the lists that are kept."""
+        self._conversation.hear()
+        self._expecting.begin()
 
     def _check_open(self) -> None:
         """Raise ClosedError once there is nothing left that could be asked."""

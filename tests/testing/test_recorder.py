@@ -127,8 +127,8 @@ def test_who_listens_hears_what_comes_and_what_was_kept_for_late_ones(network: t
         with recorder.listening("/usual") as ear, recorder.listening("/latched") as late:
             assert [len(each.take()) for each in (ear, late)] == [0, 1]
             usual.publish(Int32(data=2))
-            ((topic, payload),) = ear.take()
-            assert (topic.name, deserialize_message(payload, Int32).data) == ("/usual", 2)
+            ((topic, sample),) = ear.take()
+            assert (topic.name, deserialize_message(sample.payload, Int32).data) == ("/usual", 2)
             assert ear.take() == []
         usual.publish(Int32(data=3))
         assert ear.take() == []

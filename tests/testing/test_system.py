@@ -7,7 +7,7 @@ import threading
 
 import pytest
 
-from robolink import Message, logging
+from robolink import Message, Node, logging
 from robolink.exceptions import (
     EncodeError,
     InvalidParameterValueException,
@@ -45,6 +45,70 @@ def test_only_what_comes_from_now_on_counts(tested: System) -> None:
         ExpectationError, match=r"none of the 2 messages on /count fulfilled the condition within 0.2 s"
     ):
         tested.expect("count", lambda count: count.data < 20, within=0.2)
+
+
+def meanwhile(system: System, seconds: float) -> None:
+    """Have time pass that the test has not asked for, as it does over Zenoh between two lines of the test."""
+    system._stage.run_until(lambda: False, seconds)
+
+
+def test_an_answer_that_comes_before_it_is_expected_counts(tested: System) -> None:
+    tested.start(Doubler)
+    for number in (4, 5):
+        tested.publish("count", Int32(data=number))
+        meanwhile(tested, 0.1)
+        assert tested.expect("double", within=0.0).data == 2 * number
+    with pytest.raises(ExpectationError, match=r"^nothing came on /double within 0 s"):
+        tested.expect("double", within=0.0)
+    tested.publish("count", Int32(data=6))
+    meanwhile(tested, 0.1)
+    with pytest.raises(ExpectationError, match=r"^a message came on /double"):
+        tested.expect_none("double", during=0.0)
+
+
+def test_what_came_before_the_last_thing_that_the_test_did_does_not_count(tested: System) -> None:
+    tested.start(Doubler)
+    for act in (
+        lambda: tested.run(0.0),
+        lambda: tested.wait_until(lambda: True),
+        lambda: tested.publish("elsewhere", Int32()),
+        lambda: tested.start(Counter, parameters={"rate": 0.1}),
+        lambda: tested.crash("counter"),
+    ):
+        tested.publish("count", Int32(data=4))
+        meanwhile(tested, 0.1)
+        act()
+        with pytest.raises(ExpectationError, match=r"^nothing came on /double"):
+            tested.expect("double", within=0.0)
+
+
+class Answering(Node):
+    """Publishes where it is asked something and where a parameter is set."""
+
+    def __init__(self) -> None:
+        super().__init__("answering")
+        self.said = self.create_publisher(Int32, "said", 10)
+        self.create_service(Trigger, "ask", self.answer)
+        self.declare_parameter("number", 0)
+        self.add_post_set_parameters_callback(lambda parameters: self.said.publish(Int32(data=parameters[0].value)))
+
+    def answer(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self.said.publish(Int32(data=7))
+        return response
+
+
+def test_what_a_call_or_a_parameter_leads_to_counts(tested: System) -> None:
+    tested.start(Answering)
+    tested.call(Trigger, "ask")
+    assert tested.expect("said", within=0.0).data == 7
+    tested.set_parameter("answering", "number", 8)
+    assert tested.expect("said", within=0.0).data == 8
+
+
+def test_what_the_test_says_itself_is_no_answer(tested: System) -> None:
+    tested.publish("said", Int32())
+    with pytest.raises(ExpectationError):
+        tested.expect("said", within=0.0)
 
 
 def test_what_is_kept_for_late_ones_counts_too(tested: System) -> None:
