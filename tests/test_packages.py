@@ -214,6 +214,22 @@ def test_a_package_outside_of_a_workspace_is_told_where_it_would_be(
     )
 
 
+@pytest.mark.parametrize(("here", "place"), [("", "src/pkg_a"), ("src", "pkg_a"), ("src/pkg_a", "{top}/src/pkg_a")])
+def test_a_folder_without_a_package_xml_is_told_so(
+    here: str, place: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv(VARIABLE, raising=False)
+    top = tmp_path.resolve()
+    (top / "src/pkg_a").mkdir(parents=True)
+    (top / "src/pkg_a/first.py").touch()
+    monkeypatch.chdir(top / here)
+    assert main(["run", "pkg_a", "first"]) == 1
+    assert capsys.readouterr().err == (
+        f"robolink: no node or package named 'pkg_a': the folder {Path(place.format(top=top))} has no package.xml, "
+        "by which a package is known: add one, or run a file of it\n"
+    )
+
+
 def test_a_console_script_without_its_file_is_told_so(top: Path) -> None:
     write_package(top / "src", "pkg_bad", {"firts.py": ""}, "first = pkg_bad.first:main", "odd = pkg_bad.firts:mian")
     missing = top / "src/pkg_bad/pkg_bad/first.py"

@@ -43,6 +43,7 @@ from robolink.workspace import (
     load_node,
     named_executables,
     ros_program_error,
+    unmarked_package,
     user_workspace,
     workspace_of,
 )
@@ -137,7 +138,11 @@ def _neither(name: str, workspace: str | None) -> NotFoundError:
     home = user_workspace(workspace)
     known = [*(each.name for each in list_nodes(workspace=workspace)), *list_packages(workspace=workspace)]
     error = NotFoundError("node or package", name, known, "" if home is None else str(home))
-    if home is None and not nearest(name, known):
+    unmarked = unmarked_package(name, Path() if home is None else home)
+    if unmarked is not None:
+        advice = f"the folder {unmarked} has no package.xml, by which a package is known: add one, or run a file of it"
+        error.args = (f"{error}: {advice}",)
+    elif home is None and not nearest(name, known):
         advice = "this folder is in no workspace; go to the one with its src/, or name it with --workspace"
         error.args = (f"{error}: {advice}",)
     return error

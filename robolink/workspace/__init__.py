@@ -20,7 +20,7 @@ from robolink.workspace.find import (
 )
 from robolink.workspace.interfaces import InterfaceImportError, use_interfaces
 from robolink.workspace.load import NodeLoadError, load_module, load_node, own_process_needed
-from robolink.workspace.packages import executable, executables, named_executables
+from robolink.workspace.packages import executable, executables, named_executables, unmarked_package
 from robolink.workspace.purpose import purpose_of
 from robolink.workspace.ros_programs import ros_program_error
 from robolink.workspace.source import Folder, NodeSource, canonical
@@ -53,6 +53,7 @@ __all__ = [
     "own_process_needed",
     "purpose_of",
     "ros_program_error",
+    "unmarked_package",
     "use_interfaces",
     "user_workspace",
     "workspace_of",

@@ -13,6 +13,7 @@ module folder and of its `nodes/`, by their names without `.py`. `_` and `-` in 
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -60,6 +61,19 @@ def is_ros_workspace(folder: Path) -> bool:
     if not (folder / "src").is_dir():
         return False
     return any((each / "package.xml").is_file() for each in source_packages(folder).values() if each != folder)
+
+
+def unmarked_package(name: str, top: Path) -> Path | None:
+    """Give the folder that would be a package of this name but for its package.xml: `top`, or in it or its `src/`."""
+    with contextlib.suppress(OSError):  # the working directory has been deleted, or may not be read
+        for each in (top / "src" / name, top / name, top.resolve()):
+            if canonical(each.name) == canonical(name) and each.is_dir() and not _is_marked(each):
+                return each
+    return None
+
+
+def _is_marked(folder: Path) -> bool:
+    return (folder / "package.xml").is_file() or any((folder / mark).exists() for mark in IGNORE)
 
 
 def executables(folder: Path) -> dict[str, NodeSource]:
