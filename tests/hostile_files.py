@@ -171,6 +171,15 @@ def world(content: str, answer: str, lines: int = 1) -> Hostile:
     return Hostile(text("a.yaml", content), ("world", "check", "./a.yaml"), answer, lines)
 
 
+def webots(content: str, answer: str) -> Hostile:
+    return Hostile(
+        text("a.wbt", f"#VRML_SIM R2023b utf8\nWorldInfo {{}}\n{content}"), ("world", "check", "./a.wbt"), answer
+    )
+
+
+SOLID = "Solid { translation 0 0 .05 physics Physics { mass 1 } boundingObject Box { size .1 .1 .1 } }\n"
+
+
 def png(width: int, height: int, colour: int, depth: int, bytes_a_pixel: int, filtering: int = 0) -> bytes:
     """Make a PNG whose pixels are all alike, as they are stored."""
     packer = zlib.compressobj(1)
@@ -215,7 +224,7 @@ WORLDS = {
     "25 million pixels of noise": mapped(_noise, "is the map all noise?"),
     "200,000 obstacles": world(_obstacles(200_000, apart=0.5), "cannot be read: it is longer than 5 MB"),
     "14,000 obstacles": world(_obstacles(14_000, apart=0.5), "obstacles: expected list of length <= 5000"),
-    "5,000 in one place": world(_obstacles(5_000, apart=0.0), "and many more mistakes", 21),
+    "5,000 in one place": world(_obstacles(5_000, apart=0.0), "over 30,000 shapes meet others", 7),
     "12,000 walls": world(
         "walls:\n" + "".join(f"- polyline: [[{n}, 0], [{n}, 5]]\n" for n in range(10_100)),
         "walls: expected list of length <= 10000",
@@ -223,6 +232,14 @@ WORLDS = {
     "9,000 wrong walls": world(
         "walls:\n" + "".join(f"- [[{n}, 0], [{n}, 5]]\n" for n in range(9_000)), "and many more mistakes", 21
     ),
+    "Webots: 5,000 in one place": webots(SOLID * 5_000, "this starts inside of Solid: move it out of there"),
+    "Webots: 30,000 solids": webots(SOLID * 30_000, "more than 5,000 solids"),
+    "Webots: 90,000 levels": webots("Group { children [ " * 90_000, "more than 60 nodes are inside of each other"),
+    "Webots: groups that grow": webots(
+        "".join(f"DEF A{n} Group {{ children [ {f'USE A{n - 1} ' * 10 if n else ''}] }}\n" for n in range(12)),
+        "more than 100000 nodes",
+    ),
+    "Webots: 7 MB": webots("#" * 7_000_000, "cannot be read: it is longer than 6 MB"),
 }
 """What worlds and their maps may do."""
 

@@ -30,14 +30,19 @@ def misfits(data: Mapping[str, Any]) -> Iterator[Problem]:
         yield from under(f"$.robots[{index}]", robot_misfits(robot))
 
 
-def problems(description: WorldDescription, grid: GridMap | None = None) -> Iterator[Problem]:
-    """Yield all that is wrong with a description, such as ``$.robots[0].pose``; overlaps once all else is right."""
+def problems(
+    description: WorldDescription, grid: GridMap | None = None, *, fixed_too: bool = True
+) -> Iterator[Problem]:
+    """Yield all that is wrong with a description, such as ``$.robots[0].pose``; overlaps once all else is right.
+
+    Without `fixed_too` fixed obstacles may stand in each other.
+    """
     found = False
     for problem in _local_problems(description):
         found = True
         yield problem
     if not found:
-        yield from overlaps(description, grid)
+        yield from overlaps(description, grid, fixed_too=fixed_too)
 
 
 def _local_problems(description: WorldDescription) -> Iterator[Problem]:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import msgspec
 
 from robolink.exceptions import DocumentError
+from robolink.sim.checks.overlaps import CROWDED
 from robolink.sim.checks.worlds import mass_problems, problems
 from robolink.sim.description import Obstacle, Settings, Wall, WorldDescription
 from robolink.sim.webots.footprint import footprint, merged
@@ -125,9 +126,9 @@ def _settled(
     """Leave out what stands on other things, and fix what could be pushed but starts inside of something."""
     notes: list[str] = []
     for _ in range(ATTEMPTS):
-        found = [each for each in problems(description) if not _is_fixed(each.path, things)]
+        found = [each for each in problems(description, fixed_too=False) if not _is_fixed(each.path, things)]
         inside = {int(match[1]) for each in found if (match := re.fullmatch(_OBSTACLE, each.path))}
-        if not inside:
+        if not inside or any(each.path == CROWDED for each in found):
             break
         things, more = _moved(things, inside, floor)
         notes += more

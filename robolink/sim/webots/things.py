@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from robolink.sim.description import FARTHEST
+from robolink.sim.description import FARTHEST, MOST_OBSTACLES, MOST_ROBOTS
 from robolink.sim.webots.geometry import Part, Placement, box, part
 from robolink.sim.webots.sensors import LIDARS
 from robolink.sim.webots.vrml import Node
@@ -74,6 +74,9 @@ class Found:
             self._visit(node, world)
 
     def _visit(self, node: Node, outer: Placement) -> None:
+        if len(self.things) > MOST_OBSTACLES or len(self.robots) > MOST_ROBOTS:
+            most = f"{MOST_OBSTACLES:,} solids" if len(self.things) > MOST_OBSTACLES else f"{MOST_ROBOTS:,} robots"
+            raise node.error(f"more than {most}: the world is too large")
         if node.type == "Robot":
             self.robots.append((node, outer.inside(node)))
         elif node.type in _LIBRARY:

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from typing import NoReturn, TypeAlias
 
 from robolink.exceptions import DocumentError, nearest, shown
+from robolink.plainfile import size
 
 Value: TypeAlias = "float | str | bool | Node | None"
 
@@ -20,8 +21,8 @@ DEEPEST = 60
 MOST = 100_000
 """So many nodes a world may have, each counted as often as it is used."""
 
-LONGEST = 16 * 2**20
-"""Characters that a world may have."""
+LONGEST = 6_000_000
+"""Characters that a world may have, and bytes."""
 
 LARGEST = 1e12
 """No number that means anything in a world is larger."""
@@ -163,7 +164,7 @@ def parse(text: str, name: str) -> list[Node]:
     """
     source = Source(text, name)
     if len(source.text) > LONGEST:
-        raise DocumentError(f"longer than {LONGEST // 2**20} MiB", name)
+        raise DocumentError(f"longer than {size(LONGEST)}", name)
     _check_header(source)
     return _Parser(source).nodes()
 
