@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import threading
+import weakref
 from collections import deque
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
@@ -41,7 +43,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         callbacks = event_callbacks or PublisherEventCallbacks()
         self.event_handlers = callbacks.create_event_handlers(callback_group, self, topic)
         self._outlets = _Outlets(self._endpoint, qos_profile)
-        self._put, self._attachment, self._lock = self._outlets.put, self._endpoint.attachment, self._outlets.lock
+        self._put, self._attachment = self._outlets.put, self._endpoint.attachment
         self._endpoint.warns = warns_of_types(callbacks)
         self._endpoint.on_disagreement = self._on_disagreement
         self._endpoint.on_other = self._on_other
@@ -62,7 +64,9 @@ class Publisher(Destroyable, Generic[MsgT]):
             raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
         if self._destroyed:
             raise self._gone_(f"the publisher of {self.topic}")
-        with self._lock:  # or a thread could be overtaken by another between its number and its place on the wire
+        with (
+            self._outlets.lock
+        ):  # or a thread could be overtaken by another between its number and its place on the wire
             self._put(payload, self._attachment())
 
     @property
@@ -127,6 +131,7 @@ class _Outlets:
         self._closed = False
         self.lock = threading.RLock()  # re-entrant: a signal handler that logs interrupts whoever publishes a log
         """Held where something is numbered and put, so that all is sent in the order of its numbers, as in ROS 2."""
+        _outlets.add(self)
         self._kept: deque[tuple[bytes, bytes]] | None = None
         self.put: Callable[[bytes, bytes], None] = first.put
         """Send a payload with its attachment; another function after `add`."""
@@ -161,3 +166,16 @@ class _Outlets:
         self._closed = True
         for outlet in self._all:
             outlet.close()
+
+
+_outlets: weakref.WeakSet[_Outlets] = weakref.WeakSet()
+
+
+def _let_go() -> None:
+    """Free the locks in a forked child: whoever held them is not there."""
+    for each in list(_outlets):
+        each.lock = threading.RLock()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_let_go)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import threading
 from collections import deque
 
@@ -211,3 +214,41 @@ def test_a_thread_that_publishes_is_not_overtaken_between_a_number_and_the_wire(
     other.join()
     spin_for(executor, 0.1)
     assert (got, subscription.lost) == ([1, 2], 0)
+
+
+FORK = """
+import os, signal, threading, warnings
+from robolink import Context, Node
+from robolink.interfaces.std_msgs.msg import Int32
+from robolink.transport.memory import Bus, MemoryTransport
+
+warnings.simplefilter("ignore")
+context = Context(transport=MemoryTransport(bus=Bus()))
+context.init([])
+publisher = Node("node", context=context).create_publisher(Int32, "topic", 10)
+held, ended = threading.Event(), threading.Event()
+
+def publish():
+    number = publisher._attachment
+    publisher._attachment = lambda: (held.set(), ended.wait(), number())[-1]
+    publisher.publish(Int32())
+
+other = threading.Thread(target=publish)
+other.start()
+held.wait()
+child = os.fork()
+if not child:
+    signal.alarm(10)
+    ended.set()
+    publisher.publish(Int32())
+    os._exit(5)
+print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
+ended.set()
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="Windows cannot fork")
+@pytest.mark.processes
+def test_a_forked_child_does_not_wait_for_a_thread_that_was_publishing() -> None:
+    done = subprocess.run([sys.executable, "-c", FORK], capture_output=True, text=True, check=False, timeout=60.0)
+    assert (done.stdout, done.stderr) == ("5\n", "")
