@@ -135,6 +135,8 @@ class Context:
 
                 self._graph = Graph(self.transport, self._domain_id)
                 self.on_shutdown(self._graph.wake)
+            if self._closed and not self._graph.settled:  # what was there before can be asked no more
+                raise NotInitializedException(ended_by=self.ended_by)
             return self._graph
 
     def wait_until(self, is_there: Callable[[], bool], timeout_sec: float | None) -> bool:

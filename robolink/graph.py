@@ -72,7 +72,8 @@ class Graph:
         self._news: deque[Callable[[], object]] = deque()
         self._telling = threading.Lock()
         self._settling = threading.Lock()
-        self._settled = not transport.threaded
+        self.settled = not transport.threaded
+        """Whether what was there before this session is known."""
         self._begin = time.monotonic()
         self._watch = transport.watch(graph_pattern(domain_id), self._on_news)
 
@@ -243,15 +244,15 @@ class Graph:
 
     def _settle(self) -> None:
         """Wait, once, until what was there before this session is known."""
-        if self._settled:
+        if self.settled:
             return
         with self._settling:
-            if not self._settled and time.monotonic() - self._begin < LONG_STANDING:
+            if not self.settled and time.monotonic() - self._begin < LONG_STANDING:
                 # A token that is lost just now costs the wait.
                 known = set(self._readable(self._transport.tokens(graph_pattern(self._domain_id))))
                 with self._changed:
                     self._changed.wait_for(lambda: known <= self._index.tokens.keys(), SETTLED_WITHIN)
-            self._settled = True
+            self.settled = True
 
     def _readable(self, texts: Iterable[str]) -> Iterable[bytes]:
         for text in texts:

@@ -24,6 +24,16 @@ def made() -> Context:
     return Context(transport=MemoryTransport(bus=Bus()))
 
 
+@pytest.mark.processes
+def test_a_question_that_comes_after_the_end_is_told_so(domain: int) -> None:
+    context = Context(transport="zenoh")
+    context.init([], domain_id=domain)
+    publisher = Node("node", context=context).create_publisher(Int32, "topic", 10)
+    context.shutdown()
+    with pytest.raises(NotInitializedException, match=r"^robolink\.shutdown\(\) has ended the context$"):
+        publisher.get_subscription_count()
+
+
 def test_a_context_is_ok_between_init_and_shutdown() -> None:
     context = made()
     assert not context.ok()
