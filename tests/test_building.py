@@ -219,7 +219,7 @@ BODY = {"__module__": __name__, "__qualname__": "Foo"}
 
 
 def test_a_python_class_has_constants_that_ros_can_name() -> None:
-    with pytest.raises(MessageError, match="'left' is no constant name: upper case"):
+    with pytest.raises(MessageError, match="'left' is no constant name: A-Z"):
 
         class Wrong(Message):
             left: ClassVar[uint8] = 1
