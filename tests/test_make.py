@@ -65,7 +65,8 @@ def with_python(make: ModuleType, venv: Path) -> None:
 
 def installed(make: ModuleType, venv: Path, what: str) -> list[str]:
     python = str(make.python_of(venv))
-    return [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--editable", what]
+    words = ["pip", "install", "--quiet", "--disable-pip-version-check", "--editable", what]
+    return [python, "-c", make.QUIETLY, *words]
 
 
 def test_a_demo_installs_what_it_needs_and_no_tools_and_tells_each_step(
@@ -77,7 +78,7 @@ def test_a_demo_installs_what_it_needs_and_no_tools_and_tells_each_step(
     venv.mkdir()
     assert make.main(["demo"]) == 0
     assert noted == [
-        [sys.executable, "-m", "venv", str(venv)],
+        [sys.executable, "-c", make.QUIETLY, "venv", str(venv)],
         installed(make, venv, "."),
         [str(make.python_of(venv)), "-m", "robolink", "launch", "wander"],
     ]
@@ -131,6 +132,29 @@ def test_what_does_not_install_is_not_run(
     assert len(noted) == 2
     assert not (tmp_path / ".demo").exists()
     assert capsys.readouterr().err == "robolink is not installed: the step above failed\n"
+
+
+INTERRUPTED_STEP = """
+import os, signal, sys
+assert sys.argv[1:] == ["install", "all"], sys.argv
+os.kill(os.getpid(), signal.SIGINT)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a process of Windows cannot send itself a Ctrl-C alone")
+def test_an_interrupted_installation_shows_no_traceback_and_says_how_it_goes_on(
+    make: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "interrupted.py").write_text(INTERRUPTED_STEP)
+    monkeypatch.setattr(make, "ROOT", tmp_path)
+    (tmp_path / "pyproject.toml").touch()
+    step = make.quietly(sys.executable, "interrupted", "install", "all")
+    monkeypatch.setattr(make, "steps", lambda name, venv: [("installing", step)])
+    assert make.main(["--venv", str(tmp_path), "install-demo"]) == 130
+    told = capfd.readouterr()
+    assert told.out == "robolink: installing\n"
+    assert told.err == "\nrobolink is not installed yet: the same command goes on with it\n"
+    assert not (tmp_path / ".demo").exists()
 
 
 @pytest.mark.parametrize(("words", "advice"), [("install-demo", "make demo PYTHON="), ("demo", " tools/make.py demo")])

@@ -43,6 +43,14 @@ COMMANDS: Dict[str, List[str]] = {
 }
 """What Python is given; the Makefile says the same."""
 
+QUIETLY = (
+    "import runpy, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); "
+    "runpy.run_module(sys.argv.pop(1), run_name='__main__', alter_sys=True)"
+)
+"""Runs a module as `python -m` does, but a Ctrl-C ends it at once: pip and venv would print their tracebacks."""
+INTERRUPTED = (-signal.SIGINT, 0xC000013A)
+"""The exit codes of a program that a Ctrl-C has ended: POSIX's and Windows'."""
+
 
 def main(words: List[str]) -> int:
     """Carry out what the words ask for; return the exit code."""
@@ -77,6 +85,9 @@ def install(name: str, venv: Path, other: str) -> int:
     for words, step in steps(name, venv):
         tell(words)
         code = run(step)
+        if code in INTERRUPTED:
+            print("\nrobolink is not installed yet: the same command goes on with it", file=sys.stderr)
+            return 130
         if code:
             print("robolink is not installed: the step above failed", file=sys.stderr)
             return code
@@ -117,7 +128,7 @@ def steps(name: str, venv: Path) -> List[Tuple[str, List[str]]]:
     import ensurepip
 
     python = str(python_of(venv))
-    pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    pip = quietly(python, "pip", "install", "--quiet", "--disable-pip-version-check")
     made = []
     whole = any((venv / each.marker).exists() for each in STAGES.values())
     if not whole or not python_of(venv).exists():
@@ -132,7 +143,12 @@ def steps(name: str, venv: Path) -> List[Tuple[str, List[str]]]:
 
 def venv_command(venv: Path) -> List[str]:
     """Return the command that makes a virtual environment."""
-    return [sys.executable, "-m", "venv", str(venv)]
+    return quietly(sys.executable, "venv", str(venv))
+
+
+def quietly(python: str, *words: str) -> List[str]:
+    """Return the command that runs a module with its arguments, and without a word when it is interrupted."""
+    return [python, "-c", QUIETLY, *words]
 
 
 def python_of(venv: Path) -> Path:
