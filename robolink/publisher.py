@@ -64,9 +64,8 @@ class Publisher(Destroyable, Generic[MsgT]):
             raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
         if self._destroyed:
             raise self._gone_(f"the publisher of {self.topic}")
-        with (
-            self._outlets.lock
-        ):  # or a thread could be overtaken by another between its number and its place on the wire
+        # Locked, or a thread could be overtaken by another between its number and its place on the wire.
+        with self._outlets.lock:
             self._put(payload, self._attachment())
 
     @property

@@ -115,11 +115,7 @@ def compose(text: str, name: str) -> yaml.Node | None:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark or _mark(loader)
         raise DocumentError(_problem(error), name, *place(mark)) from None
-    except (
-        yaml.YAMLError,
-        ValueError,
-        OverflowError,
-    ) as error:  # what PyYAML lets through: '\UFFFFFFFF', '%YAML 9999...'
+    except (yaml.YAMLError, ValueError, OverflowError) as error:  # such as for '\UFFFFFFFF', '%YAML 9999...'
         raise DocumentError(shown(str(error)), name, *place(_mark(loader))) from None
     finally:
         loader.dispose()
