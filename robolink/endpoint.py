@@ -51,26 +51,11 @@ class Endpoint:
         self.type_name = type_name(ros_type)
         self.type_hash = NO_HASH if owner.context.speaks_humble else type_hash(ros_type)
         self.key = format_key(DataKey(self.domain_id, name, self.type_name, self.type_hash))
-        self.buffer_key = ""
+        has_buffers = kind is EndpointKind.SUBSCRIPTION and self.type_hash != NO_HASH and has_buffer_fields(ros_type)
+        self.buffer_key = buffer_key(self.key) if has_buffers else ""
         """Where Lyrical's publishers may send to this subscription instead; "" where they do not."""
-        if kind is EndpointKind.SUBSCRIPTION and self.type_hash != NO_HASH and has_buffer_fields(ros_type):
-            self.buffer_key = buffer_key(self.key)
         self.transport = owner.context.transport
-        self.token = EndpointToken(
-            self.domain_id,
-            self.transport.session_id,
-            owner.node_id,
-            owner.context.next_id(),
-            kind,
-            owner.enclave,
-            owner.namespace,
-            owner.node_name,
-            name,
-            self.type_name,
-            self.type_hash,
-            qos,
-            CPU_BACKEND if self.buffer_key else "",
-        )
+        self.token = self._make_token(kind, CPU_BACKEND if has_buffers else "")
         self._text = format_token(self.token)
         self.gid = gid_of(self._text)
         self.attachment = attachments(self.gid, owner.context.time.now)
@@ -90,6 +75,24 @@ class Endpoint:
         self._disagreements = owner.disagreements
         self._following: list[Handle] = []
         self._announced: Handle | None = None
+
+    def _make_token(self, kind: EndpointKind, more: str) -> EndpointToken:
+        owner = self.owner
+        return EndpointToken(
+            self.domain_id,
+            self.transport.session_id,
+            owner.node_id,
+            owner.context.next_id(),
+            kind,
+            owner.enclave,
+            owner.namespace,
+            owner.node_name,
+            self.name,
+            self.type_name,
+            self.type_hash,
+            self.qos,
+            more,
+        )
 
     def announce(self) -> None:
         """Get to know the other ends, and show this one to everybody."""

@@ -90,18 +90,27 @@ class AmbiguousNameError(NotFoundError):
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Give `` (did you mean 'x'?)`` for the known name closest to `name`, or nothing.
+    """Return `` (did you mean 'x'?)`` for the known name closest to `name`, or nothing.
 
     >>> nearest("wandr", ["wander", "follow"])
     " (did you mean 'wander'?)"
+    """
+    close = closest(name, known)
+    return f" (did you mean '{close}'?)" if close else ""
+
+
+def closest(name: str, known: Iterable[str], alike: float = 0.6) -> str:
+    """Return the known name closest to `name`, or one that differs in capitals alone; '' if none is close.
+
+    `alike` is how much two names must agree, by difflib's ratio: 1 is the same.
     """
     import difflib  # late: every command imports this module, few need it
 
     if len(name) > LONGEST_NAME:
         return ""
     names = list(itertools.islice((each for each in known if len(each) <= LONGEST_NAME), MOST_NAMES))
-    close = difflib.get_close_matches(name, names, n=1) or [each for each in names if each.lower() == name.lower()]
-    return f" (did you mean '{close[0]}'?)" if close else ""
+    found = difflib.get_close_matches(name, names, n=1, cutoff=alike)
+    return (found or [each for each in names if each.lower() == name.lower()] or [""])[0]
 
 
 def few(errors: Iterable[DocumentError], looked_for: int | None = None) -> list[DocumentError]:

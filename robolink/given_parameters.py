@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from robolink.exceptions import ExternalShutdownException, nearest
+from robolink.exceptions import ExternalShutdownException, closest, nearest
 from robolink.logging import get_logger
 
 if TYPE_CHECKING:
@@ -56,16 +56,14 @@ class GivenParameters:
         """Warn, once, of names that are nearly those of parameters that the nodes have."""
         if not self._open:
             return
-        import difflib  # late: few programs are given any parameters
-
         for node in nodes:
             self.look(node)
         names = self._declared - {each.name for each in self._seen.values()}
         for key, (each, logger) in list(self._open.items()):
-            near = difflib.get_close_matches(each.name, names, n=1, cutoff=ALIKE)
+            near = closest(each.name, names, ALIKE)
             if near:
                 del self._open[key]
-                _warn(each, logger, f"no node has declared it so far (did you mean '{near[0]}'?)")
+                _warn(each, logger, f"no node has declared it so far (did you mean '{near}'?)")
 
     def warn_of_rest(self) -> None:
         """Warn of all that no node has declared: this is the end. An error that ends the program says enough."""

@@ -113,7 +113,7 @@ class Graph:
     def _has_room(self, gid: bytes, token: Token) -> bool:
         """Whether one more is taken in. What is refused is not seen later either, unless it is announced again."""
         with self._changed:
-            full = self._index.is_full(token.session)
+            full = self._index.why_full(token.session)
             if not full or gid in self._index.tokens:
                 return True
             self.too_many += 1
@@ -274,8 +274,8 @@ class _Index:
         self.by_node: dict[tuple[str, str], dict[bytes, Token]] = {}
         self.of_session: Counter[str] = Counter()
 
-    def is_full(self, session: str) -> str:
-        """Say why nothing more of a session is taken in; nothing if it is."""
+    def why_full(self, session: str) -> str:
+        """Return why nothing more of a session is taken in, '' if there is room."""
         if self.of_session[session] >= MOST_OF_SESSION:
             return f"session {session} announces more than {MOST_OF_SESSION:,} nodes, topics and services"
         if len(self.tokens) >= MOST:

@@ -13,6 +13,7 @@ from robolink.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
 from robolink.parameter import Parameter
 from robolink.qos import qos_profile_parameters
 from robolink.request_limit import Refusal, look_at, no_room
+from robolink.tracebacks import formatted
 
 if TYPE_CHECKING:
     from robolink.interfaces.rcl_interfaces import srv
@@ -26,8 +27,7 @@ if TYPE_CHECKING:
     Describe: TypeAlias = srv.DescribeParameters
 
 MOST_HINTS = 10
-"""Unknown names of one request for which the nearest known one is looked up, and how long a name may be for it."""
-LONGEST_HINTED = 100
+"""Unknown names of one request for which the nearest known one is looked up."""
 
 
 class ParameterService:
@@ -131,12 +131,12 @@ class ParameterService:
         missing = next((each for each in names if not node.has_parameter(each)), None)
         if missing is None:
             return ""
-        near = nearest(missing, node.get_parameters_by_prefix("")) if hint and len(missing) <= LONGEST_HINTED else ""
+        near = nearest(missing, node.get_parameters_by_prefix("")) if hint else ""
         return f"Parameter not declared: {shown(missing)}{near}"
 
 
 def _refused_once(reason: str) -> dict[str, Any]:
-    """Give a single result, however many were asked for."""
+    """Return a single result, however many were asked for."""
     return {"results": [_refused(reason)]}
 
 
@@ -150,8 +150,6 @@ def _refused(reason: str) -> SetParametersResult:
 
 def _failed(node: Node, parameters: Sequence[Parameter[Any]], error: Exception) -> SetParametersResult:
     """Answer for an exception while parameters were set; where it came after that, they stay set."""
-    from robolink.tracebacks import formatted
-
     text = shown(f"{type(error).__name__}: {error}", 200)
     node.get_logger().error(f"a request to set parameters failed:\n{formatted(error)}")
     is_set = all(node.get_parameter_or(each.name) is each for each in parameters)

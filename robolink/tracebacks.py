@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
-from robolink.exceptions import RobolinkError, nearest
+from robolink.exceptions import RobolinkError, closest
 
 if TYPE_CHECKING:
     import ast
@@ -44,7 +44,8 @@ def suggestion(error: BaseException) -> str:
 
 
 def _did_you_mean(name: str, known: Iterable[str]) -> str:
-    return nearest(name, known).replace(" (did you mean ", ". Did you mean: ").replace("?)", "?")
+    close = closest(name, known)
+    return f". Did you mean: '{close}'?" if close else ""
 
 
 def _names_at(trace: TracebackType | None) -> list[str]:

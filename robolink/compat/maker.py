@@ -12,6 +12,7 @@ from types import ModuleType
 from typing import Any
 
 from robolink.compat.names import ROOMS, instead_of, snake_case
+from robolink.exceptions import closest
 from robolink.interfaces import ACTION_PARTS, KINDS
 from robolink.interfaces._standard import STANDARD
 from robolink.lacking import LackingModuleError, lacking, names_in
@@ -20,8 +21,8 @@ from robolink.workspace.modules import FINDER, Fill, Filling
 MESSAGES = frozenset(package for kind in KINDS for package in STANDARD[kind])
 TOPS = frozenset({*MESSAGES, *(name for name in ROOMS if "." not in name)})
 """The top-level names that are robolink's."""
-LIKE = 0.85
-"""How much alike a name of nobody's is to one of ROS 2's that was meant; 1 is the same."""
+ALIKE = 0.85
+"""How much a name of nobody's agrees with one of ROS 2's that was meant, as `closest` counts it."""
 PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
 
 
@@ -87,10 +88,8 @@ def _refuse_misspelt(name: str) -> None:
 
 
 def _alike(name: str) -> str:
-    """Give the name of ROS 2's that this one hardly differs from, '' if there is none."""
-    import difflib  # late: few programs need it
-
-    return "".join(difflib.get_close_matches(name, sorted(TOPS), n=1, cutoff=LIKE))
+    """Return the name of ROS 2's that this one hardly differs from, '' if there is none."""
+    return closest(name, sorted(TOPS), ALIKE)
 
 
 def _fill_folder(hint: str, module: ModuleType) -> None:

@@ -12,7 +12,7 @@ import sys
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
-from robolink.transport.reach import host_of, mode_of, port_of, read, shown
+from robolink.transport.reach import address_of, host_of, mode_of, port_of, read
 
 if TYPE_CHECKING:
     import zenoh
@@ -71,7 +71,7 @@ def step_aside(config: zenoh.Config, taken: Collection[str], retry: str) -> list
 
 def _instead(endpoint: str) -> list[str]:
     """Give the endpoints on which to listen instead: of the loopback too, since certificates name 127.0.0.1 at best."""
-    address = shown(endpoint)
+    address = address_of(endpoint)
     wildcard = host_of(endpoint) in _ANYWHERE
     places = [address, _from_here(endpoint)] if wildcard else [address]
     return [f"{each.rpartition(':')[0]}:0{endpoint[len(address) :]}" for each in places]

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.transport.reach import SECURED, host_of, mode_of, port_of, reach, read, shown
+from robolink.transport.reach import SECURED, address_of, host_of, mode_of, port_of, reach, read
 
 if TYPE_CHECKING:
     import ssl
@@ -85,7 +85,7 @@ def refusals(config: zenoh.Config, endpoints: list[str] | None = None) -> list[s
     `endpoints` are asked instead where they are given. Who does not listen at all is not listed.
     """
     asked = endpoints if endpoints is not None else read(config, "connect/endpoints") or ()
-    secured = [shown(each) for each in asked if each.startswith("tls/")][:MOST_ASKED]
+    secured = [address_of(each) for each in asked if each.startswith("tls/")][:MOST_ASKED]
     answers = ((each, _refusal(config, each)) for each in secured)
     return [f"{endpoint}: {answer}" for endpoint, answer in answers if answer]
 

@@ -83,8 +83,8 @@ def reach(config: zenoh.Config) -> Reach:
     group = json.loads(config.get_json("scouting/multicast/address")) or "224.0.0.224:7446"
     return Reach(
         mode,
-        tuple(shown(each) for each in read(config, "connect/endpoints") or ()),
-        () if mode == "client" else tuple(shown(each) for each in read(config, "listen/endpoints") or ()),
+        tuple(address_of(each) for each in read(config, "connect/endpoints") or ()),
+        () if mode == "client" else tuple(address_of(each) for each in read(config, "listen/endpoints") or ()),
         "" if enabled is False else group,
         _interfaces(json.loads(config.get_json("access_control"))),
     )
@@ -134,12 +134,12 @@ def port_of(endpoint: str) -> int:
     >>> port_of("tls/[::]:7447#iface=eth0")
     7447
     """
-    number = shown(endpoint).rpartition(":")[2]
+    number = address_of(endpoint).rpartition(":")[2]
     return int(number) if number.isascii() and number.isdigit() and len(number) < 6 else 0
 
 
-def shown(endpoint: str) -> str:
-    """Leave out an endpoint's settings: it is where that counts."""
+def address_of(endpoint: str) -> str:
+    """Return an endpoint without its settings, which stand after `#` or `?`."""
     return re.split(r"[#?]", endpoint)[0]
 
 

@@ -6,7 +6,7 @@ import re
 from typing import NamedTuple
 
 from robolink.exceptions import WireError
-from robolink.wire.text import LONGEST, format_number, matched, not_too_long, parse_number, remembered, shown
+from robolink.wire.text import LONGEST, format_number, matched, not_too_long, parse_number, quoted, remembered
 
 NO_HASH = "TypeHashNotSupported"
 """What Humble says in place of a type hash."""
@@ -49,7 +49,7 @@ def demangle_type(dds_name: str) -> str:
     """Undo `mangle_type`; raises WireError for what it cannot have made."""
     match = _DDS_TYPE.fullmatch(dds_name) if len(dds_name) <= LONGEST else None
     if match is None:
-        raise WireError(f"expected a type such as std_msgs::msg::dds_::String_, got {shown(dds_name)}")
+        raise WireError(f"expected a type such as std_msgs::msg::dds_::String_, got {quoted(dds_name)}")
     return match[1].replace("::", "/") + match[2]
 
 
@@ -69,7 +69,7 @@ def parse_key(text: str) -> DataKey:
     """Read a key expression; raises WireError for what `format_key` cannot have made, nor `buffer_key` of that."""
     fields = not_too_long(text, "a key").removesuffix(_BUFFERS).split("/")
     if len(fields) < 4:
-        raise WireError(f"a key is DOMAIN/NAME/TYPE/HASH, got {shown(text)}")
+        raise WireError(f"a key is DOMAIN/NAME/TYPE/HASH, got {quoted(text)}")
     domain, *name, dds_type, type_hash = fields
     return DataKey(
         parse_number(domain),

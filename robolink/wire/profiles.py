@@ -18,7 +18,7 @@ from robolink.qos import (
     qos_profile_system_default,
     resolved,
 )
-from robolink.wire.text import LONGEST, parse_number, shown
+from robolink.wire.text import LONGEST, parse_number, quoted
 
 _PolicyT = TypeVar("_PolicyT", bound=IntEnum)
 
@@ -53,7 +53,7 @@ def parse_qos(text: str) -> QoSProfile:
     """Read the last field of an endpoint's token; raises WireError for anything else."""
     fields = [field.split(",") for field in text.split(":")] if len(text) <= LONGEST else []
     if [len(field) for field in fields] != [1, 1, 2, 2, 2, 3]:
-        raise WireError(f"a QoS field looks like ::,10:,:,:,,, got {shown(text)}")
+        raise WireError(f"a QoS field looks like ::,10:,:,:,,, got {quoted(text)}")
     (reliability,), (durability,), (history, depth), deadline, lifespan, (liveliness, *lease) = fields
     return QoSProfile(
         history=_parsed_policy(history, HistoryPolicy, _DEFAULTS.history),

@@ -29,17 +29,17 @@ def parse_number(text: str) -> int:
 def matched(pattern: re.Pattern[str], text: str, what: str) -> str:
     """The text itself if all of it matches; raises WireError, which says what was expected, if not."""
     if pattern.fullmatch(not_too_long(text, what)) is None:
-        raise WireError(f"expected {what}, got {shown(text)}")
+        raise WireError(f"expected {what}, got {quoted(text)}")
     return text
 
 
 def not_too_long(text: str, what: str) -> str:
     """The text itself if it has at most LONGEST characters; raises WireError if not."""
     if len(text) > LONGEST:
-        raise WireError(f"{what} has at most {LONGEST} characters, got {len(text)}: {shown(text)}")
+        raise WireError(f"{what} has at most {LONGEST} characters, got {len(text)}: {quoted(text)}")
     return text
 
 
-def shown(text: str) -> str:
+def quoted(text: str) -> str:
     """Quote a text for an error, cut where it is long."""
     return repr(text if len(text) <= 120 else text[:120] + "…")

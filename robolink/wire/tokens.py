@@ -12,7 +12,7 @@ from robolink.names import join
 from robolink.qos import QoSProfile
 from robolink.wire.keys import CHUNK, NO_HASH, checked_hash, checked_topic, demangle_type, mangle_type
 from robolink.wire.profiles import format_qos, shared_qos
-from robolink.wire.text import format_number, matched, not_too_long, parse_number, remembered, shown
+from robolink.wire.text import format_number, matched, not_too_long, parse_number, quoted, remembered
 
 _GRAPH = "@ros2_lv"
 _NAME = re.compile(rf"/?{CHUNK}(?:/{CHUNK})*|/")
@@ -141,7 +141,7 @@ def parse_token(text: str) -> NodeToken | EndpointToken:
     known = _NODE_FIELDS if is_node else _ENDPOINT_FIELDS
     if len(fields) < known or fields[0] != _GRAPH:
         least = f"at least {_NODE_FIELDS} fields, or {_ENDPOINT_FIELDS} for an endpoint"
-        raise WireError(f"a token has {least}, the first of them {_GRAPH}: got {shown(text)}")
+        raise WireError(f"a token has {least}, the first of them {_GRAPH}: got {quoted(text)}")
     domain, session = parse_number(fields[1]), sys.intern(matched(_SESSION, fields[2], "a session id"))
     node_id, own_id = matched(_ID, fields[3], "a node's id"), matched(_ID, fields[4], "an endpoint's id")
     enclave, namespace, node_name = map(_demangled, fields[6:9])
@@ -169,7 +169,7 @@ def _parsed_kind(text: str) -> EndpointKind:
     try:
         return EndpointKind(text)
     except ValueError:
-        raise WireError(f"a token is of kind NN, MP, MS, SS or SC, got {shown(text)}") from None
+        raise WireError(f"a token is of kind NN, MP, MS, SS or SC, got {quoted(text)}") from None
 
 
 @remembered
