@@ -139,16 +139,3 @@ class Stage(Protocol):
 
     def close(self) -> None:
         """End all programs and leave the network."""
-
-
-def make_stage(transport: str, seed: int) -> Stage:
-    """Make the one that a name stands for, memory or zenoh. Raises ValueError for another name."""
-    if transport == "zenoh":
-        from robolink.testing.processes import Processes
-
-        return Processes()
-    if transport == "memory":
-        from robolink.testing.one_process import OneProcess
-
-        return OneProcess(seed)
-    raise ValueError(f"no transport '{transport}' for tests: expected memory or zenoh")

@@ -16,7 +16,8 @@ from robolink.testing.expectations import ClosedError, ExpectationError, NodeFai
 from robolink.testing.expecting import Expecting
 from robolink.testing.parameters import Parameters
 from robolink.testing.robots import RobotsElsewhere, SimulatedRobot, chosen
-from robolink.testing.stage import Failure, Named, Startable, Wanted, full, make_stage, startable
+from robolink.testing.stage import Failure, Named, Startable, Wanted, full, startable
+from robolink.testing.stages import make_stage
 from robolink.testing.story import Story
 
 if TYPE_CHECKING:
