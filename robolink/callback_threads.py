@@ -114,7 +114,7 @@ class CallbackThreads:
         return threading.get_ident() in self._running
 
     def holds(self, group: CallbackGroup) -> bool:
-        """Whether a callback in the calling thread keeps a group busy."""
+        """Return whether a callback in the calling thread keeps a group busy."""
         return threading.get_ident() in self._holding(group)
 
     def can_serve(self) -> bool:

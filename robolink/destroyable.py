@@ -44,7 +44,7 @@ class Destroyable:
     _destroyed = False
 
     def _gone_(self, name: str) -> InvalidHandle:
-        """Give the error for who uses this after its end, and say if the end of the context was that."""
+        """Return the error for whoever uses this after its end; it says so if the context's end was that."""
         context = self._used_in_
         by = f": {imported_as()}.shutdown() ends all that nodes have" if context is not None and context.closed else ""
         return InvalidHandle(f"{name} has been destroyed{by}")

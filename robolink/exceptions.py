@@ -126,7 +126,7 @@ def few(errors: Iterable[DocumentError], looked_for: int | None = None) -> list[
 
 
 def imported_as() -> str:
-    """Give the name by which the program knows robolink: errors speak of `rclpy` to whoever wrote that."""
+    """Return the name by which the program knows robolink: errors speak of `rclpy` to whoever wrote that."""
     return "rclpy" if sys.modules.get("rclpy", "") is sys.modules["robolink"] else "robolink"
 
 

@@ -119,7 +119,7 @@ class ExecutorRunning(ExecutorQueue):
         return False
 
     def _is_held_here(self, entity: Entity) -> bool:
-        """Whether a callback under way in this thread keeps the group of an entity busy."""
+        """Return whether a callback under way in this thread keeps the group of an entity busy."""
         return not entity.gate.can_execute(entity)
 
     def run(self, entity: Entity, taken: Any) -> None:

@@ -111,7 +111,7 @@ class Graph:
         return True
 
     def _has_room(self, gid: bytes, token: Token) -> bool:
-        """Whether one more is taken in. What is refused is not seen later either, unless it is announced again."""
+        """Return whether one more is taken in. What is refused is not seen later, unless it is announced again."""
         with self._changed:
             full = self._index.why_full(token.session)
             if not full or gid in self._index.tokens:

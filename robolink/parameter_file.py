@@ -151,7 +151,7 @@ class _Reader:
         return parse_scalar(text)
 
     def is_tagged_string(self, node: yaml.ScalarNode) -> bool:
-        """Whether a plain scalar carries the tag `!!str`; without one its tag says nothing here."""
+        """Return whether a plain scalar carries the tag `!!str`; without one its tag says nothing here."""
         is_text = node.tag == "tag:yaml.org,2002:str"
         return is_text and _TAG.match(self.text, node.start_mark.index) is not None
 

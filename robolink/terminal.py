@@ -40,7 +40,7 @@ def fit(text: str, *, lines: bool = True, colours: bool = False) -> str:
 
 
 def is_fit(text: str) -> bool:
-    """Whether `fit` leaves these lines as they are."""
+    """Return whether `fit` leaves these lines as they are."""
     return _compiled(_OF_LINES).search(text) is None
 
 

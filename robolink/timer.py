@@ -221,7 +221,7 @@ def _checked_period(period: int) -> int:
 
 
 def _users_line() -> str:
-    """Say where in the user's code the call is that has led here."""
+    """Return the place in the user's code of the call that has led here, in words."""
     frame = sys._getframe(1)
     while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("robolink."):
         frame = frame.f_back

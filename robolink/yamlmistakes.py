@@ -145,7 +145,7 @@ class Reader:
         return node
 
     def _child(self, node: yaml.Node | None, step: Step) -> tuple[yaml.Node, yaml.Node] | None:
-        """Give the key and the value that a step leads to (in a list, the value twice), or None."""
+        """Return the key and the value that a step leads to (in a list, the value twice), or None."""
         import yaml
 
         from robolink import yamltext

@@ -25,7 +25,7 @@ USAGE = "usage: python tools/make.py demo | test"
 
 
 class Stage(NamedTuple):
-    """What is installed for a command: the file that says it is there, what pip is to install, and that in words."""
+    """One of the stages of installing: the file that says it is there, what pip is to install, and that in words."""
 
     marker: str
     wanted: str

@@ -1,4 +1,4 @@
-"""What commands write: lines to standard output, at once, and words for the person at the keyboard.
+"""Output of commands: lines to standard output, at once, and words for the person at the keyboard.
 
 All that is written here is fit for a terminal, whoever said it: see `robolink.terminal`.
 """

@@ -58,7 +58,7 @@ MAKER = maker
 
 
 def _instead(fullname: str, top: str) -> Fill | None:
-    """Say what to do in place of a name of ROS's that robolink has not; None where somebody has it.
+    """Refuse a name of ROS's that nobody has, with what to do instead (LackingModuleError); None where somebody has it.
 
     A folder without `__init__.py`, such as the `launch/` of most packages, holds what is in it and no more.
     """
@@ -127,7 +127,7 @@ def _is_ours(module: ModuleType | None) -> bool:
 
 
 def has_rclpy() -> bool:
-    """Whether a real rclpy can be imported, and not just a checkout of it: one that is installed, or else is built."""
+    """Return whether a real rclpy can be imported, installed or built, and not just a checkout of its repository."""
     spec = FINDER.real("rclpy")
     if spec is None or spec.loader is None:  # none, or a folder without __init__.py
         return False

@@ -125,7 +125,7 @@ def _plain(description: TypeDescription) -> dict[str, Any]:
 
 @once_per_type
 def has_buffer_fields(cls: type[Any]) -> bool:
-    """Whether a message, or one inside it, has a field `uint8[]`: Lyrical sends such messages in another way.
+    """Return whether a message, or one inside it, has a field `uint8[]`: Lyrical sends such messages in another way.
 
     rosidl has the same function; its `rosidl::Buffer` may lie elsewhere than in main memory.
     """

@@ -101,11 +101,11 @@ class Recorder:
             ear.close()
 
     def now(self) -> int:
-        """Give a number that is above those of all that was heard so far, and below those of what comes."""
+        """Return a number that is above those of all that was heard so far, and below those of what comes."""
         return next(self._numbers)
 
     def since(self, name: str, number: int, *, but: str) -> list[tuple[Topic, Sample]]:
-        """Give what is still kept of a topic from this number on, in the order in which it was heard.
+        """List what is still kept of a topic from this number on, in the order in which it was heard.
 
         What the node `but` has published is left out.
         """
@@ -115,7 +115,7 @@ class Recorder:
         return [each for each in found if self.sender(each[1]) != but]
 
     def after(self, name: str, sample: Sample) -> int:
-        """Give the number from which on all was heard later than this sample."""
+        """Return the number from which on all was heard later than this sample."""
         kept = [each for topic in self.named(name) for each in topic.kept.copy()] if sample.attachment else []
         numbers = (each.number for each in kept if self.sample(each).attachment == sample.attachment)
         return next(numbers, next(self._numbers)) + 1
@@ -192,7 +192,7 @@ class Ear:
         self._handles.append(self._transport.subscribe(topic.key, _LATCHED, lambda arrived: put((topic, arrived))))
 
     def take(self) -> list[tuple[Topic, Sample]]:
-        """Give what has come since the last time, in its order."""
+        """Take what has come since the last time, in its order."""
         taken = []
         while self._arrived:
             topic, arrived = self._arrived.popleft()

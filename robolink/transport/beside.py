@@ -32,7 +32,7 @@ def fixed_listeners(config: zenoh.Config) -> list[str]:
 
 
 def is_taken(endpoint: str) -> bool:
-    """Whether somebody listens there already; not so for what is no address of this machine."""
+    """Return whether somebody listens there already; not so for what is no address of this machine."""
     import socket  # late: it costs every node's start 2 ms
 
     try:
@@ -70,7 +70,7 @@ def step_aside(config: zenoh.Config, taken: Collection[str], retry: str) -> list
 
 
 def _instead(endpoint: str) -> list[str]:
-    """Give the endpoints on which to listen instead: of the loopback too, since certificates name 127.0.0.1 at best."""
+    """Return where to listen instead: on the loopback too, since certificates name 127.0.0.1 at best."""
     address = address_of(endpoint)
     wildcard = host_of(endpoint) in _ANYWHERE
     places = [address, _from_here(endpoint)] if wildcard else [address]
@@ -78,7 +78,7 @@ def _instead(endpoint: str) -> list[str]:
 
 
 def _from_here(endpoint: str) -> str:
-    """Give where this machine reaches who listens at an endpoint."""
+    """Return the address by which this machine reaches whoever listens at an endpoint."""
     host = host_of(endpoint)
     protocol = endpoint.partition("/")[0]
     return f"{protocol}/{_ANYWHERE.get(host, f'[{host}]' if ':' in host else host)}:{port_of(endpoint)}"

@@ -49,7 +49,7 @@ class Own(NamedTuple):
 
 
 def uses_tls(config: zenoh.Config) -> bool:
-    """Whether a session with this configuration listens or connects by TLS."""
+    """Return whether a session with this configuration listens or connects by TLS."""
     return reach(config).secured
 
 
@@ -96,7 +96,7 @@ def _settings(config: zenoh.Config) -> dict[str, Any]:
 
 
 def _own(config: zenoh.Config) -> Iterator[Own]:
-    """Give the certificates that a session with this configuration uses, as far as they are files."""
+    """Yield the certificates that a session with this configuration uses, as far as they are files."""
     tls = _settings(config)
     listens = mode_of(config) != "client" and any(
         each.startswith(SECURED) for each in read(config, "listen/endpoints") or ()

@@ -134,7 +134,7 @@ def settings(value: str, domain: int, *, holds_port: bool = True, platform: str 
 
 
 def _most_pending() -> int:
-    """Give how many connections may be silent at once: they leave the process half of the files that it may open."""
+    """Return how many connections may be silent at once: they leave the process half of the files that it may open."""
     if sys.platform == "win32":
         return MOST_PENDING
     import resource
@@ -221,7 +221,7 @@ def _client(endpoint: str) -> dict[str, Any]:
 
 
 def _as_ros(mode: str) -> dict[str, Any]:
-    """Give what a session has that is to be told by overrides where to go: what rmw_zenoh's sessions have."""
+    """Return the settings of a session whose overrides say where to go: those of rmw_zenoh's sessions."""
     if mode.strip("\"'") == "client":
         return _client(ROS_ROUTER)
     peer = _meeting("127.0.0.1", 0, False, [ROS_ROUTER])
@@ -295,7 +295,7 @@ def _overrides(environ: Mapping[str, str]) -> list[tuple[str, str]]:
 
 
 def _network_of_overrides(environ: Mapping[str, str]) -> str:
-    """Give those overrides that name endpoints or a mode, in one line; empty where none does."""
+    """Return those overrides that name endpoints or a mode, in one line; empty where none does."""
     named = (f"{path}={value}" for path, value in _overrides(environ) if _NAMES_A_NETWORK.fullmatch(path))
     return ";".join(" ".join(each.split()) for each in named)
 

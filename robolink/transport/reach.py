@@ -91,7 +91,7 @@ def reach(config: zenoh.Config) -> Reach:
 
 
 def mode_of(config: zenoh.Config) -> str:
-    """Give the mode of sessions with this configuration: `peer`, `client` or `router`."""
+    """Return the mode of sessions with this configuration: `peer`, `client` or `router`."""
     return json.loads(config.get_json("mode")) or "peer"
 
 
@@ -102,7 +102,7 @@ def read(config: zenoh.Config, path: str) -> Any:
 
 
 def on_this_machine(endpoint: str) -> bool:
-    """Whether an endpoint or address can lead to this machine only.
+    """Return whether an endpoint or address can lead to this machine only.
 
     >>> on_this_machine("tcp/[::1]:7447"), on_this_machine("tcp/localhost:0"), on_this_machine("tls/0.0.0.0:0")
     (True, True, False)
@@ -119,7 +119,7 @@ def on_this_machine(endpoint: str) -> bool:
 
 
 def host_of(endpoint: str) -> str:
-    """Give the host of an endpoint.
+    """Return the host of an endpoint.
 
     >>> host_of("tls/[fe80::1%eth0]:7447#iface=eth0")
     'fe80::1%eth0'
@@ -129,7 +129,7 @@ def host_of(endpoint: str) -> str:
 
 
 def port_of(endpoint: str) -> int:
-    """Give the port of an endpoint, 0 where there is none.
+    """Return the port of an endpoint, 0 where there is none.
 
     >>> port_of("tls/[::]:7447#iface=eth0")
     7447

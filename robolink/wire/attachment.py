@@ -17,7 +17,7 @@ GID_BYTES = 16
 
 
 class Attachment(NamedTuple):
-    """What travels beside every payload: who sent it, when, and as which of its own."""
+    """The attachment of a payload: who sent it, when, and as which of its own."""
 
     sequence: int
     timestamp: int

@@ -28,7 +28,7 @@ CPU_BACKEND = f"{_BACKENDS}cpu:"
 
 
 class EndpointKind(Enum):
-    """What a node may own, spelled as in tokens."""
+    """The kinds of ends that a node may own, spelled as in tokens."""
 
     PUBLISHER = "MP"
     SUBSCRIPTION = "MS"
@@ -46,7 +46,7 @@ OTHER_END = {
 
 
 class NodeToken(NamedTuple):
-    """What a node announces about itself."""
+    """A node's announcement of itself."""
 
     domain: int
     session: str
@@ -65,7 +65,7 @@ class NodeToken(NamedTuple):
 
 
 class EndpointToken(NamedTuple):
-    """What a node announces about a publisher, subscription, service or client that it owns."""
+    """A node's announcement of a publisher, subscription, service or client that it owns."""
 
     domain: int
     session: str
@@ -95,7 +95,7 @@ class EndpointToken(NamedTuple):
         return self.more.startswith(_BACKENDS)
 
     def understands(self, other: EndpointToken) -> bool:
-        """Whether both mean the same type: by name and hash, or by name where one is a Humble peer's."""
+        """Return whether both mean the same type: by name and hash, or by name where one is a Humble peer's."""
         same_hash = self.type_hash == other.type_hash or NO_HASH in (self.type_hash, other.type_hash)
         return same_hash and self.type_name == other.type_name
 

@@ -135,7 +135,7 @@ def user_workspace(workspace: Folder = None) -> Path | None:
 
 
 def workspace_of(path: Path) -> Path | None:
-    """Give the nearest folder at or above `path` that is a workspace; None, with a warning, if it is not trusted."""
+    """Return the nearest folder at or above `path` that is a workspace; None, with a warning, if it is not trusted."""
     path = path.resolve()
     above = (path, *path.parents)
     nearest_one = next((each for each in above if _is_workspace(each)), None)

@@ -64,7 +64,7 @@ def is_ros_workspace(folder: Path) -> bool:
 
 
 def unmarked_package(name: str, top: Path) -> Path | None:
-    """Give the folder that would be a package of this name but for its package.xml: `top`, or in it or its `src/`."""
+    """Return the folder that would be a package of this name but for its package.xml: `top`, or in it or its `src/`."""
     with contextlib.suppress(OSError):  # the working directory has been deleted, or may not be read
         for each in (top / "src" / name, top / name, top.resolve()):
             if canonical(each.name) == canonical(name) and each.is_dir() and not _is_marked(each):

@@ -1,4 +1,4 @@
-"""What ROS 2's own packages have and robolink has not: what does the same here."""
+"""Programs of ROS 2's own packages that robolink has not, each with what does the same here."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ _LONGEST = 300
 
 
 def is_trusted(folder: Path) -> bool:
-    """Whether a workspace may be used that was only found; if not, a warning says so, once, with what to do."""
+    """Return whether a workspace may be used that was only found; if not, a warning says so, once, with what to do."""
     reason = "" if _is_named_safe(folder) else why_not(folder)
     if reason and os.environ.get(REFUSED) != str(folder):
         os.environ[REFUSED] = str(folder)
@@ -100,7 +100,7 @@ def _trusted_ids() -> set[int]:
 
 
 def _has_windows_modes(folder: Path) -> bool:
-    """Whether this is a drive of Windows within WSL, which shows all as writable by everybody."""
+    """Return whether this is a drive of Windows within WSL, which shows all as writable by everybody."""
     is_drive = folder.parts[1:2] == ("mnt",) and len(folder.parts) > 2 and len(folder.parts[2]) == 1
     return is_drive and "microsoft" in platform.release().lower()
 
@@ -108,7 +108,7 @@ def _has_windows_modes(folder: Path) -> bool:
 if sys.platform == "win32":
 
     def _is_own_on_windows(folder: Path) -> bool:
-        """Whether a folder's owner is the user (or a group of theirs), the administrators or the system."""
+        """Return whether a folder's owner is the user (or a group of theirs), the administrators or the system."""
         import ctypes
         from ctypes import wintypes
 

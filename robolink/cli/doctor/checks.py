@@ -86,7 +86,7 @@ def loopback(facts: Facts) -> Verdict:
 
 
 def reach(facts: Facts) -> Verdict:
-    """Who asks for other machines meets somebody there."""
+    """A session whose settings lead to other machines is linked to somebody there."""
     settings, seen, whom = facts.settings, facts.seen, facts.reach
     if settings.transport != "zenoh":
         return Verdict("not used with these settings")
@@ -114,7 +114,7 @@ def certificates(facts: Facts) -> Verdict:
 
 
 def _nobody(facts: Facts) -> str:
-    """Say that other machines are asked for and none answers, and what to do."""
+    """Word the warning that other machines are asked for and none answers, with what to do."""
     settings, whom = facts.settings, facts.reach
     answers = f"network {settings.network[:120]}: no other machine has answered ({whom})"
     if whom.multicast:
@@ -163,7 +163,7 @@ def router(facts: Facts) -> Verdict:
 
 
 def _ways_in(facts: Facts) -> list[str]:
-    """Tell by what a router lets others hear nodes that are to stay among themselves."""
+    """List the ways by which a router lets others hear nodes that are to stay among themselves."""
     router = f"the router on port {facts.router_port}"
     found = []
     if facts.router_open_at:

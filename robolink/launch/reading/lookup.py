@@ -72,7 +72,7 @@ def _by_name(name: str, workspace: Folder) -> Path:
 
 
 def _which_of(folder: Path, package: str) -> str:
-    """Say what a package has in its launch folder, for somebody who named only the package."""
+    """Describe what a package has in its launch folder, for somebody who named only the package."""
     there = [each for each in sorted((folder / LAUNCH_FOLDER).glob("*")) if each.suffix in (*YAML, *_PROGRAMS)]
     names = [each.name for each in there if each.suffix in YAML]
     if names:
@@ -198,7 +198,7 @@ def command_of(run: Sequence[str], path: str | None) -> list[str] | None:
 
 
 def _ours(name: str) -> tuple[str, ...] | None:
-    """Give how this process's own Python or robolink is started, None for another name."""
+    """Return the words that start this process's own Python or robolink, None for another name."""
     if name == "robolink":
         return own_command()
     return (sys.executable,) if name in _PYTHON else None

@@ -62,7 +62,7 @@ class GridMap(NamedTuple):
         return 0 <= row < height and 0 <= column < width and bool(self.occupied[row, column])
 
     def walls(self) -> npt.NDArray[np.float64]:
-        """Give the edges of the occupied cells, joined where they go on, as rows x1, y1, x2, y2 in metres.
+        """Return the edges of the occupied cells, joined where they go on, as rows x1, y1, x2, y2 in metres.
 
         Raises ValueError if they are too many.
         """
