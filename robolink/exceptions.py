@@ -94,6 +94,11 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
     >>> nearest("wandr", ["wander", "follow"])
     " (did you mean 'wander'?)"
+
+    One that only lacks an ending, as of a file, is the closest of all:
+
+    >>> nearest("talker", ["walker", "talker.py"])
+    " (did you mean 'talker.py'?)"
     """
     close = closest(name, known)
     return f" (did you mean '{close}'?)" if close else ""
@@ -109,7 +114,8 @@ def closest(name: str, known: Iterable[str], alike: float = 0.6) -> str:
     if len(name) > LONGEST_NAME:
         return ""
     names = list(itertools.islice((each for each in known if len(each) <= LONGEST_NAME), MOST_NAMES))
-    found = difflib.get_close_matches(name, names, n=1, cutoff=alike)
+    found = [each for each in names if name and each.startswith(f"{name}.")]
+    found = found or difflib.get_close_matches(name, names, n=1, cutoff=alike)
     return (found or [each for each in names if each.lower() == name.lower()] or [""])[0]
 
 

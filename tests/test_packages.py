@@ -146,7 +146,7 @@ def test_executables_of_ros_2s_own_packages_that_robolink_has(top: Path) -> None
     assert source.path == built_in_workspace() / "nodes/static_transform_publisher.py"
     assert args == ["--x", "1"]
     assert asked("teleop_twist_keyboard", "teleop_twist_keyboard")[0].name == "teleop"
-    with pytest.raises(NotFoundError, match="here it is 'robolink tf echo TARGET SOURCE'"):
+    with pytest.raises(NotFoundError, match="here it is 'robolink tf echo SOURCE_FRAME TARGET_FRAME'"):
         asked("tf2_ros", "tf2_echo")
     own = write_package(top / "src", "tf2_ros", {"static_transform_publisher.py": ""})
     assert asked("tf2_ros", "static_transform_publisher")[0].path == own / "tf2_ros/static_transform_publisher.py"
@@ -185,6 +185,10 @@ def test_two_words_are_a_package_and_its_executable_only_if_both_are_there(top: 
         (["pkg_interfaces", "x"], "no node named 'pkg_interfaces' in {top} or robolink itself"),
         (["pkg_c", "first"], "no node or package named 'pkg_c' in {top} (did you mean 'pkg_b'?)"),
         (["wrold", "first"], "no node or package named 'wrold' in {top} (did you mean 'world'?)"),
+        (["follow"], "'follow' is a launch file, and no node: robolink launch follow"),
+        (["system.yaml", "x"], "'system.yaml' is a launch file, and no node: robolink launch system.yaml"),
+        (["corners"], "'corners' is a world, and no node: robolink run world -p world:=corners"),
+        (["room.wbt"], "'room.wbt' is a world, and no node: robolink run world -p world:=room.wbt"),
         (["wrold"], "no node named 'wrold' in {top} or robolink itself (did you mean 'world'?)"),
         (
             ["first"],
@@ -198,6 +202,8 @@ def test_two_words_are_a_package_and_its_executable_only_if_both_are_there(top: 
 def test_what_is_not_there_is_one_line(
     words: list[str], report: str, capsys: pytest.CaptureFixture[str], top: Path
 ) -> None:
+    for name in ("system.yaml", "room.wbt"):
+        (top / name).touch()
     assert main(["run", *words]) == 1
     assert capsys.readouterr().err == f"robolink: {report.format(top=top)}\n"
 

@@ -44,7 +44,7 @@ def test_a_command_that_only_ros2_has_says_what_to_do_instead(command: str, caps
         (["rviz2"], "'robolink plot'"),
         (["demo_nodes_py", "talker"], "'robolink pub /chatter String"),
         (["demo_nodes_cpp", "listener"], "'robolink topic echo /chatter'"),
-        (["tf2_ros", "tf2_echo", "map", "odom"], "'robolink tf echo TARGET SOURCE'"),
+        (["tf2_ros", "tf2_echo", "map", "odom"], "'robolink tf echo SOURCE_FRAME TARGET_FRAME'"),
         (["tf2-tools", "view_frames"], "'robolink tf tree'"),
         (["turtlesim", "turtlesim_node"], "'robolink run world'"),
     ],

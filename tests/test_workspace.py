@@ -160,11 +160,15 @@ def test_installed_packages_bring_nodes(monkeypatch: pytest.MonkeyPatch, write: 
         ("../nodes/mine.py", "no file named '../nodes/mine.py'"),
         ("../../nodes/min.py", "no file named '../../nodes/min.py' (did you mean '../../nodes/mine.py'?)"),
         ("min.py", "no node named 'min.py' in {home} or robolink itself (did you mean 'mine'?)"),
+        ("talker", "no node named 'talker' in {home} or robolink itself (did you mean 'talker.py'?)"),
+        ("at", "no node named 'at' in {home} or robolink itself (did you mean 'at.py'?)"),
         ("", "no node named '' in {home} or robolink itself"),
     ],
 )
 def test_an_unknown_node_is_reported_with_the_nearest(name: str, report: str, write: Write, home: Path) -> None:
     write("nodes/mine.py")
+    write("talker.py")
+    write("at.py")
     with pytest.raises(NotFoundError) as caught:
         find_node(name)
     assert str(caught.value) == report.format(home=home)

@@ -34,9 +34,11 @@ from robolink.workspace import (
     canonical,
     executable,
     executables,
+    find_launch,
     find_node,
     find_package,
     find_ros_node,
+    find_world,
     list_executables,
     list_nodes,
     list_packages,
@@ -126,11 +128,25 @@ def found(asked: Asked, workspace: str | None) -> tuple[NodeSource, list[str]]:
         if folder is None and asked.before > 0 and canonical(name).isidentifier():
             raise _neither(name, workspace) from None
         if folder is None or not executables(folder):
+            command = _meant_command(name, workspace)
+            if command:
+                raise NodeLoadError(f"'{name}' is {command}") from None
             raise
         if asked.before > 0:
             raise NotFoundError("executable", words[0], executables(folder), f"package {name}") from None
         choices = " or ".join(each.name for each in named_executables(folder))
         raise NodeLoadError(f"{name} is a package: say which of its executables, {choices}") from None
+
+
+def _meant_command(name: str, workspace: str | None) -> str:
+    """Return what a name stands for that is no node's, and the command for it; nothing where nobody knows it."""
+    with contextlib.suppress(NotFoundError):
+        if find_launch(name, workspace=workspace).parent.name != "worlds":
+            return f"a launch file, and no node: robolink launch {name}"
+    with contextlib.suppress(NotFoundError):
+        find_world(name, workspace=workspace)
+        return f"a world, and no node: robolink run world -p world:={name}"
+    return ""
 
 
 def _neither(name: str, workspace: str | None) -> NotFoundError:

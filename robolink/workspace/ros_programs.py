@@ -14,7 +14,7 @@ PROGRAMS = {
     ("demo_nodes_cpp", "talker"): "'robolink pub /chatter String \"{data: hello}\"' publishes as it does",
     ("demo_nodes_py", "listener"): "'robolink topic echo /chatter' hears as it does",
     ("demo_nodes_cpp", "listener"): "'robolink topic echo /chatter' hears as it does",
-    ("tf2_ros", "tf2_echo"): "here it is 'robolink tf echo TARGET SOURCE'",
+    ("tf2_ros", "tf2_echo"): "here it is 'robolink tf echo SOURCE_FRAME TARGET_FRAME'",
     ("tf2_ros", "tf2_monitor"): "here it is 'robolink tf monitor'",
     ("tf2_tools", "view_frames"): "here it is 'robolink tf tree'",
     ("rmw_zenoh_cpp", "rmw_zenohd"): "robolink needs no router, and meets one that runs (docs/ros2.md)",
