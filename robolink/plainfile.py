@@ -21,6 +21,10 @@ _FLAGS = os.O_RDONLY | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOCTTY", 0) |
 """O_NONBLOCK: a FIFO that takes the file's place after the first look would block otherwise. Windows has none of it."""
 
 
+LONGEST_SOURCE = 10_000_000
+"""Bytes of a Python file that is to be run."""
+
+
 def read_plain(path: str | os.PathLike[str], most: int) -> bytes:
     """Read a whole file of at most `most` bytes.
 

@@ -33,6 +33,8 @@ MAX_SLOW_NODES = 20_000
 SHORT = 20_000
 """Characters up to which PyYAML's own parser is used, whose reports of what is wrong are the clearer ones."""
 MAX_DEPTH = 64
+LONGEST_INT = 1000
+"""Digits of an integer: Python itself does not spell one of more than 4,300, though it reads it from hexadecimal."""
 MAX_REPEATED = 100_000
 """How many values aliases may add: a few lines of nested aliases could fill the memory otherwise."""
 
@@ -272,6 +274,8 @@ _KINDS: dict[type[yaml.Node], str] = {yaml.MappingNode: "mapping", yaml.Sequence
 
 
 def _int(text: str) -> int:
+    if len(text) > LONGEST_INT:
+        raise ValueError("too many digits")
     prefix = text[:2].lower()
     return int(text, {"0x": 16, "0o": 8}.get(prefix, 10))
 

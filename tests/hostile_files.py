@@ -97,6 +97,12 @@ def _empty_fan(folder: Path) -> None:
     (folder / "f9.yaml").write_text("nodes: [{node: world, if: false}]")
 
 
+def _chain(folder: Path) -> None:
+    for number in range(1_000):
+        (folder / f"f{number}.yaml").write_text(f"include: [{{file: f{number + 1}.yaml}}]")
+    (folder / "f1000.yaml").write_text("nodes: [{node: world}]")
+
+
 def _includes_fifo(folder: Path) -> None:
     if sys.platform != "win32":
         os.mkfifo(folder / "b.yaml")
@@ -145,6 +151,10 @@ LAUNCH_FILES = {
     ),
     "a fan of includes": Hostile(_fan, ("launch", "./f0.yaml", "--graph"), "more than 1,000 processes"),
     "a fan of nothing": Hostile(_empty_fan, ("launch", "./f0.yaml", "--graph"), "more than 2,000 files are included"),
+    "a chain of includes": Hostile(_chain, ("launch", "./f0.yaml", "--graph"), "files are included over 50 deep"),
+    "an integer of 100,000 digits": launch(
+        f"nodes: [{{node: world, parameters: {{a: 0x{'9' * 100_000}}}}}]", "a.yaml:1:39: '0x999"
+    ),
     "100,000 levels": launch("[" * 100_000, "nested more than 64 levels deep"),
     "6 MB": launch("#" * 6_000_000, "it is longer than 5 MB"),
     "an include of a FIFO": Hostile(
@@ -243,7 +253,63 @@ WORLDS = {
 }
 """What worlds and their maps may do."""
 
-ALL = {**LAUNCH_FILES, **WORLDS}
+
+def package(file: str, content: str, name: str = "p", answer: str = "no node named") -> Hostile:
+    """Look for a program in a package, one of whose files is this one."""
+
+    def fill(folder: Path) -> None:
+        (folder / "src" / "p").mkdir(parents=True)
+        (folder / "src/p/package.xml").write_text("<package><name>p</name></package>")
+        (folder / "src/p" / file).write_text(content)
+
+    return Hostile(fill, ("run", name, "program"), answer)
+
+
+def node(fill: Callable[[Path], object], words: str, answer: str, lines: int = 1) -> Hostile:
+    """Meet a node's file in a workspace, `nodes/x.py`."""
+
+    def whole(folder: Path) -> None:
+        for part in ("nodes", "configs"):
+            (folder / part).mkdir()
+        fill(folder / "nodes/x.py")
+
+    return Hostile(whole, tuple(words.split()), answer, lines)
+
+
+def _names_of_lists(of: str) -> str:
+    levels = "".join(f"a{n} = {of.replace('#', f'a{n - 1}')}\n" for n in range(1, 15))
+    return f"a0 = 'xxxxxxxxxx'\n{levels}setup(entry_points={{'console_scripts': a14}})\n"
+
+
+SCRIPTS = "setup(entry_points={'console_scripts': [#]})\n"
+PROGRAMS = {
+    "CMake: install without an end": package("CMakeLists.txt", "install(PROGRAMS " * 11_000),
+    "setup.py: a program and spaces": package("setup.py", SCRIPTS.replace("#", f"'a=b{' ' * 190_000}x'")),
+    "setup.cfg: a program and spaces": package(
+        "setup.cfg", f"[options.entry_points]\nconsole_scripts =\n  a=b{' ' * 190_000}x\n"
+    ),
+    "pyproject.toml: empty lines": package("pyproject.toml", "[project.scripts]\nx" + "\n" * 190_000 + "x"),
+    "setup.py: names of lists": package("setup.py", _names_of_lists("[" + "#," * 10 + "]")),
+    "setup.py: names of texts": package("setup.py", _names_of_lists("f'" + "{#}" * 10 + "'")),
+    "setup.py: 8,000 calls": package(
+        "setup.py",
+        "e = {'console_scripts': [" + "'a'," * 1000 + "]}\n" + "setup(entry_points=e)\n" * 8_000,
+    ),
+    "setup.py: 49,000 statements": package("setup.py", "a=1\n" * 49_000),
+    "setup.py: 1 MB": package("setup.py", "a=1;" * 260_000),
+    "setup.cfg: 13,000 programs": package(
+        "setup.cfg",
+        "[options.entry_points]\nconsole_scripts =\n" + "".join(f"  a{n}=b:c\n" for n in range(13_000)),
+        answer="no executable named 'program' in package p",
+    ),
+    "a node's file is a FIFO": node(_mkfifo, "run x", "cannot be read: it is a FIFO, and no file"),
+    "a node's file nests": node(
+        lambda path: path.write_text("-" * 3_000_000 + "1"), "run x", "x.py: cannot be read: it nests too deep"
+    ),
+}
+"""What packages and nodes may do, whose files are looked into before anything runs."""
+
+ALL = {**LAUNCH_FILES, **WORLDS, **PROGRAMS}
 
 
 def main() -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
 import pytest
 
-from tests.hostile_files import ALL, ask
+from tests.hostile_files import ALL, Hostile, ask
 
 SECONDS = 10.0
 """2 s on a machine that does nothing else (`python -m tests.hostile_files` prints it); here other tests run, too."""
@@ -27,4 +28,22 @@ def test_a_hostile_file_is_answered_soon_and_in_a_line(name: str, tmp_path: Path
     assert len(answer.text) < 300 * (ALL[name].lines + 1)
     assert answer.seconds < SECONDS
     assert answer.cpu < CPU_SECONDS
+    assert answer.megabytes < MEGABYTES
+
+
+def _files(folder: Path) -> None:
+    for part in ("nodes", "configs"):
+        (folder / part).mkdir()
+    (folder / "nodes/nests.py").write_text("-" * 150_000 + "1")
+    (folder / "nodes/large.py").write_text("a=1;" * 1_000_000)
+    if sys.platform != "win32":
+        os.mkfifo(folder / "nodes/fifo.py")
+
+
+def test_a_list_of_nodes_has_those_that_cannot_be_read(tmp_path: Path) -> None:
+    answer = ask(Hostile(_files, ("run", "--list"), ""), tmp_path)
+    assert answer.code == 0
+    unread = [line.split()[0] for line in answer.text.splitlines() if line.endswith("(cannot be read)")]
+    assert unread == [*([] if sys.platform == "win32" else ["fifo"]), "large", "nests"]
+    assert answer.seconds < SECONDS
     assert answer.megabytes < MEGABYTES

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from robolink.exceptions import RobolinkError, WireError
 from robolink.launch.reading.entry import Entry
+from robolink.plainfile import LONGEST_SOURCE, read_plain
 from robolink.remapping import RemapKind, parse_remap_rule, remap_name
 
 if TYPE_CHECKING:
@@ -76,8 +77,8 @@ def names_in(source: NodeSource) -> list[str]:
     import ast
 
     try:
-        tree: ast.AST = ast.parse(source.path.read_bytes() if source.path is not None else b"")
-    except (OSError, SyntaxError, ValueError):
+        tree: ast.AST = ast.parse(read_plain(source.path, LONGEST_SOURCE) if source.path is not None else b"")
+    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
         return []
     classes = (each for each in ast.iter_child_nodes(tree) if isinstance(each, ast.ClassDef))
     its_own = next((each for each in classes if each.name == source.attribute), tree)

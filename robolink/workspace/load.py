@@ -11,6 +11,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
+from robolink.plainfile import LONGEST_SOURCE, read_plain
 from robolink.workspace.find import workspace_of
 from robolink.workspace.interfaces import use_interfaces
 from robolink.workspace.packages import import_roots, source_packages
@@ -122,12 +123,14 @@ def _parse(path: Path) -> ast.Module:
     import ast
 
     try:
-        return ast.parse(path.read_bytes(), str(path))
+        return ast.parse(read_plain(path, LONGEST_SOURCE), str(path))
     except SyntaxError as error:
         place = f"{path}:{error.lineno or 1}:{error.offset or 1}"
         raise NodeLoadError(f"{place}: {error.msg}") from None
-    except (OSError, ValueError, RecursionError, MemoryError) as error:
-        raise NodeLoadError(f"{path}: cannot be read: {error}") from None
+    except OSError as error:
+        raise NodeLoadError(f"{path}: cannot be read: {error.strerror}") from None
+    except (ValueError, RecursionError, MemoryError) as error:
+        raise NodeLoadError(f"{path}: cannot be read: {str(error) or 'it nests too deep'}") from None
 
 
 def _is_script(tree: ast.Module) -> bool:

@@ -3,20 +3,30 @@
 from __future__ import annotations
 
 import ast
+import itertools
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
-LONGEST = 2**20
-"""Bytes of a file that is read."""
+from robolink.plainfile import read_plain
+
+LONGEST = 200_000
+"""Bytes of a file that is read: Python's parser makes 600 bytes of memory of each byte of a setup.py."""
+MOST_SCRIPTS = 1000
+"""Programs of a package."""
+DEEPEST = 20
+"""Expressions within expressions, and names that stand for names."""
+MOST_VALUES = 100_000
+"""Values, and letters put together, of a setup.py: a few lines of names of lists of names would fill the memory."""
 
 _NAME = re.compile(r"<name>\s*([A-Za-z0-9][\w-]*)\s*</name>")
-_ENTRY = re.compile(r"\s*([\w.-]+)\s*=\s*([A-Za-z_][\w.]*)\s*(?::\s*([A-Za-z_][\w.]*))?\s*(?:\[[^\]]*\]\s*)?")
-_TOML_TABLE = re.compile(r"^\[(.+?)\]\s*(?:#.*)?$", re.MULTILINE)
-_TOML_ENTRY = re.compile(r"""^\s*["']?([\w.-]+)["']?\s*=\s*["']([^"'\n]*)["']""", re.MULTILINE)
+_ENTRY = re.compile(r"\s*([\w.-]+)\s*=\s*([A-Za-z_][\w.]*)\s*(?::\s*([A-Za-z_][\w.]*)\s*)?(?:\[[^\]]*\]\s*)?")
+_TOML_TABLE = re.compile(r"^\[(.+?)\][ \t]*(?:#.*)?$", re.MULTILINE)
+_TOML_ENTRY = re.compile(r"""^[ \t]*["']?([\w.-]+)["']?\s*=\s*["']([^"'\n]*)["']""", re.MULTILINE)
 _TOML_SCRIPTS = ("project.scripts", 'project.entry-points."console_scripts"', "project.entry-points.console_scripts")
-_CMAKE_PROGRAMS = re.compile(r"\binstall\s*\(\s*PROGRAMS\b([^)]*?)\bDESTINATION\s+\"?lib/", re.IGNORECASE)
+_CMAKE_PROGRAMS = re.compile(r"\binstall\s*\(\s*PROGRAMS\b([^()]*)", re.IGNORECASE)
+_CMAKE_TO_LIB = re.compile(r"\bDESTINATION\s+\"?lib/", re.IGNORECASE)
 
 
 def package_name(folder: Path) -> str:
@@ -28,28 +38,28 @@ def package_name(folder: Path) -> str:
 def console_scripts(folder: Path) -> dict[str, tuple[str, str]]:
     """Give the programs that a Python package names: name to module and function (``main`` where it names none)."""
     lines = [
-        *_setup_py(_read(folder / "setup.py")),
+        *itertools.islice(_setup_py(_read(folder / "setup.py")), MOST_SCRIPTS),
         *_setup_cfg(_read(folder / "setup.cfg")),
         *_pyproject(_read(folder / "pyproject.toml")),
     ]
-    found = (_ENTRY.fullmatch(each) for each in lines)
+    found = (_ENTRY.fullmatch(each) for each in lines[:MOST_SCRIPTS])
     return {match[1]: (match[2], match[3] or "main") for match in found if match}
 
 
 def installed_scripts(folder: Path) -> dict[str, Path]:
     """Give the Python files that a CMakeLists.txt installs as programs: name, with its suffix, to file."""
     text = re.sub(r"#.*", "", _read(folder / "CMakeLists.txt"))
-    files = (folder / each.strip('"') for listed in _CMAKE_PROGRAMS.findall(text) for each in listed.split())
-    return {each.name: each for each in files if each.suffix == ".py" and each.is_file()}
+    listed = (_CMAKE_TO_LIB.split(each, maxsplit=1) for each in _CMAKE_PROGRAMS.findall(text))
+    names = (name.strip('"') for parts in listed if len(parts) > 1 for name in parts[0].split())
+    files = [folder / each for each in itertools.islice(names, MOST_SCRIPTS) if each.endswith(".py")]
+    return {each.name: each for each in files if each.is_file()}
 
 
 def _read(file: Path) -> str:
     try:
-        if file.is_file() and file.stat().st_size <= LONGEST:
-            return file.read_text(encoding="utf-8-sig", errors="replace")
+        return read_plain(file, LONGEST).decode("utf-8-sig", errors="replace")
     except (OSError, ValueError):
-        pass
-    return ""
+        return ""
 
 
 def _setup_py(text: str) -> Iterator[str]:
@@ -58,12 +68,12 @@ def _setup_py(text: str) -> Iterator[str]:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return
-    known = dict(_assignments(tree))
+    values = _Values(dict(_assignments(tree)))
     for call in ast.walk(tree):
         if isinstance(call, ast.Call) and getattr(call.func, "id", getattr(call.func, "attr", "")) == "setup":
             for keyword in call.keywords:
                 if keyword.arg == "entry_points":
-                    yield from _scripts_in(value_of(keyword.value, known))
+                    yield from _scripts_in(values.of(keyword.value))
 
 
 def _assignments(tree: ast.Module) -> Iterator[tuple[str, ast.expr]]:
@@ -81,40 +91,54 @@ def _scripts_in(entry_points: Any) -> Iterator[str]:
         yield from (each for each in lines if isinstance(each, str)) if isinstance(lines, Iterable) else ()
 
 
-def value_of(node: ast.expr, known: Mapping[str, ast.expr], depth: int = 0) -> Any:
-    """Give what an expression of literals and of names in `known` stands for; None for what only running would tell."""
-    if depth > 20:
+class _Values:
+    """Values of expressions that consist of literals and of names, `known`: None for what only running would tell.
+
+    What is more than MOST_VALUES in all is None, too.
+    """
+
+    def __init__(self, known: Mapping[str, ast.expr]) -> None:
+        self._known = known
+        self._left = MOST_VALUES
+
+    def of(self, node: ast.expr, depth: int = 0) -> Any:
+        """Return what an expression stands for."""
+        self._left -= 1
+        return None if depth > DEEPEST or self._left < 0 else self._read(node, depth + 1)
+
+    def _read(self, node: ast.expr, depth: int) -> Any:
+        match node:
+            case ast.Constant(value):
+                return value
+            case ast.Name(name):
+                return self.of(self._known[name], depth) if name in self._known else None
+            case ast.List(parts) | ast.Tuple(parts):
+                return [self.of(each, depth) for each in parts]
+            case ast.Dict(keys, values):
+                pairs = zip(keys, values, strict=True)
+                return {key.value: self.of(value, depth) for key, value in pairs if _is_text(key)}
+            case ast.JoinedStr(parts):
+                return self._counted(_joined([self.of(each, depth) for each in parts]))
+            case ast.FormattedValue(value):
+                return self.of(value, depth)
+            case ast.BinOp(left, ast.Add(), right):
+                return self._added(self.of(left, depth), self.of(right, depth))
         return None
 
-    def inner(each: ast.expr) -> Any:
-        return value_of(each, known, depth + 1)
+    def _added(self, left: Any, right: Any) -> Any:
+        return self._counted(left + right) if type(left) is type(right) and isinstance(left, (str, list)) else None
 
-    readers: dict[type, Callable[[Any], Any]] = {
-        ast.Constant: lambda it: it.value,
-        ast.Name: lambda it: inner(known[it.id]) if it.id in known else None,
-        ast.List: lambda it: [inner(each) for each in it.elts],
-        ast.Tuple: lambda it: [inner(each) for each in it.elts],
-        ast.Dict: lambda it: {
-            inner(key): inner(value) for key, value in zip(it.keys, it.values, strict=True) if _is_text(key)
-        },
-        ast.JoinedStr: lambda it: _joined([inner(each) for each in it.values]),
-        ast.FormattedValue: lambda it: inner(it.value),
-        ast.BinOp: lambda it: _added(inner(it.left), inner(it.right)) if isinstance(it.op, ast.Add) else None,
-    }
-    read = readers.get(type(node))
-    return None if read is None else read(node)
+    def _counted(self, value: Any) -> Any:
+        self._left -= len(value or ())
+        return value if self._left >= 0 else None
 
 
-def _is_text(key: ast.expr | None) -> bool:
+def _is_text(key: ast.expr | None) -> TypeGuard[ast.Constant]:
     return isinstance(key, ast.Constant) and isinstance(key.value, str)
 
 
 def _joined(parts: list[Any]) -> str | None:
     return "".join(parts) if all(isinstance(each, str) for each in parts) else None
-
-
-def _added(left: Any, right: Any) -> Any:
-    return left + right if type(left) is type(right) and isinstance(left, (str, list)) else None
 
 
 def _setup_cfg(text: str) -> Iterator[str]:

@@ -214,6 +214,8 @@ class _Reading:
         if path.resolve() in scope.chain:
             names = [each.name for each in scope.chain[scope.chain.index(path.resolve()) :]]
             raise part.error(["file"], f"a file cannot include itself: {' -> '.join([*names, path.name])}")
+        if len(scope.chain) > limits.DEEPEST_INCLUDES:
+            raise _too_large(part, f"files are included over {limits.DEEPEST_INCLUDES} deep")
         self._includes += 1
         if self._includes > limits.MOST_INCLUDES:
             raise _too_large(part, f"more than {limits.MOST_INCLUDES:,} files are included")

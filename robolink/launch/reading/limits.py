@@ -12,6 +12,8 @@ MOST_PARTS = 20_000
 """Copies of nodes, groups and includes."""
 MOST_INCLUDES = 2_000
 """Files that are included, each as often as it is."""
+DEEPEST_INCLUDES = 50
+"""Files within files: each is read while the one before is."""
 MOST_PARAMETERS = 10_000
 """Parameters of a node."""
 MOST_REMAPPINGS = 1_000
