@@ -73,7 +73,7 @@ class Endpoint:
         self.humble_key = self.key if self.type_hash == NO_HASH else ""
         """The key that Humble peers use, once there has been one."""
         self._disagreements = owner.disagreements
-        self._following: list[Handle] = []
+        self._following: tuple[Handle, ...] = ()
         self._announced: Handle | None = None
 
     def _make_token(self, kind: EndpointKind, more: str) -> EndpointToken:
@@ -99,8 +99,8 @@ class Endpoint:
         graph = self.context.graph
         if self.token.kind is EndpointKind.SERVICE and not self.humble_key:
             # Before a Humble client of it comes: Humble calls as soon as it sees a server, and waits for ever then.
-            self._following.append(graph.follow_first_humble(lambda gid, token, alive: self._meet(token)))
-        self._following.append(graph.follow(self.name, OTHER_END[self.token.kind], self._on_other_end))
+            self._following = (graph.follow_first_humble(self._on_humble),)
+        self._following += (graph.follow(self.name, OTHER_END[self.token.kind], self._on_other_end),)
         self._announced = graph.announce(self.token, self._text)
 
     def count_others(self) -> int:
@@ -125,6 +125,10 @@ class Endpoint:
                 self._disagreements.tell(self.token, token)
             if self.on_disagreement is not None:
                 self.on_disagreement()
+
+    def _on_humble(self, gid: bytes, token: EndpointToken, alive: bool) -> None:
+        """Hear, on any thread, of the first Humble peer, whatever it has."""
+        self._meet(token)
 
     def _meet(self, token: EndpointToken) -> None:
         """Use Humble's key as well, if this is the first Humble peer."""

@@ -35,9 +35,6 @@ Follower = Callable[[bytes, EndpointToken, bool], object]
 Place = tuple[str, EndpointKind]
 """A topic's or service's name, and which of its ends are meant."""
 
-FIRST_HUMBLE: Place = ("", EndpointKind.SERVICE)
-"""Where those follow who want to know of the first Humble peer; no service has this name."""
-
 SETTLED_WITHIN = 0.1
 """Seconds; it takes 2 ms."""
 
@@ -69,6 +66,8 @@ class Graph:
         self._changed = threading.Condition()
         self._followers: dict[Place, tuple[_Following, ...]] = {}
         self._humble: tuple[bytes, EndpointToken] | None = None
+        self._await_humble: dict[_Following, None] = {}
+        """Each service follows here: so many that taking one out must not mean a look at all."""
         self._news: deque[Callable[[], object]] = deque()
         self._telling = threading.Lock()
         self._settling = threading.Lock()
@@ -135,7 +134,8 @@ class Graph:
                 followers = self._followers.get((token.name, token.kind), ())
                 if self._humble is None and token.type_hash == NO_HASH:
                     self._humble = gid, token
-                    followers += self._followers.pop(FIRST_HUMBLE, ())
+                    followers += tuple(self._await_humble)
+                    self._await_humble.clear()
                 self._news.extend(each.news(gid, token, alive) for each in followers)
         self._tell()
 
@@ -160,11 +160,11 @@ class Graph:
 
         Else when the first comes, as with `follow`.
         """
-        following = _Following(follower, functools.partial(self._stop_following, FIRST_HUMBLE))
+        following = _Following(follower, self._stop_awaiting_humble)
         with self._changed:
             known = self._humble
             if known is None:
-                self._followers[FIRST_HUMBLE] = (*self._followers.get(FIRST_HUMBLE, ()), following)
+                self._await_humble[following] = None
         if known is not None:
             following.news(*known, True)()
         return following
@@ -186,6 +186,10 @@ class Graph:
                 self._followers[place] = rest
             else:
                 self._followers.pop(place, None)
+
+    def _stop_awaiting_humble(self, following: _Following) -> None:
+        with self._changed:
+            self._await_humble.pop(following, None)
 
     def wait_for(self, condition: Callable[[], bool], timeout: float | None) -> bool:
         """Wait, in real time, until `condition()` holds; look whenever something changed."""
