@@ -9,6 +9,7 @@ from __future__ import annotations
 import gc
 import os
 import signal
+import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -134,6 +135,12 @@ def patient_looks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Looks at the graph wait for those, too, whom a machine that does ten things at once holds up for a while."""
     for name, seconds in {"QUIET": 0.3, "REUNION": 0.5, "PATIENCE": 5.0, "LONGEST": 30.0, "LINK_WITHIN": 30.0}.items():
         monkeypatch.setattr(zenoh, name, seconds)
+
+
+@pytest.fixture
+def known_as_robolink(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Errors speak of robolink, although another test may have imported it as rclpy."""
+    monkeypatch.delitem(sys.modules, "rclpy", raising=False)
 
 
 @pytest.fixture(autouse=True)

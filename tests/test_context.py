@@ -25,6 +25,7 @@ def made() -> Context:
 
 
 @pytest.mark.processes
+@pytest.mark.usefixtures("known_as_robolink")
 def test_a_question_that_comes_after_the_end_is_told_so(domain: int) -> None:
     context = Context(transport="zenoh")
     context.init([], domain_id=domain)

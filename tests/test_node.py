@@ -206,6 +206,7 @@ def test_a_node_needs_a_context_that_is_ok(context: Context) -> None:
         Node("node", context=context)
 
 
+@pytest.mark.usefixtures("known_as_robolink")
 def test_what_the_end_of_the_context_destroyed_says_so(context: Context) -> None:
     node = Node("node", context=context)
     publisher, client = node.create_publisher(Int32, "topic", 10), node.create_client(Trigger, "service")

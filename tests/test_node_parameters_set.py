@@ -69,6 +69,7 @@ def test_those_before_an_undeclared_one_stay_set(make: Make) -> None:
     assert [each.value for each in node.get_parameters(["a", "b"])] == [10, 2]
 
 
+@pytest.mark.usefixtures("known_as_robolink")
 def test_only_parameters_can_be_set(make: Make) -> None:
     wrong: Any = [42]
     with pytest.raises(TypeError, match=r"expected a robolink\.parameter\.Parameter, got 42"):
