@@ -203,6 +203,9 @@ def png(width: int, height: int, colour: int, depth: int, bytes_a_pixel: int, fi
     return b"\x89PNG\r\n\x1a\n" + b"".join(b"".join(each) for each in parts)
 
 
+EMPTY_CHUNK = b"\0\0\0\0IDAT" + struct.pack(">I", zlib.crc32(b"IDAT"))
+
+
 def _mkfifo(path: Path) -> None:
     if sys.platform != "win32":
         os.mkfifo(path)
@@ -232,6 +235,13 @@ WORLDS = {
         lambda path: path.write_text("root:secret"), "neither PGM (P2, P5) nor PNG: save it as one of these"
     ),
     "25 million pixels of noise": mapped(_noise, "is the map all noise?"),
+    "a PNG of 3 million chunks": mapped(
+        lambda path: path.write_bytes(png(100, 100, 0, 8, 1)[:33] + EMPTY_CHUNK * 3_000_000), "more than 100,000 chunks"
+    ),
+    "a PGM of 2 million comments": mapped(
+        lambda path: path.write_bytes(b"P5\n" + b"#\n" * 2_000_000 + b"1 1 255\n "),
+        "after P5 a PGM has its width, height and largest value",
+    ),
     "200,000 obstacles": world(_obstacles(200_000, apart=0.5), "cannot be read: it is longer than 5 MB"),
     "14,000 obstacles": world(_obstacles(14_000, apart=0.5), "obstacles: expected list of length <= 5000"),
     "5,000 in one place": world(_obstacles(5_000, apart=0.0), "over 30,000 shapes meet others", 7),

@@ -14,12 +14,15 @@ BEGINNINGS = (b"P2", b"P5")
 LONGEST_PLAIN = 20_000_000
 """Bytes of an image whose numbers are text, which takes much more memory to read."""
 
+LONGEST_HEADER = 100_000
+"""Bytes of a header with its comments, each of which takes a hundred times as much memory to read."""
+
 _PGM = re.compile(rb"P([25])" + 3 * rb"(?:\s|#[^\n]*\n)+(\d{1,9})" + rb"(?:[ \t]*#[^\n]*)?\s")
 
 
 def read_pgm(raw: bytes) -> Image:
     """Read a PGM file's bytes. Raises `ImageError`."""
-    header = _PGM.match(raw)
+    header = _PGM.match(raw[:LONGEST_HEADER])
     if header is None:
         raise ImageError(f"after {raw[:2].decode()} a PGM has its width, height and largest value")
     width, height, largest = (int(each) for each in header.groups()[1:])

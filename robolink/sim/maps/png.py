@@ -19,6 +19,9 @@ SIGNATURE = b"\x89PNG\r\n\x1a\n"
 LUMA = (77, 150, 29)
 """How bright red, green and blue are, of 256 (ITU-R BT.601: 0.299, 0.587, 0.114), as map_server's library has it."""
 
+MOST_CHUNKS = 100_000
+"""Chunks of a file: 50 MB have 6,000 as they are usually written."""
+
 _GRAY, _RGB, _PALETTE, _GRAY_ALPHA, _RGBA = 0, 2, 3, 4, 6
 _CHANNELS = {_GRAY: 1, _RGB: 3, _PALETTE: 1, _GRAY_ALPHA: 2, _RGBA: 4}
 _DEPTHS = {_GRAY: (1, 2, 4, 8, 16), _PALETTE: (1, 2, 4, 8)}
@@ -65,13 +68,16 @@ def read_png(raw: bytes) -> Image:
 def _chunks(raw: memoryview) -> Iterator[tuple[bytes, memoryview]]:
     """Yield the parts of the file, each with its kind."""
     at = len(SIGNATURE)
-    while bytes(raw[at + 4 : at + 8]) != b"IEND":
+    for _ in range(MOST_CHUNKS):
+        if bytes(raw[at + 4 : at + 8]) == b"IEND":
+            return
         if len(raw) < at + 12 or len(raw) < (end := at + 12 + int.from_bytes(raw[at : at + 4], "big")):
             raise ImageError("it ends too early")
         if zlib.crc32(raw[at + 4 : end - 4]) != int.from_bytes(raw[end - 4 : end], "big"):
             raise ImageError(f"it is damaged: a wrong checksum at byte {at}")
         yield bytes(raw[at + 4 : at + 8]), raw[at + 8 : end - 4]
         at = end
+    raise ImageError(f"more than {MOST_CHUNKS:,} chunks")
 
 
 def _header(body: memoryview) -> _Header:
