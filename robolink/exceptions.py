@@ -24,8 +24,8 @@ from robolink.terminal import shown as shown  # what errors quote of others' tex
 
 LONGEST_NAME, MOST_NAMES = 255, 2000
 """How much is looked through for a name that may have been meant: each comparison takes time."""
-MOST_TOLD = 20
-"""How many of a file's mistakes are told."""
+MOST_TOLD, MOST_MISTAKES = 20, 100
+"""How many of a file's mistakes are told, and how many are looked for."""
 
 
 class RobolinkError(Exception):

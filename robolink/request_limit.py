@@ -13,7 +13,7 @@ LARGEST = 3 * 2**20
 """Bytes of one request: 10,000 names of 300 letters. Once decoded and set, empty texts take fifty times as much."""
 
 _HEADER = 4
-
+"""Bytes before the first field, the second of which says the order of bytes (CDR)."""
 
 Refusal = Callable[[str], dict[str, Any]]
 """Gives the fields of the response that refuses a request, of the reason."""

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 import msgspec
 
-from robolink.exceptions import DocumentError, few, nearest
+from robolink.exceptions import MOST_MISTAKES, DocumentError, few, nearest
 from robolink.plainfile import read_plain
 from robolink.yamlmistakes import Hook, Reader, Step, steps_of
 
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from robolink.yamltext import Data
 
 T = TypeVar("T")
-
-MOST_MISTAKES = 100
-"""How many mistakes of a file are looked for."""
 
 
 class DocumentNotFoundError(DocumentError, FileNotFoundError):

@@ -220,7 +220,7 @@ def test_a_broken_image_is_reported_at_the_key_that_names_it(write: Write, image
 
 
 def test_a_map_of_noise_is_refused(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(room, "MOST_WALLS", 7)
+    monkeypatch.setattr(room, "MOST_PIECES", 7)
     path = write().parent / "world.yaml"
     path.write_text("world: {}\nmap: {yaml: map.yaml}")
     with pytest.raises(DocumentError, match=r"world\.yaml:2:6: map: 8 pieces of wall, at most 7: is the map all noise"):

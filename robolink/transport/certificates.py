@@ -48,17 +48,12 @@ class Own(NamedTuple):
     key: str
 
 
-def uses_tls(config: zenoh.Config) -> bool:
-    """Return whether a session with this configuration listens or connects by TLS."""
-    return reach(config).secured
-
-
 def faults(config: zenoh.Config) -> list[str]:
     """List what is wrong with a configuration's own files, and would keep everybody out; nothing where no TLS is used.
 
     A file that is not there or holds something else, a key that is another certificate's, and what is out of date.
     """
-    if not uses_tls(config):
+    if not reach(config).secured:
         return []
     return [*_faults_of_authority(config), *(fault for own in _own(config) for fault in _faults_of(own))]
 
@@ -69,7 +64,7 @@ def doubts(config: zenoh.Config) -> list[str]:
     It is right only where the other side trusts another authority.
     """
     authority = _settings(config)["root_ca_certificate"]
-    if not uses_tls(config) or not authority or faults(config):
+    if not reach(config).secured or not authority or faults(config):
         return []
     return [
         f"{own.used_to}_certificate {own.certificate} is not signed by root_ca_certificate {authority}: "

@@ -13,7 +13,7 @@ from typing import Any
 
 from msgspec.structs import replace
 
-from robolink.exceptions import DocumentError, few
+from robolink.exceptions import MOST_MISTAKES, DocumentError, few
 from robolink.launch.reading import limits, lookup
 from robolink.launch.reading.arguments import read_given, values_of
 from robolink.launch.reading.around import Around
@@ -176,8 +176,8 @@ class _Reading:
         self._refuse(error)
         self.is_refused = True
         self._refused += 1
-        if self._refused >= limits.MOST_MISTAKES:
-            message = f"after {limits.MOST_MISTAKES} mistakes nothing more was read"
+        if self._refused >= MOST_MISTAKES:
+            message = f"after {MOST_MISTAKES} mistakes nothing more was read"
             raise _TooLargeError(message, error.file, error.line, error.column)
 
     def _node(self, scope: _Scope, part: Part, around: Around) -> Iterator[Draft]:

@@ -18,8 +18,6 @@ MOST_PARAMETERS = 10_000
 """Parameters of a node."""
 MOST_REMAPPINGS = 1_000
 """Remappings that a node or a group says."""
-MOST_MISTAKES = 100
-"""Parts that are left out for a mistake, after which no further ones are looked for."""
 
 
 class TextBudget:

@@ -21,7 +21,7 @@ from robolink.sim.description import Angle, Coordinate, MapWalls, Pose, Share
 from robolink.sim.maps.formats import read_image
 from robolink.sim.maps.image import Image, ImageError
 
-MOST_WALLS = 200_000
+MOST_PIECES = 200_000
 """Pieces of wall that a map may have: a building has about ten thousand, and noise has millions."""
 
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
@@ -96,7 +96,7 @@ def load_map(path: Path) -> GridMap:
 def map_walls(grid: GridMap) -> MapWalls:
     """Give a map's walls as a part of a world. Raises ValueError if they are too many."""
     segments = grid.walls()
-    if len(segments) > MOST_WALLS:
+    if len(segments) > MOST_PIECES:
         raise ValueError(_too_many(len(segments)))
     return MapWalls(tuple((x, y) for x, y in segments.reshape(-1, 2).tolist()))
 
@@ -135,14 +135,14 @@ def cell_edges(occupied: npt.NDArray[np.bool_]) -> npt.NDArray[np.float64]:
 
 
 def _too_many(count: int) -> str:
-    return f"{count} pieces of wall, at most {MOST_WALLS}: is the map all noise?"
+    return f"{count} pieces of wall, at most {MOST_PIECES}: is the map all noise?"
 
 
 def _runs(lines: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
     """Find the runs of True along each line: rows of line, start, end. Raises ValueError if they are too many."""
     padded = np.pad(lines, ((0, 0), (1, 1)))
     differ = padded[:, 1:] != padded[:, :-1]
-    if (count := np.count_nonzero(differ) // 2) > MOST_WALLS:
+    if (count := np.count_nonzero(differ) // 2) > MOST_PIECES:
         raise ValueError(_too_many(count))
     changes = np.flatnonzero(differ)
     line, place = np.divmod(changes, lines.shape[1] + 1)
