@@ -90,6 +90,11 @@ class Client(ServiceEnd):
         """Any time: an answer only completes a future, and the callback that waits for it may keep the group busy."""
         return ANY_TIME
 
+    @property
+    def is_waiting(self) -> bool:
+        """Whether a call is under way."""
+        return bool(self._calls)
+
     def redirect(self, inbox: Inbox) -> None:
         """Have the answers that are still to come arrive in this inbox."""
         super().redirect(inbox)

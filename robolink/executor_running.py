@@ -109,14 +109,27 @@ class ExecutorRunning(ExecutorQueue):
         with self._lock:
             return bool(self._blocked)
 
-    def _tell_of_held(self) -> bool:
-        """In a callback that spins without an end: warn when what is ready waits for that very callback; never stop."""
-        with self._lock:
-            held = next((each for each in self._blocked if self._is_held_here(each)), None)
-        if held is not None and not self._has_told_of_held:
-            self._has_told_of_held = True
-            _logger_of(held).warning(_HELD.format(_named(held.origin)))
-        return False
+    def _telling_of_held(self, stop: Callable[[], bool] | None) -> Callable[[], bool]:
+        """Return `stop`, or never, for a callback that spins without an end: it warns of what waits for that callback.
+
+        Who spins until a future is done is told only of a service that is asked from here: that future may hang on it.
+        """
+
+        def tell() -> bool:
+            with self._lock:
+                waiting = [] if self._has_told_of_held else [each for each in self._blocked if self._is_held_here(each)]
+            held = next((each for each in waiting if stop is None or self._is_asked_here(each.origin)), None)
+            if held is not None:
+                self._has_told_of_held = True
+                _logger_of(held).warning(_HELD.format(_named(held.origin)))
+            return False
+
+        return tell if stop is None else lambda: stop() or tell()
+
+    def _is_asked_here(self, entity: Entity) -> bool:
+        """Whether it is a service whose answer a client of this executor waits for."""
+        name = getattr(entity, "srv_name", None)
+        return any(each.srv_name == name and each.is_waiting for node in self._nodes for each in node.clients)
 
     def _is_held_here(self, entity: Entity) -> bool:
         """Return whether a callback under way in this thread keeps the group of an entity busy."""

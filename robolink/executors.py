@@ -226,8 +226,8 @@ class Executor(ExecutorRunning):
     def _spin(self, deadline: int | None = None, stop: Callable[[], bool] | None = None, *, once: bool = False) -> None:
         """Run callbacks until `stop()`, the deadline, or the end of the context or of this executor."""
         time, thread, ok = self._context.time, threading.get_ident(), self._context.ok
-        if deadline is None and stop is None and self.spins_here:
-            stop = self._tell_of_held
+        if deadline is None and self.spins_here:
+            stop = self._telling_of_held(stop)
         self._spinners.append(thread)
         try:
             while True:

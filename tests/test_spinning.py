@@ -249,6 +249,30 @@ def test_a_callback_that_spins_without_an_end_is_told_what_it_holds_up(
     assert "[node]: a callback spins and waits without a timeout_sec: a timer is ready, but cannot run" in line
 
 
+@pytest.mark.parametrize("group", [None, ReentrantCallbackGroup()])
+def test_a_callback_that_spins_for_an_answer_is_told_of_the_service_that_it_holds_up(
+    default: Context, group: ReentrantCallbackGroup | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    node, seen = rclpy.create_node("node"), list[object]()
+    client = node.create_client(Trigger, "go")
+    node.create_service(Trigger, "go", lambda _, response: response, callback_group=group)
+    node.create_timer(0.15, lambda: None)  # is held up, too, and is no reason for a word
+    node.create_timer(1.0, rclpy.shutdown, callback_group=ReentrantCallbackGroup())
+
+    def ask() -> None:
+        future = client.call_async(Trigger.Request())
+        once.cancel()
+        rclpy.spin_until_future_complete(node, future)
+        seen.append(future.result())
+
+    once = node.create_timer(0.1, ask)
+    rclpy.spin(node)
+    told = capsys.readouterr().err
+    assert seen == ([None] if group is None else [Trigger.Response()])
+    lines = [each.partition("timeout_sec: ")[2].partition(" before")[0] for each in told.splitlines()]
+    assert lines == (["the service of /go is ready, but cannot run"] if group is None else [])
+
+
 def test_a_callback_in_a_thread_that_spins_without_an_end_is_told_too(
     context: Context, capsys: pytest.CaptureFixture[str]
 ) -> None:
