@@ -297,6 +297,14 @@ def test_what_only_looks_like_an_action_is_told(node: Node, capsys: Captured) ->
 @pytest.mark.parametrize(
     ("words", "said"),
     [
+        ([TYPE, "{order:3}"], "Fibonacci_Goal: no field 'order:3'; a space is missing behind the colon: 'order: 3'"),
+        (
+            [TYPE, "order:3"],
+            (
+                "Fibonacci_Goal: expected a mapping of order, got 'order:3'; "
+                "a space is missing behind the colon: 'order: 3'"
+            ),
+        ),
         ([TYPE, "{ordr: 3}"], "Fibonacci_Goal: no field 'ordr' (did you mean 'order'?); it has order"),
         ([TYPE, "{order: x}"], "Fibonacci_Goal.order: expected int32, got 'x'"),
         ([TYPE, "[1]"], "Fibonacci_Goal: expected a mapping of order, got [1]"),

@@ -30,13 +30,21 @@ def from_builtins(cls: type[Message], data: Any) -> Any:
 def _fill(message: Message, data: Any, path: str) -> None:
     if not isinstance(data, dict):
         wanted = ", ".join(message.__ros_fields__) or "nothing"
-        raise EncodeError(f"{path}: expected a mapping of {wanted}, got {data!r:.60}")
+        raise EncodeError(f"{path}: expected a mapping of {wanted}, got {data!r:.60}{_unspaced(message, data)}")
     for name, value in data.items():
         kind = message.__ros_fields__.get(name)
         if kind is None:
             known = list(message.__ros_fields__)
-            raise EncodeError(f"{path}: no field '{name}'{nearest(str(name), known)}; it has {', '.join(known)}")
+            hint = _unspaced(message, name) or f"{nearest(str(name), known)}; it has {', '.join(known)}"
+            raise EncodeError(f"{path}: no field '{name}'{hint}")
         setattr(message, name, _value(kind, value, f"{path}.{name}"))
+
+
+def _unspaced(message: Message, text: Any) -> str:
+    """Return the hint for a text that is a field and its value, but for the space that YAML wants between them."""
+    name, colon, value = text.partition(":") if isinstance(text, str) else ("", "", "")
+    is_meant = bool(colon) and name in message.__ros_fields__
+    return f"; a space is missing behind the colon: '{name}: {value:.40}'" if is_meant else ""
 
 
 def _value(kind: FieldType, value: Any, path: str) -> Any:
