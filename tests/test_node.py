@@ -22,6 +22,7 @@ from robolink.exceptions import (
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.interfaces.std_srvs.srv import Trigger
+from robolink.tracebacks import formatted
 from robolink.transport.memory import Bus, MemoryTransport
 from tests.spins import spin_for
 
@@ -64,8 +65,9 @@ def test_a_node_that_has_not_called_its_base_class_is_told_to(context: Context) 
             pass
 
     report = r"call super\(\).__init__\('NAME'\) first"
-    with pytest.raises(AttributeError, match=f"Early is no node yet: {report}"):
+    with pytest.raises(AttributeError, match=f"Early is no node yet: {report}") as caught:
         Early()
+    assert formatted(caught.value).endswith("first")  # and advises no name that the caller has not written
     executor = SingleThreadedExecutor(context=context)
     with pytest.raises(AttributeError, match=f"Never is no node yet: {report}"):
         executor.add_node(Never())
