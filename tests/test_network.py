@@ -177,6 +177,17 @@ def test_a_broken_file(tmp_path: Path, text: str, problem: str) -> None:
             {"ZENOH_CONFIG_OVERRIDE": "scouting/delay={"},
             "ZENOH_CONFIG_OVERRIDE: 'scouting/delay={': line 1, column 2: expected identifier or string",
         ),
+        (  # a byte that is no UTF-8, as os.environ has it
+            {"ZENOH_CONFIG_OVERRIDE": "scouting/delay=\udcff\x1b[2J"},
+            (
+                "ZENOH_CONFIG_OVERRIDE: 'scouting/delay=\\udcff\\x1b[2J': "
+                "'utf-8' codec can't encode character '\\udcff' in position 0: surrogates not allowed"
+            ),
+        ),
+        (
+            {"ZENOH_CONFIG_OVERRIDE": f"nonsense/{'x' * 100_000}=1"},
+            f"ZENOH_CONFIG_OVERRIDE: 'nonsense/{'x' * 88}...': unknown key",
+        ),
     ],
 )
 def test_refusals(environ: dict[str, str], message: str) -> None:

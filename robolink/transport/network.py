@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.exceptions import TransportError, nearest
+from robolink.exceptions import TransportError, nearest, shown
 from robolink.transport.base import LARGEST_MESSAGE
 
 if TYPE_CHECKING:
@@ -335,9 +335,9 @@ def _overridden(config: zenoh.Config, overrides: list[tuple[str, str]]) -> zenoh
     for path, value in overrides:
         try:
             config.insert_json5(path, value)
-        except zenoh.ZError as error:
-            override = f"{path}={value}"
-            raise TransportError(f"{_OVERRIDE}: {override!r}: {reason(error)}") from None
+        except (zenoh.ZError, UnicodeEncodeError) as error:  # the latter: bytes that are no UTF-8
+            override = shown(f"{path}={value}")
+            raise TransportError(f"{_OVERRIDE}: '{override}': {reason(error)}") from None
     return config
 
 
