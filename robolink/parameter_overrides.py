@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
-from functools import lru_cache
 from typing import NamedTuple, TypeAlias
 
 Scalar: TypeAlias = "bool | int | float | str"
@@ -30,7 +28,7 @@ class Override(NamedTuple):
 
     def is_for(self, full_node_name: str) -> bool:
         """Say whether the pattern fits a node such as `/arm/driver`."""
-        return _compiled(self.pattern).fullmatch(full_node_name) is not None
+        return _fits(self.pattern, full_node_name)
 
 
 def overrides_for(overrides: Iterable[Override], full_node_name: str) -> dict[str, Value]:
@@ -38,8 +36,13 @@ def overrides_for(overrides: Iterable[Override], full_node_name: str) -> dict[st
     return {each.name: each.value for each in overrides if each.is_for(full_node_name)}
 
 
-@lru_cache(maxsize=256)
-def _compiled(pattern: str) -> re.Pattern[str]:
-    wild = {"**": r"(?:/[^/]+)*", "*": r"/[^/]+"}
-    tokens = pattern.removeprefix("/").split("/")
-    return re.compile("".join(wild.get(token, "/" + re.escape(token)) for token in tokens))
+def _fits(pattern: str, name: str) -> bool:
+    """Whether a pattern fits, in steps of at most its tokens times the name's: `**` is tried nowhere twice."""
+    tokens = name.removeprefix("/").split("/")
+    reached = {0}  # after how many tokens of the name the pattern may stand
+    for token in pattern.removeprefix("/").split("/"):
+        if token == "**":
+            reached = set(range(min(reached, default=len(tokens) + 1), len(tokens) + 1))
+        else:
+            reached = {at + 1 for at in reached if at < len(tokens) and token in ("*", tokens[at])}
+    return len(tokens) in reached

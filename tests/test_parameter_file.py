@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from contextlib import suppress
 from pathlib import Path
 
@@ -237,3 +238,11 @@ def test_any_text_is_read_or_refused_with_the_one_error(text: str) -> None:
         assert all(isinstance(each, Override) for each in parse_parameter_file(text, "f"))
     with suppress(ParameterFileError):
         assert isinstance(parse_parameter_value(text), bool | int | float | str | list)
+
+
+def test_many_wildcards_are_matched_at_once() -> None:
+    pattern = "/**/a" * 20
+    begin = time.process_time()
+    assert not Override(pattern, "x", 1).is_for("/a" * 120 + "/b")
+    assert Override(pattern, "x", 1).is_for("/a" * 120)
+    assert time.process_time() - begin < 1
