@@ -9,7 +9,10 @@ import sys
 from tests.hostile_requests import requests
 
 WITHIN = 2.0
-"""Seconds."""
+"""Seconds of the processor. By the clock a machine that runs three tests at once may take several times as long."""
+
+AT_MOST = 10.0
+"""Seconds by the clock, however busy the machine is."""
 
 MOST = 300.0
 """MB of the whole process, the request's own bytes included."""
@@ -21,5 +24,5 @@ def test_each_is_answered_in_two_seconds_with_less_than_300_mb() -> None:
     assert ran.returncode == 0, ran.stderr[-2000:]
     told = [json.loads(line) for line in ran.stdout.splitlines()]
     assert len(told) == len(list(requests()))
-    assert [each for each in told if each["seconds"] >= WITHIN] == []
+    assert [each for each in told if each["cpu"] >= WITHIN or each["seconds"] >= AT_MOST] == []
     assert [each for each in told if each["peak"] >= MOST][:1] == []

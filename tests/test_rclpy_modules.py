@@ -218,6 +218,7 @@ def test_who_comes_after_the_end_is_told_of_it_at_once() -> None:
         context.on_shutdown(1)  # type: ignore[arg-type]
 
 
+@pytest.mark.usefixtures("known_as_robolink")
 def test_an_exception_may_say_more() -> None:
     assert str(NotInitializedException()) == "robolink.init() has not been called"
     assert str(NotInitializedException("cannot create node")).endswith("called: cannot create node")
