@@ -73,7 +73,7 @@ class ExecutorRunning(ExecutorQueue):
         return threading.get_ident() in self._spinners
 
     @contextmanager
-    def beside(self, other: Executor | None) -> Iterator[None]:
+    def _beside_(self, other: Executor | None) -> Iterator[None]:
         """Be spun by a thread that may be in a callback of another executor, which counts as a callback here too."""
         thread = threading.get_ident()
         inside = other is not None and other is not self and other.spins_here

@@ -156,7 +156,7 @@ def _with_node(node: Node, executor: Executor | None, act: Callable[[Executor], 
     before = node.executor
     added = chosen.add_node(node)
     try:
-        with chosen.beside(before):
+        with chosen._beside_(before):
             act(chosen)
     finally:
         if added:

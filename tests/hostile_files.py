@@ -259,6 +259,7 @@ WORLDS = {
         "".join(f"DEF A{n} Group {{ children [ {f'USE A{n - 1} ' * 10 if n else ''}] }}\n" for n in range(12)),
         "more than 100000 nodes",
     ),
+    "Webots: 2.9 million numbers": webots("Solid { translation " + "1 " * 2_900_000, "more than 1,000,000 words"),
     "Webots: 7 MB": webots("#" * 7_000_000, "cannot be read: it is longer than 6 MB"),
 }
 """What worlds and their maps may do."""

@@ -24,6 +24,9 @@ MOST = 100_000
 LONGEST = 6_000_000
 """Characters that a world may have, and bytes."""
 
+MOST_WORDS = 1_000_000
+"""Words, brackets and strings of a world; lists of nothing but numbers, as meshes are, count as one."""
+
 LARGEST = 1e12
 """No number that means anything in a world is larger."""
 
@@ -186,6 +189,7 @@ class _Parser:
         self._source, self._end = source, 0
         self._defined: dict[str, Node] = {}
         self._depth = 0
+        self._words = 0
         self._kind, self._text, self._offset = "", "", 0
         self._next()
 
@@ -208,6 +212,9 @@ class _Parser:
             self._end = match.end()
             if match.lastgroup is not None:
                 self._kind, self._text, self._offset = match.lastgroup, match[0], match.start()
+                self._words += 1
+                if self._words > MOST_WORDS:
+                    self._fail(f"this world has more than {MOST_WORDS:,} words")
                 if self._kind == "wrong":
                     self._fail("this string has no end")
                 return
