@@ -24,7 +24,7 @@ MOST = 100_000
 LONGEST = 6_000_000
 """Characters that a world may have, and bytes."""
 
-MOST_WORDS = 1_000_000
+MOST_WORDS = 500_000
 """Words, brackets and strings of a world; lists of nothing but numbers, as meshes are, count as one."""
 
 LARGEST = 1e12
