@@ -1,4 +1,4 @@
-"""How long commands take from start to end beside 30 nodes and 200 topics, and a bare Zenoh script in the same run.
+"""Benchmark of commands: run time beside 30 nodes and 200 topics, and of a bare Zenoh script in the same run.
 
     python benchmarks/commands.py [--runs 10] [--processes 5]
 

@@ -1,4 +1,4 @@
-"""How exact the simulated world is, and how well the controllers drive in it: figures for `benchmarks/simulator.py`.
+"""Accuracy of the simulated world, and of the controllers that drive in it: figures for `benchmarks/simulator.py`.
 
     python benchmarks/exactness.py
 
@@ -22,10 +22,11 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.peers import Array  # noqa: E402 - found only now
 from robolink.sim import Pose, World, WorldDescription  # noqa: E402
-from robolink.sim.description import Drive, Lidar, RobotDescription, Wall  # noqa: E402
+from robolink.sim.description import Drive, RobotDescription, Wall  # noqa: E402
 from robolink.sim.sensing.lidar import Beams, distances  # noqa: E402
 from robolink.sim.sensing.surroundings import standing  # noqa: E402
-from tests import closed_loops as loops  # noqa: E402
+from robolink.sim.sensors import Lidar  # noqa: E402
+from tests.support import closed_loops as loops  # noqa: E402
 
 NOTHING_ROUND = np.empty((0, 3))
 MINUTE = 6000

@@ -1,8 +1,11 @@
-"""What an executor takes of a core while it waits: a 100 Hz timer beside idle subscriptions, over Zenoh.
+"""Benchmark of executors: a message by each way of spinning, and CPU use of a 100 Hz timer beside idle subscriptions.
 
     python benchmarks/executors.py [--rounds 5] [--seconds 3] [--idle 100]
 
-Figures of one machine at one moment mean little; the ratios carry over. Each loop runs in a process of its own, by
+Figures of one machine at one moment mean little; the ratios carry over. A node sends itself messages in memory: one
+that is sent in the callback of the last, one of 20,000 that wait, and none that a spin without waiting looks for.
+
+The timer runs over Zenoh. Each loop runs in a process of its own, by
 turns. The bare ones do the least that a program can do to be called every 10 ms: they wait for an event, or for a queue
 with a timeout, until the next moment, and call a function. What is counted is the whole process's CPU time, Zenoh's
 threads included.
@@ -20,12 +23,16 @@ import time
 from collections.abc import Callable
 
 import robolink
+from robolink.context import Context
 from robolink.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.interfaces.std_msgs.msg import Int32
+from robolink.transport.memory import Bus, MemoryTransport
+from robolink.utilities import set_default_context
 
 PERIOD = 0.01
 DOMAIN = 98
 WARM_UP = 1.0
+MESSAGES, BACKLOG = 2000, 20_000
 GOAL = 3.0
 """Percent of a core."""
 
@@ -100,6 +107,90 @@ LOOPS = {
 }
 
 
+# A message, by each way of spinning
+
+Spin = Callable[[robolink.Node, Executor, robolink.Future[None], float | None], object]
+
+
+def by_spinning(node: robolink.Node, _: Executor, done: robolink.Future[None], timeout: float | None) -> None:
+    robolink.spin_until_future_complete(node, done, timeout_sec=timeout)
+
+
+def by_spin_once(node: robolink.Node, _: Executor, done: robolink.Future[None], timeout: float | None) -> None:
+    while not done.done():
+        robolink.spin_once(node, timeout_sec=timeout)
+
+
+def by_an_executor(node: robolink.Node, own: Executor, done: robolink.Future[None], timeout: float | None) -> None:
+    own.add_node(node)
+    while not done.done():
+        own.spin_once(timeout_sec=timeout)
+
+
+WAYS: dict[str, Spin] = {
+    "spin": by_spinning,
+    "executor.spin_once()": by_an_executor,
+    "spin_once(node)": by_spin_once,
+}
+
+
+def a_message(way: str, waiting: int) -> float:
+    """Microseconds a message, of a node that sends the next one in its callback, while so many wait."""
+    with Context(transport=MemoryTransport(bus=Bus())) as context:
+        set_default_context(context)
+        node, done, left = robolink.Node("node"), robolink.Future[None](), iter(range(MESSAGES))
+        publisher, message = node.create_publisher(Int32, "topic", BACKLOG + 1), Int32()
+
+        def on_message(_: Int32) -> None:
+            publisher.publish(message)
+            if next(left, None) is None:
+                done.set_result(None)
+
+        node.create_subscription(Int32, "topic", on_message, BACKLOG + 1)
+        for _ in range(waiting + 1):
+            publisher.publish(message)
+        executor = SingleThreadedExecutor()
+        begin = time.perf_counter()
+        WAYS[way](node, executor, done, None)
+        return 1e6 * (time.perf_counter() - begin) / MESSAGES
+
+
+def a_look(way: str) -> float:
+    """Microseconds of a spin that finds nothing and does not wait."""
+    with Context(transport=MemoryTransport(bus=Bus())) as context:
+        set_default_context(context)
+        node, executor = robolink.Node("node"), SingleThreadedExecutor()
+        looks, done = iter(range(MESSAGES)), robolink.Future[None]()
+        done.done = lambda: next(looks, None) is None  # type: ignore[method-assign]
+        begin = time.perf_counter()
+        WAYS[way](node, executor, done, 0)
+        return 1e6 * (time.perf_counter() - begin) / MESSAGES
+
+
+def report_messages(rounds: int) -> None:
+    columns: dict[str, Callable[[str], float]] = {
+        "one by one": lambda way: a_message(way, 0),
+        f"{BACKLOG:,} wait": lambda way: a_message(way, BACKLOG),
+        "none": a_look,
+    }
+    print(f"us a message, in memory, medians of {rounds} rounds by turns   {'   '.join(columns)}   against spin")
+    figures: dict[str, dict[str, list[float]]] = {way: {name: [] for name in columns} for way in WAYS}
+    for _ in range(rounds):
+        for way, found in figures.items():
+            for name, measure in columns.items():
+                if name != "none" or way != "spin":
+                    found[name].append(measure(way))
+    set_default_context(None)
+    base = {name: statistics.median(each) for name, each in figures["spin"].items() if each}
+    for way, found in figures.items():
+        medians = {name: statistics.median(each) for name, each in found.items() if each}
+        text = "".join(f"{medians[name]:12.2f}" if name in medians else f"{'-':>12}" for name in columns)
+        print(f"  {way:22}{text}   {'  '.join(f'{medians[name] / base[name]:.2f}' for name in base)}")
+
+
+# The timer, in processes
+
+
 def in_a_process(name: str, idle: int, seconds: float) -> tuple[float, float]:
     command = [sys.executable, __file__, "--role", name, "--idle", str(idle), "--seconds", str(seconds)]
     percent, each = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
@@ -132,6 +223,7 @@ def main() -> None:
     if options.role:
         print(*LOOPS[options.role](options.idle, options.seconds))
     else:
+        report_messages(options.rounds)
         report(options.rounds, options.seconds, options.idle)
 
 

@@ -1,4 +1,4 @@
-"""Whether a hundred robots, each with its own reactive controller, run in real time, and every scan is received.
+"""Benchmark of a fleet: a hundred robots with reactive controllers in real time, and the scans that are lost.
 
     python benchmarks/fleet.py [--robots 100] [--seconds 20] [--world fleet] [--apart]
 
@@ -21,11 +21,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from robolink.documents.yamlfile import parse, read_text, spell
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.launch import plan
 from robolink.supervisor import Supervisor
 from robolink.workspace import find_node, find_world, load_node
-from robolink.yamlfile import parse, read_text, spell
 
 DOMAIN = 97
 WARM_UP = 5.0

@@ -1,305 +1,215 @@
-"""How fast messages are: round trips, throughput and codec, each beside a peer in the same run.
+"""Benchmark of messages: round trips, throughput and codec, each beside bare zenoh-python and other peers, by turns.
 
-    python benchmarks/messaging.py [--rounds 5] [--seconds 2]
+    python benchmarks/messaging.py                            # all rows, without peers: some five minutes
+    python benchmarks/messaging.py --only twist               # one row: twenty seconds
+    python benchmarks/messaging.py --only 1mb --seconds 0.3 --with bare,same,spin
+    python benchmarks/messaging.py --only scan --beside ../other/checkout    # two versions of robolink by turns
+    python benchmarks/messaging.py --all                      # with every variant, and the peers that are installed
 
-Figures of one machine at one moment mean little; the ratios carry over. Two processes play ping-pong, one pinned to
-each of two cores, robolink's nodes and bare zenoh-python callbacks taking turns. The bare ones do the least that a
-program can do with a message: they take its bytes and send them.
+Rows: `twist`, `scan`, `1mb` and `6mb` are round trips; `flood-stamped`, `flood-scan`, `flood-1mb` and `flood-6mb` are
+what is received in a second; `inside` is 6.2 MB within one process; `call` is a service's answer, by a querier of bare
+Zenoh, by `call_async` and `spin_until_future_complete`, and by `client.call`; `codec` is the time to encode and decode.
+
+Two fresh processes play, one pinned to each of two cores (but for `--free`), and contenders take turns: figures of one
+machine at one moment mean little, ratios of such turns carry over. `bare` does the least that a program can do with a
+message: it takes its bytes and sends some; large ones are made anew each time (`same` sends the same object again,
+`echo` what has come; `handed` has each handed to its main thread by a queue). Its session has robolink's settings.
+`spin` and `once` are robolink's nodes by `spin`, and by `spin_once` in a loop, `threads` by a MultiThreadedExecutor; in
+`loop` one of them sends between two calls of `spin_once`. All look at an image's pixels. What ends in `-` has shared
+memory switched off, which ROBOLINK_SHARED_MEMORY=off does for all. ROBOLINK_NETWORK=tcp/HOST:PORT plays by a router.
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
+import importlib.util
+import json
 import os
 import statistics
-import subprocess
 import sys
-import time
-import timeit
-from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
-import msgspec
+sys.path.append(str(Path(__file__).resolve().parent.parent))
 
-import robolink
-from robolink.interfaces.geometry_msgs.msg import Twist
-from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.message import Message, decoder, encode, encoder
-from robolink.qos import HistoryPolicy, QoSProfile
+from benchmarks.messages import running
+from benchmarks.messages.running import Contender, Flood, GameError, flood, inside, round_trips
 
-TRIPS, WARM_UP = 3000, 300
-DOMAIN = 97
-FLOOD = QoSProfile(depth=1, history=HistoryPolicy.KEEP_ALL)
-MESSAGES: dict[str, type[Message]] = {"Twist": Twist, "LaserScan": LaserScan}
+BARE = Contender("bare", "bare")
+SAME = Contender("same", "bare", "same")
+HANDED = Contender("handed", "bare", "handed")
+SPIN = Contender("spin", "ours", "spin")
+ONCE = Contender("once", "ours", "once")
+THREADS = Contender("threads", "ours", "threads")
+LOOP = Contender("loop", "ours", "loop")
+VARIANTS = (
+    Contender("echo", "bare", "echo"),
+    Contender("bare-", "bare", shared_memory=False),
+    Contender("spin-", "ours", "spin", shared_memory=False),
+)
+PEERS = (
+    Contender("sdk", "ros2_sdk", needs="zenoh_ros2_sdk"),
+    Contender("cyclone", "cyclone", needs="cyclonedds"),
+    Contender("zeromq", "zeromq", needs="zmq"),
+)
 
-
-def sample(name: str) -> Any:
-    """A message as a robot would send it; the scan has 360 beams."""
-    if name == "Twist":
-        twist = Twist()
-        twist.linear.x, twist.angular.z = 0.3, -0.5
-        return twist
-    scan = LaserScan(ranges=array("f", [1.5 + 0.001 * beam for beam in range(360)]))
-    scan.header.frame_id = "laser"
-    return scan
-
-
-def pin(core: int) -> None:
-    """Stay on one core, where the system can do that."""
-    if hasattr(os, "sched_setaffinity") and (os.cpu_count() or 1) > 1:
-        os.sched_setaffinity(0, {core})
-
-
-# Round trips
-
-
-def bare_session(first: bool) -> Any:
-    import zenoh
-
-    from robolink.transport.network import load
-
-    return zenoh.open(load(None, DOMAIN, os.environ, holds_port=first))
+TRIPS = ("twist", "scan", "1mb", "6mb")
+FLOODS = ("flood-stamped", "flood-scan", "flood-1mb", "flood-6mb")
+ROWS = (*TRIPS, *FLOODS, "inside", "call", "codec")
+LARGE = ("1mb", "6mb")
+CALLS = (
+    Contender("querier", "calls", "querier"),
+    Contender("future", "calls", "future"),
+    Contender("call", "calls", "call"),
+)
+INSIDE = (
+    Contender("copy", "ours"),
+    Contender("memory", "ours", "memory"),
+    Contender("zenoh", "ours", "zenoh"),
+)
+"""In one process: a copy of the bytes alone, and a message by each transport."""
 
 
-def bare_pong(name: str) -> None:
-    session = bare_session(first=True)
-    back = session.declare_publisher("bench/pong")
-    _keep = session.declare_subscriber("bench/ping", lambda got: back.put(got.payload.to_bytes()))
-    say_ready()
-    sys.stdin.read()
+def contenders(row: str, asked: argparse.Namespace) -> list[Contender]:
+    """Contenders of a row; the first is what the others are compared with."""
+    is_flood, kind = row.startswith("flood-"), row.removeprefix("flood-")
+    found = [BARE, *([SAME] if kind in LARGE else []), SPIN, *([] if is_flood else [ONCE])]
+    if asked.all:
+        found += [THREADS, *([] if is_flood else [LOOP]), *([] if is_flood or row in LARGE else [HANDED])]
+        found += [each for each in VARIANTS if kind in LARGE and not (is_flood and each.variant == "echo")]
+        found += [each for each in PEERS if importlib.util.find_spec(each.needs)]
+    if asked.names:
+        known = {each.name: each for each in (BARE, SAME, HANDED, SPIN, ONCE, THREADS, LOOP, *VARIANTS, *PEERS)}
+        found = [known[name] for name in asked.names]
+    return found + beside([each for each in found if each.module == "ours"], asked)
 
 
-def bare_ping(name: str) -> list[float]:
-    import threading
-
-    session, payload, times, done = bare_session(first=False), encode(sample(name)), [], threading.Event()
-    out = session.declare_publisher("bench/ping")
-
-    def on_pong(got: Any) -> None:
-        nonlocal payload
-        payload = got.payload.to_bytes()
-        times.append(time.perf_counter())
-        if len(times) < TRIPS:
-            out.put(payload)
-        else:
-            done.set()
-
-    _keep = session.declare_subscriber("bench/pong", on_pong)
-    while not times:  # until both ends know each other
-        out.put(payload)
-        time.sleep(0.05)
-    done.wait(30)
-    session.close()
-    return times
+def beside(players: Sequence[Contender], asked: argparse.Namespace) -> list[Contender]:
+    """The same contenders with the robolink of `--beside`; none without that."""
+    path = asked.beside and str(Path(asked.beside).resolve())
+    return [each._replace(name=f"{each.name}*", path=path) for each in players] if path else []
 
 
-def robolink_pong(name: str) -> None:
-    robolink.init(args=[], domain_id=DOMAIN)
-    node = robolink.create_node("pong")
-    back = node.create_publisher(MESSAGES[name], "pong", 10)
-    node.create_subscription(MESSAGES[name], "ping", back.publish, 10)
-    say_ready()
-    robolink.spin(node)
+def rounds_of(players: Sequence[Contender], rounds: int, play: Callable[[Contender], Any]) -> dict[str, list[Any]]:
+    """Run all contenders by turns; a contender that fails is left out from then on, with a line."""
+    figures: dict[str, list[Any]] = {each.name: [] for each in players}
+    failed = set()
+    for _ in range(rounds):
+        for each in players:
+            if each.name in failed:
+                continue
+            try:
+                figures[each.name].append(play(each))
+            except GameError as error:
+                print(f"  {each.name}: {error}")
+                failed.add(each.name)
+    return {name: found for name, found in figures.items() if found and name not in failed}
 
 
-def robolink_ping(name: str) -> list[float]:
-    robolink.init(args=[], domain_id=DOMAIN)
-    node = robolink.create_node("ping")
-    message, times, done = sample(name), [], robolink.Future[None]()
-    out = node.create_publisher(MESSAGES[name], "ping", 10)
-
-    def on_pong(_: Any) -> None:
-        times.append(time.perf_counter())
-        if len(times) < TRIPS:
-            out.publish(message)
-        else:
-            done.set_result(None)
-
-    node.create_subscription(MESSAGES[name], "pong", on_pong, 10)
-    while not times:
-        out.publish(message)
-        robolink.spin_once(node, timeout_sec=0.05)
-    robolink.spin_until_future_complete(node, done, timeout_sec=30)
-    robolink.shutdown()
-    return times
+def spread(figures: Sequence[float]) -> str:
+    return f"{min(figures):,.0f}-{max(figures):,.0f}"
 
 
-# Throughput
+def show_trips(row: str, asked: argparse.Namespace) -> dict[str, Any]:
+    """Print round trips in microseconds, and how many times those of the first each takes."""
+    found = rounds_of(contenders(row, asked), asked.rounds, lambda each: round_trips(each, row, asked.seconds))
+    print(f"{row}: round trip, us, median of {asked.rounds} rounds (least and most), and ratio to the first")
+    return show(found)
 
 
-def robolink_sink(name: str) -> None:
-    """Count what arrives from first to last; the pace is the receiver's."""
-    robolink.init(args=[], domain_id=DOMAIN)
-    node = robolink.create_node("sink")
-    last_speed, count, started = Twist(), 0, 0.0
-    done = robolink.Future[None]()
-
-    def on_message(twist: Twist) -> None:
-        nonlocal count, started, last_speed
-        started = started or time.perf_counter()
-        count += 1
-        last_speed = twist
-        if twist.linear.z:
-            done.set_result(None)
-
-    node.create_subscription(Twist, "flood", on_message, FLOOD)
-    print("ready", flush=True)
-    robolink.spin_until_future_complete(node, done, timeout_sec=60)
-    print(count, int(last_speed.linear.y), time.perf_counter() - started, flush=True)
-    robolink.shutdown()
+def show(found: dict[str, list[float]]) -> dict[str, Any]:
+    """Print medians, their spread, and their ratio to the first."""
+    medians = {name: statistics.median(each) for name, each in found.items()}
+    first = next(iter(medians.values()), 0.0)
+    for name, median in medians.items():
+        print(f"  {name:10} {median:12,.1f}  ({spread(found[name])})  {median / first:6.2f}")
+    return {name: {"median": medians[name], "rounds": found[name]} for name in found}
 
 
-def flood(seconds: float) -> tuple[int, int, float]:
-    """Send for so long as fast as it goes; give sent, received, and received a second."""
-    sink = start("robolink_sink", "Twist", core=1)
-    robolink.init(args=[], domain_id=DOMAIN)
-    node = robolink.create_node("source")
-    out = node.create_publisher(Twist, "flood", FLOOD)
-    while not out.get_subscription_count():
-        time.sleep(0.01)
-    time.sleep(0.3)
-    twist, sent, end = Twist(), 0, time.perf_counter() + seconds
-    while time.perf_counter() < end:
-        for _ in range(100):
-            sent += 1
-            twist.linear.y = float(sent)
-            out.publish(twist)
-    twist.linear.z = 1.0
-    out.publish(twist)
-    assert sink.stdout is not None
-    received, _, took = sink.stdout.readline().split()
-    sink.wait()
-    robolink.shutdown()
-    return sent + 1, int(received), int(received) / float(took)
+def show_flood(row: str, asked: argparse.Namespace) -> dict[str, Any]:
+    """Print what was received in a second and lost, and the share of the first."""
+    kind = row.removeprefix("flood-")
+    found: dict[str, list[Flood]] = rounds_of(
+        contenders(row, asked), asked.rounds, lambda each: flood(each, kind, asked.seconds)
+    )
+    print(f"{row}: received a second, median of {asked.rounds} rounds (least and most), share of the first's, and lost")
+    rates = {name: [each.rate for each in rounds] for name, rounds in found.items()}
+    lost = {name: statistics.median(each.lost for each in rounds) for name, rounds in found.items()}
+    medians = {name: statistics.median(each) for name, each in rates.items()}
+    first = next(iter(medians.values()), 0.0)
+    for name, median in medians.items():
+        share = median / first if first else 0.0
+        print(f"  {name:10} {median:12,.0f}  ({spread(rates[name])})  {share:6.2f}   {lost[name]:6.1%} lost")
+    return {name: {"median": medians[name], "rounds": rates[name], "lost": lost[name]} for name in found}
 
 
-# Processes
+def show_inside(_: str, asked: argparse.Namespace) -> dict[str, Any]:
+    """Print how long 6.2 MB take from `publish` to the callback of the same process."""
+
+    def play(each: Contender) -> float:
+        return inside(each, "inside" if each.variant else "copies", "6mb", asked.seconds)
+
+    print(f"inside: 6.2 MB in one process, publish to callback, us, median of {asked.rounds} rounds")
+    return show(rounds_of([*INSIDE, *beside(INSIDE[1:], asked)], asked.rounds, play))
 
 
-def say_ready() -> None:
-    print("ready", flush=True)
+def show_calls(_: str, asked: argparse.Namespace) -> dict[str, Any]:
+    """Print how long a service call takes, and how many times that of Zenoh's querier."""
+    players = [*CALLS, *beside(CALLS[1:], asked)]
+    print(f"call: a service's answer, us, median of {asked.rounds} rounds (least and most), and ratio to the first")
+    return show(rounds_of(players, asked.rounds, lambda each: round_trips(each, "twist", asked.seconds)))
 
 
-def start(role: str, name: str, core: int) -> subprocess.Popen[str]:
-    command = [sys.executable, __file__, "--role", role, "--message", name, "--core", str(core)]
-    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    assert process.stdout is not None
-    assert process.stdout.readline() == "ready\n"
-    return process
+def show_codec(_: str, asked: argparse.Namespace) -> dict[str, Any]:
+    """Print microseconds out and in."""
+    from benchmarks.messages.codec import codec
 
-
-def round_trips(kind: str, name: str) -> list[float]:
-    """Microseconds of each trip, of one game in two fresh processes."""
-    pong = start(f"{kind}_pong", name, core=1)
-    command = [sys.executable, __file__, "--role", f"{kind}_ping", "--message", name, "--core", "0"]
-    text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    pong.kill()
-    pong.wait()
-    return [float(each) for each in text.split()]
-
-
-def play(role: str, name: str) -> None:
-    """Be one of the two processes."""
-    times = globals()[role](name)
-    if times:
-        trips = [1e6 * (b - a) for a, b in zip(times[WARM_UP:], times[WARM_UP + 1 :], strict=False)]
-        print(*(f"{trip:.1f}" for trip in trips))
-
-
-# Codec
-
-
-class Vector(msgspec.Struct):
-    x: float
-    y: float
-    z: float
-
-
-class PlainTwist(msgspec.Struct):
-    linear: Vector
-    angular: Vector
-
-
-class PlainHeader(msgspec.Struct):
-    sec: int
-    nanosec: int
-    frame_id: str
-
-
-class PlainScan(msgspec.Struct):
-    header: PlainHeader
-    angle_min: float
-    angle_max: float
-    angle_increment: float
-    time_increment: float
-    scan_time: float
-    range_min: float
-    range_max: float
-    ranges: list[float]
-    intensities: list[float]
-
-
-def microseconds(function: Callable[[Any], Any], argument: Any, number: int = 20000) -> float:
-    """The best of five: what is slower was disturbed."""
-    return min(timeit.repeat(lambda: function(argument), number=number, repeat=5)) / number * 1e6
-
-
-def codec(name: str) -> dict[str, tuple[float, float]]:
-    """Microseconds out and in, for robolink, msgspec and rosbags."""
-    from rosbags.typesys import Stores, get_typestore
-
-    message, cls = sample(name), MESSAGES[name]
-    data = encode(message)
-    plain: Any
-    if name == "Twist":
-        plain = PlainTwist(Vector(0.3, 0.0, 0.0), Vector(0.0, 0.0, -0.5))
-    else:
-        plain = PlainScan(PlainHeader(0, 0, "laser"), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, list(message.ranges), [])
-    packer, unpacker = msgspec.msgpack.Encoder(), msgspec.msgpack.Decoder(type(plain))
-    store = get_typestore(Stores.ROS2_JAZZY)
-    ros_type = cls.__ros_type__
-    ros_message = store.deserialize_cdr(data, ros_type)
-    return {
-        "robolink": (microseconds(encoder(cls), message), microseconds(decoder(cls), data)),
-        "msgspec": (microseconds(packer.encode, plain), microseconds(unpacker.decode, packer.encode(plain))),
-        "rosbags": (
-            microseconds(lambda each: store.serialize_cdr(each, ros_type), ros_message, 5000),
-            microseconds(lambda each: store.deserialize_cdr(each, ros_type), data, 5000),
-        ),
-    }
-
-
-def report(rounds: int, seconds: float) -> None:
     print("codec, us              out      in     out + in, against msgspec")
-    for name in MESSAGES:
-        figures = codec(name)
-        base = sum(figures["msgspec"])
-        for peer, (out, back) in figures.items():
-            print(f"  {name:10} {peer:9} {out:6.2f}  {back:6.2f}     {(out + back) / base:.2f}")
-    print(f"\nround trip between two processes, us, medians of {rounds} rounds by turns")
-    for name in MESSAGES:
-        games = [(round_trips("bare", name), round_trips("robolink", name)) for _ in range(rounds)]
-        bare = statistics.median(statistics.median(game[0]) for game in games)
-        ours = statistics.median(statistics.median(game[1]) for game in games)
-        print(f"  {name:10} bare zenoh {bare:6.1f}   robolink {ours:6.1f}   ratio {ours / bare:.2f}")
-    sent, received, rate = flood(seconds)
-    print(f"\nTwist, node to node, KEEP_ALL: {rate:,.0f} received a second; {sent - received} of {sent} lost")
+    figures = {kind: codec(kind) for kind in ("twist", "scan")}
+    for kind, found in figures.items():
+        base = sum(found["msgspec"])
+        for peer, (out, back) in found.items():
+            print(f"  {kind:10} {peer:9} {out:6.2f}  {back:6.2f}     {(out + back) / base:.2f}")
+    return figures
+
+
+def conditions() -> str:
+    """Use of shared memory by Zenoh, on which the speed of large messages depends, and why it is used or not."""
+    enabled = json.loads(running.bare_config(True, True))["transport"]["shared_memory"]["enabled"]
+    with contextlib.suppress(ImportError):  # a robolink that leaves it to Zenoh
+        from robolink.transport import shared_memory
+
+        return f"shared memory {'on' if enabled else 'off'}: {shared_memory.wanted(os.environ).reason}"
+    return f"shared memory {'asked for' if enabled else 'off'}"
+
+
+def options(arguments: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", action="append", choices=ROWS, help="a row; may be given several times")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--seconds", type=float, default=0.5, help="length of a game, of which there are many")
+    parser.add_argument("--with", dest="names", type=lambda text: text.split(","), help="contenders, by name")
+    parser.add_argument("--all", action="store_true", help="every variant, and the peers that are installed")
+    parser.add_argument("--free", action="store_true", help="do not keep each end on its own core")
+    parser.add_argument("--beside", help="folder of another robolink that plays too; its names end in *")
+    parser.add_argument("--json", type=Path, help="file to which all figures are written as well")
+    return parser.parse_args(arguments)
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--seconds", type=float, default=2.0)
-    parser.add_argument("--role", help=argparse.SUPPRESS)
-    parser.add_argument("--message", default="Twist", help=argparse.SUPPRESS)
-    parser.add_argument("--core", type=int, default=0, help=argparse.SUPPRESS)
-    options = parser.parse_args()
-    pin(options.core) if options.role else None
-    if options.role:
-        play(options.role, options.message)
-    else:
-        report(options.rounds, options.seconds)
+    asked, figures = options(), {}
+    running.PIN = not asked.free
+    print(conditions())
+    for row in asked.only or ROWS:
+        show_row: Callable[[str, argparse.Namespace], dict[str, Any]]
+        special = {"inside": show_inside, "call": show_calls, "codec": show_codec}
+        show_row = special.get(row, show_flood if row in FLOODS else show_trips)
+        figures[row] = show_row(row, asked)
+        sys.stdout.flush()
+    if asked.json:
+        asked.json.write_text(json.dumps(figures, indent=1), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Other simulators' lidars and worlds behind one small face, for `benchmarks/simulator.py`; each only if installed.
+"""Adapters of other simulators' lidars and worlds, for `benchmarks/simulator.py`; each only if installed.
 
 A scanner is made of a world's segments and tells what it sees from a place; a peer's world makes one step. None of
 their packages has types that mypy would follow, so what they hand out is Any.

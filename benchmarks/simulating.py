@@ -1,22 +1,31 @@
-"""How fast a system is simulated, and whether it comes out the same: a robot at a wall, and an hour of a control loop.
+"""Benchmark of `robolink simulate`: speed and reproducibility, for a robot at a wall and an hour of a control loop.
 
-    python benchmarks/simulating.py [--runs 3] [--python PYTHON ...]
+    python benchmarks/simulating.py [--runs 3] [--python PYTHON ...] [--beside CHECKOUT] [--only follow|loop]
 
 `follow` is ten minutes of configs/follow.yaml by `robolink simulate`, in a process of its own each time, once with each
 further Python that is named: all hashes must be the same. `loop` is one hour of a sensor, a controller and a motor at
 50 Hz, each a program of its own, with 5 % loss, duplication, a partition and a crash; its nodes are loaded from a file.
 Wall time is what people wait for; CPU time says more where others use the machine.
+
+Between two runs the events of the loop are also handled by a bare heap in Python (`heapq`, one function call each):
+what an event costs without messages, faults, threads and a hash. Where SimPy is installed, it handles as many timeouts.
+With `--beside`, another checkout of robolink runs by turns with this one. Ratios of medians say more than seconds.
 """
 
 from __future__ import annotations
 
 import argparse
+import heapq
+import importlib
+import itertools
 import json
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -84,9 +93,8 @@ class Run(NamedTuple):
     result: dict[str, object]
 
 
-def run(python: str, *words: str, folder: str | None = None) -> Run:
-    """Run `robolink simulate` in a process of its own."""
-    source = str(Path(__file__).parent.parent)
+def run(python: str, source: str, *words: str, folder: str | None = None) -> Run:
+    """Run `robolink simulate` of a checkout in a process of its own."""
     before, begin = os.times(), time.perf_counter()
     ended = subprocess.run(
         [python, "-m", "robolink", "simulate", *words, "--json"],
@@ -103,31 +111,114 @@ def run(python: str, *words: str, folder: str | None = None) -> Run:
     return Run(wall, cpu, json.loads(ended.stdout.splitlines()[-1]))
 
 
+def bare_heap(events: int) -> float:
+    """Handle so many events by a bare heap; return the seconds that it took."""
+    heap: list[tuple[int, int, Callable[[int], None]]] = []
+    serial, handled = itertools.count(), 0
+
+    def handle(now: int) -> None:
+        nonlocal handled
+        handled += 1
+        heapq.heappush(heap, (now + 20, next(serial), handle))
+
+    for offset in range(3):
+        heapq.heappush(heap, (offset, next(serial), handle))
+    begin = time.perf_counter()
+    while handled < events:
+        now, _, act = heapq.heappop(heap)
+        act(now)
+    return time.perf_counter() - begin
+
+
+def simpy_timeouts(events: int) -> float | None:
+    """Let three SimPy processes wait for so many timeouts; return the seconds that it took, None without SimPy."""
+    try:
+        simpy = importlib.import_module("simpy")
+    except ImportError:
+        return None
+    environment = simpy.Environment()
+
+    def process() -> Iterator[object]:
+        while True:
+            yield environment.timeout(20)
+
+    for _ in range(3):
+        environment.process(process())
+    begin = time.perf_counter()
+    environment.run(until=20 * events // 3)
+    return time.perf_counter() - begin
+
+
 def show(name: str, runs: list[Run], limit: float) -> None:
-    """Print the best of some runs, and whether all had one hash."""
+    """Print the medians of some runs, and whether all had one hash."""
     best = min(runs, key=lambda each: each.wall)
     messages = sum(best.result["messages"].values())  # type: ignore[attr-defined]
     hashes = {each.result["hash"] for each in runs}
     same = f"{len(runs)} times the same hash" if len(hashes) == 1 else f"{len(hashes)} DIFFERENT HASHES"
-    inside = best.result["real_seconds"]
     print(
-        f"{name}: {best.wall:.2f} s wall ({inside} s without the start), {min(each.cpu for each in runs):.2f} s CPU,"
-        f" to be under {limit:g} s; {messages} messages; {same}"
+        f"{name}: {best.wall:.2f} s wall at best ({inside(runs):.2f} s without the start, median),"
+        f" {min(each.cpu for each in runs):.2f} s CPU, to be under {limit:g} s; {messages} messages; {same}"
     )
+
+
+def inside(runs: list[Run]) -> float:
+    """Return the median of the real seconds of some runs, without the start of the process."""
+    return statistics.median(float(each.result["real_seconds"]) for each in runs)  # type: ignore[arg-type]
+
+
+def compare(name: str, runs: list[Run], others: list[Run], peers: dict[str, list[float]]) -> None:
+    """Print ratios of medians: over another checkout, and over bare peers of the same run."""
+    if others:
+        print(f"{name}: {inside(runs) / inside(others):.2f} of the time of the other checkout, median over median")
+    for peer, seconds in peers.items():
+        if seconds:
+            print(f"{name}: {inside(runs) / statistics.median(seconds):.1f} times {peer} of as many events")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--python", action="append", default=[])
+    parser.add_argument("--beside", metavar="CHECKOUT", help="another checkout of robolink, to be run by turns")
+    parser.add_argument("--only", choices=("follow", "loop"))
     asked = parser.parse_args()
-    pythons = [sys.executable] * asked.runs + asked.python
-    show("follow", [run(each, "follow", "--duration", "600") for each in pythons], 6.0)
+    own = str(Path(__file__).parent.parent)
     with tempfile.TemporaryDirectory() as folder:
         for name, text in (("loop.py", NODES), ("loop.yaml", LAUNCH), ("faults.yaml", FAULTS)):
             Path(folder, name).write_text(text, encoding="utf-8")
         words = ("./loop.yaml", "--faults", "./faults.yaml", "--duration", "3600", "--seed", "3")
-        show("loop", [run(each, *words, folder=folder) for each in pythons], 4.0)
+        for name, given, events, limit in (
+            ("follow", ("follow", "--duration", "600"), 0, 6.0),
+            ("loop", words, 3600 * 50 * 3, 4.0),
+        ):
+            if asked.only in (None, name):
+                measure(name, asked, Turns(own, given, folder, events), limit)
+
+
+class Turns(NamedTuple):
+    """One system: the checkout, the words of its command, its folder, and the number of its events for bare peers."""
+
+    source: str
+    words: tuple[str, ...]
+    folder: str
+    events: int
+
+
+def measure(name: str, asked: argparse.Namespace, turns: Turns, limit: float) -> None:
+    """Run a system by turns with its peers, and print what they took."""
+    runs: list[Run] = []
+    others: list[Run] = []
+    peers: dict[str, list[float]] = {"a bare heap": [], "SimPy's timeouts": []}
+    for python in [sys.executable] * asked.runs + asked.python:
+        runs.append(run(python, turns.source, *turns.words, folder=turns.folder))
+        if asked.beside:
+            others.append(run(python, str(Path(asked.beside).resolve()), *turns.words, folder=turns.folder))
+        if turns.events:
+            peers["a bare heap"].append(bare_heap(turns.events))
+            if (seconds := simpy_timeouts(turns.events)) is not None:
+                peers["SimPy's timeouts"].append(seconds)
+    show(name, runs, limit)
+    compare(name, runs, others, peers)
 
 
 if __name__ == "__main__":

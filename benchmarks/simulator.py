@@ -1,4 +1,4 @@
-"""The simulated world beside others: what a scan costs, and how many times as fast as life a whole world runs.
+"""Benchmark of the simulator beside others: cost of a scan, and real-time factor of a whole world.
 
     python benchmarks/simulator.py [--rounds 7] [--seconds 10]
 
@@ -33,12 +33,12 @@ from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.sim import Pose, World, WorldDescription
-from robolink.sim.description import Lidar
 from robolink.sim.sensing.fixed import fixed_circles, fixed_segments
 from robolink.sim.sensing.lidar import Beams, distances, distances_batch
 from robolink.sim.sensing.surroundings import standing
-from robolink.sim_node import Runner, Simulation
+from robolink.sim.sensors import Lidar
 from robolink.task import Future
+from robolink.world_node import Runner, Simulation
 
 WORLDS = {"room": room, "maze": maze}
 BEAMS = (360, 1080)
@@ -51,7 +51,8 @@ SLOW = ("pyrobosim", "at once")
 WARM_UP = 1.0
 """Simulated seconds that run before the clock is looked at: codecs are made at the first message."""
 LIDAR_GOALS = {"pymunk": {360: 15.0, 1080: 30.0}, "MuJoCo": {360: 2.0, 1080: 2.0}}
-GOALS = {"alone": {1: 500.0, 10: 100.0, 100: 12.0}, "with messages": {1: 150.0, 10: 20.0, 100: 2.0}}
+GOALS = {"alone": {1: 500.0, 10: 100.0, 100: 12.0}, "with messages": {1: 150.0, 10: 20.0, 100: 6.0}}
+THOUSAND, THOUSAND_GOAL = 1000, 2.0
 SHOWN = ("room", "maze")
 
 
@@ -132,6 +133,8 @@ def worlds(seconds: float) -> None:
         if installed("irsim") and (name == "room" or count < 100):
             theirs = irsim_factor(description, count)
             print(f"{'':21} ir-sim {theirs:.3g}; robolink alone is {said(alone / theirs, 10.0)} times as fast")
+    alone = max(simulate(maze(robots=THOUSAND), min(seconds, 2.0)) for _ in range(3))
+    print(f"  maze, {THOUSAND} robots: alone {said(alone, THOUSAND_GOAL)}")
 
 
 def simulate(description: WorldDescription, seconds: float) -> float:

@@ -1,4 +1,4 @@
-"""How fast transforms are kept and looked up: a chain of ten moving frames, beside numpy and scipy in the same run.
+"""Benchmark of tf2: storing and looking up a chain of ten moving frames, beside numpy and scipy in the same run.
 
     python benchmarks/tf2.py [--rounds 5]
 

@@ -1,4 +1,4 @@
-"""How long a minute of a robot's life takes in virtual time: a simulated world and a controller, in memory.
+"""Benchmark of virtual time: one minute of a simulated world and a controller, in memory.
 
     python benchmarks/virtual_time.py [--runs 5] [--seconds 60]
 

@@ -1,4 +1,4 @@
-"""The worlds that benchmarks measure in: a room with boxes, and a maze."""
+"""Worlds for benchmarks: a room with boxes, and a maze."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ import math
 import random
 from collections.abc import Callable
 
-from robolink.sim.description import Lidar, Obstacle, Point, Pose, RobotDescription, Settings, Wall, WorldDescription
+from robolink.sim.description import Obstacle, RobotDescription, Settings, Wall, WorldDescription
+from robolink.sim.quantities import Point, Pose
+from robolink.sim.sensors import Lidar
 
 Cell = tuple[int, int]
 
@@ -40,15 +42,17 @@ def room(robots: int = 1, beams: int = 360, seed: int = 7) -> WorldDescription:
 def maze(robots: int = 1, beams: int = 360, seed: int = 7) -> WorldDescription:
     """Give a maze of 40 x 40 m, in which one way leads from each of its 2 m cells to each other: 401 segments.
 
-    Up to 400 robots fit; they are as in `room`.
+    It grows with more than 400 robots, so that each has a cell of its own: 64 x 64 m for 1000. They are as in `room`.
     """
     drawn = random.Random(seed)
-    cells = [(column, row) for column in range(_CELLS) for row in range(_CELLS)]
-    inner = [Wall(_between(*pair)) for pair in _closed(drawn)]
+    across = max(_CELLS, math.ceil(math.sqrt(robots)))
+    across += across % 2  # the rim has a joint every two cells
+    cells = [(column, row) for column in range(across) for row in range(across)]
+    inner = [Wall(_between(*pair)) for pair in _closed(drawn, across)]
     places = [_in_cell(drawn, cell) for cell in drawn.sample(cells, len(cells))][:robots]
     return WorldDescription(
-        world=Settings(name="maze", size=(_CELLS * _SIDE, _CELLS * _SIDE), seed=seed),
-        walls=(Wall(_rim(), closed=True), *inner),
+        world=Settings(name="maze", size=(across * _SIDE, across * _SIDE), seed=seed),
+        walls=(Wall(_rim(across), closed=True), *inner),
         robots=_robots(places, beams),
     )
 
@@ -62,11 +66,11 @@ def _free_place(drawn: random.Random, radius: float, taken: list[tuple[float, fl
             return Pose(x, y, drawn.uniform(-math.pi, math.pi))
 
 
-def _closed(drawn: random.Random) -> list[tuple[Cell, Cell]]:
+def _closed(drawn: random.Random, across: int) -> list[tuple[Cell, Cell]]:
     """Give the neighbouring cells with a wall between them, after all cells were reached from the first."""
     way, reached, opened = [(0, 0)], {(0, 0)}, set()
     while way:
-        around = [cell for cell in _neighbours(way[-1]) if cell not in reached]
+        around = [cell for cell in _neighbours(way[-1], across) if cell not in reached]
         if not around:
             way.pop()
             continue
@@ -74,14 +78,14 @@ def _closed(drawn: random.Random) -> list[tuple[Cell, Cell]]:
         opened.add(frozenset((way[-1], cell)))
         reached.add(cell)
         way.append(cell)
-    pairs = [((x, y), cell) for x in range(_CELLS) for y in range(_CELLS) for cell in _neighbours((x, y))]
+    pairs = [((x, y), cell) for x in range(across) for y in range(across) for cell in _neighbours((x, y), across)]
     return [(one, other) for one, other in pairs if one < other and frozenset((one, other)) not in opened]
 
 
-def _neighbours(cell: Cell) -> list[Cell]:
+def _neighbours(cell: Cell, across: int) -> list[Cell]:
     x, y = cell
     around = [(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)]
-    return [each for each in around if 0 <= each[0] < _CELLS and 0 <= each[1] < _CELLS]
+    return [each for each in around if 0 <= each[0] < across and 0 <= each[1] < across]
 
 
 def _between(one: Cell, other: Cell) -> tuple[Point, Point]:
@@ -90,9 +94,9 @@ def _between(one: Cell, other: Cell) -> tuple[Point, Point]:
     return ((x, y), (x, y + _SIDE)) if other[0] > one[0] else ((x, y), (x + _SIDE, y))
 
 
-def _rim() -> tuple[Point, ...]:
+def _rim(across: int) -> tuple[Point, ...]:
     """Give the corners of the outer wall, which has a joint every two cells."""
-    whole, steps = _CELLS * _SIDE, [2 * _SIDE * index for index in range(_CELLS // 2)]
+    whole, steps = across * _SIDE, [2 * _SIDE * index for index in range(across // 2)]
     sides: list[Callable[[float], Point]] = [
         lambda way: (way, 0.0),
         lambda way: (whole, way),

@@ -6,11 +6,11 @@ from typing import Any
 import robolink
 from robolink import Node
 from robolink.exceptions import ExternalShutdownException
-from robolink.parameter_descriptors import described
+from robolink.parameters.descriptors import described
 
 
 class FirstNode(Node):
-    """Says hello at each tick of its timer, and counts.
+    """A node that logs a greeting at each tick of its timer, with a count.
 
     The greeting is a parameter. Change it while the node runs: robolink param set /first_node greeting 'good morning'
     """
@@ -23,14 +23,14 @@ class FirstNode(Node):
         self.get_logger().info("first_node is there")
 
     def on_timer(self) -> None:
-        """Say hello once more."""
+        """Log the greeting once more."""
         self.count += 1
         greeting = self.get_parameter("greeting").value
         self.get_logger().info(f"{greeting}, for the {ordinal(self.count)} time")
 
 
 def ordinal(number: int) -> str:
-    """Give a number as one counts times: 1st, 2nd, 3rd, 4th ... 11th, 12th, 13th ... 21st."""
+    """Return a number as an ordinal: 1st, 2nd, 3rd, 4th ... 11th, 12th, 13th ... 21st."""
     ending = {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
     return f"{number}{'th' if number % 100 in (11, 12, 13) else ending}"
 

@@ -12,30 +12,30 @@ import robolink
 from robolink import Duration, Future, Node, Time
 from robolink.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from robolink.action.server import ServerGoalHandle
-from robolink.approach import SETTLED, TURN_FIRST, Left, Limits, decide, has_arrived, is_reached, left_to
+from robolink.control.approach import SETTLED, TURN_FIRST, Left, Limits, decide, has_arrived, is_reached, left_to
+from robolink.control.laser import lane_ahead, returns
 from robolink.exceptions import ExternalShutdownException, RobolinkError
+from robolink.geometry.plane import Pose, Speeds, pose_of, wrapped
 from robolink.interfaces.builtin_interfaces.msg import Time as TimeMessage
 from robolink.interfaces.geometry_msgs.msg import Pose as PoseMessage
 from robolink.interfaces.geometry_msgs.msg import PoseStamped, Twist, Vector3
 from robolink.interfaces.nav2_msgs.action import FollowPath, NavigateToPose
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.laser import lane_ahead, returns
-from robolink.parameter_descriptors import described
-from robolink.plane import Pose, Speeds, pose_of, wrapped
+from robolink.parameters.descriptors import described
 from robolink.tf2 import Buffer, TransformException, TransformListener
 from robolink.tf2.geometry import do_transform_pose
 
 ACTION = "navigate_to_pose"
 
 Codes = FollowPath.Result
-"""Nav2's numbers for why a goal was not reached."""
+"""Nav2's error codes."""
 
 FEEDBACK_PERIOD, STALE_SCAN, LONGEST_STEP = 0.2, 1.0, 0.2
-"""Seconds: from feedback to feedback, after which a scan is too old, and by which speeds change at once at most."""
+"""Period of feedback, greatest age of a scan, and longest time of one change of speed, in seconds."""
 
 FARTHEST = 1e6
-"""Metres: a place that is farther is a mistake."""
+"""Largest coordinate of a goal, in metres: a place farther away is a mistake."""
 
 PARAMETERS = {
     "speed": ("m/s at most", 0.01, 10.0),
@@ -49,28 +49,29 @@ PARAMETERS = {
 
 
 class Trip:
-    """A goal that is being driven to; `result` is what its client gets at the end."""
+    """A goal that is being driven to; `result` is the future of the action's result."""
 
     def __init__(self, handle: ServerGoalHandle, now: Time) -> None:
         self.handle, self.goal, self.started = handle, handle.request.pose, now
         self.result: Future[NavigateToPose.Result] = Future()
         self.arrived = False
-        """Whether it has come to the place, and only turns."""
+        """True once it has reached the position, and only turns."""
         self.checkpoint: Pose | None = None
         self.moved_at = self.told_at = now
 
     def note_movement(self, pose: Pose, now: Time) -> None:
-        """Note that the robot gets on, if it has moved since the last time that it had."""
+        """Note progress, if the robot has moved since the last time."""
         last = self.checkpoint
         if last is None or math.dist(pose[:2], last[:2]) > 0.05 or abs(wrapped(pose.theta - last.theta)) > 0.1:
             self.checkpoint, self.moved_at = pose, now
 
 
 class Goto(Node):
-    """Drives to one goal at a time, by odometry; a new goal replaces the one before. The robot must turn on the spot.
+    """Action server that drives to one goal at a time, by odometry; a new goal replaces the one before.
 
-    Goals are in the frame of odometry, or in one that /tf connects with it; one in a frame of the robot lies where that
-    is at the start. It plans no way round obstacles: with a scanner it waits before what is in its lane.
+    The robot must be able to turn on the spot. Goals are in the frame of odometry, or in one that /tf connects with it;
+    a goal in a frame of the robot is fixed where that frame is at the start. It plans no path round obstacles: with a
+    scanner it waits for them to leave its lane.
     """
 
     trip: Trip | None = None
@@ -102,11 +103,11 @@ class Goto(Node):
     # Goals
 
     def on_goal_pose(self, pose: PoseStamped) -> None:
-        """Take a goal as RViz sends it: it becomes one of the action."""
+        """Send a goal from RViz's topic to the action."""
         self.goals.send_goal_async(NavigateToPose.Goal(pose=pose))
 
     def on_goal(self, goal: NavigateToPose.Goal) -> GoalResponse:
-        """Refuse what nobody can drive to."""
+        """Reject a goal that cannot be reached."""
         reason = fault(goal.pose.pose)
         try:
             self.in_odom(goal.pose)
@@ -117,7 +118,7 @@ class Goto(Node):
         return GoalResponse.REJECT if reason else GoalResponse.ACCEPT
 
     async def on_execute(self, handle: ServerGoalHandle) -> NavigateToPose.Result | None:
-        """Drive to a goal from now on, and no longer to another; odometry does the rest."""
+        """Start driving to a goal, in place of another; `on_odom` does the rest."""
         if self.trip is not None:
             self.end("replaced by another goal")
         now = self.get_clock().now()
@@ -128,7 +129,7 @@ class Goto(Node):
         return await trip.result
 
     def end(self, words: str = "", code: int = Codes.NONE, *, succeeded: bool = False) -> None:
-        """End the trip, for this reason."""
+        """End the trip with a result."""
         trip, self.trip = self.trip, None
         assert trip is not None
         if succeeded:
@@ -140,13 +141,13 @@ class Goto(Node):
         trip.result.set_result(NavigateToPose.Result(error_code=code, error_msg=words))
 
     def give_up(self, words: str, code: int) -> None:
-        """Stop short of the goal, and say why."""
+        """Stop before the goal, and log the reason."""
         self.command(Speeds())
         self.get_logger().error(f"gave up: {words}")
         self.end(words, code)
 
     def destroy_node(self) -> None:
-        """Leave the robot standing, and its goal unreached, as long as somebody can be told."""
+        """Stop the robot and abort its goal if the context still runs, then destroy the node."""
         if self.trip is not None:
             with contextlib.suppress(RobolinkError):
                 self.command(Speeds())
@@ -154,14 +155,14 @@ class Goto(Node):
         super().destroy_node()
 
     def in_odom(self, goal: PoseStamped) -> Pose:
-        """Give where a goal is in the frame of odometry, as far as is known now. Raises TransformException."""
+        """Return the pose of a goal in the frame of odometry, as far as is known now. Raises TransformException."""
         frame, odom = self.frames(goal)
         if frame in ("", "odom", odom):
             return pose_of(goal.pose)
         return pose_of(do_transform_pose(goal.pose, self.buffer.lookup_transform(odom, frame, Time())))
 
     def at_rest(self, goal: PoseStamped) -> PoseStamped:
-        """Give a goal that the robot would push along, since it is in one of its frames, in that of odometry."""
+        """Return a goal in one of the robot's own frames, which would move with it, in the frame of odometry."""
         frame, odom = self.frames(goal)
         if frame in ("", "odom", odom) or self.base not in self.buffer._chain(odom, Time(), frame, Time(), odom):
             return goal
@@ -169,18 +170,18 @@ class Goto(Node):
         return PoseStamped(header=self.here.header, pose=pose)
 
     def frames(self, goal: PoseStamped) -> tuple[str, str]:
-        """Give the names of a goal's frame and of odometry's."""
+        """Return the names of a goal's frame and of odometry's."""
         return goal.header.frame_id.removeprefix("/"), self.here.header.frame_id.removeprefix("/") or "odom"
 
     # Driving
 
     def on_scan(self, scan: LaserScan) -> None:
-        """Look how far the lane ahead is free."""
+        """Measure the free length of the lane ahead."""
         self.free = lane_ahead(*returns(scan), self.get_parameter("half_width").value)
         self.scan_at = self.get_clock().now()
 
     def on_odom(self, odometry: Odometry) -> None:
-        """Drive on, to where the goal is now."""
+        """Drive on towards the present place of the goal."""
         if fault(odometry.pose.pose):
             return  # after too many of them the odometry is stale
         pose = pose_of(odometry.pose.pose)
@@ -200,7 +201,7 @@ class Goto(Node):
             self.drive(self.trip, left, min(max(dt, 0.0), LONGEST_STEP))
 
     def drive(self, trip: Trip, left: Left, dt: float) -> None:
-        """Send the next command, or end the trip: its goal has been reached, or it shall not be any more."""
+        """Send the next command, or end the trip: its goal is reached, cancelled or out of reach."""
         limits = Limits(*(self.get_parameter(name).value for name in Limits._fields))
         trip.arrived = has_arrived(left, limits, trip.arrived)
         room = math.inf if trip.arrived else self.room(left)
@@ -222,7 +223,7 @@ class Goto(Node):
             self.tell(trip, left, limits)
 
     def room(self, left: Left) -> float:
-        """Give the metres that it may drive ahead before it must stop; what lies beyond the goal is not in the way."""
+        """Return the metres that it may drive ahead before it must stop; obstacles beyond the goal do not count."""
         if not self.get_parameter("obstacle_stop").value or self.scan_at is None:
             return math.inf
         if (self.odom_at - self.scan_at).nanoseconds > STALE_SCAN * 1e9:
@@ -236,12 +237,12 @@ class Goto(Node):
         return max(0.0, room)
 
     def command(self, speeds: Speeds) -> None:
-        """Have the robot drive so."""
+        """Publish a velocity command."""
         self.speeds = speeds
         self.cmd_vel.publish(Twist(linear=Vector3(x=speeds.v), angular=Vector3(z=speeds.w)))
 
     def tell(self, trip: Trip, left: Left, limits: Limits) -> None:
-        """Tell the client how far it is, now and then."""
+        """Publish feedback, once every `FEEDBACK_PERIOD`."""
         now = self.odom_at
         if (now - trip.told_at).nanoseconds < FEEDBACK_PERIOD * 1e9:
             return
@@ -256,14 +257,14 @@ class Goto(Node):
         trip.handle.publish_feedback(feedback)
 
     def on_timer(self) -> None:
-        """Give up when odometry fails: nobody knows where the robot is then."""
+        """Abort the trip if odometry fails: the robot's pose is unknown then."""
         silent = (self.get_clock().now() - self.odom_at).nanoseconds / 1e9
         if self.trip is not None and silent > self.get_parameter("odom_timeout").value:
             self.give_up(f"no odometry on {self.resolve_topic_name('odom')} for {silent:.1f} s", Codes.TF_ERROR)
 
 
 def fault(pose: PoseMessage) -> str:
-    """Say what is wrong with a pose; nothing if a robot can be there."""
+    """Return the mistake of a pose; '' if a robot can be there."""
     place, turn = pose.position, pose.orientation
     numbers = (place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w)
     if not all(abs(each) <= FARTHEST for each in numbers):
@@ -274,7 +275,7 @@ def fault(pose: PoseMessage) -> str:
 
 
 def seconds(stamp: TimeMessage) -> float:
-    """Read a stamp."""
+    """Return a stamp in seconds."""
     return float(stamp.sec + stamp.nanosec * 1e-9)
 
 

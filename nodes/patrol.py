@@ -15,23 +15,23 @@ from robolink.callback_groups import ReentrantCallbackGroup
 from robolink.exceptions import ExternalShutdownException
 from robolink.interfaces.nav2_msgs.action import NavigateToPose
 from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
-from robolink.parameter_descriptors import described
+from robolink.parameters.descriptors import described
 
 WAYPOINTS = "1,1 5,1 5,5 1,5"
 
 POLL = 0.1
-"""Seconds between two looks whether the server is still there, which is to answer."""
+"""Polling period in seconds, to see if the server that is to answer is still there."""
 
 AFTER_FAILURE = 1.0
-"""Seconds to wait at least when a waypoint was not reached: a server that refuses all must not be flooded."""
+"""Shortest wait in seconds after a waypoint that was not reached: a server that refuses all must not be flooded."""
 
 
 class WaypointsError(RobolinkError, ValueError):
-    """A text or a list that gives no waypoints."""
+    """A text or a list that is no list of waypoints."""
 
 
 class Waypoint(NamedTuple):
-    """A place in metres, and the heading to have there in radians."""
+    """A position in metres, and the heading to have there in radians."""
 
     x: float
     y: float
@@ -83,7 +83,7 @@ def _waypoint(row: list[float], following: list[float]) -> Waypoint:
 
 
 class Patrol(Node):
-    """Sends one goal after the other, waits at each, and goes on to the next where one fails; `done` ends it.
+    """Action client that sends one goal after the other, waits at each, and goes on after a failure; `done` ends it.
 
     A server that is not there, or ends on the way, is waited for; then the same waypoint is the goal again.
     """
@@ -100,7 +100,7 @@ class Patrol(Node):
         self.declare_parameter("loop", True, described("begin anew after the last"))
         self.declare_parameter("pause", 1.0, described("seconds to wait at each", 0.0, 3600.0))
         self.group = ReentrantCallbackGroup()
-        """Lets the patrol, which is one long callback, wait for others."""
+        """Reentrant, so that the patrol, which is one long callback, can wait for others."""
         self.client = ActionClient(self, NavigateToPose, "navigate_to_pose", callback_group=self.group)
         self.done: Future[None] = Future()
         self.begin = self.create_timer(0.0, self.patrol, callback_group=self.group)
@@ -120,7 +120,7 @@ class Patrol(Node):
                 return
 
     async def go_to(self, waypoint: Waypoint) -> bool:
-        """Drive to a waypoint, as often as the server is lost on the way, and wait there; whether it was reached."""
+        """Drive to a waypoint, again if the server is lost, and wait there; return True if it was reached."""
         answer = None
         while answer is None:
             await self.wait_for_server()
@@ -157,7 +157,7 @@ class Patrol(Node):
         return None if future.exception() else future.result()
 
     async def wait_for_server(self) -> None:
-        """Wait until somebody serves the action."""
+        """Wait for a server of the action."""
         while not self.client.server_is_ready():
             words = "waiting for a server of navigate_to_pose, such as robolink run goto"
             self.get_logger().warning(words, throttle_duration_sec=5.0)
@@ -176,7 +176,7 @@ class Patrol(Node):
         self.destroy_timer(timer)
 
     def goal(self, waypoint: Waypoint) -> NavigateToPose.Goal:
-        """Make the goal that a waypoint stands for."""
+        """Make the goal of a waypoint."""
         goal = NavigateToPose.Goal()
         goal.pose.header.frame_id = self.get_parameter("frame_id").value
         goal.pose.header.stamp = self.get_clock().now().to_msg()
@@ -186,7 +186,7 @@ class Patrol(Node):
         return goal
 
     def destroy_node(self) -> None:
-        """Have the robot stop where it is, as long as somebody can be told."""
+        """Cancel the goal if the context still runs, so that the robot stops; then destroy the node."""
         trip, self.trip = self.trip, None
         if trip is not None:
             with contextlib.suppress(RobolinkError):

@@ -10,24 +10,24 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from robolink.control.laser import Array, in_view, lane_ahead, returns
+from robolink.control.scan_controller import ScanController
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.laser import Array, in_view, lane_ahead, returns
-from robolink.parameter_descriptors import described
-from robolink.scan_controller import ScanController
+from robolink.parameters.descriptors import described
 
 SLOW_AHEAD, SLOW_SECONDS = 0.6, 1.0
-"""So many metres, or so many seconds at full speed, before `stop_distance` the robot slows down and begins to turn."""
+"""Distance before `stop_distance` at which it slows down and begins to turn: metres, or seconds at full speed."""
 
 SCANS_TO_STOP = 2.0
-"""And it begins so many scans before, should they come seldom."""
+"""Least number of scans in that distance, if they come seldom."""
 
 TURN_BETWEEN_SCANS = 0.6
-"""Radians at most by which it turns from one scan to the next: it is not to turn past a gap."""
+"""Largest turn from one scan to the next, in radians, so that it does not turn past a gap."""
 
 
 class Settings(NamedTuple):
-    """How to drive; the parameters of the node have the same names. Metres, m/s, rad/s."""
+    """Settings of the controller; the parameters of the node have the same names. Metres, m/s, rad/s."""
 
     speed: float = 0.4
     stop_distance: float = 0.5
@@ -44,7 +44,7 @@ PARAMETERS = {
 
 
 class Decision(NamedTuple):
-    """What to do, the side to which it turns (1 left, -1 right, 0 neither), and why, in words."""
+    """A command, the side to which it turns (1 left, -1 right, 0 neither), and the reason in words."""
 
     twist: Twist
     side: int
@@ -52,7 +52,7 @@ class Decision(NamedTuple):
 
 
 class ReactiveController(ScanController):
-    """Turns each scan into a velocity command; stops the robot when there are no scans, and at its own end."""
+    """Reactive controller: turns each scan into a velocity command; stops without scans, and at its own end."""
 
     side = 0
 
@@ -90,11 +90,11 @@ def steer(scan: LaserScan, settings: Settings, side: int, seconds: float) -> Dec
 
 
 def roomier_side(angles: Array, ranges: Array) -> int:
-    """Tell which side of the way ahead is less crowded: 1 the left, -1 the right; what is near crowds most."""
+    """Return the side of the way ahead with more room: 1 the left, -1 the right; near things count most."""
     ahead = np.cos(angles) > 0.0
     return -1 if float(np.sum(np.sin(angles[ahead]) / ranges[ahead])) > 0.0 else 1
 
 
 def said(distance: float) -> str:
-    """Say a distance."""
+    """Return a distance in words."""
     return f"{distance:.1f} m" if math.isfinite(distance) else "all"

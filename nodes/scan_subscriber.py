@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 
 import robolink
 from robolink import Node
+from robolink.control.laser import returns
 from robolink.exceptions import ExternalShutdownException
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.laser import returns
-from robolink.parameter_descriptors import described
+from robolink.parameters.descriptors import described
 
 
 class Nearest(NamedTuple):
@@ -20,7 +20,7 @@ class Nearest(NamedTuple):
 
 
 class ScanSubscriber(Node):
-    """Says for each scan how far the nearest thing is and where: as a warning if it is too near."""
+    """A node that logs the distance and direction of the nearest thing in each scan, as a warning if it is too near."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("scan_subscriber", **options)
@@ -28,7 +28,7 @@ class ScanSubscriber(Node):
         self.create_subscription(LaserScan, "scan", self.on_scan, 10)
 
     def on_scan(self, scan: LaserScan) -> None:
-        """Look at one scan. Its lines are throttled, for ten a second are more than one can read."""
+        """Log one scan. The lines are throttled: ten a second are more than one can read."""
         found = nearest(scan)
         if found.distance < self.get_parameter("warn_distance").value:
             self.get_logger().warning(f"obstacle near: {said(found)}", throttle_duration_sec=1.0)
@@ -46,7 +46,7 @@ def nearest(scan: LaserScan) -> Nearest:
 
 
 def said(found: Nearest) -> str:
-    """Say where something is."""
+    """Return a direction in words."""
     if math.isinf(found.distance):
         return "nothing in reach"
     degrees = round(math.degrees(found.bearing))

@@ -12,26 +12,26 @@ from typing import Any, NamedTuple
 import robolink
 from robolink import Future, Node, Parameter
 from robolink.exceptions import ExternalShutdownException, RobolinkError
+from robolink.geometry.plane import Pose, Speeds, clipped, placed_on, pose_of, seen_from
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
-from robolink.parameter_descriptors import described
-from robolink.plane import Pose, Speeds, clipped, placed_on, pose_of, seen_from
+from robolink.parameters.descriptors import described
 
 SETTLING = 4.0
-"""1/s: at the very end of a way what is left shrinks by this rate, since no command takes effect at once."""
+"""Rate of approach at the very end of a leg, in 1/s, since no command takes effect at once."""
 
 K_ASIDE, K_HEADING = 3.0, 4.0
-"""1/m and 1/s: how a robot that has left its line turns back to it."""
+"""Gains of the distance from the line (1/m) and of the heading (1/s) with which it returns to its line."""
 
 MOST_ASIDE = 0.5
-"""Radians by which it turns towards its line at most."""
+"""Largest angle at which it returns to its line, in radians."""
 
 ENOUGH = 0.001
-"""Metres or radians that may be left when the next way begins."""
+"""Tolerance of the end of a leg, in metres or radians."""
 
 STUCK = 10.0
-"""Seconds without coming nearer after which it gives up."""
+"""Time without progress after which it gives up, in seconds."""
 
 
 class Way(NamedTuple):
@@ -42,7 +42,7 @@ class Way(NamedTuple):
 
 
 class Left(NamedTuple):
-    """How far a robot is from a goal, seen along the goal's heading: metres ahead and to the left, and radians."""
+    """Remaining way to a goal, seen along the goal's heading: metres ahead and to the left, and radians."""
 
     ahead: float
     aside: float
@@ -50,7 +50,7 @@ class Left(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """What the robot may do, in m/s, m/s², rad/s and rad/s²."""
+    """Limits of the robot, in m/s, m/s², rad/s and rad/s²."""
 
     speed: float = 0.3
     acceleration: float = 0.5
@@ -59,7 +59,7 @@ class Limits(NamedTuple):
 
 
 class Square(Node):
-    """Drives one way after the other, a command for each message of odometry; `done` gets an exit code at the end.
+    """A node that drives one leg after the other, a command for each odometry message; `done` has the exit code.
 
     `side` and `direction` are those of the next square, when they change on the way; all else counts at once.
     """
@@ -82,7 +82,7 @@ class Square(Node):
         self.done: Future[int] = Future()
         self.start: Pose | None = None
         self.ways, self.squares = list[Way](), 0
-        """The ways that are left of this square, and how many squares were done before."""
+        """The remaining legs of this square, and the number of squares done before."""
         self.stamp = 0
         self.least_left, self.nearer_at = math.inf, 0
         self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
@@ -90,7 +90,7 @@ class Square(Node):
         self.create_timer(5.0, self.on_timer)
 
     def on_odom(self, odometry: Odometry) -> None:
-        """Drive on."""
+        """Send the next command."""
         pose, stamp = pose_of(odometry.pose.pose), odometry.header.stamp
         now = stamp.sec * 10**9 + stamp.nanosec
         if self.done.done() or not all(map(math.isfinite, pose)):
@@ -109,7 +109,7 @@ class Square(Node):
             self.drive(decide(self.ways[0], left, self.speeds, limits, dt))
 
     def begin_square(self, start: Pose) -> None:
-        """Plan the ways of a square, as it is wanted now."""
+        """Plan the legs of a square with the present parameters."""
         side, to_left = self.get_parameter("side").value, self.get_parameter("direction").value == "left"
         self.ways = list(square(start, side, 1 if to_left else -1))
         turns = self.get_parameter("turns").value
@@ -117,12 +117,12 @@ class Square(Node):
         self.get_logger().info(f"driving a square with sides of {side:g} m{number}")
 
     def drive(self, speeds: Speeds) -> None:
-        """Send a command."""
+        """Publish a velocity command."""
         self.speeds = speeds
         self.cmd_vel.publish(Twist(linear=Vector3(x=speeds.v), angular=Vector3(z=speeds.w)))
 
     def begin_next(self, pose: Pose) -> None:
-        """Stand still at the end of a way; after the last one the square is done."""
+        """Stop at the end of a leg; after the last one the square is done."""
         self.drive(Speeds())
         ended = self.ways.pop(0)
         self.least_left, self.nearer_at = math.inf, self.stamp
@@ -143,7 +143,7 @@ class Square(Node):
             self.done.set_result(0)
 
     def give_up_if_stuck(self, pose: Pose, left: Left, now: int) -> None:
-        """End in failure when for a while the goal has come no nearer: something is in the way."""
+        """Fail if there has been no progress for `STUCK` seconds: something is in the way."""
         remaining = abs(left.turn) if self.ways[0].is_turn else abs(left.ahead)
         if remaining < self.least_left - ENOUGH / 10:
             self.least_left, self.nearer_at = remaining, now
@@ -154,13 +154,13 @@ class Square(Node):
             self.done.set_result(1)
 
     def on_timer(self) -> None:
-        """Say why nothing happens."""
+        """Warn while there is no odometry."""
         if self.start is None:
             topic = self.resolve_topic_name("odom")
             self.get_logger().warning(f"no odometry so far on {topic}: is a robot, or robolink run world, there?")
 
     def destroy_node(self) -> None:
-        """Leave the robot standing, as long as somebody can be told."""
+        """Stop the robot if the context still runs, then destroy the node."""
         if self.speeds != Speeds():
             with contextlib.suppress(RobolinkError):
                 self.drive(Speeds())
@@ -168,7 +168,7 @@ class Square(Node):
 
 
 def check_direction(changed: list[Parameter[Any]]) -> SetParametersResult:
-    """Refuse a direction that is none."""
+    """Reject an unknown direction."""
     for each in changed:
         if each.name == "direction" and each.value not in ("left", "right"):
             reason = f"direction: expected 'left' or 'right', got {each.value!r}"
@@ -177,9 +177,9 @@ def check_direction(changed: list[Parameter[Any]]) -> SetParametersResult:
 
 
 def square(start: Pose, side: float, to_left: int) -> Iterator[Way]:
-    """Give the sides and turns of a square that begins and ends at `start`; `to_left` is 1, or -1 to the right.
+    """Yield the sides and turns of a square that begins and ends at `start`; `to_left` is 1, or -1 to the right.
 
-    All goals are reckoned from the start and not from where the robot came to, so that errors do not add up.
+    All goals are computed from the start and not from where the robot came to, so that errors do not add up.
     """
     here, quarter = start, to_left * math.pi / 2
     for _ in range(4):
@@ -190,19 +190,19 @@ def square(start: Pose, side: float, to_left: int) -> Iterator[Way]:
 
 
 def left_to(goal: Pose, pose: Pose) -> Left:
-    """Tell how far it is from a pose to a goal."""
+    """Return the remaining way from a pose to a goal."""
     beyond = seen_from(goal, pose)
     return Left(-beyond.x, -beyond.y, -beyond.theta)
 
 
 def has_ended(way: Way, left: Left, speeds: Speeds) -> bool:
-    """Say whether the robot has come to the end of a way and all but stands."""
+    """True if the robot is at the end of a leg and nearly stands."""
     remaining, speed = (left.turn, speeds.w) if way.is_turn else (left.ahead, speeds.v)
     return abs(remaining) < ENOUGH and abs(speed) <= 2 * SETTLING * ENOUGH
 
 
 def decide(way: Way, left: Left, speeds: Speeds, limits: Limits, dt: float) -> Speeds:
-    """Give the next speeds, `dt` seconds after `speeds`: along a side, kept on its line, or round a corner."""
+    """Return the speeds `dt` seconds after `speeds`: along a side, kept on its line, or round a corner."""
     if way.is_turn:
         return Speeds(0.0, eased(left.turn, speeds.w, limits.turn_speed, limits.turn_acceleration, dt))
     v = eased(left.ahead, speeds.v, limits.speed, limits.acceleration, dt)
@@ -212,9 +212,9 @@ def decide(way: Way, left: Left, speeds: Speeds, limits: Limits, dt: float) -> S
 
 
 def eased(left: float, speed: float, most: float, acceleration: float, dt: float) -> float:
-    """Give the next speed on a way of which `left` is left: a trapezoid over time.
+    """Return the next speed when `left` is left to go: a trapezoidal velocity profile.
 
-    It rises by the acceleration up to the most, and falls in time to be 0 at the end; what is left may be negative.
+    It rises by the acceleration up to `most`, and falls in time to be 0 at the end; `left` may be negative.
     """
     distance = abs(left)
     braking = min(math.sqrt(2.0 * acceleration * distance), SETTLING * distance)
@@ -223,7 +223,7 @@ def eased(left: float, speed: float, most: float, acceleration: float, dt: float
 
 
 def main(args: list[str] | None = None) -> int:
-    """Drive the square; give the exit code: 0 when it is done, or Ctrl-C has ended it, and 1 if it gave up."""
+    """Drive the square; return the exit code: 0 if it is done, or ended by Ctrl-C, and 1 if it gave up."""
     with robolink.init(args=args), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         node = Square()
         try:

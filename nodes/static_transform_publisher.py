@@ -1,4 +1,4 @@
-"""Publish a transform that never changes: where one frame stands in another.
+"""Publish a static transform: the pose of one frame in another.
 
 robolink run static_transform_publisher --x 1 --yaw 0.5 --frame-id map --child-frame-id base
 """
@@ -12,11 +12,11 @@ from typing import Any
 import robolink
 from robolink import Node
 from robolink.exceptions import ExternalShutdownException, RobolinkError, nearest
+from robolink.geometry.transformations import quaternion_from_euler
 from robolink.interfaces.geometry_msgs.msg import TransformStamped
 from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from robolink.parameter import Parameter
 from robolink.tf2 import StaticTransformBroadcaster
-from robolink.transformations import quaternion_from_euler
 from robolink.utilities import remove_ros_args
 
 Values = dict[str, Any]
@@ -34,13 +34,13 @@ DEFAULTS: Values = {
     "frame_id": "/frame",
     "child_frame_id": "/child",
 }
-"""The parameters: metres, a unit quaternion, and two names."""
+"""Defaults of the parameters: metres, a unit quaternion, and two names."""
 
 OLD_FORMS = {
     8: ["x", "y", "z", "yaw", "pitch", "roll", "frame_id", "child_frame_id"],
     9: ["x", "y", "z", "qx", "qy", "qz", "qw", "frame_id", "child_frame_id"],
 }
-"""What arguments without flags mean, by their number."""
+"""Names of arguments without flags, by their number."""
 
 PLACE, ANGLES, QUATERNION = ("x", "y", "z"), ("roll", "pitch", "yaw"), ("qx", "qy", "qz", "qw")
 FRAMES = ("frame_id", "child_frame_id")
@@ -58,11 +58,11 @@ Older form: x y z yaw pitch roll FRAME CHILD, or x y z qx qy qz qw FRAME CHILD
 
 
 class UsageError(RobolinkError, ValueError):
-    """Arguments that say no transform."""
+    """Arguments that are no transform."""
 
 
 class StaticTransformPublisher(Node):
-    """Publishes one transform on /tf_static, for those who come later too. Its parameters say which."""
+    """A node that publishes one transform, made from its parameters, on /tf_static, for late subscribers too."""
 
     def __init__(self, name: str = "static_transform_publisher", **options: Any) -> None:
         super().__init__(name, **options)
@@ -81,7 +81,7 @@ class StaticTransformPublisher(Node):
 
 
 def checked(values: Values) -> TransformStamped:
-    """Make the transform that parameters say. Raises UsageError for one that every buffer would refuse."""
+    """Make the transform from the parameters. Raises UsageError for one that every buffer would refuse."""
     frame, child = values["frame_id"].removeprefix("/"), values["child_frame_id"].removeprefix("/")
     if not frame or not child:
         raise UsageError("frame_id and child_frame_id: expected the names of two frames, got nothing")
@@ -128,7 +128,7 @@ def parameters(args: list[str]) -> Values:
 
 
 def parted(args: list[str]) -> tuple[dict[str, str], list[str]]:
-    """Part flags with their values from arguments without."""
+    """Split arguments into flags with their values, and plain ones."""
     flags = {f"--{each.replace('_', '-')}": each for each in (*PLACE, *QUATERNION, *ANGLES, *FRAMES)}
     given: dict[str, str] = {}
     plain: list[str] = []
@@ -156,7 +156,7 @@ def number(name: str, text: str) -> float:
 
 
 def main() -> None:
-    """Publish what the command line says until Ctrl-C; without any arguments, what the node's parameters say."""
+    """Publish the transform of the command line until Ctrl-C; without any arguments, that of the node's parameters."""
     with robolink.init(), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         args = remove_ros_args(sys.argv)[1:]
         if {"-h", "--help"} & set(args):

@@ -13,18 +13,18 @@ from robolink.clock import Clock
 from robolink.clock_type import ClockType
 from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
-from robolink.parameter_descriptors import described
+from robolink.parameters.descriptors import described
 
 HELP = (
     "drive with w a s d, the arrows or u i o j k l m , . - with shift an omnidirectional robot goes sideways - "
     "q and z change the speed, r and f that ahead, e and c that of turning - space stops, Ctrl-C ends"
 )
 RATE = 20.0
-"""Messages a second."""
+"""Rate of messages, in Hz."""
 
 
 class Shares(NamedTuple):
-    """What a key asks for, as shares of the speeds: ahead, to the left, and turning to the left."""
+    """The command of a key, as shares of the speeds: ahead, to the left, and turning to the left."""
 
     ahead: float = 0.0
     left: float = 0.0
@@ -48,7 +48,7 @@ DIRECTIONS = {
     "M": Shares(ahead=-1.0, left=1.0),
     ">": Shares(ahead=-1.0, left=-1.0),
 }
-"""The letters are those of teleop_twist_keyboard, and w a s d; with shift it goes to a side in place of turning."""
+"""Keys of movement: those of teleop_twist_keyboard, and w a s d; with shift it goes sideways in place of turning."""
 
 FASTER = 1.1
 
@@ -60,10 +60,10 @@ SPEED_STEPS = {
     "e": (1.0, FASTER),
     "c": (1.0, 1 / FASTER),
 }
-"""Factors of the speed ahead and of the turning speed, for the keys that make it faster and slower."""
+"""Factors of the speed ahead and of the turning speed, for the keys that change speeds."""
 
 ARROWS = dict(zip("ABCDHPMK", ("up", "down", "right", "left") * 2, strict=True))
-"""The letter that ends what a terminal sends for an arrow key (A to D), or what Windows' console sends."""
+"""Arrow keys by the last letter that a terminal sends for them (A to D), or that Windows' console sends."""
 
 KEY = re.compile(r"\x1b(?:\[[0-9;]*|O)(?P<escape>[A-Za-z~])|[\x00\xe0](?P<windows>.)|(?P<plain>.)", re.DOTALL)
 
@@ -73,13 +73,13 @@ class NoTerminalError(RobolinkError, OSError):
 
 
 class Keyboard(Protocol):
-    """Where keys come from."""
+    """A source of keys."""
 
     def read(self) -> str:
-        """Give what has been typed since the last call; never waits."""
+        """Return the text typed since the last call; never waits."""
 
     def close(self) -> None:
-        """Leave the terminal as it was found."""
+        """Restore the terminal."""
 
 
 class Speeds(NamedTuple):
@@ -90,7 +90,7 @@ class Speeds(NamedTuple):
 
 
 class Teleop(Node):
-    """Publishes the velocity of the key that is held; a terminal tells of no release, so it counts on repeats.
+    """A node that publishes the velocity of the held key; a terminal reports no release, so it relies on key repeat.
 
     Once the robot has been stopped it is silent, and another publisher may drive. With `require_terminal` false it
     lives on where there is no terminal, so that a system can be launched from a script and driven by others.
@@ -123,7 +123,7 @@ class Teleop(Node):
             self.get_logger().info(HELP)
 
     def on_timer(self) -> None:
-        """Take the keys, and publish what the last one asks for until it is too old; then stop once."""
+        """Read the keys, and publish the command of the last one until it is too old; then stop once."""
         for key in keys(self.keyboard.read()):
             speeds = Speeds(self.get_parameter("speed").value, self.get_parameter("turn_speed").value)
             if key in SPEED_STEPS:
@@ -136,7 +136,7 @@ class Teleop(Node):
             self.cmd_vel.publish(self.twist if self.ticks_left else Twist())
 
     def on_parameters(self, changed: list[Parameter[Any]]) -> None:
-        """Publish at another rate from now on; a key that is held lasts as long as it would have."""
+        """Change the rate of messages; the timeout of a held key stays the same."""
         for each in changed:
             if each.name == "rate":
                 if self.ticks_left > 0:
@@ -145,7 +145,7 @@ class Teleop(Node):
                 self.timer.reset()
 
     def set_speeds(self, speeds: Speeds) -> None:
-        """Drive at other speeds from the next key on: they are this node's parameters."""
+        """Set the speeds, which are this node's parameters, from the next key on."""
         given = [Parameter("speed", value=speeds.v), Parameter("turn_speed", value=speeds.w)]
         if (result := self.set_parameters_atomically(given)).successful:
             self.get_logger().info(f"speed {speeds.v:.2f} m/s, {speeds.w:.2f} rad/s")
@@ -153,7 +153,7 @@ class Teleop(Node):
             self.get_logger().warning(result.reason)
 
     def destroy_node(self) -> None:
-        """Stop the robot if it is being driven, and give the terminal back."""
+        """Stop the robot if it is being driven, and restore the terminal."""
         if self.ticks_left > 0:
             self.ticks_left = 0
             with contextlib.suppress(RobolinkError):  # the session may have ended
@@ -163,7 +163,7 @@ class Teleop(Node):
 
 
 def wanted(key: str, speeds: Speeds) -> Twist | None:
-    """Give the velocity that a key asks for; None for a key without meaning."""
+    """Return the velocity of a key; None for a key without meaning."""
     if key not in DIRECTIONS:
         return None
     ahead, left, turn = DIRECTIONS[key]
@@ -171,7 +171,7 @@ def wanted(key: str, speeds: Speeds) -> Twist | None:
 
 
 def changed(speeds: Speeds, key: str) -> Speeds:
-    """Give the speeds after a key of `SPEED_STEPS`."""
+    """Return the speeds after a key of `SPEED_STEPS`."""
     v, w = SPEED_STEPS[key]
     return Speeds(speeds.v * v, speeds.w * w)
 
@@ -190,7 +190,7 @@ def keys(text: str) -> list[str]:
 
 
 def open_keyboard() -> Keyboard:
-    """Give the terminal's keyboard, each key at once and without echo. Raises NoTerminalError."""
+    """Open the terminal's keyboard, each key at once and without echo. Raises NoTerminalError."""
     if not sys.stdin or not sys.stdin.isatty():
         raise NoTerminalError("teleop reads keys from a terminal, and its standard input is none")
     keyboard: Keyboard = WindowsKeyboard() if sys.platform == "win32" else PosixKeyboard(sys.stdin.fileno())
@@ -199,10 +199,10 @@ def open_keyboard() -> Keyboard:
 
 
 class NoKeyboard:
-    """What there is where there is no terminal."""
+    """A keyboard without keys, for processes without a terminal."""
 
     def read(self) -> str:
-        """Give nothing."""
+        """Return ''."""
         return ""
 
     def close(self) -> None:
@@ -224,7 +224,7 @@ class PosixKeyboard:
             tty.setcbreak(terminal)
 
     def read(self) -> str:
-        """Give what has been typed since the last call."""
+        """Return the text typed since the last call."""
         import select
 
         if not select.select([self._terminal], [], [], 0.0)[0]:
@@ -232,7 +232,7 @@ class PosixKeyboard:
         return os.read(self._terminal, 1024).decode(errors="replace")
 
     def close(self) -> None:
-        """Leave the terminal as it was found."""
+        """Restore the terminal."""
         if sys.platform != "win32":
             import termios
 
@@ -241,7 +241,7 @@ class PosixKeyboard:
 
 
 def in_background(terminal: int) -> bool:
-    """Say whether the shell has put this process into the background, where it may not touch the terminal."""
+    """True if the shell has put this process into the background, where it may not touch the terminal."""
     if sys.platform != "win32":
         with contextlib.suppress(OSError):  # it is not the terminal that controls this process
             return os.tcgetpgrp(terminal) != os.getpgrp()
@@ -252,7 +252,7 @@ class WindowsKeyboard:
     """The console of Windows."""
 
     def read(self) -> str:
-        """Give what has been typed since the last call."""
+        """Return the text typed since the last call."""
         text = ""
         if sys.platform == "win32":
             import msvcrt
@@ -267,7 +267,7 @@ class WindowsKeyboard:
 
 
 def main(args: list[str] | None = None) -> None:
-    """Drive until Ctrl-C, then stop the robot and give the terminal back."""
+    """Drive until Ctrl-C, then stop the robot and restore the terminal."""
     with robolink.init(args=args), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         node = Teleop()
         try:

@@ -7,14 +7,14 @@ import robolink
 from robolink import Node, Parameter
 from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.interfaces.geometry_msgs.msg import Twist
-from robolink.parameter_descriptors import described
+from robolink.parameters.descriptors import described
 
 PERIOD = 0.4
-"""Seconds between two messages: less than the half second after which a robot that hears nothing stops."""
+"""Period of messages in seconds: less than the half second after which a robot stops without commands."""
 
 
 class VelocityPublisher(Node):
-    """Publishes a Twist on `cmd_vel` at each tick of its timer, each a little faster than the one before."""
+    """A node that publishes a Twist on `cmd_vel` at each tick of its timer, each a little faster than the last."""
 
     is_driving = False
 
@@ -30,7 +30,7 @@ class VelocityPublisher(Node):
         self.add_post_set_parameters_callback(self.on_parameters)
 
     def on_timer(self) -> None:
-        """Publish the speed, and think of the next."""
+        """Publish the speed, and compute the next."""
         twist = Twist()
         twist.linear.x = self.speed
         twist.angular.z = self.get_parameter("turn_speed").value
@@ -40,14 +40,14 @@ class VelocityPublisher(Node):
         self.speed = next_speed(self.speed, self.get_parameter("step").value, self.get_parameter("top_speed").value)
 
     def on_parameters(self, changed: list[Parameter[Any]]) -> None:
-        """Publish at another pace from now on."""
+        """Change the period of messages."""
         for each in changed:
             if each.name == "period":
                 self.timer.timer_period_ns = round(each.value * 1e9)
                 self.timer.reset()
 
     def destroy_node(self) -> None:
-        """Leave the robot standing: who has driven it must not end with it driving on."""
+        """Stop the robot, which must not drive on without its node, then destroy the node."""
         if self.is_driving:
             self.is_driving = False
             with contextlib.suppress(RobolinkError):  # nobody may be there any more who could be told
@@ -56,7 +56,7 @@ class VelocityPublisher(Node):
 
 
 def next_speed(speed: float, step: float, top_speed: float) -> float:
-    """Give the speed that comes after `speed`: a step more, or 0 where that is beyond the top.
+    """Return the speed after `speed`: a step more, or 0 if that is beyond the top.
 
     It is rounded, since ten times 0.1 is a little less than 1 for a computer.
     """

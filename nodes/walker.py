@@ -25,7 +25,7 @@ from robolink.interfaces.nav_msgs.msg import Path
 from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
 from robolink.interfaces.std_msgs.msg import Header, Int32
 from robolink.interfaces.std_srvs.srv import Trigger
-from robolink.parameter_descriptors import described
+from robolink.parameters.descriptors import described
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.tf2 import TransformBroadcaster
 
@@ -37,27 +37,27 @@ ROUTE = "0x10 90x5 0x5"
 FRAME, BASE = "odom", "walker"
 
 KEPT = 2000
-"""Places on `walk_path`, and of a walk's history; the oldest go first."""
+"""Most positions kept on `walk_path` and in a walk's history; the oldest are dropped."""
 
 MOST_STEPS = 1_000_000
 
 COMMAND_LASTS = 1.0
-"""Seconds for which a cmd_vel holds; never less than a step takes."""
+"""Timeout of a cmd_vel, in seconds; never less than a step takes."""
 
 
 class RouteError(RobolinkError, ValueError):
-    """A text that is no route."""
+    """A text that is not a route."""
 
 
 class Leg(NamedTuple):
-    """A part of a route: so many steps in one direction, in degrees: 0 is ahead, 90 to the left."""
+    """A leg of a route: a number of steps in one direction, in degrees: 0 is ahead, 90 to the left."""
 
     direction: float
     steps: int
 
 
 class Walk:
-    """Where a walker is, and where it has been: metres in the plane, from where it began.
+    """The position and history of a walker: metres in the plane, from its start.
 
     Directions are in degrees, seen as the walker stood in the beginning: 0 is ahead, 90 to the left::
 
@@ -70,7 +70,7 @@ class Walk:
     def __init__(self) -> None:
         self.position = (0.0, 0.0)
         self.heading = 0.0
-        """Degrees, the direction of the last step."""
+        """Direction of the last step, in degrees."""
         self.steps = 0
         self.history = deque([self.position], maxlen=KEPT)
 
@@ -104,7 +104,7 @@ class Walk:
         self.heading = math.remainder(facing, 360.0)
 
     def distance_from_start(self) -> float:
-        """Give the metres in a straight line from where it began."""
+        """Return the straight distance from the start, in metres."""
         return math.hypot(*self.position)
 
 
@@ -130,7 +130,7 @@ def _parse_leg(word: str) -> Leg:
 
 
 class Walker(Node):
-    """Takes a step at each tick of its timer while it walks, and publishes where it is then.
+    """A node that takes a step at each tick of its timer while it walks, and publishes its position.
 
     Who comes later gets the last `walk_pose`, `steps` and `walk_path` at once: they are latched.
     """
@@ -169,7 +169,7 @@ class Walker(Node):
         return response
 
     def on_stop(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Stand still after the step that is under way; what is left of the route is given up."""
+        """Stop after the present step; the rest of the route is given up."""
         walking = bool(self.ahead) or self.is_commanded()
         response.success = walking
         response.message = f"stopped with {self.to_go()} to go" if walking else "standing already"
@@ -178,7 +178,7 @@ class Walker(Node):
         return response
 
     def start(self) -> str:
-        """Begin the route; say so. The first step ends when it has had its time."""
+        """Begin the route; return a message. The first step ends when it has had its time."""
         legs = parse_route(self.get_parameter("route").value)
         self.ahead = deque(leg.direction for leg in legs for _ in range(leg.steps))
         self.timer.reset()
@@ -187,7 +187,7 @@ class Walker(Node):
         return words
 
     def to_go(self) -> str:
-        """Say how many steps are left."""
+        """Return the number of remaining steps in words."""
         return f"{len(self.ahead)} step{'' if len(self.ahead) == 1 else 's'}"
 
     def on_cmd_vel(self, velocity: Twist) -> None:
@@ -202,7 +202,7 @@ class Walker(Node):
         self.velocity, self.velocity_until = velocity, self.get_clock().now().nanoseconds + round(lasts * 1e9)
 
     def is_commanded(self) -> bool:
-        """Say whether a cmd_vel that is not too old asks for steps."""
+        """True if a cmd_vel that is not too old asks for steps."""
         velocity = self.velocity
         asks = any((velocity.linear.x, velocity.linear.y, velocity.angular.z))
         return asks and self.get_clock().now().nanoseconds < self.velocity_until
@@ -220,7 +220,7 @@ class Walker(Node):
         self.publish()
 
     def say(self, *, is_last: bool) -> None:
-        """Say where it has come to."""
+        """Log the position and the number of steps."""
         x, y = (round(each, 2) + 0.0 for each in self.walk.position)  # never -0.00
         steps = self.walk.steps
         if is_last:
@@ -230,7 +230,7 @@ class Walker(Node):
             self.get_logger().info(f"step {steps}: at ({x:.2f}, {y:.2f})", throttle_duration_sec=1.0)
 
     def publish(self) -> None:
-        """Tell where the walker is, and where it has been."""
+        """Publish the walker's pose and path."""
         header = Header(stamp=self.get_clock().now().to_msg(), frame_id=FRAME)
         pose = pose_of(self.walk)
         self.poses.append(PoseStamped(header=header, pose=pose))
@@ -241,7 +241,7 @@ class Walker(Node):
         self.tf.sendTransform(TransformStamped(header=header, child_frame_id=BASE, transform=there))
 
     def on_parameters(self, changed: list[Parameter[Any]]) -> None:
-        """Take steps at another pace."""
+        """Change the duration of a step."""
         for each in changed:
             if each.name == "step_duration":
                 self.timer.timer_period_ns = round(each.value * 1e9)
@@ -249,7 +249,7 @@ class Walker(Node):
 
 
 def check_route(changed: list[Parameter[Any]]) -> SetParametersResult:
-    """Refuse a route that cannot be read."""
+    """Reject a route that cannot be read."""
     try:
         for each in changed:
             if each.name == "route":
@@ -260,7 +260,7 @@ def check_route(changed: list[Parameter[Any]]) -> SetParametersResult:
 
 
 def pose_of(walk: Walk) -> Pose:
-    """Give where a walker stands, and its heading."""
+    """Return the position and heading of a walker as a Pose."""
     (x, y), half = walk.position, math.radians(walk.heading) / 2
     return Pose(position=Point(x=x, y=y), orientation=Quaternion(z=math.sin(half), w=math.cos(half)))
 

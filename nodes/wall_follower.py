@@ -22,44 +22,44 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from robolink import Parameter
+from robolink.control.laser import Array, in_view, lane_among, looks_ahead, looks_all_round, points, returns
+from robolink.control.scan_controller import ScanController
+from robolink.geometry.plane import clipped
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.laser import Array, in_view, lane_among, looks_all_round, returns
-from robolink.parameter_descriptors import described
-from robolink.plane import clipped
-from robolink.scan_controller import ScanController
+from robolink.parameters.descriptors import described
 
 SIDE = (math.radians(-135), math.radians(30))
-"""Where the followed wall is looked for: from the right rear to just across the heading."""
+"""Sector in which the followed wall is searched, in radians: from the right rear to just across the heading."""
 
 GAIN = 3.0
-"""1/s. With fewer than five scans a second it is less, or the robot would swing."""
+"""Gain of the turning speed, in 1/s; lower with fewer than five scans a second, or the robot would oscillate."""
 
 STEEP = 1.0
-"""Radians: the most by which the robot drives towards the wall or away from it."""
+"""Largest angle at which the robot drives towards the wall or away from it, in radians."""
 
 CLEARANCE = 0.05
-"""Metres that are to be free round the robot."""
+"""Least free space round the robot, in metres."""
 
 NEAREST = 0.04
-"""Metres: what lies farther than the nearest point by this has a weight of 1/e in the mean that smooths noise."""
+"""Distance beyond the nearest point, in metres, at which a point has a weight of 1/e in the mean that smooths noise."""
 
 ACCELERATION = 1.0
-"""m/s²: so fast it gains speed, that the robot does what it is told, and what is remembered is where it should be."""
+"""Acceleration in m/s², low enough that the robot follows its commands, so that remembered points stay correct."""
 
 BRAKING = 1.0
-"""Seconds: at full speed it begins so early to slow down before what is ahead."""
+"""Time before an obstacle at which it slows down from full speed, in seconds."""
 
 BLIND_WAY = 2.5
-"""How far the robot drives by what it remembers, as a multiple of the distance."""
+"""Way for which points are remembered, as a multiple of the wall's distance."""
 
 DOUBT = 0.1
-"""And by this share of that way what is remembered counts as nearer: behind a round thing's edge it bulges."""
+"""Share of the way by which a remembered point counts as nearer: behind a round thing's edge it bulges."""
 
 
 class Goal(NamedTuple):
-    """What to do; the parameters of the node have the same names. Metres, m/s, rad/s."""
+    """The goal; the parameters of the node have the same names. Metres, m/s, rad/s."""
 
     distance: float = 0.5
     speed: float = 0.3
@@ -79,19 +79,20 @@ PARAMETERS["side"].additional_constraints = "left or right"
 
 
 class Points(NamedTuple):
-    """What is near, seen by the robot: metres ahead, metres to the left, and metres driven since it was in view."""
+    """Points near the robot: metres ahead, metres to the left, and metres driven since they were in view."""
 
     x: Array = np.empty(0)
     y: Array = np.empty(0)
     ago: Array = np.empty(0)
 
     def those(self, chosen: Any) -> "Points":
-        """Give some of them."""
-        return Points(self.x[chosen], self.y[chosen], self.ago[chosen])
+        """Return those for which `chosen` is True."""
+        (which,) = chosen.nonzero()  # counted once, not by each of the three
+        return Points(self.x[which], self.y[which], self.ago[which])
 
 
 class Memory(NamedTuple):
-    """What one scan leaves to the next: the wall's side, what the robot was told, and what was near."""
+    """State from one scan to the next: the wall's side, the last command, and the points that were near."""
 
     side: str = ""
     speed: float = 0.0
@@ -100,7 +101,7 @@ class Memory(NamedTuple):
 
 
 class Pace(NamedTuple):
-    """What a goal comes to: the distance and speed to hold, in m and m/s, and the gain in 1/s."""
+    """Set points made from a goal: the distance and speed to hold, in m and m/s, and the gain in 1/s."""
 
     distance: float
     speed: float
@@ -115,7 +116,7 @@ class Target(NamedTuple):
 
 
 class Decision(NamedTuple):
-    """What to do, what to remember, and why, in words."""
+    """A command, the state to remember, and the reason in words."""
 
     twist: Twist
     memory: Memory
@@ -123,7 +124,7 @@ class Decision(NamedTuple):
 
 
 class WallFollower(ScanController):
-    """Turns each scan into a velocity command; stops the robot when there are no scans, and at its own end."""
+    """Wall follower: turns each scan into a velocity command; stops without scans, and at its own end."""
 
     memory = Memory()
 
@@ -134,7 +135,7 @@ class WallFollower(ScanController):
             self.declare_parameter(name, value, PARAMETERS[name])
 
     def check_side(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
-        """Refuse a side that is none."""
+        """Reject an unknown side."""
         for each in parameters:
             if each.name == "side" and each.value not in ("left", "right"):
                 reason = f"side: expected 'left' or 'right', got {each.value!r}"
@@ -160,15 +161,14 @@ def follow(scan: LaserScan, goal: Goal, memory: Memory, seconds: float) -> Decis
     beams, any field of view and start angle are fine; with nothing in reach the robot drives ahead. A scan that does
     not look ahead, or has measured nothing, makes it stand still.
     """
-    if not in_view(scan, np.zeros(1))[0]:
+    if not looks_ahead(scan):
         return Decision(Twist(), Memory(), "no beam looks ahead: standing still")
     if memory.side != goal.side:
         memory = Memory(goal.side)
     pace = pace_for(goal, seconds)
     mirror = -1.0 if goal.side == "left" else 1.0  # what follows knows walls on the right alone
-    angles, ranges = returns(scan)
-    angles = angles * mirror
-    seen = points(angles, ranges)
+    x, y = points(scan)
+    seen = Points(x, y * mirror, np.zeros(len(x)))
     near = joined(seen, unseen(memory, seconds, scan, mirror), pace)
 
     wall = nearest(near, memory.speed / pace.gain, pace)
@@ -176,9 +176,9 @@ def follow(scan: LaserScan, goal: Goal, memory: Memory, seconds: float) -> Decis
         off = keep(wall, room_on_the_left(near), goal, pace)
         words = f"following the wall on the {goal.side} at {wall.distance:.2f} m"
     else:
-        target = easiest(angles, ranges)
+        target = easiest(scan, mirror)
         off = target.bearing
-        words = f"driving to a wall {target.distance:.1f} m away" if len(ranges) else "no wall in reach: driving ahead"
+        words = f"driving to a wall {target.distance:.1f} m away" if len(x) else "no wall in reach: driving ahead"
     free = lane_among(seen.x, seen.y, goal.robot_radius + CLEARANCE / 2)
     speed, turn = drive(off, free, goal, pace)
     if speed < 0.3 * pace.speed and math.isfinite(free):
@@ -189,7 +189,7 @@ def follow(scan: LaserScan, goal: Goal, memory: Memory, seconds: float) -> Decis
 
 
 def keep(wall: Target, left: float, goal: Goal, pace: Pace) -> float:
-    """Give by how much to turn to hold the wall, in radians to the left.
+    """Return the turn that holds the wall's distance, in radians to the left.
 
     Where things on the `left` leave no room for the distance it holds the middle.
     """
@@ -199,7 +199,7 @@ def keep(wall: Target, left: float, goal: Goal, pace: Pace) -> float:
 
 
 def drive(off: float, free: float, goal: Goal, pace: Pace) -> tuple[float, float]:
-    """Give speed and turning speed to turn by `off` radians with `free` metres ahead.
+    """Return speed and turning speed to turn by `off` radians with `free` metres ahead.
 
     It slows down to turn, and for what is ahead; where it must stop it turns away from the wall.
     """
@@ -212,7 +212,7 @@ def drive(off: float, free: float, goal: Goal, pace: Pace) -> tuple[float, float
 
 
 def pace_for(goal: Goal, dt: float) -> Pace:
-    """Give what a goal comes to with a scan every `dt` seconds (0: not known)."""
+    """Return the set points of a goal with a scan every `dt` seconds (0: not known)."""
     distance = max(goal.distance, goal.robot_radius + CLEARANCE)
     if dt == 0.0:
         return Pace(distance, goal.speed, GAIN)
@@ -225,49 +225,44 @@ def nearest(near: Points, ahead: float, pace: Pace) -> Target:
     It is the mean of the points around the nearest one, which smooths noise: the nearer the more they weigh, and
     those far from the lidar more than those close by, since they stand for more of the wall.
     """
-    x, y = near.x - ahead, near.y
-    bearings = np.arctan2(y, x)
-    beside = np.flatnonzero((bearings >= SIDE[0]) & (bearings <= SIDE[1]))
-    if not len(beside):
+    bearings = np.arctan2(near.y, near.x - ahead)
+    beside = near.those((bearings >= SIDE[0]) & (bearings <= SIDE[1]))
+    if not len(beside.x):
         return Target(math.inf, 0.0)
-    x, y = x[beside], y[beside]
+    x, y = beside.x - ahead, beside.y
     distances = np.hypot(x, y)
     at = distances.argmin()
-    around = np.hypot(x - x[at], y - y[at]) < pace.distance / 2
-    chosen = near.those(beside[around])
-    weights = np.exp((distances[at] - distances[around]) / NEAREST) * (chosen.x**2 + chosen.y**2 + 1e-9)
-    seen, weight = (x[around], chosen.y, chosen.ago), weights.sum()
-    mean_x, mean_y, ago = (float((each * weights).sum() / weight) for each in seen)
+    (around,) = (np.hypot(x - x[at], y - y[at]) < pace.distance / 2).nonzero()
+    seen = np.array((x[around], y[around], beside.ago[around]))
+    far = beside.x[around]
+    weights = np.exp((distances[at] - distances[around]) / NEAREST) * (far * far + seen[1] * seen[1] + 1e-9)
+    mean_x, mean_y, ago = ((seen * weights).sum(axis=1) / weights.sum()).tolist()
     return Target(math.hypot(mean_x, mean_y) - DOUBT * ago, math.atan2(mean_y, mean_x))
 
 
 def room_on_the_left(near: Points) -> float:
-    """Give the distance of the nearest point to the left, within 45 degrees; inf for none."""
+    """Return the distance of the nearest point to the left, within 45 degrees; inf for none."""
     left = near.y > np.abs(near.x)
     return float(np.hypot(near.x[left], near.y[left]).min(initial=math.inf))
 
 
-def easiest(angles: Array, ranges: Array) -> Target:
+def easiest(scan: LaserScan, mirror: float) -> Target:
     """Find the return to drive to, near and not far from the heading; straight ahead when there is none.
 
     The heading counts so that between two walls equally far the robot makes up its mind.
     """
+    angles, ranges = returns(scan)
     if not len(ranges):
         return Target(math.inf, 0.0)
     at = (ranges + 0.05 * abs(angles)).argmin()
-    return Target(float(ranges[at]), float(angles[at]))
+    return Target(float(ranges[at]), mirror * float(angles[at]))
 
 
 # What is around
 
 
-def points(angles: Array, ranges: Array) -> Points:
-    """Give a scan's returns as points."""
-    return Points(ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges)))
-
-
 def remembered(memory: Memory, dt: float) -> Points:
-    """Give what was near, as seen from where the robot must be now: `dt` seconds on, as it was told to drive."""
+    """Return the remembered points as seen from the robot's pose `dt` seconds later, by dead reckoning."""
     if dt == 0.0:
         return Points()
     way, half = memory.speed * dt, memory.turn * dt / 2  # on an arc one drives along its chord, turned by half
@@ -277,7 +272,7 @@ def remembered(memory: Memory, dt: float) -> Points:
 
 
 def unseen(memory: Memory, dt: float, scan: LaserScan, mirror: float) -> Points:
-    """Give what was near and the scan does not see."""
+    """Return the remembered points that the scan does not see."""
     if looks_all_round(scan):
         return Points()
     old = remembered(memory, dt)
@@ -285,6 +280,6 @@ def unseen(memory: Memory, dt: float, scan: LaserScan, mirror: float) -> Points:
 
 
 def joined(new: Points, old: Points, pace: Pace) -> Points:
-    """Put together what is seen and what is remembered of the surroundings, and forget what is far or long ago."""
+    """Join seen and remembered points, and drop those that are far away or old."""
     both = Points(*map(np.concatenate, zip(new, old, strict=True))) if len(old.x) else new
     return both.those((np.hypot(both.x, both.y) < 3 * pace.distance) & (both.ago < BLIND_WAY * pace.distance))

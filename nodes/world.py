@@ -9,13 +9,13 @@ start plus simulated time, or with `publish_clock` simulated time alone; they on
 
 from typing import Any
 
-from robolink import Node, Parameter
+from robolink import Node, Parameter, VirtualTime
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticArray
-from robolink.parameter_descriptors import described
+from robolink.parameters.descriptors import described
 from robolink.sim import load_world
 from robolink.sim.webots import warnings_to
-from robolink.sim_node import Runner, Services, Simulation, diagnostics, listed, report
 from robolink.workspace import find_world
+from robolink.world_node import Runner, Services, Shapes, Simulation, diagnostics, listed, report
 
 WORLD = described("The world file: its name in configs/worlds/, or its path.", read_only=True)
 PUBLISH_CLOCK = described(
@@ -29,7 +29,7 @@ RTF = described("How many times as fast as real time the world runs; 0 is as fas
 
 
 class SimulatedWorld(Node):
-    """The node of a simulated world: it reads the world file, and has the simulation run, served and reported."""
+    """The node of a simulated world: reads the world file, and runs, serves and reports the simulation."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("world", **options)
@@ -47,6 +47,8 @@ class SimulatedWorld(Node):
         )
         self.runner = Runner(self, self.simulation, rtf)
         Services(self, self.simulation, self.runner)
+        if not isinstance(self.context.time, VirtualTime):  # viewers look at real time, and hashes stay as they were
+            self.shapes = Shapes(self, self.simulation, self.runner.steady)
         self.diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self.create_timer(1.0, self.diagnose, clock=self.runner.steady)
         self.create_timer(2.0, self.report, clock=self.runner.steady)
@@ -55,17 +57,17 @@ class SimulatedWorld(Node):
         self.get_logger().info(f"world '{description.world.name or wanted}' with {robots}")
 
     def on_parameters(self, parameters: list[Parameter[Any]]) -> None:
-        """Run at another pace from now on."""
+        """Set the real-time factor."""
         for each in parameters:
             if each.name == "rtf":
                 self.runner.set_rate(each.value)
 
     def diagnose(self) -> None:
-        """Publish how fast the world runs, and what has happened in it."""
+        """Publish diagnostics: the real-time factor, contacts, refused commands."""
         self.diagnostics.publish(diagnostics(self.get_name(), self.simulation, self.runner.measured()))
 
     def report(self) -> None:
-        """Say where the robots are and what they do, unless the world stands still."""
+        """Log the poses and motions of robots, unless the world is paused."""
         if self.runner.running:
             for line in report(self.simulation.world):
                 self.get_logger().info(line)

@@ -15,13 +15,14 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from robolink.clock import Clock
     from robolink.context import Context
+    from robolink.control.pid import Pid
     from robolink.duration import Duration
     from robolink.exceptions import ExternalShutdownException, RobolinkError
     from robolink.message import Message
     from robolink.node import Node
     from robolink.parameter import Parameter
-    from robolink.pid import Pid
     from robolink.qos import QoSProfile
+    from robolink.running.timebase import VirtualTime
     from robolink.signals import SignalHandlerOptions, install_signal_handlers, uninstall_signal_handlers
     from robolink.spinning import (
         InitContextManager,
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     )
     from robolink.task import Future
     from robolink.time import Time
-    from robolink.timebase import VirtualTime
     from robolink.utilities import get_default_context, get_rmw_implementation_identifier, ok
 
 _HOMES = {
@@ -49,12 +49,12 @@ _HOMES = {
     "Message": "message",
     "Node": "node",
     "Parameter": "parameter",
-    "Pid": "pid",
+    "Pid": "control.pid",
     "QoSProfile": "qos",
     "RobolinkError": "exceptions",
     "SignalHandlerOptions": "signals",
     "Time": "time",
-    "VirtualTime": "timebase",
+    "VirtualTime": "running.timebase",
     "create_node": "spinning",
     "get_default_context": "utilities",
     "get_global_executor": "spinning",
@@ -108,7 +108,6 @@ _ROOMS = frozenset(
         "time_source",
         "timer",
         "topic_or_service_is_hidden",
-        "transformations",
         "type_support",
         "utilities",
         "validate_full_topic_name",
@@ -165,7 +164,7 @@ def __getattr__(name: str) -> Any:
         value = version("robolink")
     else:
         from robolink.exceptions import imported_as
-        from robolink.lacking import lacking
+        from robolink.text.suggestions import lacking
 
         raise lacking(imported_as(), name, lambda: [*__all__, *_ROOMS], sys._getframe(1))
     globals()[name] = value

@@ -6,7 +6,7 @@ import sys
 def main() -> int:
     """Run the command; 130 for a Ctrl-C that comes before there is anything to interrupt."""
     try:
-        from robolink.cli import main as command
+        from robolink.cli.main import main as command
 
         return command()
     except KeyboardInterrupt:

@@ -1,70 +1,79 @@
-"""Which callbacks may run at the same time."""
+"""Callback groups: they decide which callbacks of an executor may run at the same time."""
 
 from __future__ import annotations
 
 import threading
 import weakref
+from collections.abc import Callable
 from typing import Any
 
 
 class CallbackGroup:
-    """The base class: a user may make a group of their own by overriding the last three methods."""
+    """Base class of callback groups; one of your own overrides `can_execute` and the two methods below it."""
+
+    _acquire_: Callable[[bool], bool] | None = None
+    """Function in C that, called with False, is `can_execute` and `beginning_execution` in one, where there is one."""
+
+    _release_: Callable[[], None] | None = None
+    """Function in C that is `ending_execution`, where there is one."""
 
     def __init__(self) -> None:
         super().__init__()
         self.entities: set[weakref.ReferenceType[Any]] = set()
 
     def add_entity(self, entity: Any) -> None:
-        """Make an entity a member."""
+        """Make `entity` (a timer, a subscription ...) a member."""
         self.entities.add(weakref.ref(entity, self.entities.discard))
 
     def has_entity(self, entity: Any) -> bool:
-        """Whether it is a member."""
+        """True if `entity` is a member."""
         return weakref.ref(entity) in self.entities
 
     def can_execute(self, entity: Any) -> bool:
-        """Whether its callback may run now."""
+        """True if the callback of `entity` may run now."""
         raise NotImplementedError
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Be told that its callback is about to run; False forbids it."""
+        """Note that the callback of `entity` is about to run; False forbids it."""
         raise NotImplementedError
 
     def ending_execution(self, entity: Any) -> None:
-        """Be told that its callback has ended."""
+        """Note that the callback of `entity` has ended."""
         raise NotImplementedError
 
 
 class ReentrantCallbackGroup(CallbackGroup):
-    """All callbacks may run at any time."""
+    """Callback group without limits: its callbacks may run at the same time, also one beside itself."""
 
     def can_execute(self, entity: Any) -> bool:
-        """Say yes."""
+        """Return True, for every `entity`."""
         return True
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Say yes."""
+        """Return True, for every `entity`."""
         return True
 
     def ending_execution(self, entity: Any) -> None:
-        """Do nothing."""
+        """Do nothing, for any `entity`."""
 
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
-    """One callback at a time."""
+    """Callback group of which one callback runs at a time."""
 
     def __init__(self) -> None:
         super().__init__()
         self._busy = threading.Lock()
+        if type(self) is MutuallyExclusiveCallbackGroup:
+            self._acquire_, self._release_ = self._busy.acquire, self._busy.release
 
     def can_execute(self, entity: Any) -> bool:
-        """Whether none runs."""
+        """True if no callback of the group runs, that of `entity` or another."""
         return not self._busy.locked()
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Whether none runs; from now on, this one does."""
+        """Reserve the group for `entity`, whose callback is to run; False if another one runs."""
         return self._busy.acquire(blocking=False)
 
     def ending_execution(self, entity: Any) -> None:
-        """Let the next one run."""
+        """Release the group, which `entity` had reserved, for the next callback."""
         self._busy.release()

@@ -1,4 +1,4 @@
-"""Clients of services: the asking side."""
+"""Clients of services: the calling side."""
 
 from __future__ import annotations
 
@@ -7,28 +7,29 @@ import queue
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup
-from robolink.endpoint import Endpoint, Owner
-from robolink.entity import ANY_TIME, NOTHING, Entity
 from robolink.exceptions import (
     DecodeError,
     ExternalShutdownException,
     ServiceError,
+    SessionReplacedError,
     TransportError,
     WireError,
 )
-from robolink.inbox import Inbox
+from robolink.graph.endpoint import Endpoint, Owner
 from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, encoder, service_type
 from robolink.qos import QoSProfile
+from robolink.running.entity import NOTHING, Entity
+from robolink.running.inbox import Inbox
 from robolink.service_introspection import ServiceEnd
 from robolink.service_introspection import ServiceIntrospectionState as ServiceIntrospectionState
 from robolink.task import Future
-from robolink.transport.base import Handle
+from robolink.transport.base import Handle, Sink
 from robolink.wire import NO_HASH, EndpointKind, unpack_attachment
 
 if TYPE_CHECKING:
-    from robolink.executors import Executor
+    from robolink.running.ports import Loop
 
 
 _RELEASED = object()
@@ -36,7 +37,7 @@ _UNREADABLE = (DecodeError, WireError, TransportError)
 
 
 class _Call:
-    """One question under way."""
+    """Call under way, until its answer or the end of all answers."""
 
     straight = False
 
@@ -46,17 +47,35 @@ class _Call:
         self.sink: functools.partial[Any] = inbox.sink(self)
         self.handle: Handle | None = None
         self.bad: Exception | None = None
-        """Why the last answer could not be read."""
+        """Error by which the last answer could not be read."""
+        self.waiting = 0
+        """Number of answers that wait for the client's turn."""
+        self.has_ended = False
+        """True if the end of all answers came while some waited: it needs no turn of its own."""
 
     def deliver(self, arrived: Any) -> None:
         """Hand an answer, or the end of all answers, to the client."""
+        if arrived is not None:
+            self.waiting += 1
+        elif self.waiting:
+            self.has_ended = True
+            return
         self.client.deliver((self, arrived))
 
 
 class Client(ServiceEnd):
-    """Asks one service; made by `Node.create_client`."""
+    """Calls one service; made by `Node.create_client`.
+
+    Args:
+        owner: Node that it belongs to, as the graph knows it.
+        srv_type: Service class.
+        srv_name: Fully qualified name of the service.
+        qos_profile: Quality of service.
+        callback_group: Group of the client.
+    """
 
     serves = quick = True
+    is_gated = False  # an answer only completes a future, and the callback that waits for it may keep its group busy
     gives_way = True  # as in rclpy: whoever spins until the answer is there has also seen what had arrived by then
 
     def __init__(
@@ -80,38 +99,47 @@ class Client(ServiceEnd):
         self._outside: set[queue.SimpleQueue[Any]] = set()
         self._destroyed = False
         self.malformed = 0
-        """How many answers could not be read."""
+        """Number of answers that could not be read."""
         self._silent = False
         self._endpoint.announce()
         self._context.on_shutdown(self._release)
 
     @property
-    def gate(self) -> CallbackGroup:
-        """Any time: an answer only completes a future, and the callback that waits for it may keep the group busy."""
-        return ANY_TIME
-
-    @property
     def is_waiting(self) -> bool:
-        """Whether a call is under way."""
+        """True while a call is under way."""
         return bool(self._calls)
 
     def redirect(self, inbox: Inbox) -> None:
-        """Have the answers that are still to come arrive in this inbox."""
+        """Redirect the answers that are still to come to this inbox."""
         super().redirect(inbox)
         for call in list(self._calls):
             inbox.take_over(call.sink)
 
     def call(self, request: Message, timeout_sec: float | None = None) -> Any:
-        """Ask and wait for the answer; in a callback as well: what serves goes on meanwhile.
+        """Call the service and wait for the response; in a callback as well, since services go on meanwhile.
 
-        Raises TypeError for a request of another type, TimeoutError when no answer comes in `timeout_sec` seconds, and
-        ServiceError (a RuntimeError) at once when only what this very call keeps from serving could answer, or, without
-        a timeout, when nobody serves or the server goes away.
+        Args:
+            request: Request of the service's type.
+            timeout_sec: Longest wait in seconds; None waits for ever.
+
+        Returns:
+            The response.
+
+        Raises:
+            TypeError: if the request is of another type.
+            TimeoutError: if no response comes in time.
+            ServiceError: (a RuntimeError) at once if the call would be a deadlock, since only a callback group that
+                it keeps busy itself could answer; without a timeout also if nobody serves, or the server goes away.
         """
         return self._call(request, timeout_sec, patient=timeout_sec is not None)
 
     def try_call(self, request: Message, timeout_sec: float | None = None) -> Any:
-        """As `call`, but raise a ServiceError as soon as it is known that no answer will come, timeout or not."""
+        """Call as `call` does, but raise a ServiceError as soon as it is known that no response will come.
+
+        Args:
+            request: Request of the service's type.
+            timeout_sec: Longest wait in seconds; None waits for ever.
+        """
         return self._call(request, timeout_sec, patient=False)
 
     def _call(self, request: Message, timeout_sec: float | None, *, patient: bool) -> Any:
@@ -126,8 +154,8 @@ class Client(ServiceEnd):
                 )
             return self._call_in_callback(executor, request, timeout_sec, patient)
 
-    def _only_servers(self, executor: Executor) -> list[Entity]:
-        """Give the executor's own servers of this service when nobody else serves it and none of them may be free."""
+    def _only_servers(self, executor: Loop) -> list[Entity]:
+        """Return the executor's own servers of this service if nobody else serves it and none of them may be free."""
         served = (each for node in executor.get_nodes() for each in node._all_services_())
         local: list[Entity] = [each for each in served if each.srv_name == self.srv_name]
         is_free = any(each.callback_group.can_execute(each) for each in local)
@@ -136,7 +164,7 @@ class Client(ServiceEnd):
         everywhere = self._context.graph.endpoints(EndpointKind.SERVICE, name=self.srv_name)
         return local if len(everywhere) <= len(local) else []
 
-    def _call_in_callback(self, executor: Executor, request: Message, timeout_sec: float | None, patient: bool) -> Any:
+    def _call_in_callback(self, executor: Loop, request: Message, timeout_sec: float | None, patient: bool) -> Any:
         deadline = None if timeout_sec is None else self._context.time.steady() + int(timeout_sec * 1e9)
         future = self.try_call_async(request)
         executor.serve_until(future, deadline)
@@ -181,11 +209,13 @@ class Client(ServiceEnd):
                 bad = self._refuse(error)
 
     def _key(self) -> str:
-        """Where to ask: where Humble's servers listen when there are no others."""
+        """Return the key to ask: that of Humble's servers if there are no others."""
         endpoint = self._endpoint
-        servers = list(endpoint.others.values())
-        only_humble = bool(servers) and all(each.type_hash == NO_HASH for each in servers)
-        return endpoint.humble_key if only_humble else endpoint.key
+        servers = endpoint.others.copy().values()  # as they are now: another thread may add one
+        for each in servers:
+            if each.type_hash != NO_HASH:
+                return endpoint.key
+        return endpoint.humble_key if servers else endpoint.key
 
     def _release(self) -> None:
         for answers in list(self._outside):
@@ -195,22 +225,27 @@ class Client(ServiceEnd):
         text = f"service {self.srv_name}: no answer within {timeout_sec} s"
         return TimeoutError(text if reason is None else f"{text}: {str(reason).partition(': ')[2]}")
 
-    def call_async(self, request: Message) -> Future[Any]:
-        """Ask; the answer comes through the future, once something spins.
+    def _send_(self, request: bytes, sink: Sink) -> Handle:
+        """Send a serialized request; `sink` gets what `Transport.read` reads as a response, then None once."""
+        return self._transport.call(self._key(), request, self._endpoint.attachment(), sink)
 
-        The future is never done when nobody serves or the server goes away, as in rclpy; a warning says so.
+    def call_async(self, request: Message) -> Future[Any]:
+        """Call the service with `request`, and return the future of the response, which comes while something spins.
+
+        The future is never done if nobody serves or the server goes away, as in rclpy; a warning says so. Raises
+        TypeError for a request of another type.
         """
         return self._ask(request, fails=False)
 
     def try_call_async(self, request: Message) -> Future[Any]:
-        """As `call_async`, but the future gets a ServiceError as soon as it is known that no answer will come."""
+        """Call with `request` as `call_async` does; the future gets a ServiceError once no response can come."""
         return self._ask(request, fails=True)
 
     def _ask(self, request: Message, *, fails: bool) -> Future[Any]:
         packed = self._packed(request)
         executor = self.executor
         future: Future[Any] = Future(executor=executor)
-        inbox = self._parking if executor is None else executor.inbox
+        inbox = self._parking if executor is None else executor._queue_.inbox
         call = _Call(self, inbox, future, fails)
         self._calls.add(call)
         call.sequence_number = unpack_attachment(packed[1]).sequence
@@ -229,9 +264,14 @@ class Client(ServiceEnd):
         return packed
 
     def take(self) -> Any:
-        """Give the oldest answer."""
+        """Return the oldest answer of a call that is still under way, or NOTHING."""
         taken = super().take()
-        return taken if taken is NOTHING or taken[0] in self._calls else NOTHING  # after its answer, no turn
+        if taken is NOTHING:
+            return taken
+        call, arrived = taken
+        if arrived is not None:
+            call.waiting -= 1
+        return taken if call in self._calls else NOTHING  # after its answer, no turn
 
     def execute(self, taken: tuple[_Call, Any]) -> None:
         """Complete the future of a call."""
@@ -241,9 +281,10 @@ class Client(ServiceEnd):
         try:
             answer = None if arrived is None else self._read(arrived)
         except _UNREADABLE as error:
-            call.bad = self._refuse(error)  # another server may do better; the end of all answers comes in any case
-            return
-        if call.handle is not None:
+            call.bad, answer = self._refuse(error), None
+            if not call.has_ended or call.waiting:
+                return  # another server may do better; the end of all answers comes in any case
+        if call.handle is not None and not call.has_ended:
             call.handle.close()
         if answer is None and not call.fails:
             self._warn_of_silence(call)
@@ -275,9 +316,13 @@ class Client(ServiceEnd):
     def _no_answer(self, bad: Exception | None) -> ServiceError:
         if bad is None:
             return ServiceError(f"service {self.srv_name}: nobody serves it, or the server went away")
+        if isinstance(bad, SessionReplacedError):
+            return ServiceError(f"service {self.srv_name}: {bad}")
         return ServiceError(f"service {self.srv_name}: the answer cannot be read: {bad}")
 
     def _refuse(self, error: Exception) -> Exception:
+        if isinstance(error, SessionReplacedError):
+            return error
         self.malformed += 1
         if self.malformed == 1:
             get_logger(self.logger_name).warning(
@@ -287,29 +332,36 @@ class Client(ServiceEnd):
         return error
 
     def remove_pending_request(self, future: Future[Any]) -> None:
-        """Give up a call: its future will not be completed."""
+        """Abandon the call of this `future`, which will not be completed."""
         for call in [each for each in list(self._calls) if each.future is future]:
             self._calls.discard(call)
             if call.handle is not None:
                 call.handle.close()
 
     def get_pending_request(self, sequence_number: int) -> Future[Any]:
-        """Give the future of a call under way. Raises KeyError when there is none of that number."""
+        """Return the future of the call under way with this `sequence_number`. Raises KeyError if there is none."""
         for call in list(self._calls):
             if call.sequence_number == sequence_number:
                 return call.future
         raise KeyError(sequence_number)
 
     def service_is_ready(self) -> bool:
-        """Whether somebody serves this name with this type."""
+        """True if somebody serves this name with this type."""
         return self._endpoint.count_others() > 0
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
-        """Wait until somebody serves; whether so within `timeout_sec` seconds. The end of the context ends it."""
+        """Wait until somebody serves this name with this type, or the context ends.
+
+        Args:
+            timeout_sec: Longest wait in seconds; None waits for ever, 0 or less does not wait.
+
+        Returns:
+            True if somebody serves it.
+        """
         return self._context.wait_until(self.service_is_ready, timeout_sec)
 
     def destroy(self) -> None:
-        """Ask no more. Safe to call twice."""
+        """End the client, and abandon its calls. Safe to call twice."""
         if self._destroyed:
             return
         self._destroyed = True

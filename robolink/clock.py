@@ -1,4 +1,4 @@
-"""Clocks: what time it is for a node, and who is told when it jumps."""
+"""Clocks of ROS, system and steady time, and callbacks for jumps in time."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, Protocol
 
 from robolink.clock_type import ClockType
-from robolink.defaults import get_defaults
 from robolink.duration import Duration
 from robolink.exceptions import NotInitializedException, imported_as
+from robolink.running.defaults import get_defaults
+from robolink.running.timebase import TimeBase
 from robolink.time import Time
-from robolink.timebase import TimeBase
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -21,7 +21,7 @@ __all__ = ["Clock", "ClockChange", "ClockType", "Duration", "JumpHandle", "JumpT
 
 
 class ClockChange(IntEnum):
-    """How a clock's source changed in a jump; the numbers are rcl's."""
+    """Change of a clock's source in a jump; the numbers are rcl's."""
 
     ROS_TIME_NO_CHANGE = 1
     ROS_TIME_ACTIVATED = 2
@@ -30,7 +30,16 @@ class ClockChange(IntEnum):
 
 
 class JumpThreshold:
-    """Which jumps a callback is called for. Raises ValueError when it would never be called."""
+    """Threshold of a jump callback: the jumps that it is called for.
+
+    Args:
+        min_forward: Smallest jump forward, above zero; None is no jump forward.
+        min_backward: Smallest jump backward, below zero; None is no jump backward.
+        on_clock_change: True is also every change of the clock's source, to or from /clock.
+
+    Raises:
+        ValueError: if `min_forward` or `min_backward` has the wrong sign, or no jump at all is left.
+    """
 
     def __init__(
         self, *, min_forward: Duration | None, min_backward: Duration | None, on_clock_change: bool = True
@@ -44,7 +53,7 @@ class JumpThreshold:
         self.min_forward, self.min_backward, self.on_clock_change = min_forward, min_backward, on_clock_change
 
     def met_by(self, jump: TimeJump) -> bool:
-        """Whether this jump is to be told."""
+        """True if the callback is called for `jump`."""
         if jump.clock_change in (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED):
             return self.on_clock_change
         delta = jump.delta.nanoseconds
@@ -53,7 +62,7 @@ class JumpThreshold:
 
 
 class TimeJump:
-    """One jump: what changed and by how much."""
+    """Jump in time: `clock_change`, the change of the clock's source, and `delta`, the time after minus before."""
 
     def __init__(self, clock_change: ClockChange, delta: Duration) -> None:
         if not isinstance(clock_change, ClockChange):
@@ -62,17 +71,27 @@ class TimeJump:
 
     @property
     def clock_change(self) -> ClockChange:
-        """How the source changed."""
+        """Change of the clock's source."""
         return self._clock_change
 
     @property
     def delta(self) -> Duration:
-        """The time after the jump minus the time before."""
+        """Time after the jump minus the time before."""
         return self._delta
 
 
 class JumpHandle:
-    """A registration of jump callbacks; also a context manager. Callbacks are called until `unregister`."""
+    """Registration of jump callbacks, until `unregister` or the end of a `with`; see `Clock.create_jump_callback`.
+
+    Args:
+        clock: Clock whose jumps count.
+        threshold: Jumps that the callbacks are called for.
+        pre_callback: Function without arguments, called before the time changes; or None.
+        post_callback: Function of the TimeJump, called after the time has changed; or None.
+
+    Raises:
+        ValueError: if there is no callback, or one cannot be called.
+    """
 
     def __init__(
         self,
@@ -93,7 +112,7 @@ class JumpHandle:
         clock._jumps.append(self)
 
     def unregister(self) -> None:
-        """Call no more."""
+        """Call the callbacks no more."""
         clock, self._clock = self._clock, None
         if clock is not None:
             clock._jumps.remove(self)
@@ -106,10 +125,19 @@ class JumpHandle:
 
 
 class Clock:
-    """A clock. ``Clock(clock_type=ClockType.ROS_TIME)`` gives a ROSClock."""
+    """Source of time of one kind; `Clock(clock_type=ClockType.ROS_TIME)` is a ROSClock.
+
+    Args:
+        clock_type: SYSTEM_TIME (since 1970, may be set), STEADY_TIME (since some moment, never set) or ROS_TIME
+            (that of /clock while a node of this clock has `use_sim_time`, else the system's).
+        time_base: Source of system and steady time; None is the program's own, which may be virtual.
+
+    Raises:
+        TypeError: if `clock_type` is no ClockType.
+    """
 
     def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME, time_base: TimeBase | None = None) -> Clock:
-        """Raises TypeError for what is no ClockType."""
+        """Make a clock, for ROS_TIME a ROSClock."""
         if not isinstance(clock_type, ClockType):
             raise TypeError("Clock type must be a ClockType enum")
         return super().__new__(ROSClock if clock_type is ClockType.ROS_TIME and cls is Clock else cls)
@@ -122,19 +150,19 @@ class Clock:
 
     @property
     def clock_type(self) -> ClockType:
-        """Which kind of clock this is."""
+        """Kind of the clock: system, steady or ROS time."""
         return self._clock_type
 
     @property
     def time_base(self) -> TimeBase:
-        """Where the time comes from while no /clock gives it."""
+        """Source of the time while it does not come from /clock."""
         return self._base
 
     def __repr__(self) -> str:
         return f"Clock(clock_type={self.clock_type.name})"
 
     def now(self) -> Time:
-        """The time, of this clock's type."""
+        """Return the current time, as a Time of this clock's type."""
         return Time(nanoseconds=self.now_ns(), clock_type=self._clock_type)
 
     def now_ns(self) -> int:
@@ -142,7 +170,7 @@ class Clock:
         return self._read()
 
     def wait_ns(self, until: int) -> int | None:
-        """How many nanoseconds of steady time it takes until `until`; None when only /clock knows."""
+        """Return the nanoseconds of steady time until the time `until`; None if only /clock decides."""
         return until - self.now_ns()
 
     def create_jump_callback(
@@ -152,13 +180,31 @@ class Clock:
         pre_callback: Callable[[], None] | None = None,
         post_callback: Callable[[TimeJump], None] | None = None,
     ) -> JumpHandle:
-        """Have callbacks called before and after jumps that meet the threshold. The handle ends it."""
+        """Register callbacks for jumps in time, until `unregister` of the handle that is returned.
+
+        Args:
+            threshold: Jumps that the callbacks are called for.
+            pre_callback: Function without arguments, called before the time changes.
+            post_callback: Function of the TimeJump, called after the time has changed.
+
+        Raises:
+            ValueError: if there is no callback, or one cannot be called.
+        """
         return JumpHandle(clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=post_callback)
 
     def sleep_until(self, until: Time, context: Context | None = None) -> bool:
-        """Sleep until `until` on this clock; whether it was reached (not: a shutdown, a change of time source).
+        """Sleep until a time of this clock.
 
-        Raises ValueError for a time of another clock type, NotInitializedException when the context is not ok.
+        Args:
+            until: Time to wake at, of this clock's type; in the past it does not sleep.
+            context: Context whose end ends the sleep; None is the default one.
+
+        Returns:
+            True if the time was reached, False if a shutdown or a change of the time source came first.
+
+        Raises:
+            ValueError: if `until` is of another clock type.
+            NotInitializedException: (a RuntimeError) if the context is not initialized, or has ended.
         """
         context = self._context(context)
         if until.clock_type != self._clock_type:
@@ -168,7 +214,7 @@ class Clock:
         return self.sleep_until_ns(until.nanoseconds, event, lambda: not context.ok())
 
     def sleep_until_ns(self, until: int, event: threading.Event, ended: Callable[[], bool]) -> bool:
-        """Sleep as `sleep_until` does, but end when `ended()`, which is asked again whenever `event` is set."""
+        """Sleep until the time `until`, in nanoseconds; end when `ended()`, asked again whenever `event` is set."""
         changed = False
 
         def on_jump(jump: TimeJump) -> None:
@@ -185,13 +231,18 @@ class Clock:
 
     def _sleep(self, event: threading.Event, until: int) -> None:
         left = self.wait_ns(until)
-        if self._base.hosted or (left is not None and self._base.virtual):
-            self._base.wait_until(event.is_set, None if left is None else self._base.steady() + left)
-        else:
-            event.wait(None if left is None else left / 1e9)
+        self._base.wait_notified(event.is_set, None if left is None else self._base.steady() + left, event.wait)
 
     def sleep_for(self, rel_time: Duration, context: Context | None = None) -> bool:
-        """Sleep so long on this clock; whether it was reached. See `sleep_until`."""
+        """Sleep for a duration on this clock, and return True if it has passed; see `sleep_until`.
+
+        Args:
+            rel_time: Duration of the sleep; zero or less does not sleep.
+            context: Context whose end ends the sleep; None is the default one.
+
+        Raises:
+            NotInitializedException: (a RuntimeError) if the context is not initialized, or has ended.
+        """
         return self.sleep_until(self.now() + rel_time, self._context(context))
 
     @staticmethod
@@ -206,18 +257,23 @@ class Clock:
 
 
 class ClockWatcher(Protocol):
-    """What wants to know that a clock moved: a timer."""
+    """Observer of a clock that may jump: a timer."""
 
     def reschedule(self) -> None:
-        """Look again when to be called."""
+        """Compute anew when to be called."""
         ...
 
 
 class ROSClock(Clock):
-    """The time that /clock gives while it is active, else the system's."""
+    """Clock of ROS time: that of /clock while it is active (`use_sim_time`), else the system's.
+
+    Args:
+        clock_type: ROS_TIME, always; for the sake of Clock.
+        time_base: Source of the system's time; None is the program's own, which may be virtual.
+    """
 
     def __new__(cls, *, clock_type: ClockType = ClockType.ROS_TIME, time_base: TimeBase | None = None) -> ROSClock:
-        """Whatever the type asked for, this is a clock of ROS time."""
+        """Make a clock of ROS time, for any type that is asked for."""
         return object.__new__(cls)
 
     def __init__(self, *, clock_type: ClockType = ClockType.ROS_TIME, time_base: TimeBase | None = None) -> None:
@@ -228,7 +284,7 @@ class ROSClock(Clock):
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether the time comes from /clock."""
+        """True while the time comes from /clock."""
         return self._active
 
     def now_ns(self) -> int:
@@ -236,16 +292,18 @@ class ROSClock(Clock):
         return self._override if self._active else self._read()
 
     def wait_ns(self, until: int) -> int | None:
-        """How many nanoseconds of steady time it takes until `until`; None when only /clock knows."""
-        left = until - self.now_ns()
-        return None if self._active and left > 0 else left
+        """Return the nanoseconds of steady time until the time `until`; None if only /clock decides."""
+        if not self._active:
+            return until - self.now_ns()  # one reading of the time for both, whatever overrides it
+        left = until - self._override
+        return None if left > 0 else left
 
     def watch(self, watcher: ClockWatcher) -> None:
-        """Call ``watcher.reschedule()`` whenever /clock moved this clock, until `unwatch`."""
+        """Call `reschedule()` of the `watcher` whenever /clock moved this clock, until `unwatch`."""
         self._watchers[watcher] = None
 
     def unwatch(self, watcher: ClockWatcher) -> None:
-        """Call it no more, if it was called."""
+        """Call this `watcher` no more."""
         self._watchers.pop(watcher, None)
 
     def _set_ros_time_is_active(self, enabled: bool) -> None:
@@ -259,7 +317,7 @@ class ROSClock(Clock):
         self._jump(change, switch, self._override if enabled else self._base.now())
 
     def set_ros_time_override(self, time: Time) -> None:
-        """Say what time it is while /clock is active. Raises TypeError for what is no Time."""
+        """Set the ROS time to `time`, which holds while /clock is active. Raises TypeError for what is no Time."""
         if not isinstance(time, Time):
             raise TypeError(f"the time must be a {imported_as()}.time.Time, got {time!r:.80}")
 

@@ -1,4 +1,4 @@
-"""A context: the transport, the clock, the domain and the arguments that its nodes share."""
+"""Context: the network session, the clock, the domain and the arguments that nodes share."""
 
 from __future__ import annotations
 
@@ -7,34 +7,32 @@ import contextlib
 import itertools
 import os
 import queue
-import sys
 import threading
-import time
 import weakref
 from collections.abc import Callable
 from types import MethodType
 from typing import TYPE_CHECKING, Any
 
-from robolink import humble, signals
-from robolink.arguments import Arguments, parse_arguments
-from robolink.defaults import get_defaults
+from robolink import signals
+from robolink.arguments.command_line import Arguments, parse_arguments
+from robolink.arguments.undeclared import GivenParameters
+from robolink.constants import LAST_DOMAIN
 from robolink.exceptions import NotInitializedException, RobolinkError, imported_as
-from robolink.given_parameters import GivenParameters
-from robolink.inbox import Inbox, Sweeper
-from robolink.timebase import SystemTime, TimeBase
+from robolink.graph import humble
+from robolink.running.defaults import get_defaults
+from robolink.running.inbox import Inbox, Sweepable
+from robolink.running.timebase import TimeBase
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from robolink.executors import SingleThreadedExecutor
-    from robolink.graph import Graph
+    from robolink.graph.graph import Graph
+    from robolink.running.platform import Driver
+    from robolink.running.ports import Loop
     from robolink.transport.base import Transport
 
-LAST_DOMAIN = 232
-"""ROS 2's domain ids end here."""
-
 TOLD_WITHIN = 2.0
-"""Seconds in which whoever is told of the end must have done with it, before the network is left."""
+"""Longest wait for the shutdown callbacks after a signal, in seconds, before the network is left."""
 
 
 class ContextError(RobolinkError, RuntimeError):
@@ -42,34 +40,34 @@ class ContextError(RobolinkError, RuntimeError):
 
 
 class Context:
-    """What belongs together: the nodes of one context share a session on the network and a clock.
+    """Life cycle and surroundings of nodes: those of one context share a network session, a clock and arguments.
 
-    `transport` is ``zenoh`` (the default; also set by ROBOLINK_TRANSPORT), ``memory`` or a transport that exists
-    already; `time` is the system's time by default, or a VirtualTime.
+    `rclpy.init` initializes the default one. One of its own is begun by `init`, or by a `with` block, which also ends
+    it; until then nodes cannot be created in it.
+
+    Args:
+        transport: Network: "zenoh", "memory" (nodes of this process only), or a Transport that is open already. None
+            is the environment variable ROBOLINK_TRANSPORT, or "zenoh".
+        time: Time base of its clocks and timers, such as a VirtualTime; None is the system's time.
     """
 
-    executor_type: type[SingleThreadedExecutor] | None = None
-    """What a `SingleThreadedExecutor` of this context is, if that is another class."""
-
-    def __new__(cls, *_: object, **__: object) -> Context:
-        """Make one of the kind that the program has whose code this is: see `robolink.oneprocess`."""
-        own = get_defaults().context_type if cls is Context else None
-        return super().__new__(own or cls)
-
     def __init__(self, *, transport: str | Transport | None = None, time: TimeBase | None = None) -> None:
-        self.time: TimeBase = time or SystemTime()
+        # A program that calls Context() is in a process, or in a host with other programs and virtual time. It must
+        # not see the difference, nor may a class of its own that derives from this one: hence a part, no other class.
+        self._platform = get_defaults().platform
+        self.time: TimeBase = self._platform.time_base(time)
         self.arguments = Arguments()
         self.given_parameters = GivenParameters()
         self.interrupted = False
-        """Whether a signal ended this context."""
+        """True if a signal ended this context."""
         self.speaks_humble = False
-        """Whether everything of this context is on the wire as Humble says it."""
+        """True if everything of this context is on the wire as Humble spells it."""
         self.inbox = self.make_inbox(parked=True)
-        """Where arrivals wait for entities that no executor has."""
+        """Inbox of the entities that no executor has."""
         self._wanted = transport
         self._transport: Transport | None = None
         self._graph: Graph | None = None
-        self._sweeper = Sweeper()
+        self._sweeper = self._platform.make_sweeper()
         self._ids = itertools.count()
         self._lock = threading.RLock()
         self._initialized = self._ok = self._closed = False
@@ -78,43 +76,42 @@ class Context:
         self._teller = 0
         self._told: queue.SimpleQueue[None] = queue.SimpleQueue()
         self._nodes: weakref.WeakValueDictionary[int, Any] = weakref.WeakValueDictionary()  # in the order of making
+        self._platform.join(self)
 
     def init(
         self, args: list[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
     ) -> None:
-        """Make it ok. `args` are a command line, sys.argv by default; the domain comes from ROS_DOMAIN_ID.
+        """Initialize the context: read the command line and make nodes possible. The network is joined later.
 
-        Raises ContextError (a RuntimeError) the second time or for a domain id that cannot be, DistroError (a
-        ValueError) for an unknown ROBOLINK_ROS_DISTRO, and what `parse_arguments` raises.
+        Args:
+            args: Command line, of which what stands between `--ros-args` and `--` counts; None is `sys.argv`.
+            initialize_logging: True sets up logging as the command line says (`--log-level` ...).
+            domain_id: ROS domain, 0 to 232: only nodes of one domain see each other. None is the environment
+                variable ROS_DOMAIN_ID, or 0.
+
+        Raises:
+            ContextError: (a RuntimeError) the second time, or for an impossible domain id.
+            DistroError: (a ValueError) if ROBOLINK_ROS_DISTRO names no known distribution.
+            InvalidROSArgsError: (a ValueError) if `args` cannot be read; UnknownROSArgsError for flags that do not
+                exist.
         """
         with self._lock:
             if self._initialized:
                 raise ContextError("Context.init() must only be called once")
             self._domain_id = _domain_id(domain_id)
             self.speaks_humble = humble.is_asked_for(os.environ)
-            self.arguments = parse_arguments(sys.argv if args is None else args)
+            self.arguments = parse_arguments(self._platform.argv() if args is None else args)
             if initialize_logging:
-                self._configure_logging()
+                self._platform.begin_logging(self.arguments, self.time)
+            self._wanted = self._platform.transport(self._wanted)
             self._initialized = self._ok = True
         signals.watch(self)
-
-    def _configure_logging(self) -> None:
-        from robolink import logging
-        from robolink.impl.log_output import Console
-
-        logging.initialize()
-        if self.time.virtual and not self.time.hosted:
-            logging.set_time_source(self.time.now)
-        for name, level in self.arguments.log_levels:
-            logging.set_logger_level(name, level)
-        if self.arguments.stdout_logs is not None:
-            logging.set_console_handler(Console() if self.arguments.stdout_logs else None)
 
     # What nodes share
 
     @property
     def transport(self) -> Transport:
-        """The session on the network, opened when it is first needed. Raises TransportError when that fails."""
+        """Session on the network, opened when it is first needed. Raises TransportError if that fails."""
         with self._lock:
             if self._closed or not self._initialized:
                 raise NotInitializedException(ended_by=self.ended_by)
@@ -122,16 +119,16 @@ class Context:
                 from robolink.transport import connect
 
                 wanted = self._wanted or os.environ.get("ROBOLINK_TRANSPORT") or "zenoh"
-                self._transport = connect(wanted, self._domain_id)
+                self._transport = connect(wanted, self._domain_id, enclave=self.arguments.enclave)
                 self._sweeper.add(self.inbox)
             return self._transport
 
     @property
     def graph(self) -> Graph:
-        """What everybody on this domain announces."""
+        """Graph of the nodes, topics and services that are announced on this domain."""
         with self._lock:
             if self._graph is None:
-                from robolink.graph import Graph
+                from robolink.graph.graph import Graph
 
                 self._graph = Graph(self.transport, self._domain_id)
                 self.on_shutdown(self._graph.wake)
@@ -140,68 +137,82 @@ class Context:
             return self._graph
 
     def wait_until(self, is_there: Callable[[], bool], timeout_sec: float | None) -> bool:
-        """Wait until `is_there()` is true of the graph, or the context ends; whether it is true then.
+        """Wait until `is_there()` is true of the graph, or the context ends; return whether it is true then.
+
+        The longest wait is `timeout_sec` seconds; None waits for ever, 0 or less does not wait.
 
         In virtual time nobody comes while this thread waits, the seconds are over at once; unless a host runs others.
         """
-        if self.time.hosted or (self.time.virtual and timeout_sec is not None):
-            until = None if timeout_sec is None else self.time.steady() + int(timeout_sec * 1e9)
-            self.time.wait_until(lambda: is_there() or not self.ok(), until)
-        else:
-            self.graph.wait_for(lambda: is_there() or not self.ok(), timeout_sec)
+        if timeout_sec is not None and timeout_sec <= 0:
+            if not is_there():
+                self.time.pass_on()
+            return is_there()
+
+        def holds() -> bool:
+            return is_there() or not self.ok()
+
+        until = None if timeout_sec is None else self.time.steady() + int(timeout_sec * 1e9)
+        self.time.wait_notified(holds, until, lambda seconds: self.graph.wait_for(holds, seconds))
         return is_there()
 
     def make_inbox(self, *, parked: bool = False) -> Inbox:
-        """Make what an executor of this context waits at; `parked` for what waits while no executor has it."""
-        return Inbox()
+        """Make the inbox of an executor of this context; `parked` for entities that no executor has."""
+        return self._platform.make_inbox(parked=parked)
 
     def make_pool(self, size: int) -> Executor:
-        """Make the threads in which callbacks of a multi-threaded executor run."""
-        from concurrent.futures import ThreadPoolExecutor  # late: it takes some milliseconds
+        """Make the pool of `size` threads in which callbacks of a multi-threaded executor run."""
+        return self._platform.make_pool(size)
 
-        return ThreadPoolExecutor(size, thread_name_prefix="robolink callbacks")
+    def make_driver(self, executor: Loop) -> Driver | None:
+        """Make the driver that runs the callbacks of `executor`; None if it runs them itself."""
+        return self._platform.make_driver(executor)
 
     def next_id(self) -> str:
-        """An id for a node or endpoint: the next number of one counter, as text, since the wire knows no numbers."""
+        """Return an id for a node or endpoint: the next number of one counter, as text."""
         return str(next(self._ids))
 
-    def look_after(self, inbox: Inbox) -> None:
-        """See to it that nothing piles up in an inbox while its owner is busy."""
-        if self.transport.threaded:
-            self._sweeper.add(inbox)
+    def look_after(self, inbox: Inbox, between_spins: Sweepable) -> None:
+        """Sweep an executor's `inbox` from another thread while its owner is busy, so that nothing piles up in it.
 
-    def let_go(self, inbox: Inbox) -> None:
-        """Look after it no longer."""
+        Over a transport without threads nobody else sends meanwhile. There `between_spins` is swept, which empties the
+        inbox only while a node is parked.
+        """
+        self._sweeper.add(inbox if self.transport.threaded else between_spins)
+
+    def let_go(self, inbox: Inbox, between_spins: Sweepable) -> None:
+        """Sweep `inbox` no longer, nor `between_spins`."""
         self._sweeper.remove(inbox)
+        self._sweeper.remove(between_spins)
 
     def get_domain_id(self) -> int:
-        """Give the domain: 0 to 232."""
+        """Return the domain, 0 to 232. Raises NotInitializedException before `init`."""
         if not self._initialized:
             raise NotInitializedException()
         return self._domain_id
 
     def track_node(self, node: Any) -> None:
-        """Remember a node, to destroy it when the context ends."""
+        """Note `node`, to destroy it when the context ends."""
         self._nodes[id(node)] = node
+        self._platform.adopt(node, self.arguments)
 
     def untrack_node(self, node: Any) -> None:
-        """Forget it."""
+        """Forget `node`, which is destroyed."""
         self._nodes.pop(id(node), None)
 
     # The end
 
     def ok(self) -> bool:
-        """Whether it is initialized and has not ended."""
+        """Return True from `init` until the end, by `shutdown` or a signal."""
         return self._ok
 
     @property
     def closed(self) -> bool:
-        """Whether `shutdown` has been called, which destroys the nodes and leaves the network."""
+        """True once `shutdown` has been called, which destroys the nodes and leaves the network."""
         return self._closed
 
     @property
     def ended_by(self) -> str:
-        """What has ended it, in words; '' when it has not begun or not ended."""
+        """Cause of the context's end, in words; '' if it has not begun or not ended."""
         if self.interrupted:
             return "a signal (Ctrl-C or SIGTERM)"
         return f"{imported_as()}.shutdown()" if self._closed else ""
@@ -216,7 +227,7 @@ class Context:
             return
         self.interrupted = True
         self._ok = False
-        _thread.start_new_thread(self._tell_now, ())  # threading's own start has locks, too
+        self._platform.run_aside(self._tell_now)
 
     def _tell_now(self) -> None:
         self._teller = _thread.get_ident()
@@ -264,10 +275,7 @@ class Context:
             with self._lock:
                 transport, self._transport = self._transport, None
             self._sweeper.close()
-            if self.time.virtual and not self.time.hosted:
-                from robolink import logging
-
-                logging.set_time_source(time.time_ns)
+            self._platform.end_logging(self.time)
             if transport is not None:
                 transport.close()
 

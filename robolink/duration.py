@@ -1,4 +1,4 @@
-"""A span of time in whole nanoseconds."""
+"""Duration: a span of time in whole nanoseconds."""
 
 from __future__ import annotations
 
@@ -16,10 +16,16 @@ _LIMIT = 2**63
 
 
 class Duration:
-    """A span of time, negative too: `Duration(seconds=0.5)`, `Duration(seconds=1, nanoseconds=5)`.
+    """Span of time, which may be negative: `Duration(seconds=0.5)`, `Duration(seconds=1, nanoseconds=5)`.
 
-    Both parts are added up and cut to whole nanoseconds. What does not fit in 64 signed bits (292 years)
-    raises `OverflowError`.
+    Both parts are added up and cut to whole nanoseconds.
+
+    Args:
+        seconds: Seconds, also with a fraction.
+        nanoseconds: Nanoseconds, which are added.
+
+    Raises:
+        OverflowError: if the span does not fit in 64 signed bits (292 years).
     """
 
     __slots__ = ("_nanoseconds",)
@@ -32,7 +38,7 @@ class Duration:
 
     @property
     def nanoseconds(self) -> int:
-        """The whole span in nanoseconds."""
+        """Whole span in nanoseconds."""
         return self._nanoseconds
 
     def __repr__(self) -> str:
@@ -82,7 +88,7 @@ class Duration:
         return self._nanoseconds <= other._nanoseconds
 
     def to_msg(self) -> DurationMsg:
-        """Give the message; its `nanosec` is never negative, so -1 ns is sec=-1, nanosec=999999999."""
+        """Return the message; its `nanosec` is never negative, so -1 ns is sec=-1, nanosec=999999999."""
         from robolink.interfaces.builtin_interfaces.msg import Duration as DurationMsg
 
         seconds, nanoseconds = divmod(self._nanoseconds, S_TO_NS)
@@ -90,7 +96,7 @@ class Duration:
 
     @classmethod
     def from_msg(cls, msg: DurationMsg) -> Duration:
-        """Read a `builtin_interfaces/msg/Duration`; anything else raises `TypeError`."""
+        """Return the duration of `msg`, a `builtin_interfaces/msg/Duration`. Raises TypeError for another message."""
         from robolink.interfaces.builtin_interfaces.msg import Duration as DurationMsg
 
         if not isinstance(msg, DurationMsg):
@@ -99,4 +105,4 @@ class Duration:
 
 
 Infinite = Duration(nanoseconds=_LIMIT - 1)
-"""Longer than any wait: DDS's and rmw's word for "for ever"."""
+"""Duration that stands for "for ever" in DDS and rmw; longer than any wait."""

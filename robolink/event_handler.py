@@ -1,4 +1,4 @@
-"""Events of publishers and subscriptions: who is at the other end, messages that were lost, types that differ.
+"""Events of publishers and subscriptions: a match at the other end, lost messages, types that differ.
 
 What can happen is what can happen under rmw_zenoh: there are no deadlines and no liveliness leases on this wire, and
 no two profiles are incompatible.
@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any, Protocol
 import msgspec
 
 from robolink.callback_groups import CallbackGroup
-from robolink.entity import NOTHING, Entity
 from robolink.exceptions import RobolinkError
 from robolink.qos import QoSPolicyKind
+from robolink.running.entity import NOTHING, Entity
 
 if TYPE_CHECKING:
-    from robolink.executors import Executor
+    from robolink.running.ports import Loop
 
 
 class UnsupportedEventTypeError(RobolinkError, RuntimeError):
@@ -28,7 +28,7 @@ class UnsupportedEventTypeError(RobolinkError, RuntimeError):
 
 
 class QoSPublisherEventType(Enum):
-    """What can happen to a publisher, numbered as in rcl."""
+    """Events of a publisher, numbered as in rcl."""
 
     RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
     RCL_PUBLISHER_LIVELINESS_LOST = 1
@@ -38,7 +38,7 @@ class QoSPublisherEventType(Enum):
 
 
 class QoSSubscriptionEventType(Enum):
-    """What can happen to a subscription, numbered as in rcl."""
+    """Events of a subscription, numbered as in rcl."""
 
     RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
     RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
@@ -53,25 +53,29 @@ EventType = QoSPublisherEventType | QoSSubscriptionEventType
 
 
 class CountedInfo(msgspec.Struct, frozen=True):
-    """How often something has happened, and how often since the callback was last called."""
+    """Count of an event, and its change since the callback was last called."""
 
     total_count: int = 0
+    """Number of times that it has happened."""
     total_count_change: int = 0
+    """Number of times since the callback was last called."""
 
 
 class MatchedInfo(CountedInfo, frozen=True):
-    """How many ends there have been at the other end, and how many there are now."""
+    """Count of matching endpoints: all so far, and those that are there now."""
 
     current_count: int = 0
+    """Number of matching endpoints that are there now."""
     current_count_change: int = 0
+    """Change of that number since the callback was last called."""
 
 
 class QoSMessageLostInfo(CountedInfo, frozen=True):
-    """Messages that were published and not received."""
+    """Count of messages that were published and not received."""
 
 
 class IncompatibleTypeInfo(CountedInfo, frozen=True):
-    """Ends of the same topic that use another type."""
+    """Count of endpoints of the same topic that use another type."""
 
 
 class QoSRequestedDeadlineMissedInfo(CountedInfo, frozen=True):
@@ -87,7 +91,10 @@ class QoSLivelinessLostInfo(CountedInfo, frozen=True):
 
 
 class QoSLivelinessChangedInfo(msgspec.Struct, frozen=True):
-    """Does not happen on this network."""
+    """Does not happen on this network; rclpy's fields `alive_count`, `not_alive_count` and their changes stay 0.
+
+    The changes are `alive_count_change` and `not_alive_count_change`.
+    """
 
     alive_count: int = 0
     not_alive_count: int = 0
@@ -96,7 +103,7 @@ class QoSLivelinessChangedInfo(msgspec.Struct, frozen=True):
 
 
 class QoSRequestedIncompatibleQoSInfo(CountedInfo, frozen=True):
-    """Does not happen on this network, where every profile suits every other."""
+    """Does not happen on this network, where every profile suits every other; `last_policy_kind` stays INVALID."""
 
     last_policy_kind: QoSPolicyKind = QoSPolicyKind.INVALID
 
@@ -114,21 +121,28 @@ _INFO: dict[EventType, type[CountedInfo]] = {
     QoSSubscriptionEventType.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: IncompatibleTypeInfo,
     QoSSubscriptionEventType.RCL_SUBSCRIPTION_MATCHED: QoSSubscriptionMatchedInfo,
 }
-"""The events that there are, each with what its callback gets."""
+"""Events that exist here, each with the type of its callback's argument."""
 
 
 class Parent(Protocol):
-    """What events happen to: a publisher or a subscription."""
+    """Owner of events: a publisher or a subscription."""
 
     @property
     def topic_name(self) -> str:
-        """The topic's fully qualified name."""
+        """Fully qualified name of the topic."""
 
 
 class EventHandler(Entity):
-    """Has an executor call `callback(info)` after something happened, once however often it did meanwhile.
+    """Entity that calls `callback(info)` in an executor after an event, once however often it happened meanwhile.
 
-    Raises UnsupportedEventTypeError (a RuntimeError) for an event that this network does not have.
+    Args:
+        callback_group: Group of the callback; None is none, so that it may run at any time.
+        callback: Function of the event's info, such as a QoSPublisherMatchedInfo.
+        event_type: Kind of the event.
+        parent_impl: Publisher or subscription.
+
+    Raises:
+        UnsupportedEventTypeError: (a RuntimeError) for an event that this network does not have.
     """
 
     def __init__(
@@ -148,14 +162,14 @@ class EventHandler(Entity):
         self.event_type = event_type
         self._callback = callback
         self.attach_late: Callable[[], Callable[[Entity], object] | None] = lambda: None
-        """Gives the node's function that has an executor run this, when a default callback is replaced."""
+        """Function that returns the node's function which attaches this, for a default callback that is replaced."""
         self._lock = threading.Lock()
         self._status = MatchedInfo()
         self._happened = False
 
     @property
     def callback(self) -> Callback:
-        """What is called; another one may take its place at any time."""
+        """Function that is called; another one may take its place at any time."""
         return self._callback
 
     @callback.setter
@@ -176,18 +190,18 @@ class EventHandler(Entity):
                 before.current_count_change + current,
             )
             self._happened = not self._destroyed
-        executor = self.executor  # another thread may take it away meanwhile
-        if executor is not None:
-            executor.post(self)
+        queue = self._queue_  # another thread may take it away meanwhile
+        if queue is not None:
+            queue.post(self)
 
-    def attach(self, executor: Executor, queued: int = 0) -> None:
+    def attach(self, executor: Loop, queued: int = 0) -> None:
         """Belong to this executor; what happened before counts."""
         super().attach(executor, queued)
         if self._happened and not queued:
-            executor.post(self)
+            executor._queue_.post(self)
 
     def take(self) -> Any:
-        """Give what has happened since the last time."""
+        """Return the info of what has happened since the last time, or NOTHING."""
         with self._lock:
             if not self._happened:
                 return NOTHING
@@ -201,7 +215,7 @@ class EventHandler(Entity):
         return self._callback(taken)
 
     def destroy(self) -> None:
-        """Call no more."""
+        """End the handler: its callback is not called any more."""
         self._destroyed, self._happened = True, False
         self.detach()
 
@@ -216,7 +230,7 @@ _OLDER_NAME = "QoSEventHandler is the older name of EventHandler: use that"
 
 
 class QoSEventHandler(EventHandler):
-    """The older name of EventHandler."""
+    """Older name of EventHandler, which takes the same `kwargs`."""
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         warnings.warn(_OLDER_NAME, DeprecationWarning, stacklevel=2)
@@ -228,23 +242,34 @@ class QoSEventHandler(EventHandler):
 
 
 def tell_handlers(handlers: Iterable[EventHandler], kinds: Container[EventType], total: int, current: int = 0) -> None:
-    """Tell the handlers of these kinds that it has happened."""
+    """Pass an event on to those handlers that are of its kind.
+
+    Args:
+        handlers: Handlers of a publisher or subscription.
+        kinds: Kinds of the event.
+        total: Number of times that it has happened.
+        current: Change of the number of endpoints that are there now.
+    """
     for handler in handlers:
         if handler.event_type in kinds:
             handler.happen(total, current)
 
 
 def with_callbacks(handlers: Iterable[EventHandler]) -> list[EventHandler]:
-    """Give those that an executor has something to do for."""
+    """Return those of the `handlers` that an executor has something to do for."""
     return [handler for handler in handlers if handler.callback is not _no_more_to_do]
 
 
 class PublisherEventCallbacks:
-    """The callbacks for a publisher's events, each called with one argument: what has happened.
+    """Callbacks for a publisher's events, each a function of one argument; None ignores the event.
 
-    `matched` gets a QoSPublisherMatchedInfo, `incompatible_type` an IncompatibleTypeInfo. `incompatible_qos` is never
-    called, and `deadline` and `liveliness` are refused by `create_publisher` with an UnsupportedEventTypeError. With
-    default callbacks the node warns of subscriptions with another type.
+    Args:
+        deadline: Refused by `create_publisher` with an UnsupportedEventTypeError: nothing enforces deadlines.
+        liveliness: Refused likewise.
+        incompatible_qos: Function of a QoSOfferedIncompatibleQoSInfo; never called, since all profiles can talk.
+        incompatible_type: Function of an IncompatibleTypeInfo: a subscription has another type.
+        matched: Function of a QoSPublisherMatchedInfo: a subscription has come or gone.
+        use_default_callbacks: True warns of subscriptions with another type, unless there is a callback for it.
     """
 
     def __init__(
@@ -267,7 +292,16 @@ class PublisherEventCallbacks:
     def create_event_handlers(
         self, callback_group: CallbackGroup | None, publisher: Parent, topic_name: str
     ) -> list[EventHandler]:
-        """Make a handler for each callback. Raises UnsupportedEventTypeError for an event that does not exist."""
+        """Make a handler for each callback.
+
+        Args:
+            callback_group: Group of the callbacks; None is none.
+            publisher: Publisher whose events they are.
+            topic_name: Fully qualified name of its topic; rclpy's, the publisher knows it.
+
+        Raises:
+            UnsupportedEventTypeError: (a RuntimeError) for an event that this network does not have.
+        """
         kind = QoSPublisherEventType
         callbacks = {
             kind.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: self.deadline,
@@ -281,12 +315,16 @@ class PublisherEventCallbacks:
 
 
 class SubscriptionEventCallbacks:
-    """The callbacks for a subscription's events, each called with one argument: what has happened.
+    """Callbacks for a subscription's events, each a function of one argument; None ignores the event.
 
-    `matched` gets a QoSSubscriptionMatchedInfo, `message_lost` a QoSMessageLostInfo, `incompatible_type` an
-    IncompatibleTypeInfo. `incompatible_qos` is never called, and `deadline` and `liveliness` are refused by
-    `create_subscription` with an UnsupportedEventTypeError. With default callbacks the node warns of publishers with
-    another type.
+    Args:
+        deadline: Refused by `create_subscription` with an UnsupportedEventTypeError: nothing enforces deadlines.
+        incompatible_qos: Function of a QoSRequestedIncompatibleQoSInfo; never called, since all profiles can talk.
+        liveliness: Refused as `deadline` is.
+        message_lost: Function of a QoSMessageLostInfo: messages did not arrive.
+        incompatible_type: Function of an IncompatibleTypeInfo: a publisher has another type.
+        matched: Function of a QoSSubscriptionMatchedInfo: a publisher has come or gone.
+        use_default_callbacks: True warns of publishers with another type, unless there is a callback for it.
     """
 
     def __init__(
@@ -311,7 +349,16 @@ class SubscriptionEventCallbacks:
     def create_event_handlers(
         self, callback_group: CallbackGroup | None, subscription: Parent, topic_name: str
     ) -> list[EventHandler]:
-        """Make a handler for each callback. Raises UnsupportedEventTypeError for an event that does not exist."""
+        """Make a handler for each callback.
+
+        Args:
+            callback_group: Group of the callbacks; None is none.
+            subscription: Subscription whose events they are.
+            topic_name: Fully qualified name of its topic; rclpy's, the subscription knows it.
+
+        Raises:
+            UnsupportedEventTypeError: (a RuntimeError) for an event that this network does not have.
+        """
         kind = QoSSubscriptionEventType
         callbacks = {
             kind.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: self.deadline,
@@ -326,7 +373,7 @@ class SubscriptionEventCallbacks:
 
 
 def warns_of_types(callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks) -> bool:
-    """Whether an end with another type is only to be warned about."""
+    """True if an endpoint with another type is only to be warned about, by these `callbacks`."""
     return callbacks.use_default_callbacks and not callbacks.incompatible_type
 
 

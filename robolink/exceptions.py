@@ -1,4 +1,4 @@
-"""Every error that robolink raises: one root, each also a subclass of the stdlib class one would catch.
+"""Exceptions of robolink, the common ones: one root, each also a subclass of the stdlib class one would catch.
 
 RobolinkError
 ├─ DocumentError (ValueError)            a YAML file or text that is not what it should be
@@ -8,7 +8,9 @@ RobolinkError
 │   └─ DecodeError                       bytes that are no message of this type
 ├─ WireError (ValueError)                a key, token or attachment that is not rmw_zenoh's
 ├─ TransportError (ConnectionError)      the network below
-│   └─ TransportClosedError              used after close
+│   ├─ TransportClosedError              used after close
+│   ├─ SecurityError (PermissionError)   what keys or rights do not allow
+│   └─ OverwrittenError                  a message in shared memory that its sender has overwritten
 ├─ NotFoundError (LookupError)           a node, config, type or topic that is not there
 │   └─ AmbiguousNameError                several that a short name may mean
 └─ rclpy's own, by their own names
@@ -20,22 +22,18 @@ import itertools
 import sys
 from collections.abc import Iterable
 
-from robolink.terminal import shown as shown  # what errors quote of others' text
-
 LONGEST_NAME, MOST_NAMES = 255, 2000
-"""How much is looked through for a name that may have been meant: each comparison takes time."""
-MOST_TOLD, MOST_MISTAKES = 20, 100
-"""How many of a file's mistakes are told, and how many are looked for."""
+"""Longest name, in letters, and most names that are compared for one that may have been meant: that takes time."""
 
 
 class RobolinkError(Exception):
-    """The root of all errors of robolink."""
+    """Root of all exceptions of robolink."""
 
 
 class DocumentError(RobolinkError, ValueError):
     """A YAML document is malformed or says what it cannot say; the text begins with file:line:column.
 
-    `message` is what stands behind that. Lines and columns count from 1; 0 is for what has none, '' for no file.
+    `message` is what stands behind that. `line` and `column` count from 1; 0 is for none, and `file` '' for no file.
     """
 
     def __init__(self, message: str, file: str = "", line: int = 0, column: int = 0) -> None:
@@ -72,8 +70,41 @@ class TransportClosedError(TransportError):
     """A transport was used after it had been closed."""
 
 
+class SecurityError(TransportError, PermissionError):
+    """Keys, certificates or rights do not allow it; the text names the enclave, what was asked for, and the rule."""
+
+
+class OverwrittenError(TransportError):
+    """A message that came through shared memory was overwritten by its sender before it was read.
+
+    Args:
+        attachment: Attachment of the message, which is intact; b"" if unknown.
+    """
+
+    def __init__(self, attachment: bytes = b"") -> None:
+        self.attachment = attachment
+        super().__init__("its sender had overwritten it in shared memory before it was read: this process stood still")
+
+
+class SessionReplacedError(TransportError):
+    """A call was under way when its session was replaced by another one: its answer cannot come any more."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "this machine's address or keys changed while the call was under way: its answer is lost, though the server"
+            " may have done what was asked; call again if that does no harm"
+        )
+
+
 class NotFoundError(RobolinkError, LookupError):
-    """Something was asked for by name and is not there; the text names what is near."""
+    """Something was asked for by name and is not there; the text names what is near.
+
+    Args:
+        kind: Word for what it is, such as "node".
+        name: Name that was asked for.
+        known: Names that there are.
+        where: Place that was searched; '' names none.
+    """
 
     def __init__(self, kind: str, name: str, known: Iterable[str] = (), where: str = "") -> None:
         self.kind, self.name = kind, name
@@ -82,7 +113,7 @@ class NotFoundError(RobolinkError, LookupError):
 
 
 class AmbiguousNameError(NotFoundError):
-    """Something was asked for by a short name that several have; the text gives their whole names."""
+    """Something was asked for by a short name that several have: `kind` and `name` of it, and the names `meant`."""
 
     def __init__(self, kind: str, name: str, meant: Iterable[str]) -> None:
         self.kind, self.name = kind, name
@@ -90,7 +121,7 @@ class AmbiguousNameError(NotFoundError):
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Return `` (did you mean 'x'?)`` for the known name closest to `name`, or nothing.
+    """Return `` (did you mean 'x'?)`` for that of the `known` names which is closest to `name`, or nothing.
 
     >>> nearest("wandr", ["wander", "follow"])
     " (did you mean 'wander'?)"
@@ -105,7 +136,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def closest(name: str, known: Iterable[str], alike: float = 0.6) -> str:
-    """Return the known name closest to `name`, or one that differs in capitals alone; '' if none is close.
+    """Return that of the `known` names closest to `name`, or one that differs in capitals alone; '' if none is close.
 
     `alike` is how much two names must agree, by difflib's ratio: 1 is the same.
     """
@@ -119,25 +150,13 @@ def closest(name: str, known: Iterable[str], alike: float = 0.6) -> str:
     return (found or [each for each in names if each.lower() == name.lower()] or [""])[0]
 
 
-def few(errors: Iterable[DocumentError], looked_for: int | None = None) -> list[DocumentError]:
-    """Return the first errors of a file, and in place of the others one that says how many they are.
-
-    No more than `looked_for` are counted, where finding each takes time.
-    """
-    found = list(itertools.islice(errors, looked_for))
-    if len(found) <= MOST_TOLD + 1:
-        return found
-    more = f"{len(found) - MOST_TOLD:,}" if looked_for is None or len(found) < looked_for else "many"
-    return [*found[:MOST_TOLD], DocumentError(f"and {more} more mistakes", found[MOST_TOLD].file)]
-
-
 def imported_as() -> str:
     """Return the name by which the program knows robolink: errors speak of `rclpy` to whoever wrote that."""
     return "rclpy" if sys.modules.get("rclpy", "") is sys.modules["robolink"] else "robolink"
 
 
 class NotInitializedException(RobolinkError, RuntimeError):
-    """robolink was used before `init()`, or after the end of its context by what `ended_by` names."""
+    """robolink was used before `init()`, or after its context's end by what `ended_by` names; for `message`."""
 
     def __init__(self, message: str | None = None, *, ended_by: str = "") -> None:
         why = f"{ended_by} has ended the context" if ended_by else f"{imported_as()}.init() has not been called"
@@ -157,7 +176,14 @@ class NodeNameNonExistentError(RobolinkError, RuntimeError, LookupError):
 
 
 class NameValidationException(RobolinkError, ValueError):
-    """A name of a node, topic, service or namespace breaks ROS 2's rules."""
+    """A name of a node, topic, service or namespace breaks ROS 2's rules.
+
+    Args:
+        name_type: Word for what is named, such as "topic name".
+        name: Name that is invalid.
+        error_msg: Rule that it breaks.
+        invalid_index: Index of the bad character.
+    """
 
     def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int) -> None:
         self.name_type, self.name, self.error_msg, self.invalid_index = (
@@ -172,35 +198,35 @@ class NameValidationException(RobolinkError, ValueError):
 
 
 class InvalidNamespaceException(NameValidationException):
-    """A namespace breaks ROS 2's rules."""
+    """A namespace, `name`, breaks the rule `error_msg` at `invalid_index`."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__("namespace", name, error_msg, invalid_index)
 
 
 class InvalidNodeNameException(NameValidationException):
-    """A node name breaks ROS 2's rules."""
+    """The `name` of a node breaks the rule `error_msg` at `invalid_index`."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__("node name", name, error_msg, invalid_index)
 
 
 class InvalidTopicNameException(NameValidationException):
-    """A topic name breaks ROS 2's rules."""
+    """The `name` of a topic breaks the rule `error_msg` at `invalid_index`."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__("topic name", name, error_msg, invalid_index)
 
 
 class InvalidServiceNameException(NameValidationException):
-    """A service name breaks ROS 2's rules."""
+    """The `name` of a service breaks the rule `error_msg` at `invalid_index`."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__("service name", name, error_msg, invalid_index)
 
 
 class ParameterException(RobolinkError):
-    """The root of the errors about parameters."""
+    """Root of the exceptions about parameters: `error_msg`, the names of the `parameters`, and further `args`."""
 
     def __init__(self, error_msg: str, parameters: str | Iterable[str], *args: object) -> None:
         self.parameters = parameters
@@ -208,7 +234,10 @@ class ParameterException(RobolinkError):
 
 
 class ParameterNotDeclaredException(ParameterException, LookupError):
-    """A parameter was read or set before it was declared; of those `known`, the text names the nearest."""
+    """One of `parameters` was used before it was declared; of those `known`, the text names the nearest.
+
+    Further `args` are Exception's.
+    """
 
     def __init__(self, parameters: str | Iterable[str], *args: object, known: Iterable[str] = ()) -> None:
         names = [parameters] if isinstance(parameters, str) else list(parameters)
@@ -218,21 +247,27 @@ class ParameterNotDeclaredException(ParameterException, LookupError):
 
 
 class ParameterAlreadyDeclaredException(ParameterException):
-    """A parameter was declared twice."""
+    """The `parameters` were declared twice; further `args` are Exception's."""
 
     def __init__(self, parameters: str | Iterable[str], *args: object) -> None:
         super().__init__("Parameter(s) already declared", parameters, *args)
 
 
 class InvalidParameterException(ParameterException, ValueError):
-    """A parameter's name breaks ROS 2's rules."""
+    """A `parameter_name` breaks ROS 2's rules."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__("Invalid parameter name", parameter_name)
 
 
 class InvalidParameterTypeException(ParameterException, TypeError):
-    """A parameter was given a value of another type than it was declared with."""
+    """A parameter was given a value of another type than it was declared with.
+
+    Args:
+        desired_parameter: Parameter that was to be set, or its name.
+        expected_type: Name of the type that it was declared with.
+        *args: Further arguments of Exception.
+    """
 
     def __init__(self, desired_parameter: object, expected_type: str, *args: object) -> None:
         name = getattr(desired_parameter, "name", str(desired_parameter))
@@ -248,7 +283,7 @@ class InvalidParameterTypeException(ParameterException, TypeError):
 
 
 def _cure(found: str, expected: str, value: object) -> str:
-    """Say how to write what was probably meant: YAML makes an integer of `1`, and of `0x10` too."""
+    """Return how to write what was probably meant: YAML makes an integer of `1`, and of `0x10` too."""
     if (found, expected) == ("INTEGER", "DOUBLE"):
         return f": write {value}.0"
     if expected == "STRING" and "ARRAY" not in found:
@@ -257,7 +292,14 @@ def _cure(found: str, expected: str, value: object) -> str:
 
 
 class InvalidParameterValueException(ParameterException, ValueError):
-    """A parameter's value was refused by its range or by a callback."""
+    """A value was refused by the range of its `parameter`, or by a callback.
+
+    Args:
+        parameter: Name of the parameter.
+        value: Value that was refused.
+        reason: Reason in words; '' for none.
+        *args: Further arguments of Exception.
+    """
 
     def __init__(self, parameter: str, value: object, reason: str, *args: object) -> None:
         message = f"Invalid parameter value ({value}) for parameter"
@@ -265,14 +307,14 @@ class InvalidParameterValueException(ParameterException, ValueError):
 
 
 class ParameterImmutableException(ParameterException):
-    """A read-only parameter was set."""
+    """A read-only parameter, `parameter_name`, was set."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__("Attempted to modify read-only parameter", parameter_name)
 
 
 class ParameterUninitializedException(ParameterException, ValueError):
-    """A statically typed parameter was read before it had a value."""
+    """A statically typed parameter, `parameter_name`, was read before it had a value."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__("The parameter is not initialized", parameter_name)
@@ -285,7 +327,7 @@ class ExternalShutdownException(RobolinkError):
 class InterruptedByUser(KeyboardInterrupt, ExternalShutdownException):
     """`spin` was ended by Ctrl-C or SIGTERM: programs for Humble catch the first parent, programs for Jazzy the second.
 
-    Anywhere else Ctrl-C is a KeyboardInterrupt alone, which `except Exception` lets pass.
+    Anywhere else Ctrl-C is a KeyboardInterrupt alone, which `except Exception` lets pass. `text` is that of the error.
     """
 
     def __init__(self, text: str = "interrupted") -> None:

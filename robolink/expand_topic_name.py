@@ -1,24 +1,33 @@
-"""From the name that a user wrote to the fully qualified name of a topic or service."""
+"""Expansion of the name that a user wrote to the fully qualified name of a topic or service."""
 
 from __future__ import annotations
 
 import re
 
 from robolink.exceptions import InvalidTopicNameException, nearest
-from robolink.names import join
+from robolink.text.names import join
 from robolink.validate_namespace import validate_namespace
 from robolink.validate_node_name import validate_node_name
 from robolink.validate_topic_name import validate_topic_name
 
 
 def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:
-    """Resolve '~' (the node's own name), `{node}`, `{ns}` and `{namespace}`, and prepend the namespace.
-
-    Raises the exception of whichever name is bad, each of them a `ValueError`; an unknown substitution is a
-    bad topic name. The result may still be no full topic name: see `validate_full_topic_name`.
+    """Return the fully qualified name of a topic or service, without remapping.
 
     >>> expand_topic_name("~/scan", "lidar", "/robot")
     '/robot/lidar/scan'
+
+    The result may still be no full topic name: see `validate_full_topic_name`.
+
+    Args:
+        topic_name: Absolute (`/a`), relative (`a`) or private (`~/a`) name; `{node}`, `{ns}` and `{namespace}` are
+            replaced.
+        node_name: Name of the node, without namespace.
+        node_namespace: Namespace of the node, '/' for the root.
+
+    Raises:
+        InvalidTopicNameException: (a ValueError) if the topic's name is against ROS 2's rules, or has an unknown
+            substitution; InvalidNodeNameException and InvalidNamespaceException for those of the node.
     """
     validate_topic_name(topic_name)
     validate_node_name(node_name)

@@ -1,4 +1,4 @@
-"""Guard conditions: let any thread have a callback run by the executor."""
+"""Guard conditions: events that any thread triggers, and whose callback an executor runs."""
 
 from __future__ import annotations
 
@@ -6,15 +6,21 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup
-from robolink.entity import NOTHING, Entity
+from robolink.running.entity import NOTHING, Entity
 
 if TYPE_CHECKING:
     from robolink.context import Context
-    from robolink.executors import Executor
+    from robolink.running.ports import Loop
 
 
 class GuardCondition(Entity):
-    """Runs its callback once after it was triggered, however often."""
+    """Event whose callback runs once after it was triggered, however often; see `Node.create_guard_condition`.
+
+    Args:
+        callback: Function, or coroutine function, without arguments; None for an event that only wakes the executor.
+        callback_group: Group of the callback; None is none, so that it may run at any time.
+        context: Context, as in rclpy; that of its executor counts.
+    """
 
     def __init__(
         self,
@@ -27,22 +33,22 @@ class GuardCondition(Entity):
         self._triggered = False
 
     def trigger(self) -> None:
-        """Have the callback called. From any thread."""
+        """Trigger the callback, from any thread. Raises InvalidHandle after `destroy`."""
         if self._destroyed:
             raise self._gone_("the guard condition")
         self._triggered = True
-        executor = self.executor  # another thread may take it away meanwhile
-        if executor is not None:
-            executor.post(self)
+        queue = self._queue_  # another thread may take it away meanwhile
+        if queue is not None:
+            queue.post(self)
 
-    def attach(self, executor: Executor, queued: int = 0) -> None:
+    def attach(self, executor: Loop, queued: int = 0) -> None:
         """Belong to this executor; an earlier trigger counts."""
         super().attach(executor, queued)
         if self._triggered and not queued:
-            executor.post(self)
+            executor._queue_.post(self)
 
     def take(self) -> Any:
-        """Be called, if triggered."""
+        """Return True, once, if the condition was triggered; else NOTHING."""
         triggered, self._triggered = self._triggered, False
         return True if triggered else NOTHING
 
@@ -51,6 +57,6 @@ class GuardCondition(Entity):
         return self.callback() if self.callback is not None else None
 
     def destroy(self) -> None:
-        """Call no more."""
+        """End the guard condition: its callback is not called any more."""
         self._destroyed = True
         self.detach()

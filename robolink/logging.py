@@ -1,4 +1,4 @@
-"""Logging as rclpy has it: named loggers with levels, on the console and wherever else handlers take it."""
+"""Logging as in rclpy: named loggers with levels, whose lines go to the console and to handlers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _root_logger = RcutilsLogger()
 
 
 def get_logger(name: str) -> RcutilsLogger:
-    """Give a new logger of that name; levels belong to names, filters to the logger object."""
+    """Return a new logger called `name`; levels belong to names, filters to the object. Raises ValueError for ''."""
     if not name:
         raise ValueError("Logger name must not be empty.")
     return _root_logger.get_child(name)
@@ -58,41 +58,47 @@ def clear_config() -> None:
 
 
 def set_logger_level(name: str, level: int | LoggingSeverity, detailed_error: bool = False) -> None:
-    """Set the level of the logger called `name`, whether it exists or not; '' is the root.
+    """Set the level of a logger, also of one that does not exist yet.
 
-    Raises `ValueError` for a number that is no severity. `detailed_error` is rclpy's and changes nothing.
+    Args:
+        name: Name of the logger; '' is the root.
+        level: Least severity that is logged; UNSET takes that of the nearest ancestor.
+        detailed_error: rclpy's; changes nothing.
+
+    Raises:
+        ValueError: if `level` is no severity.
     """
     levels.set(name, LoggingSeverity(level))
 
 
 def get_logger_effective_level(name: str) -> LoggingSeverity:
-    """Give the level that counts for a name: its own, or its nearest ancestor's."""
+    """Return the level that counts for the logger `name`: its own, or its nearest ancestor's."""
     return levels.effective(name)
 
 
 def get_logger_level(name: str) -> LoggingSeverity:
-    """Give the level that was set for a name, UNSET where it inherits."""
+    """Return the level that was set for the logger `name`, UNSET if it inherits one."""
     return levels.get(name)
 
 
 def get_logging_directory() -> Path:
-    """Give the folder for log files: $ROS_LOG_DIR, or $ROS_HOME/log, or ~/.ros/log."""
+    """Return the folder for log files: $ROS_LOG_DIR, or $ROS_HOME/log, or ~/.ros/log."""
     chosen = os.environ.get("ROS_LOG_DIR")
     return (Path(chosen) if chosen else Path(os.environ.get("ROS_HOME") or "~/.ros", "log")).expanduser()
 
 
 def add_handler(handler: Handler) -> None:
-    """Give every log line to `handler(record)` too, in the thread that logs."""
+    """Pass every log line to `handler(record)` too, in the thread that logs."""
     output.add(handler)
 
 
 def remove_handler(handler: Handler) -> None:
-    """Stop giving log lines to a handler; one that was never added is no error."""
+    """Pass log lines to `handler` no more; one that was never added is no error."""
     output.remove(handler)
 
 
 def set_console_handler(handler: Handler | None) -> None:
-    """Put another handler in the console's place, or silence it with None."""
+    """Replace the console by `handler`, or silence it with None."""
     output.console = handler
 
 

@@ -1,4 +1,4 @@
-"""The two services by which others read and set the levels of a process's loggers."""
+"""Services by which others read and set the levels of a process's loggers."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from robolink import logging
 from robolink.impl.logging_severity import LoggingSeverity
 from robolink.interfaces.rcl_interfaces.msg import LoggerLevel, SetLoggerLevelsResult
+from robolink.node_parts.request_limit import Refusal, look_at, no_room
 from robolink.qos import qos_profile_services_default
-from robolink.request_limit import Refusal, look_at, no_room
 
 if TYPE_CHECKING:
     from robolink.interfaces.rcl_interfaces import srv
-    from robolink.node import Node
+    from robolink.node_parts.ports import ServingNode
 
     Get: TypeAlias = srv.GetLoggerLevels
     Set: TypeAlias = srv.SetLoggerLevels
@@ -24,12 +24,12 @@ NO_LEVEL = "Failed reason: Invalid logger level."
 
 
 class LoggingService:
-    """Serves ``~/get_logger_levels`` and ``~/set_logger_levels``, for all loggers of the process.
+    """Server of `~/get_logger_levels` and `~/set_logger_levels` of `node`, for all loggers of the process.
 
     A logger that has no level of its own is UNSET, also where there is none of that name.
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: ServingNode) -> None:
         from robolink.interfaces.rcl_interfaces import srv  # late: few nodes serve this
 
         services: list[tuple[str, type[Any], Callable[[Any, Any], Any], Refusal]] = [

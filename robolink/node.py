@@ -1,48 +1,49 @@
-"""The node: it owns publishers, subscriptions, services, clients, timers and parameters, and decides nothing."""
+"""Node: the owner of publishers, subscriptions, services, clients, timers and parameters under one name."""
 
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from types import FunctionType
+from typing import TYPE_CHECKING, Any
 
-from robolink import rosout
-from robolink.arguments import Arguments, parse_arguments
+from robolink.arguments.command_line import Arguments, parse_arguments
+from robolink.arguments.remapping import RemapKind, resolve_name
 from robolink.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-from robolink.client import Client
+from robolink.client import Client as Client
 from robolink.clock import Clock, ROSClock
 from robolink.context import Context
-from robolink.disagreement import Disagreements
-from robolink.endpoint import Owner
-from robolink.entity import Entity
-from robolink.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from robolink.event_handler import PublisherEventCallbacks as PublisherEventCallbacks
+from robolink.event_handler import SubscriptionEventCallbacks as SubscriptionEventCallbacks
 from robolink.exceptions import NodeNameNonExistentError as NodeNameNonExistentError
 from robolink.exceptions import NotInitializedException
 from robolink.expand_topic_name import expand_topic_name
-from robolink.guard_condition import GuardCondition
+from robolink.graph.endpoint import Owner
+from robolink.graph.type_mismatch import Disagreements
+from robolink.guard_condition import GuardCondition as GuardCondition
 from robolink.impl.rcutils_logger import RcutilsLogger
 from robolink.interfaces.rcl_interfaces.msg import Log, ParameterEvent
 from robolink.logging import get_logger
-from robolink.message import Message
-from robolink.node_entities import NodeEntities
-from robolink.node_graph import NodeGraph
-from robolink.node_parameters import NodeParameters
+from robolink.node_parts import rosout
+from robolink.node_parts.creation import NodeCreation
+from robolink.node_parts.parameters import NodeParameters
 from robolink.parameter import Parameter
-from robolink.parameter_rules import WrittenParameter
 from robolink.parameter_service import ParameterService
+from robolink.parameters.rules import WrittenParameter
 from robolink.publisher import Publisher
 from robolink.qos import (
     QoSProfile,
     qos_profile_parameter_events,
     qos_profile_rosout_default,
-    qos_profile_services_default,
 )
-from robolink.remapping import RemapKind, resolve_name
-from robolink.service import Service
-from robolink.subscription import Subscription
+from robolink.qos import qos_profile_services_default as qos_profile_services_default
+from robolink.running.entity import Entity
+from robolink.service import Service as Service
+from robolink.subscription import Subscription as Subscription
 from robolink.time_source import TimeSource
-from robolink.timer import Rate, Timer, period_ns
+from robolink.timer import Rate as Rate
+from robolink.timer import Timer as Timer
 from robolink.type_description_service import TypeDescriptionService
+from robolink.type_support import MsgT as MsgT
 from robolink.utilities import get_default_context
 from robolink.validate_namespace import validate_namespace
 from robolink.validate_node_name import validate_node_name
@@ -52,15 +53,54 @@ if TYPE_CHECKING:
     from robolink.executors import Executor
     from robolink.qos_overriding_options import QoSOverridingOptions
 
-MsgT = TypeVar("MsgT", bound=Message)
-EntityT = TypeVar("EntityT", bound=Entity)
 HIDDEN_NODE_PREFIX = "_"
+"""First character of the names of nodes that tools do not list."""
+
+# What Node has beyond rclpy's names is spelled `_so_`, as `enum` does it: a subclass is free to use any other name.
 
 
-class Node(NodeParameters, NodeGraph, NodeEntities):
-    """A participant of the system: subclass it, or take it as it is.
+class Node(NodeParameters, NodeCreation):
+    """Participant of a ROS system; subclass it, or use it as it is.
 
-    What it has beyond rclpy's names is spelled `_so_`, as `enum` does it: a subclass is free to use any other name.
+        class Talker(Node):
+            def __init__(self) -> None:
+                super().__init__("talker")
+                self.publisher = self.create_publisher(String, "chatter", 10)
+                self.create_timer(0.5, self.on_timer)
+
+            def on_timer(self) -> None:
+                self.publisher.publish(String(data="hello"))
+
+    Its callbacks run while an executor spins it: `rclpy.spin(node)`, or `executor.add_node(node)` and
+    `executor.spin()`. `destroy_node` ends it; so do the end of its context and of a `with` block.
+
+    Args:
+        node_name: Name without namespace: letters, digits and underscores. The ROS argument `-r __node:=name`
+            replaces it.
+        context: Context to live in, which must be initialized; None is the default one, that of `rclpy.init`.
+        cli_args: Command line for this node alone, such as `["--ros-args", "-r", "chatter:=news"]`. It goes before
+            the context's arguments. None adds nothing.
+        namespace: Prefix of the node's name and of its relative topics, with or without the leading slash; None is
+            the root. The ROS argument `-r __ns:=/name` replaces it.
+        use_global_arguments: False ignores the context's ROS arguments (those of the program's command line).
+        enable_rosout: True publishes what the node logs on /rosout, unless the arguments say
+            `--disable-rosout-logs`.
+        start_parameter_services: True starts the six services by which others read and set parameters
+            (`~/get_parameters` ...).
+        parameter_overrides: Values that go before the defaults with which the node declares its parameters, and
+            before those of the command line and of parameter files.
+        allow_undeclared_parameters: True lets parameters be set that were never declared; reading one that does not
+            exist then returns one without a value.
+        automatically_declare_parameters_from_overrides: True declares every override at once, with its own type.
+        enable_logger_service: True starts the services that read and set the levels of loggers
+            (`~/get_logger_levels`, `~/set_logger_levels`).
+
+    Raises:
+        NotInitializedException: (a RuntimeError) if the context is not initialized, or has ended.
+        InvalidNodeNameException: (a ValueError) if the name is against ROS 2's rules; InvalidNamespaceException for
+            the namespace.
+        InvalidROSArgsError: (a ValueError) if `cli_args` cannot be read; UnknownROSArgsError for flags that do not
+            exist.
     """
 
     def __init__(
@@ -105,8 +145,10 @@ class Node(NodeParameters, NodeGraph, NodeEntities):
 
     def _init_own_(self) -> None:
         self._executor_: weakref.ReferenceType[Executor] | None = None
+        self._is_parked_ = False
+        """True while that executor keeps the entities only for the next spin, and the node belongs to none."""
         self._queued_: list[Entity] = []
-        """What was ready when the last executor let go of this node, in order."""
+        """Entities that were ready when the last executor let go of this node, in order."""
         self._rosout_: Publisher[Log] | None = None  # none of the user's: `publishers` does not list it
         self._init_entities_()
         self._default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
@@ -145,7 +187,7 @@ class Node(NodeParameters, NodeGraph, NodeEntities):
 
     def _announce_(self) -> None:
         context = self._context
-        enclave = self._arguments_.enclave or "/"
+        enclave = context.transport.enclave or self._arguments_.enclave or "/"
         identity = (context.next_id(), enclave, self._namespace_, self._name_)
         self._owner_ = Owner(context, *identity, Disagreements(self._logger.name))
         token = NodeToken(context.get_domain_id(), context.transport.session_id, *identity)
@@ -160,25 +202,41 @@ class Node(NodeParameters, NodeGraph, NodeEntities):
         return overrides
 
     def get_name(self) -> str:
-        """The node's name, remapped."""
+        """Return the node's name after remapping, without its namespace."""
         return self._name_
 
     def get_namespace(self) -> str:
-        """The node's namespace, remapped, with its leading slash."""
+        """Return the node's namespace after remapping, with its leading slash; '/' is the root."""
         return self._namespace_
 
     def get_fully_qualified_name(self) -> str:
-        """Namespace and name."""
+        """Return namespace and name, such as `/arm/driver`."""
         return f"{self._namespace_.rstrip('/')}/{self._name_}"
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """Give the full name of a topic, remapped. Raises InvalidTopicNameException."""
+        """Return the fully qualified name of a topic.
+
+        Args:
+            topic: Absolute (`/a`), relative (`a`) or private (`~/a`) name; `{node}` and `{ns}` are replaced.
+            only_expand: True leaves out the remapping rules of the command line.
+
+        Raises:
+            InvalidTopicNameException: (a ValueError) if the name is against ROS 2's rules.
+        """
         if only_expand:
             return expand_topic_name(topic, self._name_, self._namespace_)
         return resolve_name(self._arguments_.remap_rules, RemapKind.TOPIC, topic, self._name_, self._namespace_)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """Give the full name of a service, remapped. Raises InvalidServiceNameException."""
+        """Return the fully qualified name of a service.
+
+        Args:
+            service: Absolute (`/a`), relative (`a`) or private (`~/a`) name; `{node}` and `{ns}` are replaced.
+            only_expand: True leaves out the remapping rules of the command line.
+
+        Raises:
+            InvalidServiceNameException: (a ValueError) if the name is against ROS 2's rules.
+        """
         if only_expand:
             return expand_topic_name(service, self._name_, self._namespace_)
         return resolve_name(self._arguments_.remap_rules, RemapKind.SERVICE, service, self._name_, self._namespace_)
@@ -191,18 +249,18 @@ class Node(NodeParameters, NodeGraph, NodeEntities):
 
     @property
     def context(self) -> Context:
-        """The context that it lives in."""
+        """Context of the node."""
         return self._context
 
     @property
     def default_callback_group(self) -> CallbackGroup:
-        """The group of callbacks that were given none."""
+        """Callback group of all that is created without one: mutually exclusive, one callback at a time."""
         return self._default_callback_group
 
     @property
     def executor(self) -> Executor | None:
-        """The executor that it was added to."""
-        return None if self._executor_ is None else self._executor_()
+        """Executor that runs the node's callbacks; None if it was added to none. Setting it moves the node."""
+        return None if self._is_parked_ or self._executor_ is None else self._executor_()
 
     @executor.setter
     def executor(self, executor: Executor | None) -> None:
@@ -213,150 +271,40 @@ class Node(NodeParameters, NodeGraph, NodeEntities):
             current.remove_node(self)
         self._belong_to_(executor if executor is not None and executor.add_node(self) else None)
 
+    @property
+    def _attached_to_(self) -> Executor | None:
+        """The executor that the node's entities are attached to: also while it is parked there."""
+        return None if self._executor_ is None else self._executor_()
+
     def _belong_to_(self, executor: Executor | None) -> None:
-        """Be told by an executor that it has this node from now on, or no longer."""
+        """Note the executor that has this node from now on; None for none."""
         self._executor_ = None if executor is None else weakref.ref(executor)
 
     def get_clock(self) -> Clock:
-        """The clock of this node: it follows /clock under use_sim_time."""
+        """Return the node's clock: a ROSClock, which follows /clock while the parameter `use_sim_time` is true."""
         return self._clock
 
     def get_logger(self) -> RcutilsLogger:
-        """The logger that carries the node's name."""
+        """Return the logger with the node's full name, dots for slashes; its lines go to the console and /rosout."""
         return self._logger
 
     def _on_parameter_event_(self, event: ParameterEvent) -> None:
         self._parameter_events_.publish(event)
 
-    # Making
-
-    def create_publisher(
-        self,
-        msg_type: type[MsgT],
-        topic: str,
-        qos_profile: QoSProfile | int,
-        *,
-        callback_group: CallbackGroup | None = None,
-        event_callbacks: PublisherEventCallbacks | None = None,
-        qos_overriding_options: QoSOverridingOptions | None = None,
-        publisher_class: type[Publisher[MsgT]] = Publisher,
-    ) -> Publisher[MsgT]:
-        """Make a publisher. A number as QoS is the depth of a reliable, volatile KEEP_LAST profile.
-
-        The callback group is that of the event callbacks. `qos_overriding_options` say which policies parameters may
-        change. Raises UnsupportedEventTypeError (a RuntimeError) for an event that this network does not have, and
-        InvalidQosOverridesError (a RuntimeError) for a parameter that gives no profile.
-        """
-        name = self.resolve_topic_name(topic)
-        publisher = publisher_class(
-            self._owner_,
-            msg_type,
-            name,
-            self._overridden_(Publisher, name, _qos(qos_profile), qos_overriding_options),
-            event_callbacks=event_callbacks,
-            callback_group=callback_group or self._default_callback_group,
-        )
-        self._keep_(publisher, self._publishers)
-        self._attach_handlers_(publisher.event_handlers)
-        return publisher
-
-    def create_subscription(
-        self,
-        msg_type: type[MsgT],
-        topic: str,
-        callback: Callable[..., Any],
-        qos_profile: QoSProfile | int,
-        *,
-        callback_group: CallbackGroup | None = None,
-        event_callbacks: SubscriptionEventCallbacks | None = None,
-        qos_overriding_options: QoSOverridingOptions | None = None,
-        raw: bool = False,
-    ) -> Subscription[MsgT]:
-        """Make a subscription. `callback` takes the message, or the message and its MessageInfo; bytes if `raw`.
-
-        `qos_overriding_options` say which policies parameters may change. Raises UnsupportedEventTypeError (a
-        RuntimeError) for an event that this network does not have, and InvalidQosOverridesError (a RuntimeError) for a
-        parameter that gives no profile.
-        """
-        group = callback_group or self._default_callback_group
-        name = self.resolve_topic_name(topic)
-        qos = self._overridden_(Subscription, name, _qos(qos_profile), qos_overriding_options)
-        made = Subscription(self._owner_, msg_type, name, callback, group, qos, raw, event_callbacks)
-        self._add_subscription_(made)
-        return made
-
     def _overridden_(
         self, kind: type[Any], topic: str, qos: QoSProfile, options: QoSOverridingOptions | None
     ) -> QoSProfile:
-        """Give the profile with what parameters say of it, where options ask for such parameters."""
+        """Return the profile with the policies that parameters override, where options allow them."""
         if options is None:
             return qos
         from robolink.qos_overriding_options import overridden  # late: few nodes ask
 
         return overridden(kind, self, topic, qos, options)
 
-    def create_service(
-        self,
-        srv_type: type[Any],
-        srv_name: str,
-        callback: Callable[[Any, Any], Any],
-        *,
-        qos_profile: QoSProfile = qos_profile_services_default,
-        callback_group: CallbackGroup | None = None,
-    ) -> Service:
-        """Make a service. ``callback(request, response)`` returns the response."""
-        group = callback_group or self._default_callback_group
-        name = self.resolve_service_name(srv_name)
-        return self._add_(Service(self._owner_, srv_type, name, callback, group, qos_profile), self._services)
-
-    def create_client(
-        self,
-        srv_type: type[Any],
-        srv_name: str,
-        *,
-        qos_profile: QoSProfile = qos_profile_services_default,
-        callback_group: CallbackGroup | None = None,
-    ) -> Client:
-        """Make a client."""
-        group = callback_group or self._default_callback_group
-        name = self.resolve_service_name(srv_name)
-        return self._add_(Client(self._owner_, srv_type, name, qos_profile, group), self._clients)
-
-    def create_timer(
-        self,
-        timer_period_sec: float,
-        callback: Callable[..., Any] | None,
-        callback_group: CallbackGroup | None = None,
-        clock: Clock | None = None,
-        autostart: bool = True,
-    ) -> Timer:
-        """Make a timer that calls `callback` every `timer_period_sec` seconds of the node's clock.
-
-        Raises ValueError for a period that is none, TypeError for what cannot be called.
-        """
-        group = callback_group or self._default_callback_group
-        period = period_ns(timer_period_sec)
-        timer = Timer(callback, group, period, clock or self._clock, context=self._context, autostart=autostart)
-        return self._add_(timer, self._timers)
-
-    def create_guard_condition(
-        self, callback: Callable[[], Any], callback_group: CallbackGroup | None = None
-    ) -> GuardCondition:
-        """Make a guard condition: whoever triggers it has `callback` run by the executor."""
-        group = callback_group or self._default_callback_group
-        return self._add_(GuardCondition(callback, group, context=self._context), self._guards)
-
-    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
-        """Make a rate, `frequency` in Hz. Raises ValueError unless it is above 0."""
-        if frequency <= 0:
-            raise ValueError("frequency must be > 0")
-        timer = self.create_timer(1.0 / frequency, _until_its_rate, callback_group=self._rate_group, clock=clock)
-        return Rate(timer, context=self._context)
-
     def destroy_node(self) -> None:
-        """Undeclare all that it has, and itself. Safe to call twice."""
+        """Destroy all that the node has, and leave the graph and the executor. Safe to call twice."""
         self._destroyed = True
-        executor = self.executor
+        executor = self._attached_to_
         if executor is not None:
             executor.remove_node(self)
         self._context.given_parameters.look(self)
@@ -382,15 +330,13 @@ class Node(NodeParameters, NodeGraph, NodeEntities):
         self.destroy_node()
 
 
-def _until_its_rate() -> None:
-    """Do nothing when a rate's timer is due before there is the rate."""
+def _speak_as_node() -> None:
+    """Name the public methods of Node's parts as Node's: errors, help and debuggers know no NodeCreation."""
+    parts = [each for each in Node.__mro__ if each.__module__.startswith("robolink.node_parts.")]
+    for part in parts:
+        for name, method in vars(part).items():
+            if isinstance(method, FunctionType) and not name.startswith("_"):
+                method.__module__, method.__qualname__ = __name__, f"Node.{name}"
 
 
-def _qos(profile: QoSProfile | int) -> QoSProfile:
-    if isinstance(profile, QoSProfile):
-        return profile
-    if isinstance(profile, int) and not isinstance(profile, bool):
-        if profile < 0:
-            raise ValueError("history depth must be greater than or equal to zero")
-        return QoSProfile(depth=profile)
-    raise TypeError(f"Expected QoSProfile or int, but received {type(profile)!r}")
+_speak_as_node()

@@ -1,4 +1,4 @@
-"""A parameter of a node: its name, its type and its value, and how they travel in messages and files."""
+"""Parameters: names with typed values, and their conversion to and from messages and files."""
 
 from __future__ import annotations
 
@@ -15,20 +15,26 @@ from robolink.interfaces.rcl_interfaces.msg import ParameterType, ParameterValue
 PARAMETER_SEPARATOR_STRING = "."
 
 AllowableParameterValue: TypeAlias = Any
-"""None, bool, int, float, str, or a list, tuple or array of one of: bytes (of length 1), bool, int, float, str."""
+"""Value of a parameter: None, bool, int, float, str, or a list, tuple or array of bytes, bool, int, float or str."""
 
 AllowableParameterValueT = TypeVar("AllowableParameterValueT")
 
 
 class Parameter(Generic[AllowableParameterValueT]):
-    """A name and a value, which do not change: `Parameter("speed", value=0.3)`.
+    """Name with a typed value, immutable: `Parameter("speed", value=0.3)`.
 
-    The type follows from the value. Where both are given they must agree (`ValueError` otherwise); a value of no
-    parameter type, or a `type_` that is no `Parameter.Type`, is a `TypeError`.
+    Args:
+        name: Name of the parameter; dots nest.
+        type_: Type of the value; None takes it from the value.
+        value: Value: None, bool, int, float, str, or a list of bool, int, float, str or of bytes of length 1.
+
+    Raises:
+        ValueError: if type and value do not agree.
+        TypeError: if the value is of no parameter's type, or `type_` is no Parameter.Type.
     """
 
     class Type(IntEnum):
-        """What a parameter can hold, numbered as in rcl_interfaces/msg/ParameterType."""
+        """Types of parameters, numbered as in rcl_interfaces/msg/ParameterType."""
 
         NOT_SET = ParameterType.PARAMETER_NOT_SET
         BOOL = ParameterType.PARAMETER_BOOL
@@ -43,7 +49,7 @@ class Parameter(Generic[AllowableParameterValueT]):
 
         @classmethod
         def from_parameter_value(cls, parameter_value: AllowableParameterValue) -> Parameter.Type:
-            """Give the type of a value; an empty list counts as BYTE_ARRAY. Raises `TypeError` for all else."""
+            """Return the type of `parameter_value`; an empty list is a BYTE_ARRAY. Raises TypeError if it has none."""
             if parameter_value is None:
                 return cls.NOT_SET
             is_list = isinstance(parameter_value, _ARRAYS)
@@ -54,7 +60,7 @@ class Parameter(Generic[AllowableParameterValueT]):
             raise TypeError(f"the given value is not {what}: {parameter_value!r}")
 
         def check(self, parameter_value: AllowableParameterValue) -> bool:
-            """Say whether the value fits this type; an int is no DOUBLE, but a bool is an INTEGER, as in rclpy."""
+            """True if `parameter_value` is of this type; an int is no DOUBLE, but a bool is an INTEGER, as in rclpy."""
             if self is Parameter.Type.NOT_SET:
                 return parameter_value is None
             if self.name in _SCALARS:
@@ -85,17 +91,17 @@ class Parameter(Generic[AllowableParameterValueT]):
 
     @property
     def name(self) -> str:
-        """The parameter's name; dots nest."""
+        """Name of the parameter; dots nest."""
         return self._name
 
     @property
     def type_(self) -> Parameter.Type:
-        """The value's type."""
+        """Type of the value."""
         return self._type
 
     @property
     def value(self) -> AllowableParameterValueT:
-        """The value as it was given."""
+        """Value, as it was given."""
         return cast("AllowableParameterValueT", self._value)
 
     def __repr__(self) -> str:
@@ -103,21 +109,21 @@ class Parameter(Generic[AllowableParameterValueT]):
 
     @classmethod
     def from_parameter_msg(cls, param_msg: ParameterMsg) -> Parameter[AllowableParameterValueT]:
-        """Read an rcl_interfaces/msg/Parameter; raises `ValueError` for an unknown type code."""
+        """Return the parameter of `param_msg`, rcl_interfaces/msg/Parameter. Raises ValueError for an unknown type."""
         type_ = Parameter.Type(param_msg.value.type)
         if type_ is Parameter.Type.NOT_SET:
             return cls(param_msg.name, type_)
         return cls(param_msg.name, type_, getattr(param_msg.value, _field(type_)))
 
     def get_parameter_value(self) -> ParameterValue:
-        """Give the rcl_interfaces/msg/ParameterValue."""
+        """Return the value as an rcl_interfaces/msg/ParameterValue."""
         message = ParameterValue(type=self._type.value)
         if self._type is not Parameter.Type.NOT_SET:
             setattr(message, _field(self._type), self._value)
         return message
 
     def to_parameter_msg(self) -> ParameterMsg:
-        """Give the rcl_interfaces/msg/Parameter."""
+        """Return the parameter as an rcl_interfaces/msg/Parameter."""
         return ParameterMsg(name=self._name, value=self.get_parameter_value())
 
 
@@ -143,12 +149,12 @@ def _field(type_: Parameter.Type) -> str:
 
 
 def get_parameter_value(string_value: str) -> ParameterValue:
-    """Guess a value from text, as a command line gives it; what is no single YAML value stays a string.
+    """Parse `string_value`, text of a command line, as YAML; what is no single YAML value stays a string.
 
     >>> get_parameter_value("[1, 2]").type == ParameterType.PARAMETER_INTEGER_ARRAY
     True
     """
-    from robolink.parameter_file import parse_parameter_value
+    from robolink.arguments.parameter_file import parse_parameter_value
 
     value: AllowableParameterValue
     try:
@@ -159,9 +165,9 @@ def get_parameter_value(string_value: str) -> ParameterValue:
 
 
 def parameter_value_to_python(parameter_value: ParameterValue) -> AllowableParameterValue:
-    """Give the plain value of an rcl_interfaces/msg/ParameterValue: None when it is not set, arrays as lists.
+    """Return the plain value of `parameter_value`, a ParameterValue: None if it is not set, arrays as lists.
 
-    Raises `RuntimeError` for an unknown type code.
+    Raises RuntimeError for an unknown type.
     """
     try:
         type_ = Parameter.Type(parameter_value.type)
@@ -179,13 +185,19 @@ def parameter_dict_from_yaml_file(
     target_nodes: Sequence[str] | None = None,
     namespace: str = "",
 ) -> dict[str, ParameterMsg]:
-    """Read the parameters of all nodes in a ROS parameter file, or of the target nodes only, by name.
+    """Read the parameters of a ROS parameter file, and return them as messages by name.
 
-    `use_wildcard` adds those of the section `/**`, which the others override; `namespace` is prepended to each
-    name as it is. Raises `FileNotFoundError`, and `RuntimeError` (a `ParameterFileError`) for a file that is no
-    ROS parameter file or has no section for a target node.
+    Args:
+        parameter_file: Path of the file.
+        use_wildcard: True adds those of the section `/**`, which the others override.
+        target_nodes: Full names of the nodes whose sections to read; None or none reads those of all nodes.
+        namespace: Text that is prepended to each parameter's name as it is.
+
+    Raises:
+        FileNotFoundError: if there is no such file.
+        ParameterFileError: (a RuntimeError) if it is no ROS parameter file, or has no section for a target node.
     """
-    from robolink.parameter_file import ParameterFileError, read_parameter_file
+    from robolink.arguments.parameter_file import ParameterFileError, read_parameter_file
 
     overrides = read_parameter_file(parameter_file)
     sections = list(dict.fromkeys(each.pattern for each in overrides))

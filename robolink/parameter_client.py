@@ -1,4 +1,4 @@
-"""The asking side of a node's parameters: reads, sets and describes those of another node."""
+"""Client of another node's parameters: reads, sets and describes them by its services."""
 
 from __future__ import annotations
 
@@ -31,16 +31,22 @@ if TYPE_CHECKING:
 
 Given: TypeAlias = Sequence["Parameter[Any] | ParameterMsg"]
 Callback: TypeAlias = Callable[[Any], None]
-"""Called with the future once it is done."""
+"""Function that is called with the future once it is done."""
 
 
 class AsyncParameterClient:
-    """Asks the parameter services of the node called `remote_node_name`, relative to the namespace of `node`.
+    """Client of the six parameter services of another node.
 
         client = AsyncParameterClient(node, "turtlesim")
         future = client.set_parameters([Parameter("background_r", value=150)])
 
-    Each question gives a future with the service's whole response, and calls `callback(future)` once that is there.
+    Each call returns a future of the service's whole response, and calls `callback(future)` once that is there.
+
+    Args:
+        node: Node that calls, and whose executor must spin.
+        remote_node_name: Name of the other node, relative to the namespace of `node` unless it begins with a slash.
+        qos_profile: Quality of service of the clients.
+        callback_group: Group of the clients; None is the node's default group.
     """
 
     def __init__(
@@ -73,11 +79,18 @@ class AsyncParameterClient:
         )
 
     def services_are_ready(self) -> bool:
-        """Whether somebody serves all six."""
+        """True if all six services are there."""
         return all(each.service_is_ready() for each in self._clients)
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
-        """Wait until somebody serves all six; whether so within `timeout_sec` seconds, without end when None."""
+        """Wait until all six services are there.
+
+        Args:
+            timeout_sec: Longest wait in seconds; None waits for ever, 0 or less does not wait.
+
+        Returns:
+            True if all are there.
+        """
         steady = self._clients[0]._context.time.steady
         deadline = None if timeout_sec is None else steady() + int(timeout_sec * 1e9)
         for each in self._clients:
@@ -89,46 +102,66 @@ class AsyncParameterClient:
     def list_parameters(
         self, prefixes: list[str] | None = None, depth: int | None = None, callback: Callback | None = None
     ) -> Future[ListParameters.Response]:
-        """Ask for names: those that are one of `prefixes` or up to `depth` dots below one; None is all of them."""
+        """Request the names of parameters.
+
+        Args:
+            prefixes: Names of parameters, or what their names begin with (without the dot); None lists all.
+            depth: Largest number of dots below a prefix; None or 0 is any number.
+            callback: Function called with the future once it is done.
+        """
         request = ListParameters.Request(prefixes=prefixes or [], depth=depth or 0)
         return _ask(self._list_parameter_client, request, callback)
 
     def get_parameters(self, names: list[str], callback: Callback | None = None) -> Future[GetParameters.Response]:
-        """Ask for values. There are none at all in the answer when one of the names is unknown or has no value."""
+        """Request the values of the parameters `names`; `callback(future)` is called with the response.
+
+        The response has no values at all if one of the parameters is unknown or has none.
+        """
         return _ask(self._get_parameter_client, GetParameters.Request(names=names), callback)
 
     def set_parameters(self, parameters: Given, callback: Callback | None = None) -> Future[SetParameters.Response]:
-        """Have parameters set one by one; the answer has a result for each."""
+        """Request that `parameters` are set one by one; `callback(future)` is called with a result for each."""
         request = SetParameters.Request(parameters=_messages(parameters))
         return _ask(self._set_parameter_client, request, callback)
 
     def describe_parameters(
         self, names: list[str], callback: Callback | None = None
     ) -> Future[DescribeParameters.Response]:
-        """Ask for descriptors. There are none at all in the answer when one of the names is unknown."""
+        """Request the descriptors of the parameters `names`; `callback(future)` is called with the response.
+
+        The response has no descriptors at all if one of the parameters is unknown.
+        """
         return _ask(self._describe_parameters_client, DescribeParameters.Request(names=names), callback)
 
     def get_parameter_types(
         self, names: list[str], callback: Callback | None = None
     ) -> Future[GetParameterTypes.Response]:
-        """Ask for the types of values, as numbers of `Parameter.Type`."""
+        """Request the types of the parameters `names`, as numbers of `Parameter.Type`, for `callback(future)`."""
         return _ask(self._get_parameter_types_client, GetParameterTypes.Request(names=names), callback)
 
     def set_parameters_atomically(
         self, parameters: Given, callback: Callback | None = None
     ) -> Future[SetParametersAtomically.Response]:
-        """Have all these parameters set, or none."""
+        """Request that all `parameters` are set, or none; `callback(future)` is called with the result."""
         request = SetParametersAtomically.Request(parameters=_messages(parameters))
         return _ask(self._set_parameters_atomically_client, request, callback)
 
     def delete_parameters(self, names: list[str], callback: Callback | None = None) -> Future[SetParameters.Response]:
-        """Have parameters undeclared; only those of dynamic type can be."""
+        """Request that the parameters `names` are undeclared; only those of dynamic type can be.
+
+        `callback(future)` is called with a result for each.
+        """
         return self.set_parameters([Parameter(name) for name in names], callback)
 
     def load_parameter_file(
         self, parameter_file: str | PathLike[str], use_wildcard: bool = False, callback: Callback | None = None
     ) -> Future[SetParameters.Response]:
-        """Have all parameters of a file set, whichever nodes it has them for; `use_wildcard` adds those of ``/**``.
+        """Request that all parameters of a file are set one by one, whichever nodes it has them for.
+
+        Args:
+            parameter_file: Path of a ROS parameter file.
+            use_wildcard: True adds the parameters of the section `/**`.
+            callback: Function called with the future once it is done.
 
         Raises what `parameter_dict_from_yaml_file` raises.
         """
@@ -137,7 +170,13 @@ class AsyncParameterClient:
     def load_parameter_file_atomically(
         self, parameter_file: str | PathLike[str], use_wildcard: bool = False, callback: Callback | None = None
     ) -> Future[SetParametersAtomically.Response]:
-        """Have all parameters of a file set, or none; see `load_parameter_file`."""
+        """Request that all parameters of a file are set, or none; see `load_parameter_file`.
+
+        Args:
+            parameter_file: Path of a ROS parameter file.
+            use_wildcard: True adds the parameters of the section `/**`.
+            callback: Function called with the future once it is done.
+        """
         return self.set_parameters_atomically(_of_file(parameter_file, use_wildcard), callback)
 
     def on_parameter_event(
@@ -150,7 +189,16 @@ class AsyncParameterClient:
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
     ) -> Subscription[ParameterEvent]:
-        """Subscribe to the changes of all nodes' parameters; a ParameterEvent says of which node it is."""
+        """Subscribe to the changes of all nodes' parameters.
+
+        Args:
+            callback: Function called with each ParameterEvent, which names its node.
+            qos_profile: Quality of service of the subscription.
+            callback_group: Group of the callback; None is the node's default group.
+            event_callbacks: Callbacks for events of the subscription.
+            qos_overriding_options: Policies that parameters may change; None allows none.
+            raw: True calls back with the serialized message (bytes).
+        """
         return self.node.create_subscription(
             ParameterEvent,
             "/parameter_events",

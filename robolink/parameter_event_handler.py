@@ -1,4 +1,4 @@
-"""Callbacks for the changes of parameters, of any node: one parameter's, or all events."""
+"""Callbacks for changes of parameters, of any node: one parameter's, or all events."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from robolink.interfaces.rcl_interfaces.msg import Parameter, ParameterEvent
-from robolink.names import absolute_namespace, join
 from robolink.qos import QoSProfile, qos_profile_parameter_events
+from robolink.text.names import absolute_namespace, join
 
 if TYPE_CHECKING:
     from robolink.callback_groups import CallbackGroup
@@ -19,7 +19,13 @@ if TYPE_CHECKING:
 
 
 class ParameterCallbackHandle:
-    """A callback for one parameter: what takes it away again."""
+    """Handle of a callback for one parameter, by which it is removed.
+
+    Args:
+        parameter_name: Name of the parameter.
+        node_name: Fully qualified name of its node.
+        callback: Function of the parameter's message.
+    """
 
     def __init__(self, parameter_name: str, node_name: str, callback: Callable[[Parameter], None]) -> None:
         self.parameter_name = parameter_name
@@ -28,33 +34,41 @@ class ParameterCallbackHandle:
 
 
 class ParameterEventCallbackHandle:
-    """A callback for all events: what takes it away again."""
+    """Handle of a `callback` for all events, by which it is removed."""
 
     def __init__(self, callback: Callable[[ParameterEvent], None]) -> None:
         self.callback = callback
 
 
 class ParameterEventHandler:
-    """Calls back when parameters of any node change; `node` subscribes to /parameter_events for it.
+    """Calls back when parameters of any node change, by a subscription of /parameter_events.
 
         handler = ParameterEventHandler(node)
         handler.add_parameter_callback("speed", "driver", on_speed)
 
     The latest added is called first. A callback may add and remove callbacks, itself too; that counts from the next
     event on.
+
+    Args:
+        node: Node that subscribes, and whose executor must spin.
+        qos_profile: Quality of service of the subscription.
+        callback_group: Group of the callbacks; None is the node's default group.
+        event_callbacks: Callbacks for events of the subscription.
+        qos_overriding_options: Policies that parameters may change; None allows none.
+        raw: As in rclpy: must be False, since the callbacks need the message.
     """
 
     class Callbacks:
-        """The callbacks that were added."""
+        """Callbacks that were added."""
 
         def __init__(self) -> None:
             self.parameter_callbacks: dict[tuple[str, str], list[ParameterCallbackHandle]] = {}
-            """By the names of the parameter and of its node."""
+            """Handles by the names of the parameter and of its node."""
             self.event_callbacks: list[ParameterEventCallbackHandle] = []
             self._lock = threading.Lock()
 
         def event_callback(self, event: ParameterEvent) -> None:
-            """Call those whose parameter is in the event, as new or changed, then those for all events."""
+            """Call those whose parameter is in the `event`, as new or changed, then those for all events."""
             with self._lock:
                 wanted = [(key, list(handles)) for key, handles in self.parameter_callbacks.items()]
                 for_all = list(self.event_callbacks)
@@ -69,14 +83,14 @@ class ParameterEventHandler:
         def add_parameter_callback(
             self, parameter_name: str, node_name: str, callback: Callable[[Parameter], None]
         ) -> ParameterCallbackHandle:
-            """Call `callback(parameter)` when this parameter of the node of this full name changes."""
+            """Add `callback(parameter)` for the parameter `parameter_name` of the node of the full name `node_name`."""
             handle = ParameterCallbackHandle(parameter_name, node_name, callback)
             with self._lock:
                 self.parameter_callbacks.setdefault((parameter_name, node_name), []).insert(0, handle)
             return handle
 
         def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-            """Call it no longer. Raises RuntimeError when it is not there."""
+            """Remove the callback of this `handle`. Raises RuntimeError if it is not there."""
             key = (handle.parameter_name, handle.node_name)
             with self._lock:
                 handles = self.parameter_callbacks.get(key, [])
@@ -87,14 +101,14 @@ class ParameterEventHandler:
         def add_parameter_event_callback(
             self, callback: Callable[[ParameterEvent], None]
         ) -> ParameterEventCallbackHandle:
-            """Call `callback(event)` for each event."""
+            """Add `callback(event)` for each event."""
             handle = ParameterEventCallbackHandle(callback)
             with self._lock:
                 self.event_callbacks.insert(0, handle)
             return handle
 
         def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-            """Call it no longer. Raises RuntimeError when it is not there."""
+            """Remove the callback of this `handle`. Raises RuntimeError if it is not there."""
             with self._lock:
                 _remove(handle, self.event_callbacks)
 
@@ -127,7 +141,13 @@ class ParameterEventHandler:
 
     @staticmethod
     def get_parameter_from_event(event: ParameterEvent, parameter_name: str, node_name: str) -> Parameter | None:
-        """Give a parameter that an event says is new or changed; None when it says nothing of that node's parameter."""
+        """Return a parameter that is new or changed in an event; None if it is not in it.
+
+        Args:
+            event: Event to look at.
+            parameter_name: Name of the parameter.
+            node_name: Fully qualified name of its node.
+        """
         if event.node != node_name:
             return None
         found = ParameterEventHandler.get_parameters_from_event(event)
@@ -135,28 +155,35 @@ class ParameterEventHandler:
 
     @staticmethod
     def get_parameters_from_event(event: ParameterEvent) -> Iterable[Parameter]:
-        """Give all parameters that an event says are new or changed."""
+        """Yield all parameters that are new or changed in an `event`."""
         yield from chain(event.new_parameters, event.changed_parameters)
 
     def add_parameter_callback(
         self, parameter_name: str, node_name: str, callback: Callable[[Parameter], None]
     ) -> ParameterCallbackHandle:
-        """Call `callback(parameter)`, with the message, when a parameter is new or has changed.
+        """Add a callback for one parameter, called when it is new or has changed.
 
-        A `node_name` without a leading slash is within the namespace of this handler's node; '' is that node.
+        Args:
+            parameter_name: Name of the parameter.
+            node_name: Name of its node, relative to the namespace of this handler's node unless it begins with a
+                slash; '' is that node.
+            callback: Function of the parameter's message.
+
+        Returns:
+            A handle, by which the callback can be removed.
         """
         return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-        """Call it no longer. Raises RuntimeError when it is not there."""
+        """Remove the callback of this `handle`. Raises RuntimeError if it is not there."""
         self._callbacks.remove_parameter_callback(handle)
 
     def add_parameter_event_callback(self, callback: Callable[[ParameterEvent], None]) -> ParameterEventCallbackHandle:
-        """Call `callback(event)` for each event of any node."""
+        """Add `callback(event)` for each event of any node; the handle that is returned removes it."""
         return self._callbacks.add_parameter_event_callback(callback)
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-        """Call it no longer. Raises RuntimeError when it is not there."""
+        """Remove the callback of this `handle`. Raises RuntimeError if it is not there."""
         self._callbacks.remove_parameter_event_callback(handle)
 
     def _resolve_path(self, node_path: str | None = None) -> str:

@@ -7,17 +7,18 @@ import weakref
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robolink.exceptions import ExternalShutdownException, ParameterUninitializedException, nearest, shown
+from robolink.exceptions import ExternalShutdownException, ParameterUninitializedException, nearest
 from robolink.interfaces.rcl_interfaces.msg import ListParametersResult, SetParametersResult
 from robolink.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
+from robolink.node_parts.request_limit import Refusal, look_at, no_room
 from robolink.parameter import Parameter
 from robolink.qos import qos_profile_parameters
-from robolink.request_limit import Refusal, look_at, no_room
-from robolink.tracebacks import formatted
+from robolink.system.terminal import shown
+from robolink.text.tracebacks import formatted
 
 if TYPE_CHECKING:
     from robolink.interfaces.rcl_interfaces import srv
-    from robolink.node import Node
+    from robolink.node_parts.ports import ParameterNode
 
     Get: TypeAlias = srv.GetParameters
     GetTypes: TypeAlias = srv.GetParameterTypes
@@ -27,18 +28,18 @@ if TYPE_CHECKING:
     Describe: TypeAlias = srv.DescribeParameters
 
 MOST_HINTS = 10
-"""Unknown names of one request for which the nearest known one is looked up."""
+"""Most unknown names of one request for which the nearest known one is looked up."""
 
 
 class ParameterService:
-    """Answers for a node's parameters at ``~/get_parameters``, ``~/set_parameters`` and four more.
+    """Server of the parameters of `node`: `~/get_parameters`, `~/set_parameters` and four more services.
 
     One name that is not declared, or has no value yet, empties the whole answer of those that ask by name, as in rclpy.
     What cannot be set is answered with the reason. So is an exception in a callback of the node's, which is logged
     too: a request never ends the node. One that is too large (`request_limit`) is answered unread.
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: ParameterNode) -> None:
         from robolink.interfaces.rcl_interfaces import srv  # late: it takes a millisecond
 
         self._node = weakref.ref(node)  # the transport holds the services: they must not keep the node alive
@@ -54,14 +55,14 @@ class ParameterService:
             service = node.create_service(srv_type, f"~/{name}", answer, qos_profile=qos_profile_parameters)
             service.look_first = functools.partial(look_at, srv_type.Response, refusal)
 
-    def _alive(self) -> Node:
+    def _alive(self) -> ParameterNode:
         node = self._node()
         if node is None:
             raise ReferenceError("the node of these parameters is gone")
         return node
 
     def _has_all(self, names: Sequence[str]) -> bool:
-        """Say whether all may be asked for. Asking would raise, but with the nearest name, which takes its time."""
+        """True if all may be read. Reading would raise, but with the nearest name, which takes its time."""
         node = self._alive()
         return node._allow_undeclared_parameters or all(node.has_parameter(each) for each in names)
 
@@ -120,7 +121,7 @@ class ParameterService:
             return _failed(node, parameters, error)
 
     def _problem(self, names: Sequence[str], hint: bool) -> str:
-        """Say which of these cannot be set, by its name alone; nothing if all can be."""
+        """Return which of these cannot be set, by its name alone; nothing if all can be."""
         node = self._alive()
         if node._pre_set_parameters_callbacks:  # they may put others in their place
             return ""
@@ -148,7 +149,7 @@ def _refused(reason: str) -> SetParametersResult:
     return SetParametersResult(successful=False, reason=reason)
 
 
-def _failed(node: Node, parameters: Sequence[Parameter[Any]], error: Exception) -> SetParametersResult:
+def _failed(node: ParameterNode, parameters: Sequence[Parameter[Any]], error: Exception) -> SetParametersResult:
     """Answer for an exception while parameters were set; where it came after that, they stay set."""
     text = shown(f"{type(error).__name__}: {error}", 200)
     node.get_logger().error(f"a request to set parameters failed:\n{formatted(error)}")

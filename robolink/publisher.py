@@ -1,22 +1,20 @@
-"""Publishers."""
+"""Publishers: the sending end of a topic."""
 
 from __future__ import annotations
 
-import os
-import threading
-import weakref
 from collections import deque
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
 from robolink.callback_groups import CallbackGroup
-from robolink.context import Context
-from robolink.destroyable import Destroyable
 from robolink.duration import Duration
-from robolink.endpoint import Endpoint, Owner
 from robolink.event_handler import PublisherEventCallbacks, QoSPublisherEventType, tell_handlers, warns_of_types
+from robolink.graph.endpoint import Endpoint, Owner
 from robolink.message import Message, encoder, message_type
 from robolink.qos import DurabilityPolicy, QoSProfile, resolved
+from robolink.running.destroyable import Destroyable
+from robolink.running.ports import ContextLike
+from robolink.system.fork_locks import fork_lock
 from robolink.wire import NO_HASH, EndpointKind
 
 MsgT = TypeVar("MsgT", bound=Message)
@@ -24,7 +22,16 @@ _FOR_EVER = Duration(seconds=-1)
 
 
 class Publisher(Destroyable, Generic[MsgT]):
-    """Publishes messages of one type on one topic; made by `Node.create_publisher`."""
+    """Sends messages of one type on one topic; made by `Node.create_publisher`.
+
+    Args:
+        owner: Node that it belongs to, as the graph knows it.
+        msg_type: Message class of the topic.
+        topic: Fully qualified name of the topic.
+        qos_profile: Quality of service.
+        event_callbacks: Callbacks for events; None only warns of subscriptions with another type.
+        callback_group: Group of the event callbacks; None is none, so that they may run at any time.
+    """
 
     def __init__(
         self,
@@ -44,6 +51,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         self.event_handlers = callbacks.create_event_handlers(callback_group, self, topic)
         self._outlets = _Outlets(self._endpoint, qos_profile)
         self._put, self._attachment = self._outlets.put, self._endpoint.attachment
+        self._put_numbered = self._outlets.put_numbered
         self._endpoint.warns = warns_of_types(callbacks)
         self._endpoint.on_disagreement = self._on_disagreement
         self._endpoint.on_other = self._on_other
@@ -51,10 +59,16 @@ class Publisher(Destroyable, Generic[MsgT]):
         self._endpoint.announce()
 
     def publish(self, msg: MsgT | bytes) -> None:
-        """Send a message, or one that is serialized already, to all subscriptions.
+        """Send a message to all subscriptions.
 
-        Raises EncodeError (a TypeError and ValueError) that names the field which does not fit, TypeError for a
-        message of another type, InvalidHandle after `destroy`, TransportError for more than 1 GiB.
+        Args:
+            msg: Message of the topic's type, or its serialized bytes.
+
+        Raises:
+            EncodeError: (a TypeError and ValueError) if a field does not fit its type; the text names it.
+            TypeError: if `msg` is of another type.
+            InvalidHandle: (a RuntimeError) after `destroy`.
+            TransportError: (a ConnectionError) if it has more than 1 GiB, or the context has ended.
         """
         if isinstance(msg, self.msg_type):
             payload = self._encode(msg)
@@ -64,17 +78,20 @@ class Publisher(Destroyable, Generic[MsgT]):
             raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
         if self._destroyed:
             raise self._gone_(f"the publisher of {self.topic}")
+        if self._put_numbered is not None:
+            self._put_numbered(payload, self._attachment)
+            return
         # Locked, or a thread could be overtaken by another between its number and its place on the wire.
         with self._outlets.lock:
             self._put(payload, self._attachment())
 
     @property
-    def _used_in_(self) -> Context | None:
+    def _used_in_(self) -> ContextLike | None:
         return self._endpoint.context
 
     def _speak_humble(self, key: str) -> None:
         self._outlets.add(key)
-        self._put = self._outlets.put
+        self._put, self._put_numbered = self._outlets.put, self._outlets.put_numbered
 
     def _on_other(self, came: bool) -> None:
         matched = {QoSPublisherEventType.RCL_PUBLISHER_MATCHED}
@@ -84,28 +101,28 @@ class Publisher(Destroyable, Generic[MsgT]):
         tell_handlers(self.event_handlers, {QoSPublisherEventType.RCL_PUBLISHER_INCOMPATIBLE_TYPE}, total=1)
 
     def get_subscription_count(self) -> int:
-        """How many subscriptions of this topic and type there are."""
+        """Return the number of subscriptions of this topic and type."""
         return self._endpoint.count_others()
 
     @property
     def topic_name(self) -> str:
-        """The topic's fully qualified name."""
+        """Fully qualified name of the topic."""
         return self.topic
 
     @property
     def logger_name(self) -> str:
-        """The name of the logger that belongs to the node."""
+        """Name of the node's logger."""
         return self._endpoint.logger_name
 
     def wait_for_all_acked(self, timeout: Duration = _FOR_EVER) -> bool:
-        """Say that everything has been sent: there are no acknowledgements on this wire, as in rmw_zenoh."""
+        """Return True at once, for any `timeout`: there are no acknowledgements on this wire, as in rmw_zenoh."""
         return True
 
     def assert_liveliness(self) -> None:
         """Do nothing: the process's liveliness token says that it is alive."""
 
     def destroy(self) -> None:
-        """Undeclare it. Safe to call twice."""
+        """End the publisher, and undeclare it. Safe to call twice."""
         if not self._destroyed:
             self._destroyed = True
             for handler in self.event_handlers:
@@ -121,23 +138,26 @@ class Publisher(Destroyable, Generic[MsgT]):
 
 
 class _Outlets:
-    """Where a publisher sends: to its key, and to Humble's as well once a Humble peer has come."""
+    """Keys that a publisher sends to: its own, and Humble's as well once a Humble peer has come."""
 
     def __init__(self, endpoint: Endpoint, qos: QoSProfile) -> None:
         self._transport, self._qos = endpoint.transport, qos
         first = self._transport.advertise(endpoint.key, qos)
         self._all = [first]
         self._closed = False
-        self.lock = threading.RLock()  # re-entrant: a signal handler that logs interrupts whoever publishes a log
+        self.lock = fork_lock()  # re-entrant: a signal handler that logs interrupts whoever publishes a log
         """Held where something is numbered and put, so that all is sent in the order of its numbers, as in ROS 2."""
-        _outlets.add(self)
         self._kept: deque[tuple[bytes, bytes]] | None = None
         self.put: Callable[[bytes, bytes], None] = first.put
         """Send a payload with its attachment; another function after `add`."""
+        self.put_numbered: Callable[[bytes, Callable[[], bytes]], bytes] | None = None
+        """Send a payload, and number it under a lock of the transport's own; None where `lock` is to be held."""
         if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL and endpoint.type_hash != NO_HASH:
             # What late joiners get is kept here too: a Humble peer may come when it has all been published.
             self._kept = deque(maxlen=resolved(qos).depth)
             self.put = self._put_and_keep
+        else:
+            self.put_numbered = getattr(first, "put_numbered", None)
 
     def add(self, key: str) -> None:
         """Send to this key too from now on, and at once what late joiners get."""
@@ -147,7 +167,7 @@ class _Outlets:
                 outlet.put(payload, attachment)
             self._all = [*self._all, outlet]
             if self._kept is None:
-                self.put = self._put_to_all
+                self.put, self.put_numbered = self._put_to_all, None
         if self._closed:  # meanwhile
             outlet.close()
 
@@ -165,16 +185,3 @@ class _Outlets:
         self._closed = True
         for outlet in self._all:
             outlet.close()
-
-
-_outlets: weakref.WeakSet[_Outlets] = weakref.WeakSet()
-
-
-def _let_go() -> None:
-    """Free the locks in a forked child: whoever held them is not there."""
-    for each in list(_outlets):
-        each.lock = threading.RLock()
-
-
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_let_go)

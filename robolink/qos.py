@@ -1,4 +1,4 @@
-"""Quality of service: how many samples are kept, whether late joiners get them, and what may be dropped."""
+"""Quality of service (QoS): profiles of publishers, subscriptions, services and clients, and their policies."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from robolink.exceptions import RobolinkError, nearest
 
 
 class InvalidQoSProfileException(RobolinkError, ValueError, AssertionError):  # noqa: N818 - rclpy's name
-    """A QoSProfile was given a value that it cannot have; rclpy asserts on wrong types, hence the third base."""
+    """A QoSProfile was given a value that it cannot have: `message` says which.
+
+    rclpy asserts on wrong types, hence the third base.
+    """
 
     def __init__(self, message: str) -> None:
         super().__init__(f"Invalid QoSProfile: {message}")
@@ -33,12 +36,12 @@ class QoSPolicyKind(IntEnum):
 
 
 def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
-    """Give the policy's name, such as 'RELIABILITY'; raises ValueError for a number that is none."""
+    """Return the name of a policy, such as 'RELIABILITY'. Raises ValueError if no policy is `policy_kind`."""
     return QoSPolicyKind(policy_kind).name
 
 
 class _PolicyMeta(EnumMeta):
-    """Answers to rmw's long names of old, `RMW_QOS_POLICY_HISTORY_KEEP_LAST`, with a warning."""
+    """Metaclass that finds rmw's long names of old, `RMW_QOS_POLICY_HISTORY_KEEP_LAST`, with a warning."""
 
     def __getattr__(cls, name: str) -> Any:
         if name.startswith("_"):
@@ -54,26 +57,29 @@ class _PolicyMeta(EnumMeta):
 
 
 class QoSPolicyEnum(IntEnum, metaclass=_PolicyMeta):
-    """The base of the policies: values as in rmw, and short names for the command line."""
+    """Base of the policies: values as in rmw, and short names for the command line."""
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        """Give the names of the values in lower case."""
+        """Return the names of the values in lower case."""
         return [name.lower() for name in cls.__members__]
 
     @classmethod
     def get_from_short_key(cls, name: str) -> int:
-        """Give the number of the value with this name, in any case; raises KeyError for another name."""
+        """Return the number of the value called `name`, in any case. Raises KeyError if there is none."""
         return cls[name.upper()].value
 
     @property
     def short_key(self) -> str:
-        """The value's name in lower case."""
+        """Name of the value in lower case."""
         return self.name.lower()
 
 
 class HistoryPolicy(QoSPolicyEnum):
-    """Which samples wait for a subscriber that is busy."""
+    """History: which samples are kept until they are taken.
+
+    KEEP_LAST keeps the latest `depth` samples and drops older ones, KEEP_ALL keeps all. SYSTEM_DEFAULT is KEEP_LAST.
+    """
 
     SYSTEM_DEFAULT = 0
     KEEP_LAST = 1
@@ -82,7 +88,10 @@ class HistoryPolicy(QoSPolicyEnum):
 
 
 class ReliabilityPolicy(QoSPolicyEnum):
-    """Whether samples may be lost on the way."""
+    """Reliability: RELIABLE samples are lost only to a peer that has long had no room, BEST_EFFORT ones at any time.
+
+    SYSTEM_DEFAULT and BEST_AVAILABLE are RELIABLE.
+    """
 
     SYSTEM_DEFAULT = 0
     RELIABLE = 1
@@ -92,7 +101,10 @@ class ReliabilityPolicy(QoSPolicyEnum):
 
 
 class DurabilityPolicy(QoSPolicyEnum):
-    """Whether a late subscriber gets what was published before it came."""
+    """Durability: a TRANSIENT_LOCAL publisher sends late subscriptions its last samples, a VOLATILE one does not.
+
+    The subscription must be TRANSIENT_LOCAL too to get them. SYSTEM_DEFAULT and BEST_AVAILABLE are VOLATILE.
+    """
 
     SYSTEM_DEFAULT = 0
     TRANSIENT_LOCAL = 1
@@ -102,7 +114,7 @@ class DurabilityPolicy(QoSPolicyEnum):
 
 
 class LivelinessPolicy(QoSPolicyEnum):
-    """How a publisher shows that it is alive."""
+    """Liveliness: how a publisher shows that it is alive. It is announced, but has no effect on this network."""
 
     SYSTEM_DEFAULT = 0
     AUTOMATIC = 1
@@ -117,7 +129,9 @@ QoSDurabilityPolicy = DurabilityPolicy
 QoSLivelinessPolicy = LivelinessPolicy
 
 DeadlineBestAvailable = Duration(nanoseconds=2**63 - 2)
+"""Deadline that stands for "as the other end has it"."""
 LivelinessLeaseDurationeBestAvailable = Duration(nanoseconds=2**63 - 2)  # rclpy spells it so
+"""Lease duration that stands for "as the other end has it"."""
 
 _FIELDS: dict[str, tuple[type, object]] = {
     "history": (HistoryPolicy, HistoryPolicy.KEEP_LAST),
@@ -130,15 +144,34 @@ _FIELDS: dict[str, tuple[type, object]] = {
     "liveliness_lease_duration": (Duration, Duration()),
     "avoid_ros_namespace_conventions": (bool, False),
 }
-"""The fields of a profile in rclpy's order, each with its type and its default."""
+"""Fields of a profile in rclpy's order, each with its type and its default."""
 
 
 class QoSProfile:
-    """The policies of a publisher, subscription, service or client: `QoSProfile(depth=10)`.
+    """Quality of service of a publisher, subscription, service or client: `QoSProfile(depth=10)`.
 
-    `history` or `depth` is required, and KEEP_LAST requires a depth: else `InvalidQoSProfileException`, as for
-    every value that a policy cannot have. Policies may be given as rmw's numbers. What is left out is RELIABLE
-    and VOLATILE. Depth is how many samples KEEP_LAST keeps, and a TRANSIENT_LOCAL publisher for late joiners.
+    `history` or `depth` is required, and KEEP_LAST requires a depth. Policies may be given as rmw's numbers. Over
+    Zenoh every pair of profiles can talk; where they differ, the weaker one holds. Deadline, lifespan and liveliness
+    are announced to tools and to the other ends, but nothing enforces them, as under rmw_zenoh.
+
+    Args:
+        history: KEEP_LAST keeps the latest `depth` samples, KEEP_ALL keeps all; by default KEEP_LAST.
+        depth: Number of samples that KEEP_LAST keeps: in a subscription until its callback takes them, in a
+            TRANSIENT_LOCAL publisher for late joiners. 0 is the system's default, 42. By default 10 with KEEP_ALL.
+        reliability: RELIABLE (the default) loses samples only to a peer that has long had no room; BEST_EFFORT may
+            lose any, for data that is soon out of date, such as that of sensors.
+        durability: VOLATILE (the default) or TRANSIENT_LOCAL, whose publishers send late subscriptions their last
+            samples.
+        lifespan: Duration after which a sample is out of date; zero (the default) is unlimited.
+        deadline: Longest expected duration from sample to sample; zero (the default) is unlimited.
+        liveliness: How a publisher shows that it is alive; by default SYSTEM_DEFAULT, which is AUTOMATIC.
+        liveliness_lease_duration: Duration after which a silent publisher counts as gone; zero (the default) is
+            unlimited.
+        avoid_ros_namespace_conventions: True announces that the topic's name is no ROS name; by default False.
+
+    Raises:
+        InvalidQoSProfileException: (a ValueError) if history and depth are missing, or for a value that a policy
+            cannot have.
     """
 
     __slots__ = tuple(_FIELDS)
@@ -175,7 +208,7 @@ class QoSProfile:
             raise InvalidQoSProfileException("history is KEEP_LAST without a depth setting")
 
     def __setattr__(self, name: str, value: Any) -> None:
-        """Set a policy; raises InvalidQoSProfileException for a value that it cannot have."""
+        """Set a policy. Raises InvalidQoSProfileException for a value that it cannot have."""
         if name not in _FIELDS:
             raise AttributeError(f"a QoSProfile has no policy {name!r}{nearest(name, _FIELDS)}")
         checked = _checked(name, value)
@@ -188,11 +221,11 @@ class QoSProfile:
         object.__setattr__(self, name, checked)
 
     def to_dict(self) -> dict[str, Any]:
-        """Give the keyword arguments that make an equal profile."""
+        """Return the keyword arguments that make an equal profile."""
         return {name: getattr(self, name) for name in _FIELDS}
 
     def get_c_qos_profile(self) -> QoSProfile:
-        """Give a copy; rclpy gives rmw's own struct here."""
+        """Return a copy; rclpy returns rmw's own struct here."""
         return QoSProfile(**self.to_dict())
 
     def __eq__(self, other: object) -> bool:
@@ -223,7 +256,7 @@ def _shown(value: object) -> str:
 
 
 def resolved(profile: QoSProfile) -> QoSProfile:
-    """Give a copy in which nothing is left to the system: what is unset becomes rmw_zenoh's default.
+    """Return a copy of `profile` in which nothing is left to the system: what is unset becomes rmw_zenoh's default.
 
     So does "best available". The defaults are KEEP_LAST, depth 42, RELIABLE, VOLATILE, AUTOMATIC and infinite
     durations.
@@ -283,7 +316,7 @@ qos_profile_best_available = QoSProfile(
 
 
 class QoSPresetProfiles(Enum):
-    """The presets by name; equal ones are aliases of each other."""
+    """Presets by name; equal ones are aliases of each other."""
 
     UNKNOWN = qos_profile_unknown
     DEFAULT = qos_profile_default
@@ -297,18 +330,18 @@ class QoSPresetProfiles(Enum):
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        """Give the names of the presets in lower case."""
+        """Return the names of the presets in lower case."""
         return [name.lower() for name in cls.__members__]
 
     @classmethod
     def get_from_short_key(cls, name: str) -> QoSProfile:
-        """Give the preset with this name, in any case; raises KeyError for a name that is none."""
+        """Return the preset called `name`, in any case. Raises KeyError if there is none."""
         profile: QoSProfile = cls[name.upper()].value
         return profile
 
 
 class QoSCompatibility(Enum):
-    """Whether a publisher and a subscription can talk."""
+    """Compatibility of two profiles: OK, WARNING (not all may arrive) or ERROR (nothing does)."""
 
     OK = 0
     WARNING = 1
@@ -316,10 +349,14 @@ class QoSCompatibility(Enum):
 
 
 def qos_check_compatible(publisher_qos: QoSProfile, subscription_qos: QoSProfile) -> tuple[QoSCompatibility, str]:
-    """Say whether two ends can talk, and what is lost if not all arrives.
+    """Return the compatibility of a publisher's and a subscription's profile, and the reason unless it is OK.
 
-    Over Zenoh every pair can. A VOLATILE subscription only misses what a TRANSIENT_LOCAL publisher sent before
+    Over Zenoh every pair can talk. A VOLATILE subscription only misses what a TRANSIENT_LOCAL publisher sent before
     it came: that is a WARNING.
+
+    Args:
+        publisher_qos: Profile of the publisher.
+        subscription_qos: Profile of the subscription.
     """
     kept = publisher_qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
     if kept and subscription_qos.durability is DurabilityPolicy.VOLATILE:

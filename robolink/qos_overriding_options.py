@@ -1,9 +1,9 @@
-"""Parameters by which whoever runs a node may change the QoS of its publishers and subscriptions."""
+"""QoS overrides: parameters that change the QoS of a node's publishers and subscriptions."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from robolink.duration import Duration
 from robolink.exceptions import ParameterAlreadyDeclaredException, RobolinkError, nearest
@@ -14,10 +14,20 @@ from robolink.qos import QoSPolicyKind, QoSProfile
 from robolink.subscription import Subscription
 
 if TYPE_CHECKING:
-    from robolink.node import Node
+    from robolink.parameter import Parameter
 
 QosCallbackResult: TypeAlias = SetParametersResult
 QosCallbackType: TypeAlias = Callable[[QoSProfile], QosCallbackResult]
+
+
+class QosDeclarer(Protocol):
+    """Node as seen by the code that declares its QoS parameters."""
+
+    def declare_parameter(self, name: str, value: Any, descriptor: ParameterDescriptor) -> Parameter[Any]:
+        """Declare the parameter `name` with the default `value` and this `descriptor`."""
+
+    def get_parameter(self, name: str) -> Parameter[Any]:
+        """Return the parameter `name`."""
 
 
 class InvalidQosOverridesError(RobolinkError, RuntimeError):
@@ -25,10 +35,12 @@ class InvalidQosOverridesError(RobolinkError, RuntimeError):
 
 
 class QoSOverridingOptions:
-    """Which policies of a publisher or subscription become parameters.
+    """Policies of a publisher or subscription that parameters may change.
 
-    `callback` is called with the profile that comes out and may refuse it. `entity_id` tells two publishers, or two
-    subscriptions, of one topic apart: it ends up in the parameters' names.
+    Args:
+        policy_kinds: Policies that get a parameter, `qos_overrides./topic.publisher.depth` for example.
+        callback: Function of the profile that results; it returns a SetParametersResult, which may refuse it.
+        entity_id: Part of the parameters' names, by which two publishers or subscriptions of one topic differ.
     """
 
     def __init__(
@@ -44,36 +56,49 @@ class QoSOverridingOptions:
 
     @property
     def policy_kinds(self) -> Iterable[QoSPolicyKind]:
-        """The policies that get a parameter."""
+        """Policies that get a parameter."""
         return self._policy_kinds
 
     @property
     def callback(self) -> QosCallbackType | None:
-        """What checks the profile that comes out."""
+        """Function that checks the profile that results."""
         return self._callback
 
     @property
     def entity_id(self) -> str | None:
-        """What tells it from others on its topic."""
+        """Part of the parameters' names, by which it differs from others on its topic."""
         return self._entity_id
 
     @classmethod
     def with_default_policies(
         cls, *, callback: QosCallbackType | None = None, entity_id: str | None = None
     ) -> QoSOverridingOptions:
-        """Let history, depth and reliability be overridden."""
+        """Return options for history, depth and reliability, with this `callback` and `entity_id`."""
         kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
         return cls(kinds, callback=callback, entity_id=entity_id)
 
 
 def overridden(
     entity_type: type[Publisher[Any] | Subscription[Any]],
-    node: Node,
+    node: QosDeclarer,
     topic_name: str,
     qos: QoSProfile,
     options: QoSOverridingOptions,
 ) -> QoSProfile:
-    """Give a copy of a profile with what parameters say; raises what `_declare_qos_parameters` raises."""
+    """Return a copy of a profile, with the policies that parameters override.
+
+    Args:
+        entity_type: Publisher or Subscription.
+        node: Node that declares the parameters.
+        topic_name: Fully qualified name of the topic.
+        qos: Profile whose policies are the defaults.
+        options: Policies that parameters may change.
+
+    Raises:
+        InvalidQosOverridesError: (a RuntimeError) if a parameter or the check refuses the profile.
+        ValueError: if `qos` itself has a policy UNKNOWN, or a number that the policy cannot have.
+        InvalidParameterTypeException: (a TypeError) if a parameter has another type.
+    """
     changed = QoSProfile(**qos.to_dict())
     _declare_qos_parameters(entity_type, node, topic_name, changed, options)
     return changed
@@ -81,7 +106,7 @@ def overridden(
 
 def _declare_qos_parameters(
     entity_type: type[Publisher[Any] | Subscription[Any]],
-    node: Node,
+    node: QosDeclarer,
     topic_name: str,
     qos: QoSProfile,
     options: QoSOverridingOptions,
@@ -115,7 +140,7 @@ def _declare_qos_parameters(
 
 
 def _get_qos_policy_parameter(qos: QoSProfile, policy: QoSPolicyKind) -> str | int | bool:
-    """Give the value that a policy's parameter has by default: names in lower case, spans of time in nanoseconds."""
+    """Return the default of a policy's parameter: names in lower case, spans of time in nanoseconds."""
     value = getattr(qos, policy.name.lower())
     if isinstance(value, _PolicyEnum):
         if value.name == "UNKNOWN":

@@ -1,4 +1,4 @@
-"""Messages as bytes, as they are on the wire and in bags."""
+"""Serialization of messages to bytes (CDR), as they are on the wire and in bags."""
 
 from __future__ import annotations
 
@@ -9,12 +9,20 @@ from robolink.type_support import MsgT, check_is_valid_msg_type
 
 
 def serialize_message(message: Message) -> bytes:
-    """Give a message as CDR bytes. Raises EncodeError (a TypeError) that names the field which does not fit."""
+    """Return `message` as CDR bytes. Raises EncodeError (a TypeError) that names the field which does not fit."""
     check_is_valid_msg_type(type(message))
     return encode(message)
 
 
 def deserialize_message(serialized_message: bytes, message_type: type[MsgT]) -> MsgT:
-    """Give the message that CDR bytes say. Raises DecodeError (a ValueError) for bytes that are none of this type."""
+    """Return the message of a type that CDR bytes contain.
+
+    Args:
+        serialized_message: Bytes, with the header of 4 bytes.
+        message_type: Message class.
+
+    Raises:
+        DecodeError: (a ValueError) if the bytes are no message of this type.
+    """
     check_is_valid_msg_type(message_type)
     return cast(MsgT, decode(message_type, serialized_message))

@@ -1,15 +1,16 @@
-"""Services: the serving side."""
+"""Services: the serving side, which answers requests."""
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import inspect
 from collections.abc import Callable, Coroutine
 from typing import Any, NamedTuple
 
 from robolink.callback_groups import CallbackGroup
-from robolink.endpoint import Endpoint, Owner
-from robolink.exceptions import DecodeError, WireError
+from robolink.exceptions import DecodeError, OverwrittenError, WireError
+from robolink.graph.endpoint import Endpoint, Owner
 from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, encoder, service_type
@@ -20,11 +21,17 @@ from robolink.transport.base import Query
 from robolink.wire import EndpointKind, pack_attachment, unpack_attachment
 
 MOST_WAITING = 1000
-"""Requests that may wait for the executor; more than that, and the oldest callers are told that there is no answer."""
+"""Most requests that wait for the executor; beyond it the oldest caller is told that there is no answer."""
 
 
 class RequestHeader(NamedTuple):
-    """What an answer needs to find its asker."""
+    """Header of a request, by which the response finds the caller.
+
+    Args:
+        query: Query of the transport, which takes the reply.
+        sequence_number: Number of the call, in the order of its client's.
+        client_gid: Global id of the client, 16 bytes.
+    """
 
     query: Query
     sequence_number: int
@@ -32,7 +39,16 @@ class RequestHeader(NamedTuple):
 
 
 class Service(ServiceEnd):
-    """Answers requests of one type under one name; made by `Node.create_service`."""
+    """Answers requests of one type under one name; made by `Node.create_service`.
+
+    Args:
+        owner: Node that it belongs to, as the graph knows it.
+        srv_type: Service class.
+        srv_name: Fully qualified name of the service.
+        callback: Function, or coroutine function, called as `callback(request, response)`; it returns the response.
+        callback_group: Group of the callback.
+        qos_profile: Quality of service.
+    """
 
     serves = True
 
@@ -51,9 +67,9 @@ class Service(ServiceEnd):
         self.callback = callback
         self.qos_profile = qos_profile
         self.malformed = 0
-        """How many requests could not be decoded, or were refused undecoded."""
+        """Number of requests that could not be decoded, or were refused undecoded."""
         self.look_first: Callable[[bytes], tuple[Any, str]] | None = None
-        """Looks at a request before it is decoded: the response that refuses it, with the reason; or (None, '')."""
+        """Check of a request before it is decoded: returns the response that refuses it, and why; or (None, '')."""
         self._endpoint = Endpoint(owner, EndpointKind.SERVICE, srv_name, srv_type, qos_profile)
         self._transport = self._endpoint.transport
         self._handles = [self._transport.serve(self._endpoint.key, self.sink)]
@@ -79,16 +95,25 @@ class Service(ServiceEnd):
     def deliver(self, arrived: Any) -> None:
         """Keep a request; the one that must give way, or comes too late, ends without an answer."""
         if self._destroyed:
-            self._transport.accept(arrived).close()
+            self._end(arrived)
             return
         waiting = self.mailbox.waiting
         if len(waiting) == MOST_WAITING:
-            self._transport.accept(waiting[0]).close()
+            self._end(waiting[0])
         super().deliver(arrived)
+
+    def _end(self, arrived: Any) -> None:
+        """End a call without an answer."""
+        with contextlib.suppress(OverwrittenError):  # it has ended, then
+            self._transport.accept(arrived).close()
 
     def execute(self, taken: Any) -> Any:
         """Decode the request, call the callback, answer. A request that cannot be decoded ends without an answer."""
-        query = self._transport.accept(taken)
+        try:
+            query = self._transport.accept(taken)
+        except OverwrittenError as error:
+            self._refuse(str(error))
+            return None
         try:
             asker = unpack_attachment(query.attachment)
             if self.look_first is not None:
@@ -111,7 +136,10 @@ class Service(ServiceEnd):
             raise
 
     def respond(self, request: Message, header: RequestHeader) -> Any:
-        """Have the callback answer; a coroutine that does so later, if that is what the callback is."""
+        """Call the callback with `request` and send its response; if it is a coroutine, return one that does so later.
+
+        `header` is that of the request.
+        """
         response = self.callback(request, self.srv_type.Response())
         if inspect.iscoroutine(response):
             return self._answer_later(response, header)
@@ -125,7 +153,16 @@ class Service(ServiceEnd):
             header.query.close()
 
     def send_response(self, response: Message, header: RequestHeader) -> None:
-        """Answer. Raises TypeError for a response of another type, EncodeError for a field that does not fit."""
+        """Send a response.
+
+        Args:
+            response: Response of the service's type.
+            header: Header of the request.
+
+        Raises:
+            TypeError: if the response is of another type.
+            EncodeError: (a TypeError and ValueError) if a field does not fit its type; the text names it.
+        """
         if not isinstance(response, self.srv_type.Response):
             raise TypeError(
                 f"the callback of service {self.srv_name} must return a {self.srv_type.__name__}.Response,"
@@ -146,7 +183,7 @@ class Service(ServiceEnd):
             )
 
     def destroy(self) -> None:
-        """Serve no more; whoever waits is told so. Safe to call twice."""
+        """End the service; callers that wait are told so. Safe to call twice."""
         if self._destroyed:
             return
         self._destroyed = True
@@ -156,7 +193,7 @@ class Service(ServiceEnd):
         self.detach()
         self._parking.sweep()
         while len(self.mailbox):
-            self._transport.accept(self.mailbox.take()).close()
+            self._end(self.mailbox.take())
 
     def _close(self) -> None:
         for handle in self._handles:

@@ -1,4 +1,4 @@
-"""Service introspection: what a service and its clients say to each other, told on SERVICE/_service_event by either."""
+"""Service introspection: the requests and responses of a service, published as events on SERVICE/_service_event."""
 
 from __future__ import annotations
 
@@ -6,22 +6,22 @@ import contextlib
 from enum import IntEnum
 
 from robolink.clock import Clock
-from robolink.endpoint import Endpoint
-from robolink.entity import Receiver
 from robolink.exceptions import InvalidHandle
+from robolink.graph.endpoint import Endpoint
 from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.message import Message, Service
 from robolink.publisher import Publisher
 from robolink.qos import QoSProfile
+from robolink.running.entity import Receiver
 
 SUFFIX = "/_service_event"
-"""What follows a service's name in that of the topic on which its events are."""
+"""Suffix of a service's name in that of the topic of its events."""
 
 REQUESTS = (ServiceEventInfo.REQUEST_SENT, ServiceEventInfo.REQUEST_RECEIVED)
 
 
 class ServiceIntrospectionState(IntEnum):
-    """How much is told: nothing, who asked whom and when, or also what was said; the numbers are rcl's."""
+    """Level of introspection: off, caller and time alone, or also the contents; the numbers are rcl's."""
 
     OFF = 0
     METADATA = 1
@@ -29,17 +29,31 @@ class ServiceIntrospectionState(IntEnum):
 
 
 class Introspection:
-    """Tells of what one service or client sends and receives."""
+    """Publisher of the events of one service or client.
+
+    Args:
+        endpoint: Service or client, as the graph knows it.
+        srv_type: Service class.
+        clock: Clock of the events' stamps.
+        qos: Quality of service of the events.
+    """
 
     def __init__(self, endpoint: Endpoint, srv_type: type[Service], clock: Clock, qos: QoSProfile) -> None:
         self.clock = clock
         self.contents = False
-        """Whether requests and responses are told, too."""
+        """True if events contain requests and responses, too."""
         self._event = srv_type.Event
         self._publisher = Publisher(endpoint.owner, self._event, endpoint.name + SUFFIX, qos)
 
     def tell(self, event_type: int, message: Message, sequence_number: int, client_gid: bytes) -> None:
-        """Publish that a request or response of a client's call went out or came in."""
+        """Publish that a request or response went out or came in.
+
+        Args:
+            event_type: Kind of the event, a constant of ServiceEventInfo.
+            message: Request or response.
+            sequence_number: Number of the call, in the order of its client's.
+            client_gid: Global id of the client, 16 bytes.
+        """
         info = ServiceEventInfo(
             event_type=event_type,
             stamp=self.clock.now().to_msg(),
@@ -52,27 +66,32 @@ class Introspection:
             self._publisher.publish(event)
 
     def close(self) -> None:
-        """Tell nothing more."""
+        """End the events."""
         self._publisher.destroy()
 
 
 class ServiceEnd(Receiver):
-    """What a service and a client are alike in: a service's type and name, and that they can tell what is said."""
+    """Base of services and clients: a service's type and name, and introspection."""
 
     srv_type: type[Service]
     srv_name: str
     _endpoint: Endpoint
 
     introspection: Introspection | None = None
-    """Tells of requests and responses, once `configure_introspection` has been asked for it."""
+    """Publisher of events, from `configure_introspection` on."""
 
     def configure_introspection(
         self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
     ) -> None:
-        """Publish on SERVICE/_service_event, from now on, what is asked and what is answered; nothing for OFF.
+        """Publish requests and responses as events on SERVICE/_service_event from now on, or no more.
 
-        `clock` gives the stamps. The quality of service is that of the first call, as in rcl. Raises TypeError for
-        what is no state.
+        Args:
+            clock: Clock of the events' stamps.
+            service_event_qos_profile: Quality of service of the events; that of the first call holds, as in rcl.
+            introspection_state: OFF, METADATA or CONTENTS.
+
+        Raises:
+            TypeError: if `introspection_state` is no ServiceIntrospectionState.
         """
         if not isinstance(introspection_state, ServiceIntrospectionState):
             raise TypeError(f"introspection_state: expected a ServiceIntrospectionState, got {introspection_state!r}")
@@ -87,10 +106,10 @@ class ServiceEnd(Receiver):
 
     @property
     def service_name(self) -> str:
-        """The service's fully qualified name."""
+        """Fully qualified name of the service."""
         return self.srv_name
 
     @property
     def logger_name(self) -> str:
-        """The name of the logger that belongs to the node."""
+        """Name of the node's logger."""
         return self._endpoint.logger_name

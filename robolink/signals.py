@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: they end every context that is ok, and whoever spins; quietly."""
+"""Signal handlers for Ctrl-C and SIGTERM: they end every context and the spinning, without a traceback."""
 
 from __future__ import annotations
 
@@ -8,17 +8,24 @@ import threading
 import weakref
 from enum import IntFlag
 from types import FrameType, TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser
-from robolink.tracebacks import misspelt_field
+from robolink.text.tracebacks import misspelt_field
 
-if TYPE_CHECKING:
-    from robolink.context import Context
+
+class Interruptible(Protocol):
+    """Context as seen by a signal handler."""
+
+    def ok(self) -> bool:
+        """True from its beginning to its end."""
+
+    def interrupt(self) -> None:
+        """End the spinning, as Ctrl-C does."""
 
 
 class SignalHandlerOptions(IntFlag):
-    """Which signals are handled; the numbers are rclpy's."""
+    """Signals to handle; the numbers are rclpy's."""
 
     NO = 0
     SIGINT = 1
@@ -26,7 +33,7 @@ class SignalHandlerOptions(IntFlag):
     ALL = 3
 
 
-_contexts: weakref.WeakSet[Context] = weakref.WeakSet()
+_contexts: weakref.WeakSet[Interruptible] = weakref.WeakSet()
 _before: dict[int, Any] = {}
 _received = 0
 _quiet = False
@@ -36,11 +43,11 @@ if sys.platform == "win32":
     _NUMBERS[SignalHandlerOptions.SIGINT].append(signal.SIGBREAK)  # what a launcher can send to a process of its own
 
 _ENDS = (KeyboardInterrupt, ExternalShutdownException)
-"""What a program meets when it is told to end; InterruptedByUser is one of the first two."""
+"""Exceptions by which a program is told to end; InterruptedByUser is both."""
 
 
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
-    """Handle these signals from now on. Only Python's main thread can: elsewhere nothing happens."""
+    """Handle the signals `options` from now on. Only Python's main thread can: elsewhere nothing happens."""
     if threading.current_thread() is not threading.main_thread():
         return
     for flag, numbers in _NUMBERS.items():
@@ -53,7 +60,7 @@ def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions
 
 
 def uninstall_signal_handlers() -> None:
-    """Give the signals back to whom they belonged before."""
+    """Restore the handlers of before. Only Python's main thread can: elsewhere nothing happens."""
     if threading.current_thread() is not threading.main_thread():
         return
     for number, handler in list(_before.items()):
@@ -62,7 +69,7 @@ def uninstall_signal_handlers() -> None:
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:
-    """Say which signals are handled now."""
+    """Return the signals that are handled now."""
     found = SignalHandlerOptions.NO
     if signal.SIGINT in _before:
         found |= SignalHandlerOptions.SIGINT
@@ -71,8 +78,8 @@ def get_current_signal_handlers_options() -> SignalHandlerOptions:
     return found
 
 
-def watch(context: Context) -> None:
-    """Tell this context when a signal comes."""
+def watch(context: Interruptible) -> None:
+    """Interrupt this `context` when a signal comes."""
     _contexts.add(context)
 
 

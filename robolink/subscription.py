@@ -1,4 +1,4 @@
-"""Subscriptions."""
+"""Subscriptions: the receiving end of a topic."""
 
 from __future__ import annotations
 
@@ -9,24 +9,25 @@ from collections.abc import Callable
 from enum import Enum
 from typing import Any, Generic, TypedDict, TypeVar
 
-from robolink.backlog import Backlog, Gaps
 from robolink.callback_groups import CallbackGroup
-from robolink.endpoint import Endpoint, Owner
-from robolink.entity import ANY_TIME, Receiver
 from robolink.event_handler import (
     QoSSubscriptionEventType,
     SubscriptionEventCallbacks,
     tell_handlers,
     warns_of_types,
 )
-from robolink.exceptions import DecodeError, TransportError, WireError, shown
-from robolink.humble import Copies, CopyError, FromHumbleKey
-from robolink.inbox import Inbox
+from robolink.exceptions import DecodeError, OverwrittenError, TransportError, WireError
+from robolink.graph.endpoint import Endpoint, Owner
+from robolink.graph.humble import Copies, CopyError, FromHumbleKey
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, message_type
 from robolink.qos import HistoryPolicy, QoSProfile, resolved
+from robolink.running.backlog import Backlog, Gaps
+from robolink.running.entity import ANY_TIME, Receiver
+from robolink.running.inbox import Inbox
+from robolink.system.terminal import shown
 from robolink.transport.base import Handle, Sample
-from robolink.wire import ATTACHMENT_BYTES, EndpointKind, unpack_attachment
+from robolink.wire import EndpointKind, check_attachment, is_attachment, unpack_attachment
 
 MsgT = TypeVar("MsgT", bound=Message)
 
@@ -34,7 +35,7 @@ _LOST = {QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST}
 
 
 def takes_arguments(function: Callable[..., Any], count: int) -> bool:
-    """Whether it can be called with `count` arguments; with any number when it does not tell."""
+    """True if `function` can be called with `count` arguments, or does not tell."""
     import inspect
 
     try:
@@ -47,7 +48,14 @@ def takes_arguments(function: Callable[..., Any], count: int) -> bool:
 
 
 class MessageInfo(TypedDict):
-    """What is known about a message beside its content; times in nanoseconds since the epoch."""
+    """Metadata of a message that was received.
+
+    Args:
+        source_timestamp: Time at which it was published, in nanoseconds since the epoch.
+        received_timestamp: Time at which its callback was called, in nanoseconds since the epoch.
+        publication_sequence_number: Number of the message, in the order of its publisher's.
+        reception_sequence_number: None: this network has no such number.
+    """
 
     source_timestamp: int
     received_timestamp: int
@@ -56,12 +64,23 @@ class MessageInfo(TypedDict):
 
 
 class Subscription(Receiver, Generic[MsgT]):
-    """Receives messages of one type from one topic; made by `Node.create_subscription`."""
+    """Receives messages of one type from one topic; made by `Node.create_subscription`.
+
+    Args:
+        owner: Node that it belongs to, as the graph knows it.
+        msg_type: Message class of the topic.
+        topic: Fully qualified name of the topic.
+        callback: Function, or coroutine function, of the message, or of the message and its MessageInfo.
+        callback_group: Group of the callback.
+        qos_profile: Quality of service.
+        raw: True calls back with the serialized message (bytes).
+        event_callbacks: Callbacks for events; None only warns of publishers with another type.
+    """
 
     straight = True
 
     class CallbackType(Enum):
-        """What the callback takes."""
+        """Arguments that the callback takes: the message alone, or with its MessageInfo."""
 
         MessageOnly = 0
         WithMessageInfo = 1
@@ -84,17 +103,24 @@ class Subscription(Receiver, Generic[MsgT]):
         self.qos_profile = qos_profile
         self.raw = raw
         self.malformed = 0
-        """How many payloads could not be decoded."""
+        """Number of messages that could not be decoded."""
+        self._overwritten, self._has_warned = 0, False
         self.callback = callback
         self._decode: Callable[[bytes], Any] = bytes if raw else decoder(message_type(msg_type))
         self._endpoint = Endpoint(owner, EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile)
-        self._read: Callable[[Any], Sample] = self._endpoint.transport.read
-        self._humble_door: _HumbleDoor | None = None
+        transport = self._endpoint.transport
+        self._read: Callable[[Any], Sample] = transport.read
+        self._read_arrived = self._read
+        self._open: Callable[[Any], Any] | None = transport.opener(check_attachment, self._decode)
+        """Function that turns what arrived into a message, the short way; None where `_read` does more."""
+        self._humble_receiver: _HumbleReceiver | None = None
         self._inbox = owner.context.inbox
         self._handles: list[Handle] = []
         self._backlog: Backlog | None = None
         if depth == 0:
             self._backlog, self.straight = Backlog(topic, self._make_gaps(), owner.context.time.steady), False
+            self._open = self._open_kept
+            self.deliver = self._deliver_all  # type: ignore[method-assign] # it costs the others nothing
         self._listen_for_events(event_callbacks or SubscriptionEventCallbacks())
         self._endpoint.speak_humble = self._speak_humble
         for key in filter(None, (self._endpoint.key, self._endpoint.buffer_key)):
@@ -103,7 +129,7 @@ class Subscription(Receiver, Generic[MsgT]):
 
     @property
     def callback(self) -> Callable[..., Any]:
-        """What is called with each message, or with the message and its MessageInfo."""
+        """Function that is called with each message, or with the message and its MessageInfo."""
         return self._callback
 
     @callback.setter
@@ -119,16 +145,42 @@ class Subscription(Receiver, Generic[MsgT]):
         self._callback = callback
         self._with_info = self._callback_type is self.CallbackType.WithMessageInfo
 
-    def deliver(self, arrived: Any) -> None:
-        """Keep what arrived; with KEEP_ALL as plain bytes, since one that came from Zenoh holds all of its batch."""
-        if self._backlog is not None:
-            if type(arrived) is not FromHumbleKey:
-                arrived = self._endpoint.transport.read(arrived)
-            with contextlib.suppress(WireError):  # told when it is taken
-                missing = self._backlog.add(arrived.attachment, self.mailbox.waiting)
-                if missing > 0:
-                    tell_handlers(self.event_handlers, _LOST, total=missing)
-        super().deliver(arrived)
+    def _deliver_all(self, arrived: Any) -> None:
+        """Keep what arrived, with KEEP_ALL as plain bytes, since one that came from Zenoh holds all of its batch."""
+        backlog = self._backlog
+        assert backlog is not None
+        if type(arrived) is not FromHumbleKey:
+            try:
+                arrived = self._read_arrived(arrived)
+            except OverwrittenError as error:
+                self._check_order(backlog, error.attachment)
+                self.lose(backlog.warnings.append)
+                return
+        waiting, queue = self.mailbox.waiting, self._queue_
+        self._check_order(backlog, arrived.attachment)
+        waiting.append(arrived)
+        if queue is not None:
+            queue.ready.append(self)
+
+    def _check_order(self, backlog: Backlog, attachment: bytes) -> None:
+        try:  # this is run once a message: `contextlib.suppress` is three calls
+            missing = backlog.add(attachment, self.mailbox.waiting)
+        except WireError:  # told when it is taken
+            return
+        if missing > 0:
+            tell_handlers(self.event_handlers, _LOST, total=missing)
+
+    def lose(self, warn: Callable[[str], object] | None) -> None:
+        """Count a message that was overwritten in shared memory; call `warn`, if there is one, about the first."""
+        with self._parking.lock:  # callbacks of a reentrant group lose side by side
+            self._overwritten += 1
+        tell_handlers(self.event_handlers, _LOST, total=1)
+        if warn is not None and not self._has_warned:
+            self._has_warned = True
+            warn(
+                f"{self.topic}: dropped a message: {OverwrittenError()}"
+                " (the next ones are only counted, in `Subscription.lost`)"
+            )
 
     def execute(self, taken: Any) -> Any:
         """Decode what arrived and call the callback; what cannot be decoded is counted, and warned about once."""
@@ -136,17 +188,30 @@ class Subscription(Receiver, Generic[MsgT]):
             with contextlib.suppress(IndexError):  # another thread of a reentrant group was faster
                 get_logger(self.logger_name).warning(self._backlog.warnings.popleft())
         try:
-            payload, attachment = self._read(taken)
-            if len(attachment) != ATTACHMENT_BYTES or attachment[16] != 16:
-                unpack_attachment(attachment)  # it says what is wrong
-            message = self._decode(payload)
-            info = self._info(attachment) if self._with_info else None
+            if (opened := self._open) is not None and not self._with_info:
+                message, info = opened(taken), None
+            else:
+                message, info = self._open_with_info(taken)
         except CopyError:
+            return None
+        except OverwrittenError:
+            self.lose(get_logger(self.logger_name).warning)
             return None
         except (DecodeError, WireError, TransportError) as error:
             self._refuse(error)
             return None
         return self._callback(message) if info is None else self._callback(message, info)
+
+    def _open_kept(self, kept: Sample) -> Any:
+        """Return the message of what `_deliver_all` has read."""
+        payload, attachment = kept
+        check_attachment(attachment)
+        return self._decode(payload)
+
+    def _open_with_info(self, taken: Any) -> tuple[Any, MessageInfo | None]:
+        payload, attachment = self._read(taken)
+        check_attachment(attachment)
+        return self._decode(payload), self._info(attachment) if self._with_info else None
 
     def _info(self, attachment: bytes) -> MessageInfo:
         sender = unpack_attachment(attachment)
@@ -171,16 +236,19 @@ class Subscription(Receiver, Generic[MsgT]):
 
     @property
     def dropped(self) -> int:
-        """How many messages gave way to newer ones before they were taken."""
+        """Number of messages that were dropped for newer ones before they were taken, since the depth was reached."""
         return self.mailbox.dropped
 
     @property
     def lost(self) -> int:
-        """How many messages did not arrive; counted for KEEP_ALL alone."""
-        return self._backlog.lost if self._backlog is not None else 0
+        """Number of messages that did not arrive.
+
+        With KEEP_ALL all of them, by gaps in their numbers; else those that were overwritten in shared memory.
+        """
+        return self._overwritten + (self._backlog.lost if self._backlog is not None else 0)
 
     def get_publisher_count(self) -> int:
-        """How many publishers of this topic and type there are."""
+        """Return the number of publishers of this topic and type."""
         return self._endpoint.count_others()
 
     # Events
@@ -215,14 +283,21 @@ class Subscription(Receiver, Generic[MsgT]):
         lock = threading.Lock()  # callbacks of a reentrant group run side by side
 
         def read_and_count(taken: Any) -> Sample:
-            sample = read(taken)
-            with lock:
-                missing = gaps.before(unpack_attachment(sample.attachment))
-            if missing > 0:
-                tell_handlers(self.event_handlers, _LOST, total=missing)
+            try:
+                sample = read(taken)
+            except OverwrittenError as error:
+                count(error.attachment)
+                raise
+            count(sample.attachment)
             return sample
 
-        self._read = read_and_count
+        def count(attachment: bytes) -> None:
+            with lock:
+                missing = gaps.before(unpack_attachment(attachment))
+            if missing > 0:
+                tell_handlers(self.event_handlers, _LOST, total=missing)
+
+        self._read, self._open = read_and_count, None
 
     # Humble peers
 
@@ -232,36 +307,36 @@ class Subscription(Receiver, Generic[MsgT]):
 
         def read_once(taken: Any) -> Sample:
             sample = taken.sample if type(taken) is FromHumbleKey else read(taken)
-            if len(sample.attachment) == ATTACHMENT_BYTES:
+            if is_attachment(sample.attachment):
                 copies.check(sample.attachment)
             return sample
 
-        self._read = read_once
+        self._read, self._open = read_once, None
         with self._parking.lock:  # held, too, where `redirect` is called
-            self._humble_door = _HumbleDoor(self, self._inbox, copies)
-        self._handles.append(self._endpoint.transport.subscribe(key, self.qos_profile, self._humble_door.sink))
+            self._humble_receiver = _HumbleReceiver(self, self._inbox, copies)
+        self._handles.append(self._endpoint.transport.subscribe(key, self.qos_profile, self._humble_receiver.sink))
         if self._destroyed:  # meanwhile
             self._close()
 
     def redirect(self, inbox: Inbox) -> None:
-        """Have what comes from now on arrive in this inbox."""
+        """Redirect what comes from now on to this inbox."""
         super().redirect(inbox)
         self._inbox = inbox
-        if self._humble_door is not None:
-            inbox.take_over(self._humble_door.sink)
+        if self._humble_receiver is not None:
+            inbox.take_over(self._humble_receiver.sink)
 
     @property
     def topic_name(self) -> str:
-        """The topic's fully qualified name."""
+        """Fully qualified name of the topic."""
         return self.topic
 
     @property
     def logger_name(self) -> str:
-        """The name of the logger that belongs to the node."""
+        """Name of the node's logger."""
         return self._endpoint.logger_name
 
     def destroy(self) -> None:
-        """Undeclare it. Safe to call twice."""
+        """End the subscription, and undeclare it. Safe to call twice."""
         self._destroyed = True
         self._close()
         for handler in self.event_handlers:
@@ -281,8 +356,8 @@ class Subscription(Receiver, Generic[MsgT]):
         self.destroy()
 
 
-class _HumbleDoor:
-    """Where samples of Humble's key arrive for a subscription."""
+class _HumbleReceiver:
+    """Target of the samples that arrive on Humble's key for a subscription."""
 
     straight = False
 
@@ -292,7 +367,11 @@ class _HumbleDoor:
         self.sink: functools.partial[Any] = inbox.sink(self)
 
     def deliver(self, arrived: Any) -> None:
-        """Hand it on, but no copies: they would drive other messages out of the mailbox."""
-        sample = self._read(arrived)
+        """Pass a sample on, but no copy: copies would drive other messages out of the mailbox."""
+        try:
+            sample = self._read(arrived)
+        except OverwrittenError:
+            self._subscription.lose(None)  # a lock is held here, under which nothing is logged
+            return
         if not self._copies.comes_twice(sample.attachment):
             self._subscription.deliver(FromHumbleKey(sample))

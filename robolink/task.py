@@ -1,4 +1,4 @@
-"""Futures, and the tasks in which an executor runs what a user gave it, coroutines included."""
+"""Futures, and tasks: functions and coroutines that an executor runs, whose result is a future."""
 
 from __future__ import annotations
 
@@ -9,12 +9,10 @@ import threading
 import warnings
 import weakref
 from collections.abc import Callable, Generator
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 if TYPE_CHECKING:
     import asyncio
-
-    from robolink.executors import Executor
 
 T = TypeVar("T")
 
@@ -22,10 +20,21 @@ _running = threading.local()
 """The task that runs in a thread, and the event loop of asyncio within which it was called, if any."""
 
 
-class Future(Generic[T]):
-    """A result that comes later. Await it in a coroutine of an executor or of asyncio."""
+class TaskExecutor(Protocol):
+    """Executor as seen by a future: where its done callbacks run."""
 
-    def __init__(self, *, executor: Executor | None = None) -> None:
+    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
+        """Run the function or coroutine `callback` there, with `args` and `kwargs`."""
+
+
+class Future(Generic[T]):
+    """Result that comes later. Await it in a coroutine of an executor or of asyncio.
+
+    Args:
+        executor: Executor that runs the done callbacks; None runs them at once where the future becomes done.
+    """
+
+    def __init__(self, *, executor: TaskExecutor | None = None) -> None:
         self._done = False
         self._cancelled = False
         self._result: T | None = None
@@ -34,7 +43,7 @@ class Future(Generic[T]):
         self._callbacks: list[Callable[[Future[T]], object]] = []
         self._wakers: list[Callable[[], None]] = []
         self._lock = threading.Lock()
-        self._executor: Callable[[], Executor | None] = lambda: None
+        self._executor: Callable[[], TaskExecutor | None] = lambda: None
         self.set_executor(executor)
 
     def __del__(self) -> None:
@@ -56,7 +65,7 @@ class Future(Generic[T]):
         return self.result()
 
     def cancel(self) -> None:
-        """Cancel, unless it is done."""
+        """Cancel the future, unless it is done."""
         with self._lock:
             if self._done:
                 return
@@ -64,25 +73,25 @@ class Future(Generic[T]):
         self._schedule_or_invoke_done_callbacks()
 
     def cancelled(self) -> bool:
-        """Whether it was cancelled."""
+        """True if the future was cancelled."""
         return self._cancelled
 
     def over(self) -> bool:
-        """Whether nothing more will come of it: it is done, or was cancelled."""
+        """True if the future is done, or was cancelled."""
         return self._done or self._cancelled
 
     def done(self) -> bool:
-        """Whether it has a result or an exception."""
+        """True if the future has a result or an exception."""
         return self._done
 
     def result(self) -> T | None:
-        """The result, None while there is none. Raises the exception, if it has one."""
+        """Return the result, None while there is none. Raises the exception, if it has one."""
         if self._exception is not None:
             raise self._fetched()
         return self._result
 
     def exception(self) -> BaseException | None:
-        """The exception, if it has one."""
+        """Return the exception, None if there is none."""
         return self._fetched() if self._exception is not None else None
 
     def _fetched(self) -> BaseException:
@@ -91,21 +100,21 @@ class Future(Generic[T]):
         return self._exception
 
     def set_result(self, result: T) -> None:
-        """Be done, with a result."""
+        """Complete the future with `result`."""
         with self._lock:
             self._result = result
             self._done, self._cancelled = True, False
         self._schedule_or_invoke_done_callbacks()
 
     def set_exception(self, exception: BaseException) -> None:
-        """Be done, with an exception."""
+        """Complete the future with `exception`, which `result` then raises."""
         with self._lock:
             self._exception, self._exception_fetched = exception, False
             self._done, self._cancelled = True, False
         self._schedule_or_invoke_done_callbacks()
 
     def add_done_callback(self, callback: Callable[[Future[T]], object]) -> None:
-        """Call `callback(future)` when done: in the executor if there is one, else at once where it happens."""
+        """Call `callback(future)` when the future is done: in its executor, without one at once where that happens."""
         with self._lock:
             if not self._done:
                 self._callbacks.append(callback)
@@ -117,12 +126,12 @@ class Future(Generic[T]):
             callback(self)
 
     def remove_done_callback(self, callback: Callable[[Future[T]], object]) -> None:
-        """Do not call it after all."""
+        """Remove a done `callback`; one that was not added is ignored."""
         with self._lock:
             self._callbacks = [each for each in self._callbacks if each != callback]
 
     def when_done(self, waker: Callable[[], None]) -> None:
-        """Call `waker()` at once where it becomes done, in whatever thread; for executors."""
+        """Call `waker()` at once where the future becomes done, in whatever thread; for executors."""
         with self._lock:
             if not (self._done or self._cancelled):
                 self._wakers.append(waker)
@@ -130,7 +139,7 @@ class Future(Generic[T]):
         waker()
 
     def forget(self, waker: Callable[[], None]) -> None:
-        """Do not call this waker after all."""
+        """Remove a `waker`; one that was not added is ignored."""
         with self._lock:
             self._wakers = [each for each in self._wakers if each is not waker]
 
@@ -150,13 +159,13 @@ class Future(Generic[T]):
             except Exception as error:  # noqa: BLE001 - somebody else's callback must not break whoever set the result
                 warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
 
-    def set_executor(self, executor: Executor | None) -> None:
-        """Have the done callbacks run in this executor; with None, at once where it becomes done."""
+    def set_executor(self, executor: TaskExecutor | None) -> None:
+        """Run the done callbacks in `executor` from now on; with None, at once where the future becomes done."""
         self._executor = (lambda: None) if executor is None else weakref.ref(executor)
 
 
 def _asyncio_loop() -> asyncio.AbstractEventLoop | None:
-    """Give the event loop that runs in this thread, if there is one."""
+    """Return the event loop that runs in this thread, if there is one."""
     running = getattr(sys.modules.get("asyncio"), "_get_running_loop", None)  # where it was not imported, no loop runs
     return None if running is None else running()
 
@@ -182,14 +191,21 @@ def _complete(woken: asyncio.Future[None]) -> None:
 
 
 class Task(Future[T]):
-    """A function or coroutine that an executor runs; its result is the future's."""
+    """Function or coroutine that an executor runs; its result is that of the future.
+
+    Args:
+        handler: Function, coroutine function or coroutine.
+        args: Positional arguments of a function; None is none.
+        kwargs: Keyword arguments of a function; None is none.
+        executor: Executor that runs the done callbacks; None runs them at once where the task becomes done.
+    """
 
     def __init__(
         self,
         handler: Any,
         args: tuple[Any, ...] | None = None,
         kwargs: dict[str, Any] | None = None,
-        executor: Executor | None = None,
+        executor: TaskExecutor | None = None,
     ) -> None:
         super().__init__(executor=executor)
         self._handler: Any = handler
@@ -200,10 +216,10 @@ class Task(Future[T]):
         self._executing = False
         self._task_lock = threading.Lock()
         self.awaits: Future[Any] | None = None
-        """The future that the coroutine stopped at, as far as it is one of ours."""
+        """Future that the coroutine awaits, if it is one of this kind."""
 
     def __call__(self) -> None:
-        """Run it, or run it on until its next await. Nothing happens when it is done or under way already."""
+        """Run the function, or the coroutine up to its next await; nothing if the task is done or runs already."""
         if self._done or self._cancelled or self._executing or not self._task_lock.acquire(blocking=False):
             return
         before = getattr(_running, "task", None), getattr(_running, "loop", None)
@@ -240,11 +256,11 @@ class Task(Future[T]):
         self._handler, self._args, self._kwargs = None, (), {}
 
     def executing(self) -> bool:
-        """Whether it runs right now."""
+        """True while the task runs."""
         return self._executing
 
     def cancel(self) -> None:
-        """Cancel; a coroutine is closed."""
+        """Cancel the task, unless it is done; a coroutine is closed."""
         if self._done:
             return
         if inspect.iscoroutine(self._handler) and not self._executing:

@@ -17,10 +17,19 @@ _LIMIT = 2**63
 
 
 class Time:
-    """A point in time: `Time(seconds=1.5)`, since the epoch of its clock; never negative.
+    """Point in time, since the epoch of its clock: `Time(seconds=1.5)`.
 
-    Times of different clocks cannot be compared or subtracted: that raises `TypeError`. A negative time
-    raises `ValueError`, one beyond 64 signed bits `OverflowError`.
+    Times of different kinds of clocks cannot be compared or subtracted: that raises `TypeError`.
+
+    Args:
+        seconds: Seconds, also with a fraction; not negative.
+        nanoseconds: Nanoseconds, which are added; not negative.
+        clock_type: Kind of the clock, by default the system's.
+
+    Raises:
+        ValueError: if the time is negative.
+        OverflowError: if it does not fit in 64 signed bits (292 years).
+        TypeError: if `clock_type` is no ClockType.
     """
 
     __slots__ = ("_clock_type", "_nanoseconds")
@@ -49,11 +58,11 @@ class Time:
 
     @property
     def clock_type(self) -> ClockType:
-        """The kind of clock that this time belongs to."""
+        """Kind of the clock that this time belongs to."""
         return self._clock_type
 
     def seconds_nanoseconds(self) -> tuple[int, int]:
-        """Split into whole seconds and the nanoseconds that remain."""
+        """Return whole seconds and the nanoseconds that remain."""
         return divmod(self._nanoseconds, S_TO_NS)
 
     def __repr__(self) -> str:
@@ -98,7 +107,7 @@ class Time:
         return self._nanoseconds <= self._same_clock(other, "compare")
 
     def to_msg(self) -> TimeMsg:
-        """Give the message; beyond the year 2038 its 32-bit `sec` refuses the value when it is published."""
+        """Return the message; beyond the year 2038 its 32-bit `sec` refuses the value when it is published."""
         from robolink.interfaces.builtin_interfaces.msg import Time as TimeMsg
 
         seconds, nanoseconds = self.seconds_nanoseconds()
@@ -106,7 +115,15 @@ class Time:
 
     @classmethod
     def from_msg(cls, msg: TimeMsg, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
-        """Read a `builtin_interfaces/msg/Time`; anything else raises `TypeError`."""
+        """Return the time of a `builtin_interfaces/msg/Time`.
+
+        Args:
+            msg: Message to read.
+            clock_type: Kind of the clock that the time is of, which the message does not say.
+
+        Raises:
+            TypeError: if `msg` is another message.
+        """
         from robolink.interfaces.builtin_interfaces.msg import Time as TimeMsg
 
         if not isinstance(msg, TimeMsg):

@@ -1,4 +1,4 @@
-"""Where a node's clock takes its time from: the system, or /clock while the parameter use_sim_time is true."""
+"""Time source of a node's clock: the system, or /clock while the parameter use_sim_time is true."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robolink.qos import QoSProfile, ReliabilityPolicy
 from robolink.time import Time
 
 if TYPE_CHECKING:
-    from robolink.node import Node
+    from robolink.node_parts.ports import TimedNode
     from robolink.subscription import Subscription
 
 CLOCK_TOPIC = "/clock"
@@ -21,11 +21,11 @@ USE_SIM_TIME_NAME = "use_sim_time"
 
 
 class TimeSource:
-    """Sets the clocks attached to it, and follows a node's parameter use_sim_time."""
+    """Source of ROS time for the clocks attached to it; it follows the parameter use_sim_time of `node`."""
 
-    def __init__(self, *, node: Node | None = None) -> None:
+    def __init__(self, *, node: TimedNode | None = None) -> None:
         self._clocks: list[ROSClock] = []
-        self._node: Node | None = None
+        self._node: TimedNode | None = None
         self._clock_sub: Subscription[ClockMsg] | None = None
         self._active = False
         self._last: Time | None = None
@@ -34,7 +34,7 @@ class TimeSource:
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether the time comes from /clock."""
+        """True while the time comes from /clock."""
         return self._active
 
     @ros_time_is_active.setter
@@ -49,10 +49,10 @@ class TimeSource:
         else:
             self._unsubscribe()
 
-    def attach_node(self, node: Node) -> None:
-        """Follow this node's use_sim_time, which is declared if it is not yet.
+    def attach_node(self, node: TimedNode) -> None:
+        """Follow the parameter use_sim_time of `node`, which is declared if it is not yet.
 
-        Raises TypeError for what is no node, or when the parameter is no bool.
+        Raises TypeError for what is no node, or if the parameter is no bool.
         """
         if not hasattr(node, "declare_parameter"):
             raise TypeError(f"node: expected a Node, got {type(node)}")
@@ -74,11 +74,11 @@ class TimeSource:
             self._node.remove_on_set_parameters_callback(self._on_parameters)
         self._node = None
 
-    def _get_node(self) -> Node | None:
+    def _get_node(self) -> TimedNode | None:
         return self._node
 
     def attach_clock(self, clock: ROSClock) -> None:
-        """Set this clock from now on. Raises ValueError for what is no ROSClock."""
+        """Set this `clock` from now on. Raises ValueError for what is no ROSClock."""
         if not isinstance(clock, ROSClock):
             raise ValueError("Only clocks with type ROS_TIME can be attached.")
         if self._last is not None:
@@ -87,7 +87,7 @@ class TimeSource:
         self._clocks.append(clock)
 
     def clock_callback(self, msg: ClockMsg) -> None:
-        """Set the clocks to what /clock says."""
+        """Set the clocks to the time of `msg`, a message of /clock."""
         time = Time.from_msg(msg.clock)
         self._last = time
         for clock in self._clocks:

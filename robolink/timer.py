@@ -1,4 +1,4 @@
-"""Timers, and rates that are made of them."""
+"""Timers, which call a function periodically, and rates, which sleep until the next tick of a timer."""
 
 from __future__ import annotations
 
@@ -10,19 +10,25 @@ from typing import TYPE_CHECKING, Any
 from robolink.callback_groups import CallbackGroup
 from robolink.clock import Clock, ROSClock
 from robolink.clock_type import ClockType
-from robolink.entity import NOTHING, Entity
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser, InvalidHandle, ROSInterruptException
-from robolink.queues import A_WHILE
+from robolink.running.entity import NOTHING, Entity
+from robolink.system.queues import A_WHILE
 from robolink.task import Future
 from robolink.time import Time
 
 if TYPE_CHECKING:
     from robolink.context import Context
-    from robolink.executors import Executor
+    from robolink.running.ports import Loop
 
 
 class TimerInfo:
-    """When a timer's callback should have been called and when it was."""
+    """Expected and actual time of a call of a timer's callback.
+
+    Args:
+        expected_call_time: Time at which the call was due, in nanoseconds, not negative.
+        actual_call_time: Time of the call itself, in nanoseconds, not negative.
+        clock_type: Kind of the timer's clock.
+    """
 
     def __init__(
         self,
@@ -40,7 +46,20 @@ class TimerInfo:
 
 
 class Timer(Entity):
-    """Calls a function every so often, on absolute deadlines, so that it does not drift."""
+    """Calls a function periodically, on absolute deadlines, so that it does not drift; see `Node.create_timer`.
+
+    Args:
+        callback: Function, or coroutine function, without arguments, or with one that is annotated as TimerInfo.
+        callback_group: Group of the callback; None is none, so that it may run at any time.
+        timer_period_ns: Period in nanoseconds, 0 or more; 0 calls as often as possible.
+        clock: Clock that the period is measured by.
+        context: Context of the timer, as in rclpy; that of its executor counts.
+        autostart: False makes the timer cancelled; `reset` starts it.
+
+    Raises:
+        ValueError: if the period is negative.
+        TypeError: if the callback cannot be called.
+    """
 
     def __init__(
         self,
@@ -57,7 +76,7 @@ class Timer(Entity):
         self._made_at = _users_line() if callback is None else ""
         self.clock = clock
         self.version = 0
-        """Changes whenever an older deadline no longer holds."""
+        """Number that changes whenever an older deadline no longer holds."""
         self._period = _checked_period(timer_period_ns)
         self._last = clock.now_ns()
         self.next_call_ns = self._last + self._period
@@ -65,7 +84,7 @@ class Timer(Entity):
 
     @property
     def callback(self) -> Callable[..., Any] | None:
-        """What is called; with a TimerInfo if it has a parameter that is annotated so.
+        """Function that is called; with a TimerInfo if it has a parameter that is annotated so.
 
         None, as in rclpy, must have been replaced before the timer is due. Raises TypeError for what cannot be called.
         """
@@ -78,8 +97,8 @@ class Timer(Entity):
         self._callback = callback
         self._info_name = None if callback is None else _info_parameter(callback)
 
-    def attach(self, executor: Executor, queued: int = 0) -> None:
-        """Be called by this executor when due."""
+    def attach(self, executor: Loop, queued: int = 0) -> None:
+        """Belong to this executor, which calls the timer when it is due."""
         super().attach(executor, queued)
         if isinstance(self.clock, ROSClock):
             self.clock.watch(self)
@@ -87,50 +106,46 @@ class Timer(Entity):
             self.reschedule()
 
     def detach(self) -> None:
-        """Be called by none."""
+        """Belong to no executor; nothing calls the timer then."""
         super().detach()
         self.version += 1
         if isinstance(self.clock, ROSClock):
             self.clock.unwatch(self)
 
     def reschedule(self) -> None:
-        """Have the executor forget the deadline it knows and take the one that holds now."""
+        """Replace the deadline that the executor knows by the one that holds now."""
         self.version += 1
-        executor = self.executor
-        if executor is None or self._canceled:
+        queue = self._queue_
+        if queue is None or self._canceled:
             return
         now = self.clock.now_ns()
         if now < self._last:  # the clock was set back, or follows another source: as in rcl, a period starts now
             self._last, self.next_call_ns = now, now + self._period
         left = self.clock.wait_ns(self.next_call_ns)
         if left is not None:  # else /clock will say when
-            executor.schedule(self, left)
-            executor.wake()
+            queue.schedule(self, left)
+            queue.wake()
 
     def take(self) -> Any:
-        """Be called now: the next deadline is a whole number of periods after the last one."""
+        """Return the expected and the actual time of the call that is due, and set the next deadline; or NOTHING.
+
+        The next deadline is a whole number of periods after the last one.
+        """
         now = self.clock.now_ns()
         if self._canceled or self._destroyed:
             return NOTHING
         if now < self.next_call_ns:  # the executor waits by another clock, which may be a little ahead
             self.reschedule()
             return NOTHING
-        expected = self.next_call_ns
-        self._advance(now)
-        executor = self.executor
-        if executor is not None:
+        self._last, expected, period = now, self.next_call_ns, self._period
+        self.next_call_ns = expected + period * (1 + (now - expected) // period) if period else now
+        queue = self._queue_
+        if queue is not None:
             self.version += 1
             left = self.clock.wait_ns(self.next_call_ns)
             if left is not None:
-                executor.schedule(self, left)
+                queue.schedule(self, left)
         return expected, now
-
-    def _advance(self, now: int) -> None:
-        self._last = now
-        if self._period == 0:
-            self.next_call_ns = now
-            return
-        self.next_call_ns += self._period * (1 + (now - self.next_call_ns) // self._period)
 
     def execute(self, taken: Any) -> Any:
         """Call the callback."""
@@ -147,7 +162,7 @@ class Timer(Entity):
 
     @property
     def timer_period_ns(self) -> int:
-        """Nanoseconds from call to call."""
+        """Period in nanoseconds; a new one holds from the next call on."""
         self._check()
         return self._period
 
@@ -157,39 +172,39 @@ class Timer(Entity):
         self._period = _checked_period(value)
 
     def is_ready(self) -> bool:
-        """Whether it is due."""
+        """True if a call is due."""
         self._check()
         return not self._canceled and self.clock.now_ns() >= self.next_call_ns
 
     def is_canceled(self) -> bool:
-        """Whether it was cancelled and not reset."""
+        """True if the timer was cancelled and not reset."""
         return self._canceled
 
     def cancel(self) -> None:
-        """Call no more, until `reset`."""
+        """Stop the timer, until `reset`."""
         self._check()
         self._canceled = True
         self.version += 1
 
     def reset(self) -> None:
-        """Start anew: the next call comes in one period from now."""
+        """Start the timer, or start it anew: the next call comes in one period from now."""
         self._check()
         self._canceled = False
         self.next_call_ns = self.clock.now_ns() + self._period
         self.reschedule()
 
     def time_since_last_call(self) -> int:
-        """Nanoseconds since the last call, or since it was made."""
+        """Return the nanoseconds since the last call, or since the timer was made."""
         self._check()
         return self.clock.now_ns() - self._last
 
     def time_until_next_call(self) -> int | None:
-        """Nanoseconds until the next call, negative when it is late; None when cancelled."""
+        """Return the nanoseconds until the next call, negative if it is late; None if the timer is cancelled."""
         self._check()
         return None if self._canceled else self.next_call_ns - self.clock.now_ns()
 
     def destroy(self) -> None:
-        """Call no more. Safe to call twice."""
+        """End the timer for good. Safe to call twice."""
         self._destroyed = True
         self._canceled = True
         self.detach()
@@ -206,7 +221,7 @@ class Timer(Entity):
 
 
 def period_ns(seconds: float) -> int:
-    """A timer's period in nanoseconds. Raises ValueError for a number that is none, or is below 0 or infinite."""
+    """Return a timer's period of `seconds` in nanoseconds. Raises ValueError if it is negative, infinite or NaN."""
     if float(seconds) < 0:
         raise ValueError(f"a timer's period cannot be negative, got {seconds} s")
     if not float(seconds) < float("inf"):
@@ -229,7 +244,7 @@ def _users_line() -> str:
 
 
 def _info_parameter(callback: Callable[..., Any]) -> str | None:
-    """The name of a callback's parameter that is annotated as TimerInfo."""
+    """Return the name of a callback's parameter that is annotated as TimerInfo."""
     import inspect
 
     try:
@@ -246,6 +261,10 @@ class Rate:
 
     A tick that comes while nobody sleeps lets the next `sleep` return at once; of several, one is kept. So work that
     took longer than a period is not followed by a wait for the next whole one.
+
+    Args:
+        timer: Timer whose ticks count; its callback is replaced. `Node.create_rate` makes both.
+        context: Context whose end ends every sleep.
     """
 
     def __init__(self, timer: Timer, *, context: Context) -> None:
@@ -270,7 +289,7 @@ class Rate:
         self.destroy()
 
     def destroy(self) -> None:
-        """Wake whoever sleeps, for good. Safe to call twice."""
+        """End the rate, and every sleep. Safe to call twice."""
         self._is_destroyed = True
         self._tick()
         self._timer.destroy()
@@ -304,7 +323,7 @@ class Rate:
                 self._sleepers = [each for each in self._sleepers if each is not tick]
 
     def _next_tick(self) -> Future[None]:
-        """Come to sleep: the future of the next tick, which is done if there was one."""
+        """Return the future of the next tick, which is done if there was one since the last sleep."""
         tick: Future[None] = Future()
         with self._lock:
             ticked, self._has_ticked = self._has_ticked or self._is_destroyed, False

@@ -1,4 +1,4 @@
-"""What is known about one publisher or subscription of a topic."""
+"""Description of one publisher or subscription of a topic, as the graph shows it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from robolink.type_hash import TypeHash
 
 
 class TopicEndpointTypeEnum(IntEnum):
-    """The kinds of endpoints, numbered as in rmw."""
+    """Kinds of endpoints, numbered as in rmw."""
 
     INVALID = 0
     PUBLISHER = 1
@@ -29,10 +29,19 @@ _FIELDS: dict[str, type] = {
 
 
 class TopicEndpointInfo:
-    """One end of a topic: whose it is, its type and hash, which end, its gid (16 numbers), and its profile.
+    """Publisher or subscription of a topic, with its node, type and profile.
 
-    A hash or a profile may be given as the dictionary of its parts, the kind of end as its number; a value of
-    another type is an AssertionError, as in rclpy.
+    Args:
+        node_name: Name of its node, without namespace.
+        node_namespace: Namespace of its node.
+        topic_type: Name of the message type, such as `std_msgs/msg/String`.
+        topic_type_hash: Hash of the message type, or the dictionary of its parts; None is no hash.
+        endpoint_type: Kind of the endpoint, or its number.
+        endpoint_gid: Global id, 16 numbers from 0 to 255; None is empty.
+        qos_profile: Quality of service, or the dictionary of its policies.
+
+    Raises:
+        AssertionError: for a value of another type, as in rclpy.
     """
 
     __slots__ = tuple(_FIELDS)
@@ -94,7 +103,7 @@ class TopicEndpointInfo:
 
 
 def qos_lines(profile: QoSProfile) -> list[str]:
-    """Give a profile as `ros2 topic info -v` shows it."""
+    """Return the lines by which `ros2 topic info -v` shows `profile`."""
     depth = f" ({profile.depth})" if profile.history is HistoryPolicy.KEEP_LAST else ""
     return [
         "QoS profile:",

@@ -1,4 +1,4 @@
-"""Hidden topics and services: those that `topic list` leaves out."""
+"""Hidden topics and services, which `topic list` leaves out."""
 
 from __future__ import annotations
 
@@ -6,5 +6,5 @@ HIDDEN_TOPIC_PREFIX = "_"
 
 
 def topic_or_service_is_hidden(name: str) -> bool:
-    """Say whether any token of the name begins with '_', as in '/robot/_action/status'."""
+    """True if any token of `name` begins with '_', as in '/robot/_action/status'."""
     return any(token.startswith(HIDDEN_TOPIC_PREFIX) for token in name.split("/"))

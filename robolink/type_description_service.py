@@ -8,16 +8,16 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import MutuallyExclusiveCallbackGroup
-from robolink.exceptions import shown
 from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor, ParameterType
 from robolink.message import Service, type_hash, type_name
 from robolink.message.description import described, to_message
 from robolink.parameter import Parameter
+from robolink.system.terminal import shown
 from robolink.wire import NO_HASH
 
 if TYPE_CHECKING:
     from robolink.interfaces.type_description_interfaces.srv import GetTypeDescription
-    from robolink.node import Node
+    from robolink.node_parts.ports import TypedNode
     from robolink.service import Service as Server
 
 START_TYPE_DESCRIPTION_SERVICE_PARAM = "start_type_description_service"
@@ -26,15 +26,15 @@ HASH = re.compile(r"RIHS01_[0-9a-f]{64}", re.ASCII)
 
 
 class TypeDescriptionService:
-    """Declares the parameter `start_type_description_service`, and serves unless that is false.
+    """Server of `~/get_type_description`, unless the parameter `start_type_description_service` of `node` is false.
 
-    It answers for the types of the node's publishers, subscriptions, services, clients and actions, for the messages
-    that a service is made of, and for an action whose services they are. A request states the type's hash, which alone
-    counts then, or only its name. A group of its own makes the answer come while other callbacks run, where the
-    executor has several threads.
+    It declares that parameter, and answers for the types of the node's publishers, subscriptions, services, clients
+    and actions, for the messages that a service is made of, and for an action whose services they are. A request
+    states the type's hash, which alone counts then, or only its name. A group of its own makes the answer come
+    while other callbacks run, where the executor has several threads.
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: TypedNode) -> None:
         self._node = weakref.ref(node)  # the transport holds the service: it must not keep the node alive
         self.enabled = _enabled(node) and not node.context.speaks_humble
         self._service: Server | None = None
@@ -79,7 +79,7 @@ class TypeDescriptionService:
                 yield from (action, action.Goal, action.Result, action.Feedback)
 
 
-def _enabled(node: Node) -> bool:
+def _enabled(node: TypedNode) -> bool:
     name = START_TYPE_DESCRIPTION_SERVICE_PARAM
     if not node.has_parameter(name):
         descriptor = ParameterDescriptor(
@@ -116,7 +116,7 @@ def _described(
 
 
 def _reached(asked: type[Any]) -> list[type[Any]]:
-    """Give a type and then, by name, those that it is made of."""
+    """Return a type and then, by name, those that it is made of."""
     found: dict[str, type[Any]] = {}
     waiting = [asked]
     while waiting:
@@ -138,7 +138,7 @@ def _made_of(cls: type[Any]) -> list[type[Any]]:
 
 
 def _source(cls: type[Any]) -> dict[str, str]:
-    """Give the fields of a TypeSource. What no file says by itself, such as a request, is `implicit`, as in ROS 2."""
+    """Return the fields of a TypeSource. What no file says by itself, such as a request, is `implicit`, as in ROS 2."""
     _, kind, short = type_name(cls).split("/")
     if kind != "msg" and "_" in short:
         return {"type_name": type_name(cls), "encoding": "implicit", "raw_file_contents": ""}

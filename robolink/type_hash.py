@@ -1,4 +1,4 @@
-"""The hash of a message type, as rclpy shows it."""
+"""Hash of a message type (RIHS), as rclpy shows it."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ _PREFIX = "RIHS"
 
 
 class TypeHashDictionary(TypedDict):
-    """The keyword arguments of a TypeHash."""
+    """Keyword arguments of a TypeHash, `version` and `value`."""
 
     version: int
     value: bytes
 
 
 class TypeHash:
-    """A version of ROS 2's hashing, and the 32 bytes of a hash; version -1 stands for no hash."""
+    """Hash of a message type: `version` of ROS 2's hashing, -1 for no hash, and `value`, 32 bytes."""
 
     __slots__ = ("_value", "_version")
 
@@ -26,7 +26,7 @@ class TypeHash:
 
     @classmethod
     def from_text(cls, text: str) -> TypeHash:
-        """Read what tokens carry, such as ``RIHS01_df66…``; what is no hash, as Humble's, gives version -1."""
+        """Return the hash of `text` such as `RIHS01_df66…`; for what is no hash, as Humble's, one of version -1."""
         version, _, digits = text.removeprefix(_PREFIX).partition("_")
         try:
             return cls(int(version), bytes.fromhex(digits))
@@ -35,7 +35,7 @@ class TypeHash:
 
     @property
     def version(self) -> int:
-        """Which way of hashing; 1 is the only one so far."""
+        """Version of the hashing; 1 is the only one so far."""
         return self._version
 
     @version.setter
@@ -44,7 +44,7 @@ class TypeHash:
 
     @property
     def value(self) -> bytes:
-        """The 32 bytes."""
+        """Bytes of the hash, 32 of them."""
         return self._value
 
     @value.setter

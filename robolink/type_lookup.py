@@ -1,4 +1,4 @@
-"""Types that are not installed here: a node that uses one says what it is made of, and a class is built of that."""
+"""Look-up of types that are not installed here: a node that uses one describes it, and a class is built of that."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import os
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from robolink.exceptions import ExternalShutdownException, MessageError, NotFoundError, RobolinkError, shown
+from robolink.exceptions import ExternalShutdownException, MessageError, NotFoundError, RobolinkError
 from robolink.interfaces import find_announced
 from robolink.message import Service, type_hash
+from robolink.system.terminal import shown
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken
 
 if TYPE_CHECKING:
@@ -16,9 +17,9 @@ if TYPE_CHECKING:
     from robolink.node import Node
 
 ANSWER_WITHIN = 1.5
-"""Seconds that a node has for its answer."""
+"""Timeout of one node's answer, in seconds."""
 MOST_ASKED = 3
-"""Nodes that are asked before it is given up."""
+"""Most nodes that are asked."""
 SERVICE = "get_type_description"
 SERVICE_TYPE = "type_description_interfaces/srv/GetTypeDescription"
 SERVICES = (EndpointKind.SERVICE, EndpointKind.CLIENT)
@@ -29,18 +30,25 @@ class TypeLookupError(RobolinkError, LookupError):
 
 
 def type_of(context: Context, endpoint: EndpointToken) -> type[Any]:
-    """Give the message or service class that an endpoint of the graph uses.
+    """Return the message or service class that an endpoint of the graph uses.
 
-    That is the installed one where its hash is the endpoint's, or the endpoint (ROS 2 Humble's) states none. Otherwise
-    the endpoint's node is asked at its service ``~/get_type_description``, then other nodes that use the type; what
+    That is the installed one if its hash is the endpoint's, or the endpoint (ROS 2 Humble's) states none. Otherwise
+    the endpoint's node is asked at its service `~/get_type_description`, then other nodes that use the type; what
     they answer must have the endpoint's hash. Takes up to 1.5 s for each of at most three nodes.
 
-    Raises TypeLookupError, which says what to do, MessageError for a definition in the workspace that is wrong, and
-    ExternalShutdownException when the context ends meanwhile.
+    Args:
+        context: Context whose network is asked.
+        endpoint: Publisher, subscription, service or client, as the graph knows it.
+
+    Raises:
+        TypeLookupError: (a LookupError) if no node describes the type; the text says what to do.
+        MessageError: (a ValueError) if a definition in the workspace is wrong.
+        ExternalShutdownException: if the context ends meanwhile.
     """
+    same = installed_type(endpoint)
+    if same is not None:
+        return same
     installed = _installed(endpoint.type_name)
-    if installed is not None and endpoint.type_hash in (NO_HASH, type_hash(installed)):
-        return installed
     refusals = []
     for node_name, served in _nodes_with(context, endpoint):
         try:
@@ -52,6 +60,17 @@ def type_of(context: Context, endpoint: EndpointToken) -> type[Any]:
                 raise ExternalShutdownException(f"{endpoint.name}: ended while its type was asked for") from error
             refusals.append(f"{node_name}: {shown(str(error), 300)}")
     raise TypeLookupError(_what_to_do(endpoint, installed, refusals))
+
+
+def installed_type(endpoint: EndpointToken) -> type[Any] | None:
+    """Return the installed class that `endpoint` uses; None if there is none of its name and hash.
+
+    Raises MessageError (a ValueError) if a definition in the workspace is wrong.
+    """
+    installed = _installed(endpoint.type_name)
+    if installed is not None and endpoint.type_hash in (NO_HASH, type_hash(installed)):
+        return installed
+    return None
 
 
 def _installed(type_name: str) -> type[Any] | None:
@@ -75,7 +94,7 @@ def _nodes_with(context: Context, endpoint: EndpointToken) -> Iterator[tuple[str
 
 
 def _ask(context: Context, node_name: str, endpoint: EndpointToken) -> type[Any]:
-    """Have a node describe a type, and build it. Raises RobolinkError or TimeoutError when that comes to nothing."""
+    """Ask a node to describe a type, and build a class of that. Raises RobolinkError or TimeoutError if that fails."""
     from robolink.interfaces.type_description_interfaces.srv import GetTypeDescription
     from robolink.message.building import checked_class, class_of_description
     from robolink.message.description import from_message

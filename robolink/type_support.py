@@ -1,4 +1,4 @@
-"""Checks whether a class is a message, service or action type, and rclpy's names for such types in annotations."""
+"""Checks of message, service and action classes, and rclpy's names for such classes in annotations."""
 
 from __future__ import annotations
 
@@ -20,10 +20,14 @@ class WrongTypeError(MessageError, RuntimeError):
 
 
 def check_for_type_support(msg_or_srv_type: type[Any]) -> None:
-    """Pass if it is a message, service or action class.
+    """Check that `msg_or_srv_type` is a message, service or action class.
 
-    Raises AttributeError for what is none, NoTypeSupportImportedException for a class that rosidl has made whose
-    compiled part cannot be loaded. Robolink's own classes have no such part: their codec comes from their annotations.
+    Robolink's own classes have no compiled part: their codec comes from their annotations.
+
+    Raises:
+        AttributeError: if it is none.
+        NoTypeSupportImportedException: (a TypeError) if rosidl has made the class, and its compiled part cannot be
+            loaded.
     """
     if isinstance(msg_or_srv_type, type) and hasattr(msg_or_srv_type, "__ros_type__"):
         return
@@ -36,7 +40,7 @@ def check_for_type_support(msg_or_srv_type: type[Any]) -> None:
 
 
 def check_is_valid_msg_type(msg_type: type[Any]) -> None:
-    """Pass if it is a message class. Raises WrongTypeError (a RuntimeError), and what the check above raises."""
+    """Check that `msg_type` is a message class. Raises WrongTypeError (a RuntimeError), or as the check above."""
     check_for_type_support(msg_type)
     try:
         message_type(msg_type)
@@ -45,7 +49,7 @@ def check_is_valid_msg_type(msg_type: type[Any]) -> None:
 
 
 def check_is_valid_srv_type(srv_type: type[Any]) -> None:
-    """Pass if it is a service class. Raises WrongTypeError (a RuntimeError), and what the first check raises."""
+    """Check that `srv_type` is a service class. Raises WrongTypeError (a RuntimeError), or as the first check."""
     check_for_type_support(srv_type)
     try:
         service_type(srv_type)

@@ -1,18 +1,18 @@
-"""The check of a node's namespace."""
+"""Check of a node's namespace."""
 
 from __future__ import annotations
 
 from typing import Literal
 
 from robolink.exceptions import InvalidNamespaceException
-from robolink.names import FULL_NAME_RULES, MAX_NAMESPACE, find_problem
+from robolink.text.names import FULL_NAME_RULES, MAX_NAMESPACE, find_problem
 
 
 def validate_namespace(namespace: str) -> Literal[True]:
-    """Give True for an absolute namespace such as '/' or '/arm/left'.
+    """Return True if `namespace` is absolute and valid, such as '/' or '/arm/left'.
 
-    Raises `InvalidNamespaceException` with the index of the bad character, also for '' and 'arm', which a
-    node's constructor accepts.
+    Raises InvalidNamespaceException with the index of the bad character, also for '' and 'arm', which a node's
+    constructor accepts.
     """
     problem = None if namespace == "/" else find_problem(namespace, FULL_NAME_RULES, MAX_NAMESPACE)
     if problem is None:

@@ -1,15 +1,15 @@
-"""The check of a node's name."""
+"""Check of a node's name."""
 
 from __future__ import annotations
 
 from typing import Literal
 
 from robolink.exceptions import InvalidNodeNameException
-from robolink.names import MAX_NODE_NAME, NODE_NAME_RULES, find_problem
+from robolink.text.names import MAX_NODE_NAME, NODE_NAME_RULES, find_problem
 
 
 def validate_node_name(node_name: str) -> Literal[True]:
-    """Give True for a good node name; raises `InvalidNodeNameException` with the index of the bad character."""
+    """Return True if `node_name` is valid. Raises InvalidNodeNameException with the index of the bad character."""
     problem = find_problem(node_name, NODE_NAME_RULES, MAX_NODE_NAME)
     if problem is None:
         return True

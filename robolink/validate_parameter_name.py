@@ -1,4 +1,4 @@
-"""The check of a parameter's name."""
+"""Check of a parameter's name."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from robolink.exceptions import InvalidParameterException
 
 
 def validate_parameter_name(name: str) -> Literal[True]:
-    """Give True for a name that is not empty, ROS 2's only rule; raises `InvalidParameterException`."""
+    """Return True if `name` is not empty, which is ROS 2's only rule. Raises InvalidParameterException if it is."""
     if not name:
         raise InvalidParameterException(name)
     return True

@@ -1,21 +1,20 @@
-"""The check of a topic or service name as a user writes it: relative, private ('~/x') or absolute."""
+"""Check of a topic or service name as a user writes it: relative, private ('~/x') or absolute."""
 
 from __future__ import annotations
 
 from typing import Literal
 
 from robolink.exceptions import InvalidServiceNameException, InvalidTopicNameException
-from robolink.names import TOPIC_NAME_RULES, find_problem
+from robolink.text.names import TOPIC_NAME_RULES, find_problem
 
 TOPIC_SEPARATOR_STRING = "/"
 
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
-    """Give True for a name that can be expanded.
+    """Return True if `name` can be expanded. The expanded name may still be too long: see `validate_full_topic_name`.
 
-    Raises `InvalidTopicNameException` with the index of the bad character (`InvalidServiceNameException` when
-    `is_service`), and TypeError for what is no text. The expanded name may still be too long: see
-    `validate_full_topic_name`.
+    Raises InvalidTopicNameException with the index of the bad character (InvalidServiceNameException if
+    `is_service`), and TypeError for what is no str.
     """
     _check_is_text(name)
     problem = find_problem(name, TOPIC_NAME_RULES)

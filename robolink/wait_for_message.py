@@ -1,4 +1,4 @@
-"""Wait for one message of a topic."""
+"""Waiting for one message of a topic."""
 
 from __future__ import annotations
 
@@ -23,10 +23,20 @@ def wait_for_message(
     qos_profile: QoSProfile | int = 1,
     time_to_wait: float = -1,
 ) -> tuple[Literal[True], MsgT] | tuple[Literal[False], None]:
-    """Subscribe, and wait until a message comes; (True, message), or (False, None) when none came.
+    """Subscribe, and wait until a message comes or the context ends.
 
-    It waits `time_to_wait` seconds, for ever when that is negative, or until the context ends. Nothing needs to spin
-    the node, and no other callback runs meanwhile; so it may be called in a callback, for a message from elsewhere.
+    Nothing needs to spin the node, and no other callback runs meanwhile; so it may be called in a callback, for a
+    message from elsewhere.
+
+    Args:
+        msg_type: Message class of the topic.
+        node: Node that subscribes.
+        topic: Name of the topic, relative to the node's namespace unless it begins with a slash; remapped.
+        qos_profile: Quality of service; a number is the depth of a reliable, volatile KEEP_LAST profile.
+        time_to_wait: Longest wait in seconds; negative waits for ever, 0 does not wait.
+
+    Returns:
+        (True, message), or (False, None) if none came.
     """
     first: Future[MsgT] = Future()
 

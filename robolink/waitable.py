@@ -1,4 +1,4 @@
-"""Waitables: several things that a node has as one, such as an action's services and topics; or a program's own.
+"""Waitables: several entities of a node as one, such as an action's services and topics; or a program's own.
 
 There are no rcl wait sets here. A program's own Waitable is asked instead, whenever its executor looks around: after
 every callback, when anything arrives, at `executor.wake()`, and twice a second in any case. What it waits for must
@@ -13,8 +13,8 @@ from typing import Any, TypeVar
 
 from robolink.callback_groups import CallbackGroup
 from robolink.client import Client
-from robolink.entity import NOTHING, Asked, Entity
 from robolink.guard_condition import GuardCondition
+from robolink.running.entity import NOTHING, Entity, PolledEntity
 from robolink.service import Service
 from robolink.subscription import Subscription
 from robolink.task import Future
@@ -24,7 +24,16 @@ WaitableT = TypeVar("WaitableT", bound="Waitable")
 
 
 class NumberOfEntities:
-    """How many of each kind an executor waits for; two of these can be added."""
+    """Numbers of entities that an executor waits for, by kind; two of these can be added.
+
+    Args:
+        num_subs: Number of subscriptions.
+        num_gcs: Number of guard conditions.
+        num_timers: Number of timers.
+        num_clients: Number of clients.
+        num_services: Number of services.
+        num_events: Number of events.
+    """
 
     __slots__ = (
         "num_clients",
@@ -52,7 +61,7 @@ class NumberOfEntities:
         self.num_events = num_events
 
     def __add__(self, other: NumberOfEntities) -> NumberOfEntities:
-        """Give the sums, kind by kind."""
+        """Return the sums, kind by kind."""
         return NumberOfEntities().__iadd__(self).__iadd__(other)
 
     def __iadd__(self, other: NumberOfEntities) -> NumberOfEntities:
@@ -66,7 +75,7 @@ class NumberOfEntities:
 
 
 class WaitSet:
-    """What a Waitable is shown in place of an rcl wait set: it holds nothing, and says so."""
+    """Stand-in for an rcl wait set, for a Waitable: it holds nothing, and every attribute says so."""
 
     def __getattr__(self, name: str) -> Any:
         raise NotImplementedError(
@@ -76,10 +85,11 @@ class WaitSet:
 
 
 class Waitable:
-    """The base of what consists of several entities: the node's executor runs them, and the node destroys them.
+    """Base of what consists of several entities: the node's executor runs them, and the node destroys them.
 
     They are in none of the node's lists of publishers, subscriptions, services, clients and timers. A program's own
-    Waitable overrides `is_ready`, `take_data` and `execute` instead of `entities`.
+    Waitable overrides `is_ready`, `take_data` and `execute` instead of `entities`. `callback_group` is the group of
+    all its callbacks.
     """
 
     def __init__(self, callback_group: CallbackGroup) -> None:
@@ -88,47 +98,47 @@ class Waitable:
         self._futures: list[Future[Any]] = []
 
     def entities(self) -> list[Entity]:
-        """Give what an executor runs, the same each time."""
+        """Return the entities that an executor runs, the same each time."""
         return [self._asking]
 
     @functools.cached_property
-    def _asking(self) -> _Asking:
-        return _Asking(self)
+    def _asking(self) -> _PolledWaitable:
+        return _PolledWaitable(self)
 
     def interfaces(self) -> list[type[Any]]:
-        """Give the message and service classes that are sent and received, so that the node can describe them."""
+        """Return the message and service classes that are sent and received, so that the node can describe them."""
         return []
 
     def destroy(self) -> None:
-        """Undeclare all of it. Safe to call twice."""
+        """End all its entities. Safe to call twice."""
         for entity in self.entities():
             entity.detach()
 
     def is_ready(self, wait_set: WaitSet) -> bool:
-        """Whether there is something to take."""
+        """True if there is something to take; `wait_set` stands for rcl's, and holds nothing."""
         raise NotImplementedError
 
     def take_data(self) -> Any:
-        """Give what `execute` gets, and be ready no longer."""
+        """Return what `execute` gets; from then on it is not ready, until there is more."""
         raise NotImplementedError
 
     def execute(self, taken_data: Any) -> Awaitable[None]:
-        """Do the work; a coroutine function."""
+        """Do the work with `taken_data`, the result of `take_data`; a coroutine function."""
         raise NotImplementedError
 
     def add_to_wait_set(self, wait_set: WaitSet) -> None:
-        """Be told that the executor is about to ask."""
+        """Prepare for `is_ready`, which is called next; `wait_set` stands for rcl's, and holds nothing."""
 
     def add_future(self, future: Future[Any]) -> None:
-        """Have the done callbacks of this future run by the executor."""
+        """Let the executor run the done callbacks of this `future`."""
         self._futures.append(future)
 
     def remove_future(self, future: Future[Any]) -> None:
-        """Leave its done callbacks to whoever sets its result."""
+        """Leave the done callbacks of this `future` to the thread that completes it."""
         self._futures.remove(future)
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Count them by their kinds."""
+        """Return the number of its entities of each kind."""
         kinds = (Subscription, GuardCondition, Timer, Client, Service)
         return NumberOfEntities(*(sum(isinstance(each, kind) for each in self.entities()) for kind in kinds))
 
@@ -139,8 +149,8 @@ class Waitable:
         self.destroy()
 
 
-class _Asking(Asked):
-    """Asks a program's own Waitable for an executor."""
+class _PolledWaitable(PolledEntity):
+    """Polls a program's own Waitable for an executor."""
 
     def __init__(self, waitable: Waitable) -> None:
         super().__init__()
@@ -149,12 +159,12 @@ class _Asking(Asked):
         self._wait_set = WaitSet()
 
     def is_ready(self) -> bool:
-        """Ask."""
+        """True if the Waitable says so."""
         self._waitable.add_to_wait_set(self._wait_set)
         return self._waitable.is_ready(self._wait_set)
 
     def take(self) -> Any:
-        """Be executed, unless it was removed meanwhile."""
+        """Return True, to be executed, or NOTHING if it was removed meanwhile."""
         return NOTHING if self.executor is None else True
 
     def execute(self, taken: Any) -> Any:

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import gc
 import os
+import platform
 import signal
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,20 +21,22 @@ from hypothesis import HealthCheck, settings
 
 from robolink import Context, VirtualTime, logging, try_shutdown
 from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from robolink.host.patches.snapshot import process_as_before
 from robolink.impl.log_output import Record, output
-from robolink.oneprocess.kept import process_as_before
-from robolink.transport import zenoh
+from robolink.transport import shared_pools, zenoh, zenoh_tokens
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.transport.zenoh import ZenohTransport
-from tests.domains import free_domain
-from tests.launchers import RUNTIME_VARIABLE, new_runtime_folder
-from tests.long_runs import LongRun
-from tests.transports import Network
+from tests.support import process_starts
+from tests.support.domains import free_domain
+from tests.support.launchers import RUNTIME_VARIABLE, new_runtime_folder
+from tests.support.long_runs import LongRun
+from tests.support.transports import Network
 
 # However slow a machine is, that is no fault of what is tested.
 settings.register_profile(
     "patient", settings(), deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow]
 )
+settings.register_profile("quick", settings.get_profile("patient"), max_examples=10)  # for `make fast`
 settings.load_profile("patient")
 
 LONG_RUNS = pytest.StashKey[dict[tuple[Any, ...], LongRun]]()
@@ -43,8 +46,11 @@ THEIR_FILES = pytest.StashKey[set[Path]]()
 def pytest_configure(config: pytest.Config) -> None:
     """Keep what is launched out of the user's home and apart from their own launchers; have Ctrl-C as in a terminal.
 
-    A shell starts what it runs in the background with SIGINT ignored, and all that it starts in turn.
+    A shell starts what it runs in the background with SIGINT ignored, and all that it starts in turn. What a user of
+    ROS 2 has in it, such as ROS_DOMAIN_ID or ROS_DISTRO, does not reach the tests.
     """
+    for name in [each for each in os.environ if each.startswith(("ROS_", "RCUTILS_", "ROBOLINK_"))]:
+        del os.environ[name]
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     folder = tempfile.TemporaryDirectory(prefix="robolink-logs-", ignore_cleanup_errors=True)
@@ -97,6 +103,31 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
         run.close()
 
 
+def pytest_sessionstart() -> None:
+    """Watch for processes from now on; Python starts one itself when it is first asked for the processor's name."""
+    platform.processor()
+    process_starts.watch()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
+    """Fail a test that starts a process and is not marked: `make fast` leaves out those that are."""
+    process_starts.started()
+    return (yield)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> Generator[None, object, object]:
+    """Fail a test that starts a process without the mark, and the last one of a file that leaves zombies."""
+    result = yield
+    events = process_starts.started()
+    if events and item.get_closest_marker("processes") is None:
+        pytest.fail(f"starts a process ({events[0]}): mark it with @pytest.mark.processes", pytrace=False)
+    if (nextitem is None or nextitem.path != item.path) and (zombies := process_starts.zombies()):
+        pytest.fail(f"{item.path} leaves zombies: {zombies}", pytrace=False)
+    return result
+
+
 @pytest.fixture
 def long_run(request: pytest.FixtureRequest) -> LongRun:
     """The run that the test's mark names."""
@@ -133,7 +164,9 @@ def zenoh_net(domain: int) -> Iterator[Network]:
 @pytest.fixture
 def patient_looks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Looks at the graph wait for those, too, whom a machine that does ten things at once holds up for a while."""
-    for name, seconds in {"QUIET": 0.3, "REUNION": 0.5, "PATIENCE": 5.0, "LONGEST": 30.0, "LINK_WITHIN": 30.0}.items():
+    for name, seconds in {"QUIET": 0.3, "PATIENCE": 5.0, "LONGEST": 30.0}.items():
+        monkeypatch.setattr(zenoh_tokens, name, seconds)
+    for name, seconds in {"REUNION": 0.5, "LINK_WITHIN": 30.0}.items():
         monkeypatch.setattr(zenoh, name, seconds)
 
 
@@ -193,9 +226,17 @@ def two(context: Context) -> Iterator[MultiThreadedExecutor]:
 
 @pytest.fixture
 def log_lines() -> Iterator[list[Record]]:
-    """Collect what is logged; the console is silent."""
+    """Collect what is logged; the console is silent.
+
+    What this process holds of others' shared memory is left out: that is all earlier tests' doing.
+    """
     found: list[Record] = []
+
+    def collect(record: Record) -> None:
+        if record.file != shared_pools.__file__:
+            found.append(record)
+
     logging.set_console_handler(None)
-    logging.add_handler(found.append)
+    logging.add_handler(collect)
     yield found
-    logging.remove_handler(found.append)
+    logging.remove_handler(collect)

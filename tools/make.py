@@ -1,4 +1,4 @@
-"""Installs robolink into a virtual environment and runs it: `make demo` and `make test`, also where there is no make.
+"""Build script: installs robolink into a virtual environment; `make demo` and `make test` where there is no make.
 
     python tools/make.py demo
     python tools/make.py test [ARGUMENTS OF PYTEST]...
@@ -38,7 +38,7 @@ STAGES: Dict[str, Stage] = {
 }
 INSTALLING = {"install-" + name: name for name in STAGES}
 COMMANDS: Dict[str, List[str]] = {
-    "demo": ["-m", "robolink", "launch", "wander"],
+    "demo": ["-m", "robolink", "launch", "wander", "--view"],
     "test": ["-m", "pytest", "-n", "3", "--dist", "loadfile", "--no-loadscope-reorder"],
 }
 """What Python is given; the Makefile says the same."""
@@ -67,7 +67,7 @@ def main(words: List[str]) -> int:
     if code:
         return code
     if what == "demo":
-        tell("a robot wanders in a simulated room: Ctrl-C ends it")
+        tell("a robot wanders in a simulated room, in the browser: Ctrl-C ends it")
     return run([str(python_of(venv))] + COMMANDS[what] + words[1:])
 
 

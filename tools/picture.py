@@ -1,4 +1,4 @@
-"""Draw the README's picture: a node drives in a simulated world, in virtual time, and leaves its path.
+"""Generator of a picture: the path of a node that drives in a simulated world, in virtual time.
 
 Usage: python tools/picture.py wall_follower corners docs/follow.svg --seconds 95
 """
@@ -10,10 +10,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from robolink import Context, Node, VirtualTime
+from robolink.control.laser import returns
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.laser import returns
 from robolink.parameter import Parameter
 from robolink.sim import load_world
 from robolink.sim.sensing.fixed import fixed_circles, fixed_segments

@@ -1,4 +1,4 @@
-"""Write down which names and signatures rclpy's source has: facts only, no words of it.
+"""Extractor of the names and signatures in rclpy's source: facts only, no words of it.
 
 Usage: python tools/rclpy_api.py CHECKOUT/rclpy/rclpy 8.0.0 > tests/data/rclpy_api.json
 """

@@ -1,4 +1,4 @@
-"""Run rclpy's own tests against robolink, and write docs/rclpy.md from what they say.
+"""Runner of rclpy's own tests against robolink; writes docs/rclpy.md from the results.
 
     git clone https://github.com/ros2/rclpy
     python tools/rclpy_tests.py rclpy [--file test_node.py] [--transport memory] [--markdown docs/rclpy.md]
@@ -35,6 +35,8 @@ from rich.table import Table
 ROOT = Path(__file__).parent.parent
 REASONS = Path(__file__).with_name("rclpy_reasons.yaml")
 SHIM = "robolink.compat"
+TYPES = ROOT / "tests" / "data" / "workspace" / "src" / "test_msgs"
+"""Package of the types that rclpy's tests import, on the path of each; it uses helpers of the tests."""
 BEGIN, END = "<!-- from here on: python tools/rclpy_tests.py CHECKOUT --markdown docs/rclpy.md -->", "<!-- to here -->"
 
 PASSED, FAILED, NOT_APPLICABLE = "passed", "failed", "not applicable"
@@ -126,12 +128,13 @@ def environment(transport: str, domain: int) -> dict[str, str]:
     """The environment of a file's process: nothing of the caller's that changes how nodes meet."""
     kept = {name: text for name, text in os.environ.items() if not name.startswith(("ROS_", "ROBOLINK_", "ZENOH_"))}
     chosen = {"ROBOLINK_TRANSPORT": "memory"} if transport == "memory" else {"ROS_DOMAIN_ID": str(domain)}
-    return {**kept, **chosen, "ROBOLINK_COMPAT": "always", "PYTHONDONTWRITEBYTECODE": "1"}
+    path = os.pathsep.join(filter(None, (str(TYPES), str(ROOT), kept.get("PYTHONPATH"))))
+    return {**kept, **chosen, "PYTHONPATH": path, "ROBOLINK_COMPAT": "always", "PYTHONDONTWRITEBYTECODE": "1"}
 
 
 def run(path: Path, transport: str, limit: float) -> Outcomes:
     """Run one file, for `limit` seconds at most."""
-    from tests.domains import free_domain
+    from tests.support.domains import free_domain
 
     report = path.with_suffix(".xml")
     plain = ("-q", "--import-mode=importlib", "-p", "no:cacheprovider", "-c", os.devnull, "--rootdir", str(path.parent))

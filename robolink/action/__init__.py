@@ -1,10 +1,10 @@
-"""Actions: goals that take a while, with feedback on the way, a result at the end, and a way to cancel them."""
+"""Actions: long-running goals with feedback on the way, a result at the end, and a way to cancel them."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robolink.lacking import lazily
+from robolink.text.suggestions import lazily
 
 if TYPE_CHECKING:
     from robolink.action.client import ActionClient

@@ -1,4 +1,4 @@
-"""Which goals a request to cancel means."""
+"""Selection of the goals that a cancel request means."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from robolink.interfaces.action_msgs.srv import CancelGoal
 from robolink.interfaces.builtin_interfaces.msg import Time
 
 NO_GOAL = bytes(16)
+"""Goal id that means none in particular."""
 
 
 def goals_to_cancel(asked: GoalInfo, goals: Sequence[GoalStatus]) -> tuple[int, list[GoalInfo]]:
-    """Give a return code of CancelGoal and the goals that are meant and can still be cancelled.
+    """Return a return code of CancelGoal, and the goals that are meant and can still be cancelled.
 
     An id without a stamp means that goal; a stamp means all goals that were accepted then or earlier, beside the one of
     the id if there is one; neither means all. Only a goal that is asked for alone can be unknown, or have ended.

@@ -1,9 +1,8 @@
-"""Action clients: they send goals, hear how far these are, cancel them, and ask what came of them."""
+"""Action client: sends goals, receives feedback, cancels goals, and receives results."""
 
 from __future__ import annotations
 
 import math
-import random
 import uuid
 import weakref
 from collections.abc import Callable
@@ -15,7 +14,6 @@ from robolink.action.client_goal_handle import key_of
 from robolink.action.states import ENDED
 from robolink.callback_groups import CallbackGroup
 from robolink.client import Client
-from robolink.entity import NOTHING, Entity
 from robolink.exceptions import ServiceError
 from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatusArray
 from robolink.interfaces.action_msgs.msg import GoalStatus as GoalStatus
@@ -23,6 +21,7 @@ from robolink.interfaces.action_msgs.srv import CancelGoal
 from robolink.interfaces.unique_identifier_msgs.msg import UUID
 from robolink.message import action_type as checked_action_type
 from robolink.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
+from robolink.running.entity import NOTHING, Entity
 from robolink.subscription import MessageInfo, Subscription
 from robolink.task import Future
 from robolink.waitable import Waitable
@@ -32,14 +31,11 @@ if TYPE_CHECKING:
     from robolink.node import Node
 
 LATELY = 16
-"""Ended goals whose feedback callbacks are still there, for what was sent before the end and comes late."""
+"""Upper bound of the ended goals whose feedback callbacks are kept, for feedback that was sent before the end."""
 
 
 class ActionClient(Waitable):
-    """Sends goals to the servers of one action.
-
-    The callback group is that of the feedback callbacks; answers come whatever the groups do.
-    """
+    """Client of one action."""
 
     def __init__(
         self,
@@ -54,7 +50,23 @@ class ActionClient(Waitable):
         feedback_sub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008 - rclpy's
         status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
     ) -> None:
-        """Make it. Raises ValueError for a bad name or a class that is no action."""
+        """Create a client of an action.
+
+        Args:
+            node: Node of the client; it must be spun for anything to arrive.
+            action_type: Class of the action, such as `example_interfaces.action.Fibonacci`.
+            action_name: Name of the action; a relative one is resolved as the node's names are.
+            callback_group: Group of the feedback callbacks; the node's default group by default. Responses come
+                whatever the groups do.
+            goal_service_qos_profile: QoS of the client that sends goals.
+            result_service_qos_profile: QoS of the client that asks for results.
+            cancel_service_qos_profile: QoS of the client that cancels goals.
+            feedback_sub_qos_profile: QoS of the subscription to feedback; depth 10 by default.
+            status_sub_qos_profile: QoS of the subscription to the goals' states.
+
+        Raises:
+            ValueError: if the name is not valid, or the class is no action.
+        """
         super().__init__(callback_group or node.default_callback_group)
         self._node, self._action_type = node, checked_action_type(action_type)
         self._action_name = node.resolve_topic_name(action_name)
@@ -70,9 +82,7 @@ class ActionClient(Waitable):
         except BaseException:
             self.destroy()
             raise
-        # In virtual time a program does the same each time, byte for byte.
-        virtual = node.context.time.virtual
-        self._random = random.Random(self._goal_client._endpoint.gid) if virtual else random.SystemRandom()
+        self._random = node.context.time.random_ids(self._goal_client._endpoint.gid)
         node.add_waitable(self)
 
     def _declare_topics(self, feedback: QoSProfile, status: QoSProfile) -> None:
@@ -104,17 +114,28 @@ class ActionClient(Waitable):
 
     @property
     def action_type(self) -> type[Action]:
-        """The class of the action."""
+        """Class of the action."""
         return self._action_type
 
     # Goals
 
     def send_goal(self, goal: Any, **kwargs: Any) -> Any:
-        """Send a goal and wait for its end; gives ``status`` and ``result``, STATUS_UNKNOWN if it is rejected.
+        """Send a goal and wait until it has ended.
 
-        Takes what `send_goal_async` takes. In a callback as well: what serves goes on meanwhile. Raises TypeError for
-        another type of goal, ServiceError (a RuntimeError) when nobody serves the action, when the server goes away,
-        or when only what this very call keeps from serving could answer.
+        A callback may call this: services, clients and feedback go on meanwhile.
+
+        Args:
+            goal: The goal, a message of the action's ``Goal``.
+            kwargs: `feedback_callback` and `goal_uuid`, as for `send_goal_async`.
+
+        Returns:
+            A response with ``status`` (a code of action_msgs/msg/GoalStatus) and ``result``; the status is
+            STATUS_UNKNOWN if the server rejected the goal.
+
+        Raises:
+            TypeError: if `goal` or the id is of another type.
+            ServiceError: (a RuntimeError) if nobody serves the action, the server goes away, or only a callback that
+                this very call blocks could answer.
         """
         request = self._request(goal, **kwargs)
         try:
@@ -128,13 +149,22 @@ class ActionClient(Waitable):
     def send_goal_async(
         self, goal: Any, feedback_callback: Callable[[Any], Any] | None = None, goal_uuid: UUID | None = None
     ) -> Future[ClientGoalHandle]:
-        """Send a goal; the future gets its handle when a server has accepted or rejected it.
+        """Send a goal without waiting.
 
-        ``feedback_callback(message)`` is called with ``message.feedback`` for all that was sent. The goal's id is
-        a random one by default. Raises TypeError for another type of goal or id.
+        A goal that is sent while there is no server is lost, and its future stays open, as in rclpy: call
+        `wait_for_server` before.
 
-        The future gets a ServiceError (a RuntimeError) when the server goes away before it has answered. A goal that
-        is sent while there is no server is lost, and its future stays open, as in rclpy: see `wait_for_server`.
+        Args:
+            goal: The goal, a message of the action's ``Goal``.
+            feedback_callback: Called with each feedback message; its field ``feedback`` has the action's ``Feedback``.
+            goal_uuid: Id of the goal; random by default.
+
+        Returns:
+            A future of the goal's handle, done when a server has accepted or rejected the goal. It fails with
+            ServiceError (a RuntimeError) if the server goes away before.
+
+        Raises:
+            TypeError: if `goal` or `goal_uuid` is of another type.
         """
         request = self._request(goal, feedback_callback, goal_uuid)
         failed = self._not_answered if self.server_is_ready() else self._not_served
@@ -162,7 +192,7 @@ class ActionClient(Waitable):
         return request(goal_id=goal_uuid, goal=goal)
 
     def _handle(self, goal_id: UUID, response: Any) -> ClientGoalHandle:
-        """Make the handle of a goal that was answered. Raises RuntimeError when there is another of its id."""
+        """Return the handle of a goal that was answered. Raises RuntimeError if there is another of its id."""
         key, handle = key_of(goal_id), ClientGoalHandle(self, goal_id, response)
         if not handle.accepted:
             self._feedback_callbacks.pop(key, None)
@@ -253,10 +283,10 @@ class ActionClient(Waitable):
     def _named(self, goal_handle: ClientGoalHandle) -> str:
         return f"action {self._action_name}, goal {key_of(goal_handle.goal_id).hex()}"
 
-    # What servers tell
+    # Messages of servers
 
     def _on_feedback(self, message: Any, info: MessageInfo) -> Any:
-        """Call the callback of the goal that it is about; a coroutine, if that is one."""
+        """Call the callback of the feedback's goal; return its coroutine, if it is one."""
         key = key_of(message.goal_id)
         callback = self._feedback_callbacks.get(key)
         if callback is None or info["source_timestamp"] > self._lately_ended.get(key, math.inf):
@@ -278,10 +308,10 @@ class ActionClient(Waitable):
         if executor is None:
             self._feedback.gives_way = False
         else:
-            executor.post(_Release(self._feedback))
+            executor._queue_.post(_Release(self._feedback))
 
     def _stop_feedback(self, goal_id: UUID) -> None:
-        """Forget a feedback callback, though not at once: what was sent before the result may still wait its turn."""
+        """Drop a feedback callback, though not at once: what was sent before the result may still wait its turn."""
         key = key_of(goal_id)
         if key in self._feedback_callbacks and key not in self._lately_ended:
             self._lately_ended[key] = self._node.context.time.now()
@@ -290,37 +320,44 @@ class ActionClient(Waitable):
                 for each in (self._lately_ended, self._feedback_callbacks):
                     each.pop(oldest, None)
 
-    # Whether anybody serves
+    # Discovery of servers
 
     def server_is_ready(self) -> bool:
-        """Whether somebody serves this action with this type: all five parts of it."""
+        """True if there is a server of this action and type, with all of its five topics and services."""
         clients = (each for each in self._parts if isinstance(each, Client))
         topics = (each for each in self._parts if isinstance(each, Subscription))
         return all(each.service_is_ready() for each in clients) and all(each.get_publisher_count() for each in topics)
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
-        """Wait until somebody serves; whether so within `timeout_sec` seconds. The end of the context ends it."""
+        """Wait until there is a server.
+
+        Args:
+            timeout_sec: Longest wait in seconds; None waits until the context ends.
+
+        Returns:
+            True if there is a server, False after the timeout or at the context's end.
+        """
         return self._node.context.wait_until(self.server_is_ready, timeout_sec)
 
-    # What the node and the executor do with it
+    # Called by the node and the executor
 
     def entities(self) -> list[Entity]:
-        """Give what an executor runs."""
+        """Return the entities that an executor runs."""
         return [*self._parts]
 
     def interfaces(self) -> list[type[Any]]:
-        """Give the message and service classes that the action is made of."""
+        """Return the message and service classes that the action is made of."""
         return [getattr(self._action_type.Impl, each) for each in self._action_type.Impl.__struct_fields__]
 
     def destroy(self) -> None:
-        """Ask no more: futures under way will not be completed."""
+        """Destroy the client: futures under way are never done."""
         for part in self._parts:
             part.destroy()
         self._node.remove_waitable(self)
 
 
 class _Release(Entity):
-    """Marks a place among what is ready: a subscription gives way until it is reached."""
+    """Marker in the ready queue: a subscription gives way until it is reached."""
 
     serves = True
 
@@ -329,7 +366,7 @@ class _Release(Entity):
         self._subscription = subscription
 
     def take(self) -> Any:
-        """Have the subscription give way no longer; there is nothing to execute."""
+        """Let the subscription give way no longer; there is nothing to execute."""
         self._subscription.gives_way = False
         return NOTHING
 

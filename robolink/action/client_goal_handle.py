@@ -1,4 +1,4 @@
-"""A goal as its client has it."""
+"""Handle of a goal on the client's side."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class ClientGoalHandle:
-    """A goal as its client has it; made by `ActionClient.send_goal_async`."""
+    """Handle of a goal on the client's side; made by `ActionClient.send_goal_async`."""
 
     def __init__(self, action_client: ActionClient, goal_id: UUID, goal_response: Any) -> None:
         self._action_client = action_client
@@ -34,45 +34,45 @@ class ClientGoalHandle:
 
     @property
     def goal_id(self) -> UUID:
-        """The id that it was sent with."""
+        """Id that the goal was sent with."""
         return self._goal_id
 
     @property
     def stamp(self) -> Time:
-        """When the server accepted it, by the server's clock."""
+        """Time at which the server accepted it, by the server's clock."""
         stamp: Time = self._goal_response.stamp
         return stamp
 
     @property
     def accepted(self) -> bool:
-        """Whether the server accepted it."""
+        """True if the server accepted it."""
         return bool(self._goal_response.accepted)
 
     @property
     def status(self) -> int:
-        """A code of action_msgs/msg/GoalStatus: what the server said last, as far as it has been received."""
+        """The state last received from the server, a code of action_msgs/msg/GoalStatus."""
         return self._status
 
     def cancel_goal(self) -> CancelGoal.Response:
-        """Ask that it be cancelled and wait for the answer. Raises what `Client.call` raises."""
+        """Ask the server to cancel the goal, and return its response. Raises what `Client.call` raises."""
         return self._action_client._cancel_goal(self)
 
     def cancel_goal_async(self) -> Future[CancelGoal.Response]:
-        """Ask that it be cancelled; the future gets the server's answer, or a ServiceError when none comes."""
+        """Ask the server to cancel the goal; the returned future gets its response, or a ServiceError."""
         return self._action_client._cancel_goal_async(self)
 
     def get_result(self) -> Any:
-        """Wait for its end; gives ``status`` and ``result``. Raises what `Client.call` raises."""
+        """Wait for the goal's end, and return ``status`` and ``result``. Raises what `Client.call` raises."""
         return self._action_client._get_result(self)
 
     def get_result_async(self) -> Future[Any]:
-        """Ask what comes of it; the future gets ``status`` and ``result`` when it has ended.
+        """Return a future of a response with ``status`` and ``result``, done when the goal has ended.
 
-        When the server goes away before, it gets a ServiceError (a RuntimeError).
+        It fails with ServiceError (a RuntimeError) if the server goes away before.
         """
         return self._action_client._get_result_async(self)
 
 
 def key_of(goal_id: UUID) -> bytes:
-    """Give an id as a key of a table."""
+    """Return an id as a key of a table."""
     return bytes(goal_id.uuid)

@@ -1,4 +1,4 @@
-"""Which actions there are. The wire knows none: an action is five topics and services whose names belong together."""
+"""Actions in the graph. The wire has none: an action is five topics and services whose names belong together."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from robolink.graph import NamesAndTypes
+    from robolink.graph.graph import NamesAndTypes
     from robolink.node import Node
 
 MARK = "/_action/"
-"""What stands between the name of an action and that of each of its parts."""
+"""Text between the name of an action and that of each of its parts."""
 SEND_GOAL, CANCEL_GOAL, GET_RESULT = "send_goal", "cancel_goal", "get_result"
 FEEDBACK, STATUS = "feedback", "status"
 SERVICES = {SEND_GOAL, CANCEL_GOAL, GET_RESULT}
 TOPICS = {FEEDBACK, STATUS}
 FEEDBACK_TYPE, GOAL_TYPE = "_FeedbackMessage", "_SendGoal"
-"""What stands behind the type of an action in that of a part."""
+"""Suffixes of the type of a part, behind the type of the action."""
 
 
 def part_name(action: str, part: str) -> str:
-    """Give the name of a part.
+    """Return the name of a part.
 
     >>> part_name("/fibonacci", "feedback")
     '/fibonacci/_action/feedback'
@@ -29,7 +29,7 @@ def part_name(action: str, part: str) -> str:
 
 
 def actions(services: NamesAndTypes, topics: NamesAndTypes) -> NamesAndTypes:
-    """Give the actions of which all five parts are there, each with its types such as ``pkg/action/Fibonacci``."""
+    """Return the actions of which all five parts exist, each with its types such as ``pkg/action/Fibonacci``."""
     asked, told = _parts(services), _parts(topics)
     found = []
     for name in sorted(asked.keys() & told.keys()):
@@ -40,7 +40,7 @@ def actions(services: NamesAndTypes, topics: NamesAndTypes) -> NamesAndTypes:
 
 
 def _parts(named: Iterable[tuple[str, list[str]]]) -> dict[str, dict[str, list[str]]]:
-    """Sort topics or services by the action, then by which part of it each is; give the types of each part."""
+    """Group topics or services by action and part; return the types of each part."""
     found: dict[str, dict[str, list[str]]] = {}
     for name, types in named:
         action, mark, part = name.rpartition(MARK)
@@ -52,7 +52,16 @@ def _parts(named: Iterable[tuple[str, list[str]]]) -> dict[str, dict[str, list[s
 def get_action_client_names_and_types_by_node(
     node: Node, remote_node_name: str, remote_node_namespace: str
 ) -> NamesAndTypes:
-    """Of which actions a node is a client. Raises NodeNameNonExistentError (a RuntimeError) for an unknown node."""
+    """Return the actions of which a node is a client, each with its types.
+
+    Args:
+        node: Node that asks.
+        remote_node_name: Name of the node in question.
+        remote_node_namespace: Its namespace.
+
+    Raises:
+        NodeNameNonExistentError: (a RuntimeError) if there is no such node.
+    """
     remote = remote_node_name, remote_node_namespace
     return actions(
         node.get_client_names_and_types_by_node(*remote), node.get_subscriber_names_and_types_by_node(*remote)
@@ -62,7 +71,16 @@ def get_action_client_names_and_types_by_node(
 def get_action_server_names_and_types_by_node(
     node: Node, remote_node_name: str, remote_node_namespace: str
 ) -> NamesAndTypes:
-    """Which actions a node serves. Raises NodeNameNonExistentError (a RuntimeError) for an unknown node."""
+    """Return the actions that a node serves, each with its types.
+
+    Args:
+        node: Node that asks.
+        remote_node_name: Name of the node in question.
+        remote_node_namespace: Its namespace.
+
+    Raises:
+        NodeNameNonExistentError: (a RuntimeError) if there is no such node.
+    """
     remote = remote_node_name, remote_node_namespace
     return actions(
         node.get_service_names_and_types_by_node(*remote), node.get_publisher_names_and_types_by_node(*remote)
@@ -70,5 +88,5 @@ def get_action_server_names_and_types_by_node(
 
 
 def get_action_names_and_types(node: Node) -> NamesAndTypes:
-    """All actions that are served or that have a client, each with its types."""
+    """Return all actions that have a server or a client, each with its types, as `node` sees the graph."""
     return actions(node.get_service_names_and_types(), node.get_topic_names_and_types())

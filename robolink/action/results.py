@@ -1,4 +1,4 @@
-"""What goals came to, and who waits for it: whoever asks is answered once the goal has ended."""
+"""Results of goals, and the requests that wait for them: each is answered once its goal has ended."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class Results:
     """The results of an action server's goals, by the goals' ids, as far as there are any yet.
 
-    `answer(response, header)` is called for each asker, `forget(goal_id)` for each goal whose result has been kept for
-    `timeout` seconds of the node's clock; below 0 it is kept for ever.
+    `answer(response, header)` is called for each request, `forget(goal_id)` for each goal whose result has been kept
+    for `timeout` seconds of the node's clock; below 0 it is kept for ever.
     """
 
     def __init__(
@@ -39,15 +39,15 @@ class Results:
         self.timer = Timer(
             self._expire, group, max(0, self._timeout), self._clock, context=node.context, autostart=False
         )
-        """Has results expire; the executor runs it."""
+        """Timer that expires results; the executor runs it."""
 
     def expect(self, goal_id: bytes) -> None:
-        """Know that there will be a result."""
+        """Register a goal that will have a result."""
         with self._lock:
             self._askers[goal_id] = []
 
     def ask(self, goal_id: bytes, header: RequestHeader) -> bool:
-        """Answer, now or later; False for a goal that is not known."""
+        """Answer a request now or later; False for a goal that is not known."""
         with self._lock:
             response = self._responses.get(goal_id)
             if response is None and goal_id not in self._askers:
@@ -59,7 +59,7 @@ class Results:
         return True
 
     def set(self, goal_id: bytes, response: Any) -> None:
-        """Answer all who have asked. A goal that was forgotten meanwhile, or has a result, is left as it is."""
+        """Answer all requests for a goal. A goal that was forgotten meanwhile, or has a result, is left as it is."""
         with self._lock:
             askers = self._askers.pop(goal_id, None)
             if askers is None:
@@ -90,7 +90,7 @@ class Results:
         self.timer.reset()
 
     def close(self) -> None:
-        """Forget all; whoever still waits learns that no answer comes."""
+        """Remove all results; whoever still waits learns that no answer comes."""
         with self._lock:
             self.timer.destroy()
             askers, self._askers = self._askers, {}

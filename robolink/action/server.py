@@ -1,4 +1,4 @@
-"""Action servers: they accept goals or not, execute them, and tell what comes of them."""
+"""Action server: accepts or rejects goals, executes them, and sends feedback and results."""
 
 from __future__ import annotations
 
@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from robolink.action import graph
 from robolink.action.cancel import goals_to_cancel
-from robolink.action.parts import Executions, LateService, run_to_its_end
 from robolink.action.results import Results
+from robolink.action.server_entities import Executions, LateService, run_to_its_end
 from robolink.action.server_goal_handle import ServerGoalHandle as ServerGoalHandle
 from robolink.action.states import GoalEvent as GoalEvent
 from robolink.action.states import RCLError as RCLError
 from robolink.action.statuses import Statuses
 from robolink.callback_groups import CallbackGroup
-from robolink.entity import Entity
 from robolink.exceptions import (
     EncodeError,
     ExternalShutdownException,
@@ -31,8 +30,9 @@ from robolink.message import Message, encode
 from robolink.message import action_type as checked_action_type
 from robolink.publisher import Publisher
 from robolink.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
+from robolink.running.entity import Entity
 from robolink.service import RequestHeader
-from robolink.tracebacks import formatted
+from robolink.text.tracebacks import formatted
 from robolink.waitable import Waitable
 
 if TYPE_CHECKING:
@@ -41,14 +41,14 @@ if TYPE_CHECKING:
 
 
 class GoalResponse(Enum):
-    """What a goal callback answers."""
+    """Return value of a goal callback."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 class CancelResponse(Enum):
-    """What a cancel callback answers."""
+    """Return value of a cancel callback."""
 
     REJECT = 1
     ACCEPT = 2
@@ -65,16 +65,16 @@ def default_goal_callback(goal_request: Any) -> GoalResponse:
 
 
 def default_cancel_callback(cancel_request: ServerGoalHandle) -> CancelResponse:
-    """Let nobody cancel."""
+    """Reject every request to cancel."""
     return CancelResponse.REJECT
 
 
 class ActionServer(Waitable):
-    """Serves one action of a node.
+    """Server of one action of a node.
 
-    ``execute_callback(goal_handle)`` does what the goal asks, says how it ended (`succeed`, `abort`, `canceled`) and
-    returns the action's ``Result``. It may block while a MultiThreadedExecutor spins, or be a coroutine function. A
-    goal whose callback raises, or ends without saying how, is aborted.
+    ``execute_callback(goal_handle)`` executes the goal, ends it by a method of the handle (`succeed`, `abort`,
+    `canceled`) and returns the action's ``Result``. It may block while a MultiThreadedExecutor spins, or be a coroutine
+    function. A goal whose callback raises, or returns without having ended it, is aborted.
     """
 
     def __init__(
@@ -95,11 +95,32 @@ class ActionServer(Waitable):
         status_pub_qos_profile: QoSProfile = qos_profile_action_status_default,
         result_timeout: float = 10,
     ) -> None:
-        """Make it. Results are kept for `result_timeout` seconds after a goal's end; below 0, for ever.
+        """Create a server of an action.
 
-        The callback group is that of the goal, accepted and cancel callbacks; the executor runs `execute_callback`
-        outside all groups. Raises ValueError for a bad name or a class that is no action, TypeError for an
-        `execute_callback` that cannot be called.
+        Args:
+            node: Node of the server; it must be spun.
+            action_type: Class of the action, such as `example_interfaces.action.Fibonacci`.
+            action_name: Name of the action; a relative one is resolved as the node's names are.
+            execute_callback: Called with a goal handle for each goal to execute; may be a coroutine function. The
+                executor runs it outside of all callback groups.
+            callback_group: Group of the goal, accepted and cancel callbacks; the node's default group by default.
+            goal_callback: Called with each new goal; returns a GoalResponse. By default, and with None, every goal is
+                accepted.
+            handle_accepted_callback: Called with the handle of each accepted goal, to execute it now or later. By
+                default, and with None, it is executed at once.
+            cancel_callback: Called with the handle of a goal that somebody wants to cancel; returns a CancelResponse.
+                By default, and with None, every such request is rejected.
+            goal_service_qos_profile: QoS of the service that receives goals.
+            result_service_qos_profile: QoS of the service that sends results.
+            cancel_service_qos_profile: QoS of the service that cancels goals.
+            feedback_pub_qos_profile: QoS of the publisher of feedback; depth 10 by default.
+            status_pub_qos_profile: QoS of the publisher of the goals' states.
+            result_timeout: Time in seconds for which a result is kept after the goal's end; below 0 it is kept for
+                ever.
+
+        Raises:
+            ValueError: if the name is not valid, or the class is no action.
+            TypeError: if `execute_callback` cannot be called.
         """
         super().__init__(callback_group or node.default_callback_group)
         self.register_handle_accepted_callback(handle_accepted_callback)
@@ -110,7 +131,7 @@ class ActionServer(Waitable):
         self._action_name = node.resolve_topic_name(action_name)
         self._logger = node.get_logger().get_child("action_server")
         self._lock = threading.RLock()
-        """Guards the goals and their states."""
+        """Lock of the goals and their states."""
         self._goal_handles: dict[bytes, ServerGoalHandle] = {}
         self._encoded = Statuses()
         self._destroyed = False
@@ -150,13 +171,13 @@ class ActionServer(Waitable):
 
     @property
     def action_type(self) -> type[Action]:
-        """The class of the action."""
+        """Class of the action."""
         return self._action_type
 
     # Requests
 
     async def _on_goal(self, request: Any, header: RequestHeader) -> None:
-        """Accept a goal or not, answer, and hand it over then."""
+        """Accept or reject a goal, answer, and hand it over then."""
         wanted = bytes(request.goal_id.uuid) not in self._goal_handles and await self._is_wanted(request.goal)
         handle = self._accept(request.goal_id, request.goal) if wanted else None
         response: Any = self._action_type.Impl.SendGoalService.Response(accepted=handle is not None)
@@ -176,7 +197,7 @@ class ActionServer(Waitable):
         return response is GoalResponse.ACCEPT
 
     def _accept(self, goal_id: UUID, goal: Any) -> ServerGoalHandle | None:
-        """Keep a goal; None if another one has its id, or the server has been destroyed meanwhile."""
+        """Register a goal; None if another one has its id, or the server has been destroyed meanwhile."""
         key = bytes(goal_id.uuid)
         with self._lock:
             if self._destroyed or key in self._goal_handles:
@@ -199,7 +220,7 @@ class ActionServer(Waitable):
         self._answer(self._cancel_service, response, header)
 
     async def _cancel(self, key: bytes) -> bool:
-        """Ask whether a goal may be cancelled, and have it so; whether it is being cancelled now."""
+        """Cancel a goal if its callback agrees; True if it is being cancelled now."""
         handle = self._goal_handles.get(key)
         if handle is None or await run_to_its_end(self._cancel_callback, handle) is not CancelResponse.ACCEPT:
             return False
@@ -230,7 +251,7 @@ class ActionServer(Waitable):
     def notify_execute(
         self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
     ) -> None:
-        """Have the executor run a goal's callback, by default the one that was registered."""
+        """Schedule the execution of `goal_handle` with `execute_callback`; None takes the one that was registered."""
         self._executions.add(execute_callback or self._execute_callback, goal_handle)
 
     async def _execute_goal(self, callback: Callable[[ServerGoalHandle], Any], handle: ServerGoalHandle) -> None:
@@ -247,7 +268,7 @@ class ActionServer(Waitable):
             self._end(handle, self._checked(handle, result))
 
     def _checked(self, handle: ServerGoalHandle, result: Any) -> Message:
-        """Give the result, or an empty one in place of what is none: the client waits for something."""
+        """Return the result, or an empty one in place of another object: the client waits for something."""
         wanted = self._action_type.Result
         try:
             if not isinstance(result, wanted):
@@ -266,7 +287,7 @@ class ActionServer(Waitable):
         self._set_result(handle, result)
 
     def notify_goal_done(self) -> None:
-        """See to the goals that ended without having been executed: they have an empty result."""
+        """Set an empty result for each goal that ended without having been executed."""
         for handle in list(self._goal_handles.values()):
             if not (handle.is_active or handle._executed):
                 self._set_result(handle, self._action_type.Result())
@@ -276,7 +297,7 @@ class ActionServer(Waitable):
         self._results.set(bytes(handle.goal_id.uuid), response)
 
     def _forget(self, key: bytes) -> None:
-        """Be told that a goal's result has expired."""
+        """Remove a goal whose result has expired."""
         with self._lock:
             self._goal_handles.pop(key).destroy()
             self._encoded.drop(key)
@@ -290,7 +311,7 @@ class ActionServer(Waitable):
         self._publish(self._status, self._encoded.message())
 
     def _note_status(self, handle: ServerGoalHandle) -> None:
-        """Be told that a goal is in another state."""
+        """Publish a goal's new state."""
         self._encoded.put(handle._goal_info, handle.status)
         self._publish_status()
 
@@ -308,36 +329,36 @@ class ActionServer(Waitable):
     # Callbacks
 
     def register_handle_accepted_callback(self, handle_accepted_callback: Callable[..., Any] | None) -> None:
-        """Hand each accepted goal's handle to this function, which executes it, now or later; None: at once."""
+        """Set `handle_accepted_callback`, called with each accepted goal's handle; None executes it at once."""
         self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
 
     def register_goal_callback(self, goal_callback: Callable[..., Any] | None) -> None:
-        """Have this function say, by a GoalResponse, whether a goal is accepted; None: each is."""
+        """Set `goal_callback`, which is called with each goal and returns a GoalResponse; None accepts every goal."""
         self._goal_callback = goal_callback or default_goal_callback
 
     def register_cancel_callback(self, cancel_callback: Callable[..., Any] | None) -> None:
-        """Have this function say, by a CancelResponse, whether a goal handle's goal may be cancelled; None: never."""
+        """Set `cancel_callback`, called with a goal's handle, which returns a CancelResponse; None rejects always."""
         self._cancel_callback = cancel_callback or default_cancel_callback
 
     def register_execute_callback(self, execute_callback: Callable[..., Any]) -> None:
-        """Have this function execute goals from now on. Raises TypeError for what cannot be called."""
+        """Set `execute_callback`, which executes goals from now on. Raises TypeError if it cannot be called."""
         if not callable(execute_callback):
             raise TypeError(f"the execute callback must be callable, got {execute_callback!r:.80}")
         self._execute_callback = execute_callback
 
-    # What the node and the executor do with it
+    # Called by the node and the executor
 
     def entities(self) -> list[Entity]:
-        """Give what an executor runs."""
+        """Return the entities that an executor runs."""
         services = [each for each in self._parts if isinstance(each, LateService)]
         return [*services, self._executions, self._results.timer]
 
     def interfaces(self) -> list[type[Any]]:
-        """Give the message and service classes that the action is made of."""
+        """Return the message and service classes that the action is made of."""
         return [getattr(self._action_type.Impl, each) for each in self._action_type.Impl.__struct_fields__]
 
     def destroy(self) -> None:
-        """Serve no more: goals are forgotten, and whoever waits for a result learns that none comes."""
+        """Destroy the server: goals are forgotten, and whoever waits for a result learns that none comes."""
         with self._lock:
             self._destroyed = True
             for handle in self._goal_handles.values():

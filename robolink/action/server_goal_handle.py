@@ -1,4 +1,4 @@
-"""A goal as its server has it."""
+"""Handle of a goal on the server's side."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class ServerGoalHandle:
-    """An accepted goal: what was asked, and how the server says what becomes of it. Usable from any thread.
+    """Handle of an accepted goal on the server's side: its request, feedback and end. Usable from any thread.
 
     Once the server has been destroyed, or the goal's result has expired, its methods do nothing.
     """
@@ -40,26 +40,33 @@ class ServerGoalHandle:
 
     @property
     def goal_id(self) -> UUID:
-        """The id that the client gave it."""
+        """Id that the client gave it."""
         return self._goal_info.goal_id
 
     @property
     def is_active(self) -> bool:
-        """Whether more will come of it: it neither succeeded nor was aborted or cancelled."""
+        """True until the goal has succeeded or was aborted or cancelled."""
         return self.status in ACTIVE
 
     @property
     def is_cancel_requested(self) -> bool:
-        """Whether it shall be cancelled: end it then, by `canceled` as a rule."""
+        """True once the goal is to be cancelled: end it then, usually by `canceled`."""
         return self.status == GoalStatus.STATUS_CANCELING
 
     @property
     def status(self) -> int:
-        """A code of action_msgs/msg/GoalStatus; STATUS_UNKNOWN once it is forgotten."""
+        """State, a code of action_msgs/msg/GoalStatus; STATUS_UNKNOWN once it is forgotten."""
         return GoalStatus.STATUS_UNKNOWN if self._destroyed else self._status
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
-        """Have the executor run `execute_callback`, by default the server's. Raises RCLError the second time."""
+        """Schedule the execution of the goal.
+
+        Args:
+            execute_callback: Called with this handle; None takes the server's.
+
+        Raises:
+            RCLError: if it was executed before.
+        """
         with self._action_server._lock:
             if self._executed:
                 raise RCLError("a goal can be executed once only")
@@ -69,7 +76,14 @@ class ServerGoalHandle:
         self._action_server.notify_execute(self, execute_callback)
 
     def publish_feedback(self, feedback: Any) -> None:
-        """Tell the client how far it is. Raises TypeError unless it is the action's ``Feedback``."""
+        """Send feedback to the client.
+
+        Args:
+            feedback: A message of the action's ``Feedback``.
+
+        Raises:
+            TypeError: if it is of another type.
+        """
         wanted = self._action_server.action_type.Feedback
         if not isinstance(feedback, wanted):
             raise TypeError(f"Expected {wanted}, got {type(feedback)}")
@@ -78,15 +92,15 @@ class ServerGoalHandle:
                 self._action_server._publish_feedback(self.goal_id, feedback)
 
     def succeed(self) -> None:
-        """Say that it has been reached. Raises RCLError unless it is executing or to be cancelled."""
+        """End the goal as reached. Raises RCLError unless it is executing or to be cancelled."""
         self._update_state(GoalEvent.SUCCEED)
 
     def abort(self) -> None:
-        """Give it up. Raises RCLError unless it is executing or to be cancelled."""
+        """End the goal as failed. Raises RCLError unless it is executing or to be cancelled."""
         self._update_state(GoalEvent.ABORT)
 
     def canceled(self) -> None:
-        """Say that it has been cancelled. Raises RCLError unless that was asked for."""
+        """End the goal as cancelled. Raises RCLError unless that was asked for."""
         self._update_state(GoalEvent.CANCELED)
 
     def _update_state(self, event: GoalEvent) -> None:
@@ -100,5 +114,5 @@ class ServerGoalHandle:
                 server.notify_goal_done()
 
     def destroy(self) -> None:
-        """Forget it: nothing more is published about it."""
+        """Forget the goal: nothing more is published about it."""
         self._destroyed = True

@@ -1,4 +1,4 @@
-"""The states of a goal: what happens to it leads from one status to the next, or is refused."""
+"""State machine of a goal: an event leads from one status to the next, or is refused."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from robolink.interfaces.action_msgs.msg import GoalStatus
 
 
 class RCLError(RobolinkError, RuntimeError):
-    """Something happened to a goal that cannot happen in its state; rclpy's name."""
+    """An event that cannot happen in a goal's state; rclpy's name."""
 
 
 class GoalEvent(Enum):
-    """What can happen to a goal, numbered as in rcl."""
+    """Events of a goal, numbered as in rcl."""
 
     EXECUTE = 0
     CANCEL_GOAL = 1
@@ -31,9 +31,11 @@ NAMES = {
     GoalStatus.STATUS_CANCELED: "CANCELED",
     GoalStatus.STATUS_ABORTED: "ABORTED",
 }
+"""Names of the states."""
 ACTIVE = {GoalStatus.STATUS_ACCEPTED, GoalStatus.STATUS_EXECUTING, GoalStatus.STATUS_CANCELING}
-"""Where something more will come of a goal."""
+"""States of a goal that has not ended."""
 ENDED = {GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED}
+"""States of a goal that has ended."""
 
 _NEXT = {
     GoalStatus.STATUS_ACCEPTED: {
@@ -51,11 +53,11 @@ _NEXT = {
         GoalEvent.CANCELED: GoalStatus.STATUS_CANCELED,
     },
 }
-"""https://design.ros2.org/articles/actions.html, "Goal States"."""
+"""Next state by state and event: https://design.ros2.org/articles/actions.html, "Goal States"."""
 
 
 def next_status(status: int, event: GoalEvent) -> int:
-    """Give the status after an event. Raises RCLError that names what could happen instead."""
+    """Return the status after an event. Raises RCLError that names what could happen instead."""
     possible = _NEXT.get(status, {})
     if event not in possible:
         instead = ", ".join(each.name for each in possible) or "nothing any more"
@@ -64,5 +66,5 @@ def next_status(status: int, event: GoalEvent) -> int:
 
 
 def is_cancelable(status: int) -> bool:
-    """Whether a goal can be asked to stop."""
+    """True if a goal in this state can be cancelled."""
     return GoalEvent.CANCEL_GOAL in _NEXT.get(status, {})

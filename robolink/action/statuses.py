@@ -1,4 +1,4 @@
-"""The states of an action server's goals, kept as they are sent: as the bytes of an action_msgs/msg/GoalStatusArray.
+"""Cache of an action server's goal states as encoded bytes, those of an action_msgs/msg/GoalStatusArray.
 
 Each step of a goal has all of them published. To make and encode a message for each goal again and again took more than
 half of a busy server's time.
@@ -13,28 +13,28 @@ from robolink.interfaces.action_msgs.msg import GoalInfo
 _HEAD = b"\x00\x01\x00\x00"
 _COUNT = struct.Struct("<I")
 _STATUS = struct.Struct("<16s3xiIb")
-"""An id, a stamp and a code. An element ends with a single byte, so three must come before the next one's stamp."""
+"""Layout of an id, a stamp and a code. It ends with a single byte, so three must come before the next one's stamp."""
 _ID_BYTES, _FIRST_STAMP = 16, 19
-"""Where in the first element, which begins at a multiple of four, these three bytes are left out."""
+"""Bounds of the three bytes that are left out of the first element, which begins at a multiple of four."""
 
 
 class Statuses:
-    """The goals of a server in the order in which they came. Not locked: the server is."""
+    """The states of a server's goals, in the order in which they came. Not thread-safe: the server has a lock."""
 
     def __init__(self) -> None:
         self._encoded: dict[bytes, bytes] = {}
 
     def put(self, goal: GoalInfo, status: int) -> None:
-        """Have a goal be in this state: a code of action_msgs/msg/GoalStatus."""
+        """Set a goal's state, a code of action_msgs/msg/GoalStatus."""
         key, stamp = bytes(goal.goal_id.uuid), goal.stamp
         self._encoded[key] = _STATUS.pack(key, stamp.sec, stamp.nanosec, status)
 
     def drop(self, key: bytes) -> None:
-        """Forget a goal, by the bytes of its id."""
+        """Remove a goal, by the bytes of its id."""
         self._encoded.pop(key, None)
 
     def message(self) -> bytes:
-        """The message that has all of them."""
+        """Return the encoded message of all of them."""
         all_of_them = b"".join(self._encoded.values())
         count = _COUNT.pack(len(self._encoded))
         return b"".join((_HEAD, count, all_of_them[:_ID_BYTES], memoryview(all_of_them)[_FIRST_STAMP:]))

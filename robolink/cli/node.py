@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robolink.cli import complete
+from robolink.cli.shared import complete
+from robolink.cli.shared.options import GRAPH_FORMATS, choice
 
 if TYPE_CHECKING:
-    from robolink.graph import NamesAndTypes, Token
+    from robolink.graph.graph import Token
     from robolink.wire import EndpointToken
 
 app = typer.Typer(no_args_is_help=True, help="See which nodes there are, and what each of them does.")
@@ -29,9 +29,9 @@ def list_nodes(
     as_json: Annotated[bool, typer.Option("--json", help="A JSON array.")] = False,
 ) -> None:
     """List the nodes by their full names."""
-    from robolink.cli.announced import nodes
-    from robolink.cli.output import say, say_json
-    from robolink.cli.session import looking
+    from robolink.cli.shared.announced import nodes
+    from robolink.cli.shared.output import say, say_json
+    from robolink.cli.shared.session import looking
 
     with looking() as context:
         found = [each for each in nodes(context) if show_all or not each.node_name.startswith("_")]
@@ -55,9 +55,9 @@ def info(
     as_json: Annotated[bool, typer.Option("--json", help="A JSON object.")] = False,
 ) -> None:
     """Show what a node publishes, subscribes to, serves and calls."""
-    from robolink.cli.announced import absolute, tokens
-    from robolink.cli.output import say, say_json, tell
-    from robolink.cli.session import looking
+    from robolink.cli.shared.announced import absolute, sections_of, tokens
+    from robolink.cli.shared.output import say, say_json, tell
+    from robolink.cli.shared.session import looking
 
     name = absolute(node)
     with looking() as context:
@@ -75,9 +75,37 @@ def info(
         say("\n".join(f"    {each}: {', '.join(types)}" for each, types in listed))
 
 
+@app.command("graph")
+def graph(
+    format_: Annotated[str, choice("--format", GRAPH_FORMATS, "How to draw it")] = GRAPH_FORMATS[0],
+    hidden: Annotated[
+        bool, typer.Option("--include-hidden", help="Also nodes, topics, services and actions that begin with _.")
+    ] = False,
+) -> None:
+    """Draw the nodes that run, and the topics, services and actions between them, as text."""
+    from robolink.cli.shared.announced import is_hidden, tokens
+    from robolink.cli.shared.output import say
+    from robolink.cli.shared.session import looking
+    from robolink.launch.looking.graph import as_text, graph_of_uses
+    from robolink.launch.looking.look import End, Look
+    from robolink.launch.looking.uses import uses_of
+    from robolink.wire import EndpointToken
+
+    with looking() as context:
+        found = [each for each in tokens(context) if hidden or not is_hidden(each.full_node_name)]
+    ends = [each for each in found if isinstance(each, EndpointToken)]
+    look = Look(
+        ends=[End(each.kind.value, each.name, each.type_name, each.type_hash, each.full_node_name) for each in ends]
+    )
+    nodes = sorted({each.full_node_name for each in found})
+    uses = [each for each in uses_of(look) if hidden or not is_hidden(each.name)]
+    say(as_text(graph_of_uses(nodes, uses), format_).rstrip())
+
+
 def of_node(tokens: list[Token], name: str, domain: int) -> tuple[int, list[EndpointToken]]:
-    """Count the nodes of a full name, and give their endpoints. Raises NotFoundError for an unknown name."""
-    from robolink.exceptions import NotFoundError, shown
+    """Return the number of nodes of a full name, and their endpoints. Raises NotFoundError for an unknown name."""
+    from robolink.exceptions import NotFoundError
+    from robolink.system.terminal import shown
     from robolink.wire import EndpointToken, NodeToken
 
     names = [each.full_node_name for each in tokens if isinstance(each, NodeToken)]
@@ -87,30 +115,8 @@ def of_node(tokens: list[Token], name: str, domain: int) -> tuple[int, list[Endp
     return names.count(name), own
 
 
-def sections_of(endpoints: Sequence[EndpointToken], hidden: bool) -> list[tuple[str, NamesAndTypes]]:
-    """Give what `ros2 node info` lists of a node: six titles, each with names and types."""
-    from robolink.action.graph import actions
-    from robolink.cli.announced import is_hidden
-    from robolink.graph import names_and_types
-    from robolink.wire import EndpointKind
-
-    of = {kind: names_and_types(each for each in endpoints if each.kind is kind) for kind in EndpointKind}
-    titles = {
-        "Subscribers": EndpointKind.SUBSCRIPTION,
-        "Publishers": EndpointKind.PUBLISHER,
-        "Service Servers": EndpointKind.SERVICE,
-        "Service Clients": EndpointKind.CLIENT,
-    }
-    sections = [(title, of[kind]) for title, kind in titles.items()]
-    sections += [
-        ("Action Servers", actions(of[EndpointKind.SERVICE], of[EndpointKind.PUBLISHER])),
-        ("Action Clients", actions(of[EndpointKind.CLIENT], of[EndpointKind.SUBSCRIPTION])),
-    ]
-    return [(title, [each for each in listed if hidden or not is_hidden(each[0])]) for title, listed in sections]
-
-
 def _warn_of_twins(names: list[str]) -> None:
-    from robolink.cli.output import tell
+    from robolink.cli.shared.output import tell
 
     twins = [f"{name} ({count} times)" for name, count in Counter(names).items() if count > 1]
     if twins:

@@ -1,7 +1,8 @@
-"""The root of the command line: a table of commands, each imported when it is used."""
+"""Root of the command line: the table of all nouns, each imported when it is used."""
 
 from __future__ import annotations
 
+import functools
 import importlib
 import os
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
@@ -10,7 +11,7 @@ import typer
 import typer.core
 import typer.main
 
-from robolink.cli.output import say
+from robolink.cli.shared.output import say
 from robolink.exceptions import nearest
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Entry(NamedTuple):
-    """Where a command lives and what it does; `verb` picks one command out of a noun's."""
+    """Entry of a command in the table: its module and its help; `verb` picks one command out of a noun's."""
 
     module: str
     help: str
@@ -26,63 +27,66 @@ class Entry(NamedTuple):
 
     @property
     def hidden(self) -> bool:
-        """Whether help does not list it: an alias, or what one command asks of another process."""
+        """True if help does not list it: an alias, or a command that robolink starts in another process."""
         return not self.help
 
 
 COMMANDS = {
-    "run": Entry("robolink.cli.run", "Run a node."),
-    "launch": Entry("robolink.cli.launch", "Run a system of nodes that a file describes."),
-    "simulate": Entry("robolink.cli.simulate", "Run a system in virtual time, with faults, as fast as it goes."),
-    "run-together": Entry("robolink.cli.together", ""),
-    "look-into": Entry("robolink.cli.look", ""),
-    "pub": Entry("robolink.cli.topic", "Publish messages: short for topic pub.", "pub"),
-    "topic": Entry("robolink.cli.topic", "See and send what nodes publish."),
+    "run": Entry("robolink.cli.running_nodes.run", "Run a node."),
+    "launch": Entry("robolink.cli.launching.launch", "Run a system of nodes that a file describes."),
+    "simulate": Entry(
+        "robolink.cli.launching.simulate", "Run a system in virtual time, with faults, as fast as it goes."
+    ),
+    "run-together": Entry("robolink.cli.running_nodes.run_together", ""),
+    "look-into": Entry("robolink.cli.running_nodes.look_into", ""),
+    "pub": Entry("robolink.cli.topic.command", "Publish messages: short for topic pub.", "pub"),
+    "topic": Entry("robolink.cli.topic.command", "See and send what nodes publish."),
     "node": Entry("robolink.cli.node", "See which nodes there are, and what each of them does."),
     "service": Entry("robolink.cli.service", "See which services there are, and call them."),
     "param": Entry("robolink.cli.param", "See and change the parameters of running nodes."),
     "lifecycle": Entry("robolink.cli.lifecycle", "See in which states managed nodes are, and move them on."),
     "action": Entry("robolink.cli.action", "See which actions there are, and send goals."),
+    "bag": Entry("robolink.cli.bag", "Record bags of messages, look at them, convert and mend them."),
     "tf": Entry("robolink.cli.tf", "See where frames are in each other."),
+    "top": Entry("robolink.cli.top", "Show what nodes use and what topics carry, again and again."),
     "plot": Entry("robolink.cli.plot", "Draw where robots go, and values over time."),
+    "view": Entry("robolink.cli.view", "Show a running system, or a bag, in the browser."),
     "world": Entry("robolink.cli.world", "Check, draw and list the worlds that are simulated."),
     "interface": Entry("robolink.cli.interface", "See the types of messages, services and actions."),
+    "security": Entry("robolink.cli.security", "Make keys for nodes, and say what each may do."),
+    "network": Entry("robolink.cli.doctor.network", "See whom nodes may meet here, whom they have found, and how."),
+    "router": Entry("robolink.cli.router", "Run a router, for machines that cannot reach each other directly."),
     "doctor": Entry("robolink.cli.doctor", "Find out what is wrong here or on the network."),
     "wtf": Entry("robolink.cli.doctor", ""),
 }
 
 
 OF_ROS2 = {
-    "bag": "'robolink topic echo TOPIC --json' writes messages as lines; where there is ROS 2, its own hears ours too",
     "component": "nodes of a launch file share a process where it says 'process: NAME' (docs/launch.md)",
     "daemon": "there is none to start or stop: each command looks by itself",
-    "multicast": "nothing is sent by multicast but with --network subnet; 'robolink doctor' looks at the network",
+    "multicast": "nothing is sent by multicast but with --network lan; 'robolink doctor' looks at the network",
     "pkg": "nothing is built; 'robolink run --list' shows what can be run, and a package is a folder in src/",
-    "security": "TLS and access rules are Zenoh's: --network FILE.json5 (docs/ros2.md)",
 }
-"""ros2's commands that robolink has not, and what to do instead."""
+"""Commands of ros2 that robolink lacks, each with what to do instead."""
 
 
 class Root(typer.core.TyperGroup):
-    """A group that knows its commands by name, and imports only the one that is asked for."""
+    """Command group with lazy loading: it knows all commands by name, and imports only the one that is used."""
 
     def list_commands(self, ctx: Context) -> list[str]:
-        """Give the names in the order of the table."""
+        """Return the names that help lists, in the order of the table."""
         return [name for name, entry in COMMANDS.items() if not entry.hidden]
 
     def get_command(self, ctx: Context, cmd_name: str) -> Any:
-        """Import a command; None for an unknown name."""
+        """Import and return a command; None for an unknown name."""
         entry = COMMANDS.get(cmd_name)
         if entry is None:
             return None
-        app: typer.Typer = importlib.import_module(entry.module).app
-        app.rich_markup_mode = None  # plain help: rich takes longer to import than most commands to run
-        app._add_completion = False
-        found = typer.main.get_command(app)
-        return found.get_command(ctx, entry.verb) if entry.verb else found  # type: ignore[attr-defined]
+        found = _command_of(entry.module)
+        return found.get_command(ctx, entry.verb) if entry.verb else found
 
     def resolve_command(self, ctx: Context, args: list[str]) -> Any:
-        """Find the command; the nearest name is told for an unknown one."""
+        """Return the command of the first word; end with a usage error that has the nearest name if it is unknown."""
         if args[0] in OF_ROS2:
             ctx.fail(f"ros2's '{args[0]}' is not here: {OF_ROS2[args[0]]}")
         if args[0] not in COMMANDS:
@@ -90,7 +94,7 @@ class Root(typer.core.TyperGroup):
         return super().resolve_command(ctx, args)
 
     def shell_complete(self, ctx: Context, incomplete: str) -> list[Any]:
-        """Complete the commands' names, without importing any, and the options."""
+        """Return completions of the commands' names and of the options, without importing any command."""
         base = next(
             each for each in type(self).__mro__ if each.__name__ == "Command"
         )  # typer has its own copy of click
@@ -100,9 +104,18 @@ class Root(typer.core.TyperGroup):
         return [*(item(name, help=COMMANDS[name].help) for name in names), *options]
 
     def format_commands(self, ctx: Context, formatter: Any) -> None:
-        """List the commands without importing any."""
+        """Write the list of commands into the help, without importing any."""
         with formatter.section("Commands"):
             formatter.write_dl([(name, entry.help) for name, entry in COMMANDS.items() if not entry.hidden])
+
+
+@functools.cache
+def _command_of(module: str) -> Any:
+    """Import the module of a noun, and return its command; made once, for programs that call `main` again and again."""
+    app: typer.Typer = importlib.import_module(module).app
+    app.rich_markup_mode = None  # plain help: rich takes longer to import than most commands to run
+    app._add_completion = False
+    return typer.main.get_command(app)
 
 
 _SETTINGS = {"help_option_names": ["-h", "--help"]}  # of all commands below it, too
@@ -127,7 +140,9 @@ def root(
     ] = False,
     network: Annotated[
         str,
-        typer.Option(metavar="NET", help="localhost, subnet, off, a router (tcp/HOST:7447) or a file of Zenoh's."),
+        typer.Option(
+            metavar="NET", help="localhost, lan, off, HOST[:PORT], tls/HOST, a name of networks.yaml, or a file."
+        ),
     ] = "",
 ) -> None:
     """ROS 2 nodes from pip install: run them, launch them, see and send what they publish."""
@@ -135,6 +150,7 @@ def root(
         os.environ["ROBOLINK_NETWORK"] = network  # for the processes that a launch starts, too
 
 
+@functools.cache
 def command() -> Any:
-    """Give the root command."""
+    """Return the root command of the parser."""
     return typer.main.get_command(app)

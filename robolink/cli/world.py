@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robolink.cli import complete
-from robolink.cli.output import say, tell
-from robolink.terminal import fit
+from robolink.cli.shared import complete
+from robolink.cli.shared.output import say, tell
+from robolink.system.terminal import fit
 
 if TYPE_CHECKING:
     from robolink.sim import WorldDescription
@@ -31,7 +31,7 @@ def check_worlds(
     workspace: Workspace = "",
     as_json: Annotated[bool, typer.Option("--json", help="JSON: a list with the problems of each file.")] = False,
 ) -> None:
-    """Say what is wrong with worlds, a line for each problem; the exit code is 1 if anything is."""
+    """List what is wrong with worlds, a line for each problem; the exit code is 1 if anything is."""
     found = [_checked(each, workspace) for each in files]
     if as_json:
         import json
@@ -59,8 +59,8 @@ def draw_world(
     workspace: Workspace = "",
 ) -> None:
     """Draw a world as it begins, into a picture (needs matplotlib: pip install matplotlib)."""
-    from robolink.cli.pictures import check_picture
-    from robolink.drawing import save_world
+    from robolink.cli.shared.pictures import check_picture
+    from robolink.sim.drawing import save_world
     from robolink.sim.webots import warnings_to
     from robolink.sim.worldfile import load_world
 
@@ -76,7 +76,7 @@ def list_all(
     as_json: Annotated[bool, typer.Option("--json", help="JSON: names, files and descriptions.")] = False,
 ) -> None:
     """List the worlds that there are."""
-    from robolink.cli.layout import aligned
+    from robolink.cli.shared.layout import aligned
     from robolink.workspace import list_worlds, purpose_of
 
     found = [(each, purpose_of(each)) for each in list_worlds(workspace=workspace or None)]
@@ -109,7 +109,7 @@ def show_schema(
 
 
 def _found(name: str, workspace: str) -> str:
-    """Give a world's path, as short as it can be said from here."""
+    """Return the path of a world, relative to the working directory if it is below it."""
     from robolink.workspace import find_world
 
     path = find_world(name, workspace=workspace or None)
@@ -118,7 +118,7 @@ def _found(name: str, workspace: str) -> str:
 
 
 def _checked(name: str, workspace: str) -> tuple[str, Checked]:
-    """Check a world; one that is not found is one of the problems."""
+    """Return a world's path and its problems, one of which may be that it is not found."""
     from robolink.exceptions import NotFoundError
     from robolink.sim.webots import warnings_to
     from robolink.sim.worldfile import Checked, check_world
@@ -138,7 +138,7 @@ def _lines(path: str, checked: Checked) -> list[str]:
 
 
 def summary(description: WorldDescription) -> str:
-    """Say what there is in a world: "4 walls, 1 robot with 2 sensors"."""
+    """Return the contents of a world in words: "4 walls, 1 robot with 2 sensors"."""
     from robolink.sim.description import MapWalls
 
     drawn = sum(len(each.segments()) for each in description.walls if not isinstance(each, MapWalls))
@@ -159,5 +159,5 @@ def _counted(count: int, word: str) -> str:
 
 
 def _warn(text: str) -> None:
-    """Write what a world warns of to standard error, as one line."""
+    """Write a warning about a world to standard error, as one line."""
     tell(f"robolink: {fit(text, lines=False)}")

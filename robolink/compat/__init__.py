@@ -6,7 +6,7 @@
 
 `robolink run` does the same for what it runs. There are rclpy, the message packages, tf2_ros, tf2_py,
 tf2_geometry_msgs, tf2_sensor_msgs, tf_transformations, message_filters, sensor_msgs_py, rosidl_runtime_py,
-ament_index_python and webots_ros2_driver (its WebotsController alone).
+ament_index_python, rosbag2_py and webots_ros2_driver (its WebotsController alone).
 
 **All or none.** These modules hand each other their classes, so they are robolink's together or not at all. Where a
 real rclpy is installed, the import above leaves all of them alone. `robolink run` does not: whoever asks robolink to
@@ -27,17 +27,18 @@ from robolink.exceptions import RobolinkError
 from robolink.workspace.modules import FINDER
 
 VARIABLE = "ROBOLINK_COMPAT"
+"""Environment variable that overrules the mode."""
 AUTO, ALWAYS, NEVER = MODES = ("auto", "always", "never")
 
 __all__ = ["ALWAYS", "AUTO", "NEVER", "VARIABLE", "CompatError", "activate", "is_active"]
 
 
 class CompatError(RobolinkError, ImportError):
-    """ROS 2's names cannot be robolink's: the real rclpy is in use already, or what was asked for is no mode."""
+    """ROS 2's names cannot be robolink's: the real rclpy is in use already, or the mode is unknown."""
 
 
 def activate(mode: str = AUTO) -> bool:
-    """Make ROS 2's names robolink's, by the rule above; say whether they are. ROBOLINK_COMPAT overrules `mode`.
+    """Make ROS 2's names robolink's, by the rule above; True if they are. ROBOLINK_COMPAT overrules `mode`.
 
     Raises CompatError for an unknown mode, and for `always` when a real rclpy has been imported before.
     """
@@ -59,7 +60,7 @@ def activate(mode: str = AUTO) -> bool:
 
 
 def is_active() -> bool:
-    """Whether ROS 2's names are robolink's in this process."""
+    """True while ROS 2's names are robolink's in this process."""
     return MAKER in FINDER.makers and FINDER in sys.meta_path
 
 

@@ -1,4 +1,4 @@
-"""Makes a module for each of ROS 2's names: robolink's own, put in its place; never a second copy of one."""
+"""Factory of a module for each of ROS 2's names: robolink's own, put in its place; never a second copy of one."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from robolink.compat.names import ROOMS, instead_of, snake_case
 from robolink.exceptions import closest
 from robolink.interfaces import ACTION_PARTS, KINDS
 from robolink.interfaces._standard import STANDARD
-from robolink.lacking import LackingModuleError, lacking, names_in
+from robolink.text.suggestions import LackingModuleError, lacking, names_in
 from robolink.workspace.modules import FINDER, Fill, Filling
 
 MESSAGES = frozenset(package for kind in KINDS for package in STANDARD[kind])
 TOPS = frozenset({*MESSAGES, *(name for name in ROOMS if "." not in name)})
 """The top-level names that are robolink's."""
 ALIKE = 0.85
-"""How much a name of nobody's agrees with one of ROS 2's that was meant, as `closest` counts it."""
+"""Similarity from 0 to 1, as `closest` computes it, above which an unknown name is a misspelt one of ROS 2's."""
 PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
 
 
 def hidden(fullname: str) -> bool:
-    """Whether a name is robolink's, whatever else is installed by it."""
+    """True if a name is robolink's, whatever else is installed by it."""
     top, dot, _ = fullname.partition(".")
     if top not in TOPS:
         return False
@@ -37,7 +37,7 @@ def hidden(fullname: str) -> bool:
 
 
 def maker(fullname: str) -> Fill | None:
-    """Give what fills the module of a name of ROS 2's. Raises LackingModuleError for one that robolink has not."""
+    """Return the function that fills the module of a ROS 2 name. Raises LackingModuleError if robolink lacks it."""
     top = fullname.partition(".")[0]
     if top not in TOPS:
         return _instead(fullname, top)
@@ -100,7 +100,7 @@ def _fill_folder(hint: str, module: ModuleType) -> None:
 
 
 def room_of(fullname: str) -> str:
-    """Give the module of robolink's that a name stands for; it need not be there. '' for none.
+    """Return the robolink module of a name, which need not exist; '' for none.
 
     >>> room_of("rclpy.node"), room_of("geometry_msgs.msg")
     ('robolink.node', 'robolink.interfaces.geometry_msgs.msg')
@@ -135,7 +135,7 @@ def has_rclpy() -> bool:
 
 
 def _is_the_users_own(top: str) -> bool:
-    """Whether a module of this name is a file of the user's: not installed, neither by pip nor with ROS 1 or 2."""
+    """True if a module of this name is a file of the user's: not installed, neither by pip nor with ROS 1 or 2."""
     spec = FINDER.real(top)
     if spec is None or spec.loader is None or not spec.origin:
         return False
@@ -168,7 +168,7 @@ def _say_where(fullname: str, module: Any) -> None:
 
 
 def _asked(fullname: str, module: ModuleType, own: Callable[[str], Any] | None, name: str) -> Any:
-    """Answer for a name that a module has not in it: its `own` answer to that, if it has any."""
+    """Return a name that a module lacks: its `own` answer to that, if it has any."""
     try:
         if own is not None:
             return own(name)
@@ -179,7 +179,7 @@ def _asked(fullname: str, module: ModuleType, own: Callable[[str], Any] | None, 
 
 
 def _home_of(fullname: str, name: str) -> str:
-    """Say which other message package has a type of this name."""
+    """Return which other message package has a type of this name."""
     package, _, kind = fullname.partition(".")
     if package not in MESSAGES or kind not in KINDS:
         return ""
@@ -192,7 +192,7 @@ def _fill_package(module: ModuleType) -> None:
 
 
 def _defined_in(fullname: str) -> list[str]:
-    """Give the types that rosidl defines in ``geometry_msgs.msg._twist``: those so spelled, there is one as a rule."""
+    """Return the types that rosidl defines in ``geometry_msgs.msg._twist``: those so spelled, usually one."""
     package, kind, last = [*fullname.split("."), "", ""][:3]
     types = STANDARD.get(kind, {}).get(package, "").split() if fullname.count(".") == 2 else []
     found = [each for each in types if f"_{snake_case(each)}" == last]
@@ -215,7 +215,7 @@ def _fill_private(fullname: str, types: Iterable[str], module: ModuleType) -> No
 
 
 def _modules_beside(fullname: str) -> list[str]:
-    """Give the names that an import of the same package could have had."""
+    """Return the names that an import of the same package could have had."""
     parent = fullname.rpartition(".")[0]
     listed = [name.rpartition(".")[2] for name in ROOMS if name.rpartition(".")[0] == parent]
     folders = getattr(sys.modules.get(room_of(parent)), "__path__", [])

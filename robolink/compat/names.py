@@ -1,4 +1,4 @@
-"""Which module of robolink's stands for which name of ROS 2's, and what to do instead where none does."""
+"""Table of ROS 2's module names and robolink's modules, and advice for the names that have none."""
 
 from __future__ import annotations
 
@@ -12,18 +12,19 @@ ROOMS = {
     "tf2_geometry_msgs.tf2_geometry_msgs": "robolink.tf2.geometry",
     "tf2_sensor_msgs": "robolink.tf2.point_cloud",
     "tf2_sensor_msgs.tf2_sensor_msgs": "robolink.tf2.point_cloud",
-    "tf_transformations": "robolink.transformations",
-    "message_filters": "robolink.message_filters",
+    "tf_transformations": "robolink.geometry.transformations",
+    "message_filters": "robolink.companions.message_filters",
     "sensor_msgs_py": "",
-    "sensor_msgs_py.numpy_compat": "robolink.numpy_compat",
-    "sensor_msgs_py.point_cloud2": "robolink.point_cloud2",
+    "sensor_msgs_py.numpy_compat": "robolink.sensor_msgs_py.numpy_compat",
+    "sensor_msgs_py.point_cloud2": "robolink.sensor_msgs_py.point_cloud2",
     "rosidl_parser": "",
     "rosidl_parser.definition": "robolink.message.slot_types",
-    "rosidl_runtime_py": "robolink.rosidl_runtime",
+    "rosidl_runtime_py": "robolink.companions.rosidl_runtime",
     "webots_ros2_driver": "robolink.webots_controller",
-    "ament_index_python": "robolink.ament_index",
+    "ament_index_python": "robolink.companions.ament_index",
+    "rosbag2_py": "robolink.companions.rosbag2_py",
 }
-"""Name to module; '' is a package with nothing in it. What is below a name is below its module."""
+"""Modules by name; '' is a package with nothing in it. A name below another is below its module."""
 
 INSTEAD = {
     "cv_bridge": "numpy reads an Image: np.frombuffer(msg.data, np.uint8).reshape(msg.height, msg.width, -1)",
@@ -36,9 +37,8 @@ INSTEAD = {
     "tf": "that is ROS 1: tf2_ros has the listener and the broadcaster, tf_transformations the angles",
     "rospy": "that is ROS 1: rclpy is what ROS 2 has",
     "roslib": "that is ROS 1, and ROS 2 needs nothing in its place",
-    "rosbag": "that is ROS 1",
+    "rosbag": "that is ROS 1: 'robolink bag' and rosbag2_py have the bags of ROS 2",
     "actionlib": "that is ROS 1: rclpy.action has ActionServer and ActionClient",
-    "rosbag2_py": "the package rosbags, from pip, reads and writes bags",
     "nav2_simple_commander": "rclpy.action.ActionClient with nav2_msgs.action.NavigateToPose does what it does",
     "ros2cli": "'robolink' is the command line",
     "image_transport": "publish and subscribe to sensor_msgs.msg.Image or CompressedImage",
@@ -46,15 +46,16 @@ INSTEAD = {
     "controller_manager": "it needs ros2_control",
     "moveit": "it needs MoveIt",
 }
-"""Names that programs for ROS 2 import and that robolink has not, each with what to do."""
+"""Advice for the names that programs for ROS 2 import and that robolink lacks."""
 
 INTERFACES = r"[a-z][a-z0-9_]*_(?:msgs|interfaces|srvs|actions)"
+"""Pattern of message packages, as text."""
 LINTERS = r"ament_(?:copyright|flake8|pep257|xmllint|mypy|cpplint|lint)"
-"""As text: a program that lacks nothing need not wait until they are compiled."""
+"""Pattern of ament's linters, as text: a program that lacks nothing need not wait until it is compiled."""
 
 
 def instead_of(name: str) -> str:
-    """Say what to do in place of a top-level name that robolink has not; '' for a name that is not ROS's."""
+    """Return advice for a top-level name that robolink lacks; '' for a name that is not ROS's."""
     if name in INSTEAD:
         return INSTEAD[name]
     if re.fullmatch(LINTERS, name):
@@ -65,7 +66,7 @@ def instead_of(name: str) -> str:
 
 
 def snake_case(type_name: str) -> str:
-    """Spell a type's name as rosidl names the module that defines it.
+    """Return a type's name as rosidl names the module that defines it.
 
     >>> snake_case("PointCloud2"), snake_case("TFMessage")
     ('point_cloud2', 'tf_message')

@@ -1,4 +1,4 @@
-"""Faults of a network, of nodes and of clocks, drawn from a seed: read from YAML, or added while a system runs."""
+"""Fault injection into a network, nodes and clocks, drawn from a seed: read from YAML, or added while a system runs."""
 
 from robolink.faults.description import ClockFault, Crash, FaultsDescription, MessageFault, Partition
 from robolink.faults.file import check_nodes, read_faults

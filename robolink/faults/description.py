@@ -1,4 +1,4 @@
-"""What a faults file may say: what happens to messages, to connections, to nodes and to clocks, and when."""
+"""Data model of a faults file: faults of messages, connections, nodes and clocks, and their times."""
 
 from __future__ import annotations
 
@@ -6,14 +6,13 @@ from typing import Annotated, TypeAlias
 
 import msgspec
 
+from robolink.constants import MOST_SEED
+
 MOST = 1e9
-"""Of seconds, and of messages: thirty years."""
+"""Upper bound of times in s, and of lengths of bursts in messages: about thirty years."""
 
 MOST_DRIFT = 0.1
-"""Of a clock, in seconds per second; a cheap crystal has 0.0001."""
-
-MOST_SEED = 2**32 - 1
-"""What numpy's own generator takes."""
+"""Upper bound of a clock's drift in s per s; a cheap crystal has 0.0001."""
 
 Seed = Annotated[int, msgspec.Meta(ge=0, le=MOST_SEED)]
 Share = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
@@ -23,12 +22,13 @@ Names: TypeAlias = str | list[str]
 
 
 class MessageFault(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """What happens to the messages of some topics, or to the calls of some services, on the way between two nodes.
+    """Loss, delay or duplication of the messages of some topics, or of the calls of some services, between two nodes.
 
-    `topic` or `service` say which, `from` and `to` between which nodes; all of them where nothing is said. A call has
-    two ways: its request goes from the client to the server, its answer back. `loss` and `duplication` are shares of
-    all messages, `latency` and `jitter` seconds. With `burst`, losses come in runs of so many messages on average.
-    Messages keep their order unless `reorder` says otherwise. It holds from `after` until `until`, seconds of the run.
+    `topic` or `service` name them, `from` (here `from_`) and `to` the nodes; without any of them all are meant. A
+    call has two directions: its request goes from the client to the server, its response back. `loss` and
+    `duplication` are probabilities from 0 to 1, `latency` and `jitter` seconds. With `burst`, losses come in runs of
+    so many messages on average. Messages keep their order unless `reorder`. The fault holds from `after` until
+    `until`, seconds of the run.
     """
 
     topic: Names = []
@@ -46,7 +46,9 @@ class MessageFault(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class Partition(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """A network that falls apart: nodes of different groups do not reach each other from `after` until `until`.
+    """Partition of the network: nodes of different groups do not reach each other from `after` until `until`.
+
+    The groups are `between`, lists of nodes; times are seconds of the run, and None is its end.
 
     A node belongs to the first group that names it; nodes that no group names reach everybody.
     """
@@ -57,9 +59,9 @@ class Partition(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class Crash(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """A node's process is killed `at` so many seconds, and started again `restart_after` so many more.
+    """Crash of `node`: its process is killed at `at` seconds of the run, and started again `restart_after` s later.
 
-    Without `restart_after` it is the launch file that says what follows: `respawn` and `on_exit`.
+    Without `restart_after` the launch file's rules apply: `respawn` and `on_exit`.
     """
 
     node: str
@@ -68,7 +70,7 @@ class Crash(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class ClockFault(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """A node's clock: ahead by `offset` seconds (behind, if negative), and gaining `drift` seconds per second."""
+    """Wrong clock of `node`: `offset` seconds ahead (behind, if negative), and gaining `drift` seconds per second."""
 
     node: Names
     offset: Annotated[float, msgspec.Meta(ge=-MOST, le=MOST)] = 0.0
@@ -76,7 +78,16 @@ class ClockFault(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class FaultsDescription(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """All that goes wrong in a run, and the seed from which it is drawn."""
+    """All faults of a run.
+
+    Args:
+        description: Text for people.
+        seed: Seed of their random numbers, unless the run itself is given one.
+        messages: Losses, delays and duplications of messages.
+        partitions: Partitions of the network.
+        crashes: Crashes of nodes.
+        clocks: Wrong clocks of nodes.
+    """
 
     description: str = ""
     seed: Seed | None = None

@@ -1,4 +1,4 @@
-"""Read a faults file, and find what is wrong with it."""
+"""Reader of faults files, with the checks that types alone cannot express."""
 
 from __future__ import annotations
 
@@ -6,27 +6,32 @@ import os
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
+from robolink.documents.mistakes import Step
+from robolink.documents.yamlfile import Document, read
 from robolink.exceptions import nearest
 from robolink.faults.description import FaultsDescription, MessageFault, Names
 from robolink.faults.patterns import is_pattern, listed, matcher, mistake_in
-from robolink.yamlfile import Document, read
-from robolink.yamlmistakes import Step
 
 _EFFECTS = ("loss", "duplication", "latency", "jitter")
 
 
 class _Problem(NamedTuple):
-    """What is wrong, and the steps that lead there."""
+    """A mistake in the file, and the steps that lead there."""
 
     steps: list[Step]
     message: str
 
 
 def read_faults(path: str | os.PathLike[str], *, text: str | None = None) -> Document[FaultsDescription]:
-    """Read a faults file (or `text` in its place).
+    """Read a faults file.
 
-    Raises `DocumentError` with `file:line:column` for YAML that is none, an unknown key, a value of the wrong type or
-    out of its range, a name that cannot be one, a fault that does nothing or that cannot be.
+    Args:
+        path: Path of the file, also its name in errors.
+        text: Text to read in place of the file's.
+
+    Raises:
+        DocumentError: with `file:line:column`, for invalid YAML, an unknown key, a value of the wrong type or out of
+            its range, an invalid name, or a fault without effect or that cannot be.
     """
     document = read(path, FaultsDescription, text=text)
     for steps, message in _problems(document.value):
@@ -35,9 +40,14 @@ def read_faults(path: str | os.PathLike[str], *, text: str | None = None) -> Doc
 
 
 def check_nodes(document: Document[FaultsDescription], known: Collection[str]) -> None:
-    """Refuse a fault that names a node which the system does not have. Raises `DocumentError` with the nearest name.
+    """Raise an error if a fault names a node that the system lacks. A pattern may match none: nodes may come later.
 
-    A pattern may fit nothing, since nodes may come later.
+    Args:
+        document: The faults file.
+        known: Names of the system's nodes.
+
+    Raises:
+        DocumentError: with `file:line:column` and the nearest name.
     """
     for steps, pattern in _nodes(document.value):
         if not is_pattern(pattern) and not any(map(matcher((pattern,)), known)):
@@ -46,7 +56,7 @@ def check_nodes(document: Document[FaultsDescription], known: Collection[str]) -
 
 
 def mistakes_of(fault: MessageFault) -> Iterator[tuple[str, str]]:
-    """Yield, as (key, what is wrong), what types cannot say of a fault of messages."""
+    """Yield, as (key, mistake), what types cannot express of a fault of messages."""
     if fault.topic and fault.service:
         yield "service", "a fault is on topics or on services: make two of it"
     if not any(getattr(fault, each) for each in _EFFECTS):
@@ -122,7 +132,7 @@ def _topics(faults: FaultsDescription) -> Iterator[tuple[list[Step], str]]:
 
 
 def _nodes(faults: FaultsDescription) -> Iterator[tuple[list[Step], str]]:
-    """Yield where a node is named, and how."""
+    """Yield each name of a node, with its place in the file."""
     for index, fault in enumerate(faults.messages):
         yield from _placed(fault.from_, ["messages", index, "from"])
         yield from _placed(fault.to, ["messages", index, "to"])

@@ -1,4 +1,4 @@
-"""Makes faults happen to the programs of one process: on their sessions, to their clocks, and to themselves."""
+"""Fault injector for the programs of one process: on their sessions, to their clocks, and to themselves."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Protocol, TypeAlias
 
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.faults.description import ClockFault, Crash, FaultsDescription, MessageFault, Partition
-from robolink.faults.network import FaultyNetwork, Timetable, spelled
+from robolink.faults.network import FaultyNetwork, Scheduler, spelled
 from robolink.faults.patterns import fits_any, has_pattern, listed
 from robolink.faults.report import FaultReport, Unmet, Why
 from robolink.faults.transport import FaultyTransport
-from robolink.timebase import SkewedTime, TimeBase
+from robolink.running.timebase import SkewedTime, TimeBase
 from robolink.transport.memory import Bus
 
 Fault: TypeAlias = "MessageFault | Partition | Crash | ClockFault"
@@ -23,56 +23,66 @@ class FaultError(RobolinkError, ValueError):
 
 
 class Programs(Protocol):
-    """What runs the programs: `robolink.oneprocess.supervision`."""
+    """Protocol of what runs the programs: `robolink.host.supervision`."""
 
     def at(self, seconds: float, act: Callable[[], object]) -> object:
-        """Call `act()` when the run is so old."""
+        """Call `act()` at a time of the run in seconds."""
 
     def crash(self, name: str, *, is_restarted: bool) -> bool:
-        """End a program at once, which will be asked to start again if it `is_restarted`; whether it ran."""
+        """End a program at once; True if it ran. If it `is_restarted`, `restart` will be called later."""
 
     def restart(self, name: str) -> object:
         """Start a program again."""
 
 
 @dataclass
-class _Strike:
-    """A crash that is planned, and what has come of it."""
+class _PlannedCrash:
+    """A planned crash, and its outcome."""
 
     crash: Crash
-    has_come: bool = False
-    has_struck: bool = False
+    is_over: bool = False
+    has_happened: bool = False
 
     def unmet(self) -> Unmet:
         why, told = (
-            (Why.IN_VAIN, "the node did not run then") if self.has_come else (Why.TOO_EARLY, "the run ended before")
+            (Why.IN_VAIN, "the node did not run then") if self.is_over else (Why.TOO_EARLY, "the run ended before")
         )
         return Unmet(f"{spelled(self.crash)} did not happen: {told}", why)
 
 
 class Injector:
-    """Has faults strike the programs of a host; its methods `connect` and `clock` are made for one.
+    """Injector of faults into the programs of a host; its methods `connect` and `clock` are made for one.
 
-    `seed` decides all that is drawn.
+    Args:
+        bus: Network of the programs.
+        time: Scheduler on the time of the run.
+        programs: Runner of the programs, which crashes and restarts them.
+        seed: Seed of all random numbers.
     """
 
-    def __init__(self, bus: Bus, time: Timetable, programs: Programs, *, seed: int = 0) -> None:
+    def __init__(self, bus: Bus, time: Scheduler, programs: Programs, *, seed: int = 0) -> None:
         self.network = FaultyNetwork(bus, time, seed=seed)
         self._programs = programs
         self._clocks: list[ClockFault] = []
         self._times: dict[str, tuple[list[ClockFault], TimeBase]] = {}
         self._met_clocks: list[ClockFault] = []
-        self._strikes: list[_Strike] = []
+        self._crashes: list[_PlannedCrash] = []
 
     def connect(self, program: str) -> FaultyTransport:
-        """Open a program's session."""
+        """Open a session for `program`."""
         return FaultyTransport(self.network, program)
 
     def clock(self, program: str, time: TimeBase) -> TimeBase:
-        """Give a program's time: the host's, unless its clock is wrong. Several faults of a clock add up.
+        """Return a program's time: the host's, unless its clock is wrong. Several faults of a clock add up.
 
         A program that starts anew has the clock that it had, whose drift goes on, unless a fault was added since.
-        Raises `FaultError` for a clock that is so far behind that it would show a time before 0.
+
+        Args:
+            program: Name of the program.
+            time: Time of the host.
+
+        Raises:
+            FaultError: if the clock is so far behind that it would show a time before 0.
         """
         names = self.network.programs.get(program, {program})
         wrong = [each for each in self._clocks if fits_any(listed(each.node), names)]
@@ -90,18 +100,18 @@ class Injector:
             raise FaultError(f"the clock of {program} cannot be {behind}: it is {now} now, and no time is before 0")
         return shown
 
-    def introduce(self, program: str, nodes: Iterable[str]) -> None:
-        """Say by which nodes' names faults may call a program, before it has any."""
+    def register(self, program: str, nodes: Iterable[str]) -> None:
+        """Register the names of `nodes` by which faults may call `program`, before it has any."""
         self.network.programs.setdefault(program, {program}).update(each.lstrip("/") for each in nodes)
 
-    def have(self, faults: FaultsDescription) -> None:
-        """Have all that a faults file says; its programs are to be introduced before."""
+    def add_all(self, faults: FaultsDescription) -> None:
+        """Add all `faults` of a file; its programs are to be registered before."""
         every: list[Fault] = [*faults.messages, *faults.partitions, *faults.clocks, *faults.crashes]
         for fault in every:
             self.add(fault)
 
     def add(self, fault: Fault) -> FaultReport | None:
-        """Have one fault, its times those of the run; give what tells what it does to messages, if it is of such.
+        """Add one `fault`, its times those of the run; return the report of its effects if it is one of messages.
 
         A fault of a clock is for programs that start from now on. Raises `NotFoundError` for a crash of a node that no
         program has.
@@ -116,22 +126,22 @@ class Injector:
 
     def _plan(self, crash: Crash) -> None:
         program = self.program_of(crash.node)
-        planned = _Strike(crash)
+        planned = _PlannedCrash(crash)
 
-        def strike() -> None:
-            planned.has_come = True
-            planned.has_struck = self._programs.crash(program, is_restarted=crash.restart_after is not None)
-            if planned.has_struck and crash.restart_after is not None:
+        def crash_now() -> None:
+            planned.is_over = True
+            planned.has_happened = self._programs.crash(program, is_restarted=crash.restart_after is not None)
+            if planned.has_happened and crash.restart_after is not None:
                 self._programs.at(crash.at + crash.restart_after, lambda: self._programs.restart(program))
 
-        self._strikes.append(planned)
-        self._programs.at(crash.at, strike)
+        self._crashes.append(planned)
+        self._programs.at(crash.at, crash_now)
 
     def unmet(self) -> list[Unmet]:
-        """Say of each fault that has done nothing so far, or that names what was never there, why that may be."""
-        strikes = [each.unmet() for each in self._strikes if not each.has_struck]
+        """Return the faults that had no effect so far, or that name what was never there, each with the reason."""
+        crashes = [each.unmet() for each in self._crashes if not each.has_happened]
         wrong_clocks = (each for each in self._clocks if each.offset or each.drift)
-        return [*self.network.unmet(), *filter(None, map(self._unmet, wrong_clocks)), *strikes]
+        return [*self.network.unmet(), *filter(None, map(self._unmet, wrong_clocks)), *crashes]
 
     def _unmet(self, clock: ClockFault) -> Unmet | None:
         wrong, is_met = self.network.wrong_node(clock.node), clock in self._met_clocks
@@ -142,7 +152,7 @@ class Injector:
         return None if is_met else vain._replace(why=Why.WILD) if has_pattern(clock.node) else vain
 
     def program_of(self, node: str) -> str:
-        """Give the program in which a node runs. Raises `NotFoundError` with the nearest name."""
+        """Return the program in which `node` runs. Raises `NotFoundError` with the nearest name."""
         wanted = node.lstrip("/")
         for program, names in self.network.programs.items():
             if wanted in names:

@@ -1,45 +1,49 @@
-"""A network in memory on which messages come late, doubled or not at all, as faults say."""
+"""In-memory network with fault injection: messages come late, twice or not at all."""
 
 from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import msgspec
 
+from robolink.faults.delivery import Link, LinkFault, Window, window
 from robolink.faults.description import ClockFault, Crash, MessageFault, Partition
-from robolink.faults.fate import Strand, Way, Window, window
 from robolink.faults.patterns import exact, fits_any, has_pattern, listed, matcher
 from robolink.faults.report import FaultReport, Unmet, Why
 from robolink.faults.streams import uniform
-from robolink.names import near
+from robolink.text.names import near
 from robolink.transport.memory import Bus
 from robolink.wire import parse_key
 
-if TYPE_CHECKING:
-    from robolink.faults.transport import FaultyTransport
 
-
-class Timetable(Protocol):
-    """A time base at whose times something can be done: VirtualTime."""
+class Scheduler(Protocol):
+    """Protocol of a scheduler on a time base: VirtualTime."""
 
     def steady(self) -> int:
-        """Nanoseconds that only grow."""
+        """Return the monotonic time in ns."""
 
     def at(self, time_ns: int, act: Callable[[], object]) -> object:
-        """Call `act()` at that time."""
+        """Call `act()` at a time in ns."""
+
+
+class Session(Protocol):
+    """Protocol of a program's session, which receives through the faults of the network."""
+
+    def reroute(self) -> None:
+        """Route what is received through the current faults."""
 
 
 class Name(NamedTuple):
-    """A topic's or a service's."""
+    """Name of a topic or of a service."""
 
     text: str
     of_service: bool
 
 
-class _Between(NamedTuple):
-    """Two programs, and that by which they talk."""
+class _LinkKey(NamedTuple):
+    """Two programs, and the topic or service that connects them."""
 
     sender: str
     receiver: str
@@ -47,7 +51,7 @@ class _Between(NamedTuple):
 
 
 class _Rule(NamedTuple):
-    """A fault of messages, ready to be asked whom it concerns."""
+    """A fault of messages, ready to be matched with links."""
 
     fault: MessageFault
     identity: str
@@ -56,13 +60,13 @@ class _Rule(NamedTuple):
 
     @property
     def is_idle(self) -> bool:
-        """Whether it does nothing to what it meets: a test may ask for a loss of 0."""
+        """True if it changes nothing: a test may ask for a loss of 0."""
         fault = self.fault
         return not (fault.loss or fault.duplication or fault.latency or fault.jitter)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All names that it says."""
+        """All names in it."""
         fault = self.fault
         return tuple(name for each in (fault.topic, fault.service, fault.from_, fault.to) for name in listed(each))
 
@@ -77,8 +81,8 @@ class _Rule(NamedTuple):
         return (not sources or fits_any(sources, sender)) and (not targets or fits_any(targets, receiver))
 
 
-class _Cut(NamedTuple):
-    """A partition, likewise."""
+class _PartitionRule(NamedTuple):
+    """A partition, ready to be matched with links."""
 
     groups: tuple[tuple[str, ...], ...]
     when: Window
@@ -86,7 +90,7 @@ class _Cut(NamedTuple):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All names that it says."""
+        """All names in it."""
         return tuple(name for group in self.groups for name in group)
 
     def parts(self, one: set[str], other: set[str]) -> bool:
@@ -98,30 +102,35 @@ class _Cut(NamedTuple):
 
 
 class FaultyNetwork:
-    """What the sessions of a system share: the bus, the faults on it, and who is who.
+    """Shared state of a system's sessions: the bus, the faults on it, and the names of the programs.
 
-    A fault is between programs, that is between processes: what a program says to itself never travels. `seed` and the
-    words of a fault that say whom it concerns decide all that it draws, for each sender, receiver and topic apart.
+    A fault is between programs, that is between processes: what a program sends to itself never travels. The seed and
+    the names in a fault decide all that it draws, for each sender, receiver and topic apart.
+
+    Args:
+        bus: Bus that carries the messages.
+        time: Scheduler on the time of the run.
+        seed: Seed of all random numbers.
     """
 
-    def __init__(self, bus: Bus, time: Timetable, *, seed: int = 0) -> None:
+    def __init__(self, bus: Bus, time: Scheduler, *, seed: int = 0) -> None:
         self.bus, self.time, self.seed = bus, time, seed
         self.start = time.steady()
         self.programs: dict[str, set[str]] = {}
-        """The names by which faults may call a program: its own and those of its nodes."""
+        """Names by which faults may call a program: its own and those of its nodes."""
         self.senders: dict[bytes, str] = {}
-        """The program of each endpoint, by the 16 bytes that stand beside its messages."""
+        """Program of each endpoint, by the 16 bytes that accompany its messages."""
         self._rules: list[_Rule] = []
-        self._cuts: list[_Cut] = []
+        self._partition_rules: list[_PartitionRule] = []
         self._cleared: list[Unmet] = []
-        self._sessions: list[FaultyTransport] = []
+        self._sessions: list[Session] = []
         self._names: set[Name] = set()
-        self._ways: dict[_Between, Way | None] = {}
-        self._earlier: dict[_Between, Way] = {}
-        self._strands: dict[tuple[str, _Between], Strand] = {}
+        self._links: dict[_LinkKey, Link | None] = {}
+        self._earlier: dict[_LinkKey, Link] = {}
+        self._faults: dict[tuple[str, _LinkKey], LinkFault] = {}
 
     def add(self, fault: MessageFault | Partition, shown: str = "") -> FaultReport:
-        """Have a fault from now on, its times those of the run; give what tells what it does. `shown` names it."""
+        """Add a `fault`, its times those of the run; return the report of its effects, in which `shown` is its name."""
         report = FaultReport(shown or spelled(fault))
         if isinstance(fault, MessageFault):
             identity = _identity(fault)
@@ -130,93 +139,93 @@ class FaultyNetwork:
             self._rules.append(_Rule(fault, f"{identity}#{same}", when, report))
         else:
             groups = tuple(map(listed, fault.between))
-            self._cuts.append(_Cut(groups, window(fault.after, fault.until, self.start), report))
-        self.lead_anew()
+            self._partition_rules.append(_PartitionRule(groups, window(fault.after, fault.until, self.start), report))
+        self.reroute()
         return report
 
     def clear(self) -> None:
-        """Have no faults any more, and know which had met nothing. What is on its way still arrives."""
+        """Remove all faults, and note which had no effect. A message under way still arrives."""
         self._cleared = [each for each in self.unmet() if each.why is not Why.TOO_EARLY]
         self._rules.clear()
-        self._cuts.clear()
-        self._strands.clear()
-        self.lead_anew()
+        self._partition_rules.clear()
+        self._faults.clear()
+        self.reroute()
 
     @property
     def reports(self) -> list[FaultReport]:
-        """What each fault has done so far."""
-        return [*(each.report for each in self._rules), *(each.report for each in self._cuts)]
+        """Effects of each fault so far."""
+        return [*(each.report for each in self._rules), *(each.report for each in self._partition_rules)]
 
-    def join(self, session: FaultyTransport, program: str, node: str = "") -> None:
-        """Take in a program's session, or one more name that a program is called by."""
+    def join(self, session: Session, program: str, node: str = "") -> None:
+        """Register `session`, a session of `program`, or one more name of the program: that of a `node`."""
         if session not in self._sessions:
             self._sessions.append(session)
         names = self.programs.setdefault(program, {program})
         if node and node not in names:
             names.add(node)
-            if self._rules or self._cuts:
-                self.lead_anew()
+            if self._rules or self._partition_rules:
+                self.reroute()
 
-    def leave(self, session: FaultyTransport) -> None:
-        """Forget a session that was closed."""
+    def leave(self, session: Session) -> None:
+        """Unregister `session`, which was closed."""
         if session in self._sessions:
             self._sessions.remove(session)
 
-    def lead_anew(self) -> None:
-        """Lead all that is received through the faults that there are now."""
-        self._earlier.update({between: way for between, way in self._ways.items() if way is not None})
-        self._ways.clear()
+    def reroute(self) -> None:
+        """Route all that is received through the current faults."""
+        self._earlier.update({key: link for key, link in self._links.items() if link is not None})
+        self._links.clear()
         for session in self._sessions:
-            session.lead_anew()
+            session.reroute()
 
     def name(self, key: str, *, of_service: bool) -> Name:
-        """Give the topic's or service's name of a key, and remember it for `unmet`."""
+        """Return the topic's or service's (`of_service`) name in `key`, and remember it for `unmet`."""
         name = Name(parse_key(key).name, of_service)
         self._names.add(name)
         return name
 
     def may_meet(self, name: Name) -> bool:
-        """Whether any fault can be on what is sent by this name."""
-        return bool(self._cuts) or any(each.may_meet(name) for each in self._rules)
+        """True if any fault may concern what is sent under `name`."""
+        return bool(self._partition_rules) or any(each.may_meet(name) for each in self._rules)
 
-    def way(self, sender: bytes, receiver: str, name: Name) -> Way | None:
-        """Give what lies between an endpoint and a program on a topic or service; None if nothing does."""
-        return self._between(_Between(self.senders.get(sender, ""), receiver, name))
+    def link(self, sender: bytes, receiver: str, name: Name) -> Link | None:
+        """Return the link of `name` from the endpoint `sender` to the program `receiver`; None if it has no fault."""
+        return self._link(_LinkKey(self.senders.get(sender, ""), receiver, name))
 
-    def way_back(self, sender: str, receiver: bytes, name: Name) -> Way | None:
-        """Give what lies between a program and an endpoint that has asked it."""
-        return self._between(_Between(sender, self.senders.get(receiver, ""), name))
+    def link_back(self, sender: str, receiver: bytes, name: Name) -> Link | None:
+        """Return the link of `name` from the program `sender` back to the endpoint `receiver`, its caller."""
+        return self._link(_LinkKey(sender, self.senders.get(receiver, ""), name))
 
-    def _between(self, between: _Between) -> Way | None:
-        if between not in self._ways:
-            self._ways[between] = self._new_way(between) if between.sender != between.receiver else None
-        return self._ways[between]
+    def _link(self, key: _LinkKey) -> Link | None:
+        if key not in self._links:
+            self._links[key] = self._new_link(key) if key.sender != key.receiver else None
+        return self._links[key]
 
-    def _new_way(self, between: _Between) -> Way | None:
-        ends = [self.programs.get(each, set()) for each in (between.sender, between.receiver)]
-        strands = [
-            self._strand(each, between) for each in self._rules if each.may_meet(between.name) and each.concerns(*ends)
+    def _new_link(self, key: _LinkKey) -> Link | None:
+        ends = [self.programs.get(each, set()) for each in (key.sender, key.receiver)]
+        faults = [
+            self._link_fault(each, key) for each in self._rules if each.may_meet(key.name) and each.concerns(*ends)
         ]
-        cuts = [(each.when, each.report) for each in self._cuts if each.parts(*ends)]
-        return Way(strands, cuts, self._earlier.get(between)) if strands or cuts else None
+        partitions = [(each.when, each.report) for each in self._partition_rules if each.parts(*ends)]
+        return Link(faults, partitions, self._earlier.get(key)) if faults or partitions else None
 
-    def _strand(self, rule: _Rule, between: _Between) -> Strand:
-        """Give a fault's part between two programs; it goes on drawing where it was if it was there before."""
-        known = rule.identity, between
-        if known not in self._strands:
-            sender, receiver, (name, of_service) = between
+    def _link_fault(self, rule: _Rule, key: _LinkKey) -> LinkFault:
+        """Return a fault's draws between two programs; they go on where they were if there were any before."""
+        known = rule.identity, key
+        if known not in self._faults:
+            sender, receiver, (name, of_service) = key
             about = rule.identity, sender, receiver, name, "service" if of_service else "topic"
             fault = msgspec.structs.replace(rule.fault, duplication=0.0) if of_service else rule.fault
             draws = functools.partial(uniform, self.seed, *about)
-            self._strands[known] = Strand(fault, rule.when, draws, rule.report)
-        return self._strands[known]
+            self._faults[known] = LinkFault(fault, rule.when, draws, rule.report)
+        return self._faults[known]
 
     def unmet(self) -> list[Unmet]:
-        """Say of each fault that has met nothing so far, or that names what was never there, why that may be."""
-        added: list[_Rule | _Cut] = [*self._rules, *self._cuts]
+        """Return the faults that had no effect so far, or that name what was never there, each with the reason."""
+        added: list[_Rule | _PartitionRule] = [*self._rules, *self._partition_rules]
         return [*self._cleared, *filter(None, map(self._unmet, added))]
 
-    def _unmet(self, added: _Rule | _Cut) -> Unmet | None:
+    def _unmet(self, added: _Rule | _PartitionRule) -> Unmet | None:
         rule, report = added if isinstance(added, _Rule) else None, added.report
         wrong = self.wrong_node(added.names) if rule is None else self._wrong_name(rule.fault)
         if (rule is not None and rule.is_idle) or (report.met and not wrong):
@@ -237,24 +246,24 @@ class FaultyNetwork:
         return self.wrong_node((*listed(fault.from_), *listed(fault.to)))
 
     def wrong_node(self, names: str | Sequence[str]) -> str:
-        """Say which of these names no node has had so far, with the nearest; '' if each had one, or has wildcards."""
+        """Return which of `names` no node has had so far, with the nearest; '' if each had one, or has wildcards."""
         known = sorted({name for each in self.programs.values() for name in each})
         missing = _missing(names, known)
         return f"no node was ever named '{missing}'{near(missing.lstrip('/'), known)}" if missing else ""
 
 
 def _missing(wanted: str | Sequence[str], known: Sequence[str]) -> str:
-    """Give the first exact name that is none of the known ones; '' if there is none."""
+    """Return the first exact name that is none of the known ones; '' if there is none."""
     return next((each for each in exact(wanted) if not any(map(matcher((each,)), known))), "")
 
 
 def _identity(fault: MessageFault) -> str:
-    """Give the words of a fault that say whom it concerns: with them its draws stay, whatever else it is told."""
+    """Return the names in a fault: with the same names its draws stay the same, whatever else it has."""
     return "|".join(" ".join(listed(each)) for each in (fault.topic, fault.service, fault.from_, fault.to))
 
 
 def spelled(fault: MessageFault | Partition | Crash | ClockFault) -> str:
-    """Give a fault as its file would spell it, without what is as it usually is."""
+    """Return a fault as its file would spell it, without defaults."""
     plain = msgspec.to_builtins(fault)
     usual = {each.encode_name: each.default for each in msgspec.structs.fields(fault)}
     given = {key: value for key, value in plain.items() if value not in (usual[key], [], None)}

@@ -1,4 +1,4 @@
-"""Names with wildcards, as faults spell topics, services and nodes."""
+"""Name patterns with wildcards, for topics, services and nodes in faults."""
 
 from __future__ import annotations
 
@@ -12,35 +12,35 @@ _WILD = {"**/": "(?:[^/]+/)*", "/**": "(?:/[^/]+)*", "**": ".*", "*": "[^/]*"}
 
 
 def listed(names: str | Sequence[str]) -> tuple[str, ...]:
-    """Give names as a tuple, whether one was written or several."""
+    """Return one name, or several, as a tuple."""
     return (names,) if isinstance(names, str) else tuple(names)
 
 
 def mistake_in(pattern: str) -> str | None:
-    """Say what is wrong with a name; None if nothing is."""
+    """Return what is wrong with a name; None if nothing is."""
     if _ALLOWED.fullmatch(pattern) is None:
         return f"'{pattern}' is no name: it has a-z, A-Z, digits, _ and /, and * or ** for what may stand there"
     return None
 
 
 def is_pattern(name: str) -> bool:
-    """Whether a name stands for several."""
+    """True if a name has wildcards."""
     return "*" in name
 
 
 def exact(names: str | Sequence[str]) -> tuple[str, ...]:
-    """Give those names that stand for one thing each."""
+    """Return the names without wildcards."""
     return tuple(each for each in listed(names) if not is_pattern(each))
 
 
 def has_pattern(names: str | Sequence[str]) -> bool:
-    """Whether some of the names stand for several."""
+    """True if some of the names have wildcards."""
     return any(map(is_pattern, listed(names)))
 
 
 @lru_cache(maxsize=256)
 def matcher(patterns: tuple[str, ...]) -> Callable[[str], bool]:
-    """Give the function that says whether a name fits one of these; every name does when there is none.
+    """Return a function from a name to a bool: True if the name matches a pattern, or if there are no patterns.
 
     The slash in front does not matter. `*` stands for any letters of one token, `**` for any tokens.
 
@@ -54,7 +54,7 @@ def matcher(patterns: tuple[str, ...]) -> Callable[[str], bool]:
 
 
 def fits_any(patterns: tuple[str, ...], names: Iterable[str]) -> bool:
-    """Whether one of the names fits one of the patterns; none does when there are no patterns."""
+    """True if one of the names matches one of the patterns; False if there are no patterns."""
     return bool(patterns) and any(map(matcher(patterns), names))
 
 

@@ -1,4 +1,4 @@
-"""What a fault has done in a run, or why it has done nothing."""
+"""Reports of faults: their effects in a run, or the reason why they had none."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 @dataclass
 class FaultReport:
-    """A fault as its file spells it, and how many messages it met, lost, doubled and kept back."""
+    """Counts of a `fault`, spelled as in its file: messages that it `met`, and those `lost`, `doubled` or `late`."""
 
     fault: str
     met: int = 0
@@ -18,26 +18,26 @@ class FaultReport:
     late: int = 0
 
     def __str__(self) -> str:
-        """Give it as a line: what was done, of how many."""
+        """Return the effects and the number of messages as a line."""
         done = [f"{count} {what}" for what in ("lost", "doubled", "late") if (count := getattr(self, what))]
         return f"{self.fault}: {', '.join(done) or 'nothing'} of {self.met}"
 
 
 class Why(Enum):
-    """Why a fault has done nothing so far, the gravest first."""
+    """Reasons why a fault had no effect so far, the gravest first."""
 
     WRONG_NAME = auto()
-    """Nothing was ever called as it says: most such names are misspelt."""
+    """Nothing ever had this name: most such names are misspelt."""
     IN_VAIN = auto()
-    """What it names was there, and nothing came that it could strike."""
+    """The named things existed, and no message came that it could concern."""
     WILD = auto()
-    """Likewise, but it has wildcards, which may fit nothing."""
+    """Like IN_VAIN, but it has wildcards, which may match nothing."""
     TOO_EARLY = auto()
-    """Its time has not come."""
+    """The run ended before its time."""
 
 
 class Unmet(NamedTuple):
-    """A fault that has done nothing so far, as a line for people, and why."""
+    """A fault that had no effect so far: `text`, a line for people, and `why`, the reason."""
 
     text: str
     why: Why

@@ -1,4 +1,4 @@
-"""Random numbers of a name: the same on every machine, and none of them changes when somebody draws elsewhere."""
+"""Named random number streams: the same on every machine, and independent of each other."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hashlib import blake2b
 
 
 def uniform(seed: int, *names: str) -> Callable[[], float]:
-    """Give the function that draws from [0, 1), its numbers a matter of the seed and the names alone.
+    """Return a function that draws from [0, 1), its numbers determined by the seed and the names alone.
 
     Only `random` of Python's Mersenne Twister is used, which is the same in every version and on every machine.
     """

@@ -1,4 +1,4 @@
-"""A session in memory whose messages meet the faults of its network."""
+"""In-memory session with fault injection."""
 
 from __future__ import annotations
 
@@ -6,33 +6,34 @@ import functools
 from typing import Any
 
 from robolink.exceptions import WireError
-from robolink.faults.fate import Way
+from robolink.faults.delivery import Link
 from robolink.faults.network import FaultyNetwork, Name
 from robolink.qos import QoSProfile
-from robolink.transport.base import Handle, Sample, Sink
+from robolink.transport.base import Handle, Sink
 from robolink.transport.memory import MemoryTransport
-from robolink.wire import NodeToken, gid_of, parse_token
-
-_GID = slice(17, 33)
-"""Where the sender's id stands in an attachment."""
+from robolink.wire import NodeToken, gid_in, gid_of, parse_token
 
 
 class FaultyTransport(MemoryTransport):
     """A program's session on a network with faults.
 
-    Only what a fault can meet passes through code of ours; all else goes as it does in a MemoryTransport. Faults are on
-    the receiver's side, since what happens to a message is a matter of who sends it and who is to receive it.
+    Only what a fault can concern passes through code of ours; all else goes as it does in a MemoryTransport. Faults are
+    on the receiver's side, since what happens to a message depends on both its sender and its receiver.
+
+    Args:
+        network: Network that the session joins.
+        program: Name of the program.
     """
 
     def __init__(self, network: FaultyNetwork, program: str) -> None:
         super().__init__(bus=network.bus)
         self.url = f"memory://{program}"
         self.network, self.program = network, program
-        self._doors: list[_Door] = []
+        self._interceptors: list[_Interceptor] = []
         network.join(self, program)
 
     def announce(self, token: str) -> Handle:
-        """Show `token` to all who watch, and know from now on whose messages bear its id."""
+        """Announce `token`, and remember the program of the messages that bear its id."""
         self.network.senders[gid_of(token)] = self.program
         node = _node_of(token)
         if node:
@@ -40,26 +41,26 @@ class FaultyTransport(MemoryTransport):
         return super().announce(token)
 
     def subscribe(self, key: str, qos: QoSProfile, sink: Sink) -> Handle:
-        """Call `sink` for every sample published on `key` that arrives, when it arrives."""
-        door = _Ear(self, key, sink)
-        door.declared = super().subscribe(key, qos, door.led())
-        return self._kept(door)
+        """Call `sink` with every sample published on `key` that arrives, when it arrives, with the QoS `qos`."""
+        interceptor = _SubscriptionInterceptor(self, key, sink)
+        interceptor.declared = super().subscribe(key, qos, interceptor.route())
+        return self._registered(interceptor)
 
     def serve(self, key: str, sink: Sink) -> Handle:
-        """Call `sink` for every call on `key` that arrives, when it arrives."""
-        door = _Desk(self, key, sink)
-        door.declared = super().serve(key, door.led())
-        return self._kept(door)
+        """Call `sink` with every call on `key` that arrives, when it arrives."""
+        interceptor = _ServiceInterceptor(self, key, sink)
+        interceptor.declared = super().serve(key, interceptor.route())
+        return self._registered(interceptor)
 
-    def _kept(self, door: _Door) -> Handle:
-        self._doors = [*(each for each in self._doors if each.declared.open), door]
-        return door.declared  # type: ignore[no-any-return]
+    def _registered(self, interceptor: _Interceptor) -> Handle:
+        self._interceptors = [*(each for each in self._interceptors if each.declared.open), interceptor]
+        return interceptor.declared  # type: ignore[no-any-return]
 
-    def lead_anew(self) -> None:
-        """Lead what is received through the faults that there are now."""
+    def reroute(self) -> None:
+        """Route what is received through the current faults."""
         with self.bus.lock:
-            for door in self._doors:
-                door.declared.sink = door.led()
+            for interceptor in self._interceptors:
+                interceptor.declared.sink = interceptor.route()
 
     def close(self) -> None:
         """Undeclare everything and leave the network."""
@@ -75,8 +76,8 @@ def _node_of(token: str) -> str:
     return parsed.full_node_name.lstrip("/") if isinstance(parsed, NodeToken) else ""
 
 
-class _Door:
-    """Where something is received: what stands between the network and a sink, while a fault may be on the way."""
+class _Interceptor:
+    """Interceptor between the network and a sink, while a fault may concern it."""
 
     of_service = False
 
@@ -85,17 +86,15 @@ class _Door:
         self.network, self.program, self.sink = network, session.program, sink
         self.name: Name = network.name(key, of_service=self.of_service)
         self.declared: Any = None
-        """What the bus knows it by: it has `open` and `sink`."""
+        """Entry on the bus; it has `open` and `sink`."""
         self._now, self._at = network.time.steady, network.time.at
-        self._ways: dict[bytes, Way | None] = {}
 
-    def led(self) -> Sink:
-        """Give what the network is to call now: the sink itself if there is no fault that could concern it."""
-        self._ways = {}
-        return self if self.network.may_meet(self.name) else self.sink
+    def route(self) -> Sink:
+        """Return what the network is to call now: the sink itself if no fault can concern it."""
+        return self._receiving() if self.network.may_meet(self.name) else self.sink
 
-    def __call__(self, arrived: Any) -> None:
-        """Take what was sent."""
+    def _receiving(self) -> Sink:
+        """Return the function that receives what was sent, by the current faults."""
         raise NotImplementedError
 
     def _later(self, time: int, arrived: Any) -> None:
@@ -107,67 +106,76 @@ class _Door:
                 self.sink(arrived)
 
 
-class _Ear(_Door):
-    """Where a subscription listens."""
+class _SubscriptionInterceptor(_Interceptor):
+    """Interceptor of a subscription."""
 
-    def __call__(self, arrived: Sample) -> None:
-        """Hand a sample on now, later, twice or never."""
-        gid = arrived.attachment[_GID]
-        try:
-            way = self._ways[gid]
-        except KeyError:
-            way = self._ways[gid] = self.network.way(gid, self.program, self.name)
-        if way is None:
-            self.sink(arrived)
-            return
-        now = self._now()
-        times = way.arrivals(arrived, now)
-        if times is None:
-            self.sink(arrived)
-            return
-        for time in times:
-            if time <= now:
-                self.sink(arrived)
-            else:
-                self._later(time, arrived)
+    def _receiving(self) -> Sink:
+        """Return the function that delivers a sample now, later, twice or never: a closure, for each comes here."""
+        links: dict[bytes, Link | None] = {}
+        time_now, sink = self._now, self.sink
+
+        def receive(arrived: tuple[bytes, bytes]) -> None:
+            gid = gid_in(arrived[1])
+            try:
+                link = links[gid]
+            except KeyError:
+                link = links[gid] = self.network.link(gid, self.program, self.name)
+            if link is None:
+                sink(arrived)
+                return
+            now = time_now()
+            times = link.arrivals(arrived, now)
+            if times is None:
+                sink(arrived)
+                return
+            for time in times:
+                if time <= now:
+                    sink(arrived)
+                else:
+                    self._later(time, arrived)
+
+        return receive
 
 
-class _Desk(_Door):
-    """Where a service takes calls."""
+class _ServiceInterceptor(_Interceptor):
+    """Interceptor of a service."""
 
     of_service = True
 
-    def __call__(self, arrived: Any) -> None:
-        """Hand a call on now, later or never; its answer goes the other way."""
-        gid, network = arrived.attachment[_GID], self.network
-        there = network.way(gid, self.program, self.name)
-        back = network.way_back(self.program, gid, self.name)
+    def _receiving(self) -> Sink:
+        return self._receive
+
+    def _receive(self, arrived: Any) -> None:
+        """Deliver a call now, later or never; its response goes the other way."""
+        gid, network = gid_in(arrived.attachment), self.network
+        there = network.link(gid, self.program, self.name)
+        back = network.link_back(self.program, gid, self.name)
         if there is None and back is None:
             self.sink(arrived)
             return
-        question, now = _Question(arrived, back, self), self._now()
-        times = None if there is None else there.arrivals(question, now)
+        query, now = _DelayedQuery(arrived, back, self), self._now()
+        times = None if there is None else there.arrivals(query, now)
         if times is None or (times and times[0] <= now):
-            self.sink(question)
+            self.sink(query)
         elif not times:
-            question.lose()
+            query.lose()
         else:
-            self._later(times[0], question)
+            self._later(times[0], query)
 
 
-class _Question:
-    """A call as its server sees it, whose answer may come late or never arrive."""
+class _DelayedQuery:
+    """A call as its server sees it, whose response may come late or never arrive."""
 
-    def __init__(self, query: Any, way: Way | None, desk: _Desk) -> None:
+    def __init__(self, query: Any, link: Link | None, service: _ServiceInterceptor) -> None:
         self.payload, self.attachment = query.payload, query.attachment
-        self._query, self._way, self._desk = query, way, desk
+        self._query, self._link, self._service = query, link, service
         self._last = 0
         self._lost = False
 
     def reply(self, payload: bytes, attachment: bytes) -> None:
-        """Answer."""
-        now = self._desk._now()
-        times = None if self._way is None else self._way.arrivals(object(), now)
+        """Send the response."""
+        now = self._service._now()
+        times = None if self._link is None else self._link.arrivals(object(), now)
         if times is None or (times and times[0] <= now):
             self._query.reply(payload, attachment)
         elif not times:
@@ -175,12 +183,12 @@ class _Question:
             self.lose()
         else:
             self._last = max(self._last, times[0])
-            self._desk._at(times[0], functools.partial(self._query.reply, payload, attachment))
+            self._service._at(times[0], functools.partial(self._query.reply, payload, attachment))
 
     def close(self) -> None:
-        """Say that nothing more will come, after what is still on its way."""
-        if self._last > self._desk._now():
-            self._desk._at(self._last, self._query.close)
+        """End the call, after what is still on its way."""
+        if self._last > self._service._now():
+            self._service._at(self._last, self._query.close)
         elif not self._lost:
             self._query.close()
 

@@ -1,1 +1,1 @@
-"""What the public modules of the same names build on, placed where rclpy has it."""
+"""Implementation of logging, and the stand-in for rclpy's C library, placed where rclpy has them."""

@@ -1,4 +1,4 @@
-"""Which log lines are wanted: levels by logger name, inherited along the dots."""
+"""Levels of loggers, by name, inherited along the dots."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ DEFAULT_LEVEL = LoggingSeverity.INFO
 
 
 class LogLevels:
-    """The levels that were set; '' is the root, from which everything inherits.
+    """Levels that were set, by name; '' is the root, from which everything inherits.
 
     `thresholds` remembers the effective level of each name that was asked for, so that a line that is not
     wanted costs one look into a dict. It is emptied whenever a level changes.
@@ -29,11 +29,11 @@ class LogLevels:
             self.thresholds.clear()
 
     def get(self, name: str) -> LoggingSeverity:
-        """Give a logger's own level, UNSET where it inherits."""
+        """Return a logger's own level, UNSET where it inherits."""
         return self._levels.get(name, LoggingSeverity.UNSET)
 
     def effective(self, name: str) -> LoggingSeverity:
-        """Give the level of the logger or of its nearest ancestor that has one."""
+        """Return the level of the logger or of its nearest ancestor that has one."""
         level = self.thresholds.get(name)
         if level is None:
             with self._lock:
@@ -53,4 +53,4 @@ class LogLevels:
 
 
 levels = LogLevels()
-"""The levels of this process."""
+"""Levels of this process."""

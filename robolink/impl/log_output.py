@@ -1,4 +1,4 @@
-"""Where log lines go: the console, in ROS's format, and whoever else asked for them."""
+"""Output of log lines: to the console, in ROS's format, and to handlers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from contextlib import suppress
 from typing import NamedTuple, TextIO, TypeAlias
 
 from robolink.impl.logging_severity import LoggingSeverity
-from robolink.terminal import fit
+from robolink.system.terminal import fit
 
 DEFAULT_FORMAT = "[{severity}] [{time}] [{name}]: {message}"
 
@@ -34,7 +34,7 @@ Handler: TypeAlias = Callable[[Record], None]
 
 
 class LogOutput:
-    """Hands each record to the console and to the handlers, in the thread that logs.
+    """Distributor of log records to the console and to the handlers, in the thread that logs.
 
     `console` may be replaced, or None for silence. `now` gives the stamps, in nanoseconds. A handler may log:
     its own lines go to the console only. A handler that raises is reported once on the console.
@@ -49,18 +49,18 @@ class LogOutput:
         self._failed: list[Handler] = []
 
     def add(self, handler: Handler) -> None:
-        """Hand every further record to a handler too."""
+        """Pass every further record to a handler too."""
         with self._lock:
             self._handlers = (*self._handlers, handler)
 
     def remove(self, handler: Handler) -> None:
-        """Take a handler out; one that is not there is no error."""
+        """Remove a handler; one that is not there is no error."""
         with self._lock:
             self._handlers = tuple(each for each in self._handlers if each != handler)
             self._failed = [each for each in self._failed if each != handler]
 
     def emit(self, record: Record) -> None:
-        """Hand a record to all."""
+        """Pass a record to the console and to all handlers."""
         if self.console is not None:
             self.console(record)
         if self._thread.handling:
@@ -87,7 +87,7 @@ class _InThread(threading.local):
 
 
 class Console:
-    """Writes each record as one line to stderr, in one write; coloured where a person watches.
+    """Handler that writes each record as one line to stderr, in one write; coloured in a terminal.
 
     As in ROS, RCUTILS_CONSOLE_OUTPUT_FORMAT is the format, RCUTILS_COLORIZED_OUTPUT=0 or 1 decides about
     colours (else NO_COLOR, else whether it is a terminal), and RCUTILS_LOGGING_USE_STDOUT=1 chooses stdout.
@@ -141,7 +141,7 @@ def _terminal_knows_colours() -> bool:
 
 @functools.cache
 def _escapes_switched_on() -> bool:
-    """Have Windows' console obey escape sequences from now on, which an empty command does; once, it takes a while."""
+    """Switch on escape sequences of Windows' console, which an empty command does; once, since it takes a while."""
     return os.system("") == 0
 
 
@@ -161,7 +161,7 @@ _ESCAPES = {"a": "\a", "b": "\b", "n": "\n", "r": "\r", "t": "\t", "x1b": "\x1b"
 
 
 def compile_format(text: str) -> Callable[[Record], str]:
-    r"""Give the function that writes a record in a format such as `{time} {message}`.
+    r"""Return the function that formats a record by a format such as `{time} {message}`.
 
     The tokens are rcutils': severity, name, message, function_name, file_name, line_number, time (seconds),
     time_as_nanoseconds, date_time_with_ms. Other braces stay; \a \b \n \r \t \x1b are understood.
@@ -182,4 +182,4 @@ def _date(stamp_ns: int) -> str:
 
 
 output = LogOutput(Console())
-"""The output of this process."""
+"""Output of this process."""

@@ -1,4 +1,4 @@
-"""How grave a log line is."""
+"""Severities of log lines: DEBUG, INFO, WARN, ERROR, FATAL."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The logger that a node has: `info`, `warning` ..., each line optionally once, throttled or not the first."""
+"""Logger of a node: `info`, `warning` ..., each line optionally once, throttled or not the first."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _thresholds = levels.thresholds
 
 
 class RcutilsLogger:
-    """A named logger.
+    """Logger of a `name`, whose levels and filters decide about each line.
 
-    The methods that log give True when the line was logged, False when its level is off or a filter kept it
-    back. Filters are keywords, and each place in a program that logs must always use the same ones:
+    The methods that log return True if the line was logged, False if its level is off or a filter kept it back.
+    Filters are keywords (`**kwargs`), and each place in a program that logs must always use the same ones:
 
     - `once=True`: only the first time
     - `skip_first=True`: not the first time
@@ -34,54 +34,65 @@ class RcutilsLogger:
         self._sites: dict[_SiteKey, _Site] = {}
 
     def get_child(self, name: str) -> RcutilsLogger:
-        """Give the logger `<this name>.<name>`, which inherits this one's level."""
+        """Return the logger `name` below this one, `<this name>.<name>`, which inherits this one's level."""
         if not name:
             raise ValueError("Child logger name must not be empty.")
         return RcutilsLogger(f"{self.name}{SEPARATOR}{name}" if self.name else name)
 
     def set_level(self, level: int | LoggingSeverity) -> None:
-        """Drop everything below the level; UNSET inherits the parent's."""
+        """Set the least severity that is logged to `level`; UNSET inherits the parent's."""
         levels.set(self.name, LoggingSeverity(level))
 
     def get_effective_level(self) -> LoggingSeverity:
-        """Give the level that counts: this logger's, or its nearest ancestor's."""
+        """Return the level that counts: this logger's, or its nearest ancestor's."""
         return levels.effective(self.name)
 
     def is_enabled_for(self, severity: int | LoggingSeverity) -> bool:
-        """Say whether a line of this severity would be logged."""
+        """True if a line of this `severity` would be logged."""
         return LoggingSeverity(severity) >= levels.effective(self.name)
 
     def debug(self, message: str, **kwargs: Any) -> bool:
-        """Log what helps to find a fault; off by default."""
+        """Log `message`, which helps to find a fault; off by default. `kwargs` are filters."""
         if _thresholds.get(self.name, _DEBUG) > _DEBUG:
             return False
         return self.log(message, _DEBUG, **kwargs)
 
     def info(self, message: str, **kwargs: Any) -> bool:
-        """Log what a user wants to know."""
+        """Log `message`, which a user wants to know. `kwargs` are filters."""
         if _thresholds.get(self.name, _INFO) > _INFO:
             return False
         return self.log(message, _INFO, **kwargs)
 
     def warning(self, message: str, **kwargs: Any) -> bool:
-        """Log what may turn out bad."""
+        """Log `message`, of what may turn out bad. `kwargs` are filters."""
         return self.log(message, LoggingSeverity.WARN, **kwargs)
 
     warn = warning
 
     def error(self, message: str, **kwargs: Any) -> bool:
-        """Log what went wrong."""
+        """Log `message`, of what went wrong. `kwargs` are filters."""
         return self.log(message, LoggingSeverity.ERROR, **kwargs)
 
     def fatal(self, message: str, **kwargs: Any) -> bool:
-        """Log why the program cannot go on."""
+        """Log `message`, of why the program cannot go on. `kwargs` are filters."""
         return self.log(message, LoggingSeverity.FATAL, **kwargs)
 
     def log(self, message: str, severity: int | LoggingSeverity, name: str | None = None, **kwargs: Any) -> bool:
-        """Log with any severity.
+        """Log a line of any severity.
 
-        Raises `TypeError` for unknown or incomplete filters, and `ValueError` when the severity, the name or
-        the filters differ from the last time at this place of the program.
+        Args:
+            message: Text of the line.
+            severity: Severity of the line.
+            name: Name of the logger to show; None is this one's.
+            **kwargs: Filters: `once`, `skip_first`, `throttle_duration_sec` and `throttle_time_source_type`.
+
+        Returns:
+            True if the line was logged.
+
+        Raises:
+            TypeError: for unknown or incomplete filters.
+            ValueError: if the severity, the name or the filters differ from the last time at this place of the
+                program.
         """
         if severity < levels.effective(self.name):
             return False
@@ -133,7 +144,7 @@ def _read_filters(options: dict[str, Any]) -> _Filters:
 
 
 class _Site:
-    """A place in a program that logs: what it always uses, and what its filters remember."""
+    """Place in a program that logs: what it always uses, and what its filters remember."""
 
     lock = threading.Lock()
 
@@ -161,7 +172,7 @@ class _Site:
         return f"({self.file}:{self.line} logs {self.severity.name} as '{self.name}')"
 
     def passes(self) -> bool:
-        """Ask the filters in rclpy's order; the first that keeps the line back spares the others."""
+        """True if all filters let the line pass, in rclpy's order; the first that keeps it back spares the others."""
         with self.lock:
             return self._throttle_passes() and self._skip_first_passes() and self._once_passes()
 
@@ -195,7 +206,7 @@ internal_files = {_read_filters.__code__.co_filename}
 
 
 def _find_caller(frame: FrameType) -> FrameType:
-    """Give the nearest frame outside of `internal_files`."""
+    """Return the nearest frame outside of `internal_files`."""
     while frame.f_code.co_filename in internal_files and frame.f_back is not None:
         frame = frame.f_back
     return frame

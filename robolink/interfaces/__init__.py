@@ -20,26 +20,26 @@ from robolink.interfaces._standard import STANDARD
 __all__ = ["Source", "add_source", "find", "find_announced", "is_named", "names", "register", "remove_source"]
 
 KINDS = {"msg": "message", "srv": "service", "action": "action"}
-"""What a type name's middle part stands for."""
+"""Middle part of a type name, and the word for it."""
 _KIND_TYPES = {"msg": "a message type", "srv": "a service type", "action": "an action type"}
 FIRST = (("std_msgs", "std_srvs"), ("geometry_msgs", "sensor_msgs", "nav_msgs"))
-"""The packages whose types a bare name stands for, when others have it too; those named first go first."""
+"""Packages whose types a bare name stands for, when others have it too; those named first go first."""
 ACTION_PARTS = {
     "SendGoal": "SendGoalService",
     "GetResult": "GetResultService",
     "FeedbackMessage": "FeedbackMessage",
 }
-"""How the types of an action's services and topic end, and what its `Impl` calls them."""
+"""Suffix of the types of an action's services and topic, and their names in its `Impl`."""
 
 
 class Source(Protocol):
-    """Where types come from that are not robolink's own."""
+    """Source of types that are not robolink's own."""
 
     def names(self, kind: str) -> Mapping[str, Collection[str]]:
-        """Give the types of a kind that there are now: package to the names within it. Nothing is read or built."""
+        """Return the types of a kind that there are now: package to the names within it. Nothing is read or built."""
 
     def get(self, package: str, kind: str, short: str) -> type[Any] | None:
-        """Give the class of a type, None when there is none. Raises MessageError when its definition is wrong."""
+        """Return the class of a type, None if there is none. Raises MessageError if its definition is wrong."""
 
 
 _registered: dict[str, type[Any]] = {}
@@ -47,7 +47,7 @@ _sources: tuple[Source, ...] = ()
 
 
 def find(name: str, kind: str = "msg") -> type[Any]:
-    """Give the class of a type named ``Twist``, ``geometry_msgs/Twist`` or ``geometry_msgs/msg/Twist``.
+    """Return the class of a type named ``Twist``, ``geometry_msgs/Twist`` or ``geometry_msgs/msg/Twist``.
 
     `kind` is ``msg``, ``srv`` or ``action``; dots may stand for the slashes. Raises NotFoundError, with the nearest
     name, when there is no such type, and MessageError when the text is no type name, is the name of another kind,
@@ -64,7 +64,7 @@ def find(name: str, kind: str = "msg") -> type[Any]:
 
 
 def find_announced(name: str) -> type[Any]:
-    """Give the class of a type that an endpoint names: a message, a service, or one of what an action is made of.
+    """Return the class of a type that an endpoint names: a message, a service, or a part of an action.
 
     >>> find_announced("std_srvs/srv/Trigger")
     <class 'robolink.interfaces.std_srvs.srv.Trigger'>
@@ -81,26 +81,26 @@ def find_announced(name: str) -> type[Any]:
 
 
 def is_named(type_name: str, given: str) -> bool:
-    """Whether ``std_srvs/srv/Trigger`` is what ``Trigger``, ``std_srvs/Trigger`` or the whole name means."""
+    """True if ``std_srvs/srv/Trigger`` is what ``Trigger``, ``std_srvs/Trigger`` or the whole name means."""
     package, *_, short = type_name.split("/")
     return given.replace(".", "/") in (short, f"{package}/{short}", type_name)
 
 
 def names(kind: str = "msg") -> list[str]:
-    """Give the full names of all known types of a kind, sorted."""
+    """Return the full names of all known types of a kind, sorted."""
     return sorted(f"{package}/{kind}/{short}" for package, types in _types(kind).items() for short in types)
 
 
 def register(interface: type[Any]) -> None:
-    """Make a message, service or action class known by its type name, in place of any other of that name."""
+    """Register a message, service or action class by its type name, in place of any other of that name."""
     _registered[interface.__ros_type__] = interface
 
 
 def add_source(source: Source) -> None:
-    """Find types there too, before robolink's own and after the sources added earlier; once, however often added.
+    """Add a source of types, searched before robolink's own and after the sources added earlier; adding twice is once.
 
     A source may add to a standard package and replace a type of it. Where its type has the very hash of the standard
-    one, the standard class is given: a copy of a standard file changes nothing.
+    one, the standard class is used: a copy of a standard file changes nothing.
     """
     global _sources
     if source not in _sources:
@@ -108,7 +108,7 @@ def add_source(source: Source) -> None:
 
 
 def remove_source(source: Source) -> None:
-    """Look there no longer."""
+    """Remove a source of types."""
     global _sources
     _sources = tuple(each for each in _sources if each is not source)
 

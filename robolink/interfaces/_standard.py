@@ -1,4 +1,4 @@
-"""Which standard package has which types: what lets a bare name be found without importing all of them."""
+"""Table of the standard packages' types, by which a bare name is found without importing all of them."""
 
 STANDARD = {
     "msg": {
@@ -59,10 +59,6 @@ STANDARD = {
         "shape_msgs": "Mesh MeshTriangle Plane SolidPrimitive",
         "statistics_msgs": "MetricsMessage StatisticDataPoint StatisticDataType",
         "stereo_msgs": "DisparityImage",
-        "test_msgs": (
-            "Arrays BasicTypes BoundedPlainSequences BoundedSequences Builtins Constants Defaults Empty "
-            "MultiNested Nested Strings UnboundedSequences WStrings"
-        ),
         "trajectory_msgs": "JointTrajectory JointTrajectoryPoint MultiDOFJointTrajectory MultiDOFJointTrajectoryPoint",
         "turtlesim": "Color Pose",
         "visualization_msgs": (
@@ -90,7 +86,6 @@ STANDARD = {
         "rosbag2_interfaces": (
             "Burst GetRate IsPaused Pause Play PlayNext Resume Seek SetRate Snapshot SplitBagfile Stop TogglePaused"
         ),
-        "test_msgs": "Arrays BasicTypes Empty",
         "turtlesim": "Kill SetPen Spawn TeleportAbsolute TeleportRelative",
         "visualization_msgs": "GetInteractiveMarkers",
     },
@@ -105,9 +100,8 @@ STANDARD = {
             "BackUp ComputePathThroughPoses ComputePathToPose DriveOnHeading FollowPath FollowWaypoints "
             "NavigateThroughPoses NavigateToPose Spin Wait"
         ),
-        "test_msgs": "Fibonacci NestedMessage",
         "tf2_msgs": "LookupTransform",
         "turtlesim": "RotateAbsolute",
     },
 }
-"""Kind to package to the names of its types."""
+"""Names of the types, by kind and package."""

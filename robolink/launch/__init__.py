@@ -1,12 +1,12 @@
-"""Start the systems that launch files describe: `reading` gives their nodes, `planning` the processes for these.
+"""Launch files: `reading` parses and expands them, `planning` makes the process list, `command` runs it.
 
-`command` runs them; `looking` tells what they are made of. Names are imported when they are first used: a node's
-process wants none of a launcher's.
+`looking` inspects a system without starting it. Names are imported when they are first used: a node's process needs
+none of a launcher's modules.
 """
 
 from typing import TYPE_CHECKING
 
-from robolink.lacking import lazily
+from robolink.text.suggestions import lazily
 
 if TYPE_CHECKING:
     from robolink.launch.command import launch

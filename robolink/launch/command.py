@@ -1,8 +1,10 @@
-"""Run the nodes and commands of a launch file as one system: `robolink launch`."""
+"""The launcher behind `robolink launch`: runs the nodes and commands of a launch file under one supervisor."""
 
 from __future__ import annotations
 
 import contextlib
+import functools
+import itertools
 import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
@@ -13,10 +15,22 @@ from robolink.launch.planning import Launched, as_process, core_errors, processe
 from robolink.launch.readiness import waiting
 from robolink.launch.reading.entry import Entry
 from robolink.supervisor import Process, RunLogs, Supervisor
+from robolink.supervisor.processes.fork_server import ForkServer
+from robolink.supervisor.processes.lifeline import Lifeline
+from robolink.supervisor.processes.process import Child
+from robolink.supervisor.rules import Rules
+from robolink.system.own_command import own_command
+from robolink.workspace import VARIABLE
 
 if TYPE_CHECKING:
     from robolink.supervisor.events import Event
-    from robolink.supervisor.watching.watch import Watch
+    from robolink.supervisor.monitoring.file_watch import Watch
+
+FORK_SERVER = "fork-server"
+"""Hidden sub-command of `robolink` that is forked for each node; not for people."""
+
+NODES_PER_CORE = 2
+"""Number of nodes for each core from which on it is faster to import once and to fork than to import side by side."""
 
 
 def launch(
@@ -27,46 +41,96 @@ def launch(
     on_event: Callable[[Event], object] | None = None,
     watches: bool = False,
     shows_figures: bool = False,
+    record: str | None = None,
+    shows_view: bool = False,
 ) -> int:
-    """Run a system until a process ends whose end is the system's, Ctrl-C, or `duration` seconds; give the exit code.
+    """Run a system until Ctrl-C, the end of `duration`, or the end of a process that ends the system.
 
-    `path` is its launch file, by whose name other shells ask for it. What happens goes to `on_event` if it is given,
-    else to the terminal. With `watches`, nodes are started again when their files are saved, and no end of one is the
-    system's. Raises `DocumentError`, before anything is started, for nodes that cannot run as they shall.
+    Args:
+        entries: The nodes and commands, as `read_launch_file` returns them.
+        path: Their launch file, whose name other shells use to find this system.
+        duration: Longest run in seconds; None has no limit.
+        on_event: Called with each event of the supervisor; without it, events are printed to the terminal.
+        watches: True restarts nodes when their files are saved; the end of a node then never ends the system.
+        shows_figures: True prints the CPU and memory use of the processes from time to time.
+        record: Folder of a bag that gets all that the system publishes, '' for one with the date in its name; None
+            records nothing.
+        shows_view: True runs `robolink view` beside the nodes; its end does not end the system.
+
+    Returns:
+        The exit code of the system.
+
+    Raises:
+        DocumentError: if nodes cannot run as the file says; nothing was started then.
+        BagError: (a ValueError) if the bag's folder is there already.
     """
-    from robolink.supervisor.door.control import Control
+    from robolink.supervisor.control.server import Control
 
     launched = processes(entries)
     for error in core_errors(entries):
         raise error
     held = {each.name: each.held_by for each in launched if each.held_by}
     members = {each.name: [entry.name for entry in each.entries] for each in launched if each.entries[0].node.process}
+    to_run = _to_run(launched, watches)
+    if record is not None:
+        from robolink.launch import recording
+
+        to_run = [recording.recorder(record), *recording.behind(to_run)]
+        held = {each.name: (*each.held_by, recording.READY) for each in launched}
+    if shows_view:
+        to_run.append(_view({each.name for each in to_run}))
     with contextlib.ExitStack() as stack:
         output = None if on_event is None else stack.enter_context(Path(os.devnull).open("w", encoding="utf-8"))
-        supervisor = Supervisor(_to_run(launched, watches), output=output, logs=RunLogs(path.stem), on_event=on_event)
+        server = None if watches else _fork_server(to_run)  # whoever saves files may save robolink's own
+        start: Callable[[Process, Lifeline], Child] = Child
+        if server is not None:
+            start = functools.partial(Child, server=stack.enter_context(contextlib.closing(server)))
+        supervisor = Supervisor(to_run, output=output, logs=RunLogs(path.stem), on_event=on_event, start=start)
+        if server is not None:
+            server.is_asked_to_end = lambda: supervisor.is_asked_to_end
         beside: list[contextlib.AbstractContextManager[object]] = [
             Control(supervisor, name=path.stem, file=str(path.resolve()), members=members)
         ]
         if watches:
             beside.append(_watch(launched, path, supervisor))
         if shows_figures:
-            from robolink.supervisor.watching.resources import Figures
+            from robolink.supervisor.monitoring.resources import Figures
 
             beside.append(Figures(supervisor.status, say=supervisor.say))
-        return supervisor.run(duration, [*beside, waiting(held, supervisor.release, supervisor.say)])
+        watch = waiting(held, supervisor.release, supervisor.say, enclave=_enclave(entries))
+        return supervisor.run(duration, [*beside, watch])
+
+
+def _enclave(entries: Iterable[Entry]) -> str:
+    """Return the enclave of a node, by whose keys the launcher sees when the others are there; '' if none has one."""
+    return next((each.node.enclave for each in entries if each.node.enclave), "")
 
 
 def _to_run(launched: Iterable[Launched], watches: bool) -> list[Process]:
-    """Give the processes; when files are watched, a crash is what is just being mended: it must not end the system."""
+    """Return the processes. While files are watched a crash must not end the system: it is just being fixed."""
     found = [as_process(each) for each in launched]
     mended = (replace(each, rules=replace(each.rules, on_exit="ignore", awaits=frozenset())) for each in found)
     return list(mended) if watches else found
 
 
+def _view(taken: set[str]) -> Process:
+    """Return the process of the view: a part of the system that may fail without the others."""
+    names = itertools.chain(["view"], (f"view-{number}" for number in itertools.count(2)))
+    name = next(each for each in names if each not in taken)
+    return Process(name, [*own_command(), "view"], rules=Rules(on_exit="ignore"))
+
+
+def _fork_server(to_run: Iterable[Process]) -> ForkServer | None:
+    """Return a fork server, if so many of the processes can be forked that it pays."""
+    server = ForkServer(own_command(), [FORK_SERVER], [VARIABLE])
+    count = sum(server.can_become(each.argv, each.env) for each in to_run)
+    return server if count >= NODES_PER_CORE * (os.cpu_count() or 1) else None
+
+
 def _watch(launched: Sequence[Launched], path: Path, supervisor: Supervisor) -> Watch:
-    """Have processes started again when the files of their nodes are saved."""
+    """Return a file watcher that restarts processes when the files of their nodes are saved."""
     from robolink.launch.watching import files_of, roots_of, settings_of
-    from robolink.supervisor.watching.watch import Watch
+    from robolink.supervisor.monitoring.file_watch import Watch
 
     roots, settings = roots_of(launched), [path.resolve(), *settings_of(launched)]
     return Watch(files_of(launched), roots=roots, settings=settings, restart=supervisor.restart, say=supervisor.say)

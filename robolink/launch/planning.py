@@ -1,34 +1,46 @@
-"""Which processes the nodes and commands of a launch file run in, with what arguments, and what becomes of them."""
+"""Process planning: groups the entries of a launch file into processes with command line, environment and rules."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
+from robolink.documents.yamlfile import spell
 from robolink.exceptions import DocumentError, RobolinkError
 from robolink.launch.readiness import Awaited, awaited
 from robolink.launch.reading.description import Respawn
 from robolink.launch.reading.entries import read_launch_file
 from robolink.launch.reading.entry import Entry
-from robolink.launch.together import COMMAND, Member, written
-from robolink.own_command import own_command
+from robolink.launch.shared_process import COMMAND, Member, written
 from robolink.supervisor import Process
 from robolink.supervisor.rules import Restarts, Rules
+from robolink.system.own_command import own_command
 from robolink.workspace import VARIABLE, Folder, own_process_needed
-from robolink.yamlfile import spell
 
 _ROOM = 16_000
-"""Characters of a command line: one of Windows ends at 32,767, and quotes count; Linux takes 131,071 an argument."""
+"""Longest command line, in characters: Windows allows 32,767 with quotes, Linux 131,071 for each argument."""
 
-SHARED = ("respawn", "on_exit", "env", "cpu")
-"""What a process has once, however many nodes run in it."""
+NETWORK = "ROBOLINK_NETWORK"
+"""Environment variable of the network on which processes are."""
+
+LIMITS = "ROBOLINK_LIMITS"
+"""Environment variable of the limits of slow links."""
+
+SHARED = ("respawn", "on_exit", "env", "cpu", "enclave")
+"""Launch keys that belong to a process, so that all nodes of a shared one must agree on them."""
 
 
 @dataclass(frozen=True)
 class Launched:
-    """A process of a system: the nodes that run in it, or the command that it is."""
+    """A planned process of a system: one or more nodes, or a command.
+
+    `name` is unique in the system. `entries` are the nodes or the command of the launch file, `members` the nodes as
+    the process is told of them. `rules` say when it starts again and what its end means. An `interactive` one reads the
+    keyboard; `cpu` has the cores, from 0, on which it may run, none for all.
+    """
 
     name: str
     entries: tuple[Entry, ...]
@@ -36,16 +48,16 @@ class Launched:
     command: tuple[str, ...]
     """The command and its arguments; empty where there are members."""
     env: Mapping[str, str]
-    """What is added to the environment."""
+    """Variables that are added to the environment."""
     rules: Rules
     held_by: tuple[Awaited, ...]
-    """What must be there before it is started."""
+    """Nodes, topics and services that must be announced before it is started."""
     interactive: bool
     cpu: tuple[int, ...]
 
 
 def core_errors(entries: Iterable[Entry]) -> Iterator[DocumentError]:
-    """Give an error for each node that is kept on a core that this computer has not."""
+    """Yield an error for each node that is bound to a CPU core which this computer does not have."""
     from robolink.supervisor.processes.affinity import CoreError, check_cores
 
     for each in entries:
@@ -59,13 +71,35 @@ def core_errors(entries: Iterable[Entry]) -> Iterator[DocumentError]:
 def plan(
     path: Path, given: Mapping[str, str] | None = None, *, workspace: Folder = None, text: str | None = None
 ) -> list[Process]:
-    """Give the processes that a launch file (or `text` in its place) stands for, as the supervisor takes them."""
+    """Read a launch file and return its processes for a `Supervisor`.
+
+    Args:
+        path: The launch file.
+        given: Launch arguments by name, as people type them; None gives none.
+        workspace: Folder in which nodes are looked up; None finds the nearest one.
+        text: Content to read in place of the file's.
+
+    Raises:
+        DocumentError: for a mistake in the file, with `file:line:column`.
+        NotFoundError: for a `workspace` that is no folder.
+    """
     entries = read_launch_file(path, given or {}, workspace=workspace, text=text)
-    return [as_process(each) for each in processes(entries)]
+    network = network_of(entries, os.environ)
+    return [_on(network, as_process(each)) for each in processes(entries)]
+
+
+def network_of(entries: Sequence[Entry], environ: Mapping[str, str]) -> dict[str, str]:
+    """Return the variables of its launch file's network and limits that the environment has not set already."""
+    said = {NETWORK: entries[0].network, LIMITS: entries[0].limits} if entries else {}
+    return {name: value for name, value in said.items() if value and not environ.get(name)}
+
+
+def _on(network: Mapping[str, str], process: Process) -> Process:
+    return replace(process, env={**network, **process.env}) if network else process
 
 
 def processes(entries: Iterable[Entry]) -> list[Launched]:
-    """Give the processes that nodes and commands run in, in the order of the file.
+    """Return the processes in which the nodes and commands of `entries` run, in the order of the file.
 
     Raises `DocumentError` where nodes cannot share a process, or wait for each other.
     """
@@ -81,12 +115,12 @@ def processes(entries: Iterable[Entry]) -> list[Launched]:
 
 
 def process_of(entry: Entry) -> str:
-    """Give the name of the process that a node runs in."""
+    """Return the name of the process in which a node runs."""
     return entry.node.process or entry.name
 
 
 def as_process(launched: Launched) -> Process:
-    """Give what the supervisor runs: a command is itself, a node is run by robolink."""
+    """Return the supervisor's `Process`: a command runs as it is, nodes are run by robolink."""
     argv, stdin = _words(launched), b""
     if not argv or (launched.members and sum(map(len, argv)) > _ROOM and not launched.interactive):
         argv, stdin = [*own_command(), COMMAND], written(launched.members)
@@ -103,7 +137,7 @@ def as_process(launched: Launched) -> Process:
 
 
 def _words(launched: Launched) -> list[str]:
-    """Give the command line of a command or of a node that is alone; none for nodes that share a process."""
+    """Return the command line of a command or of a node that runs alone; empty for nodes that share a process."""
     if not launched.members:
         return list(launched.command)
     member = launched.members[0]
@@ -111,7 +145,7 @@ def _words(launched: Launched) -> list[str]:
 
 
 def arguments(entry: Entry) -> Iterator[str]:
-    """Give the arguments of a node's program: its own, then those for ROS."""
+    """Yield the arguments of a node's program: its own, then those behind `--ros-args`."""
     node = entry.node
     yield from node.args
     yield "--ros-args"
@@ -125,10 +159,12 @@ def arguments(entry: Entry) -> Iterator[str]:
         yield from ("-r", f"{match}:={replacement}")
     if node.log_level:
         yield from ("--log-level", node.log_level)
+    if node.enclave:
+        yield from ("--enclave", node.enclave)
 
 
 def environment(entry: Entry) -> dict[str, str]:
-    """Give what is added to a node's environment: its workspace, and what the file says."""
+    """Return the variables that are added to a node's environment: its workspace, and those of the file."""
     home = {} if entry.home is None else {VARIABLE: str(entry.home)}
     return {**home, **entry.node.env}
 
@@ -159,7 +195,7 @@ def _restarts(respawn: Respawn) -> Restarts:
 
 
 def _check_group(group: list[Entry]) -> None:
-    """Refuse a process that is called as a node is which has its own, and nodes that cannot share one."""
+    """Raise DocumentError if nodes cannot share a process, or if its name is also that of a node outside of it."""
     sharing = [each for each in group if each.node.process]
     if sharing and len(sharing) < len(group):
         reason = f"'{process_of(sharing[0])}' is what a node is called that has its own process: give another name"
@@ -191,7 +227,7 @@ def _check_agrees(entry: Entry, first: Entry) -> None:
 
 
 def _check_circles(entries: Sequence[Entry]) -> None:
-    """Refuse processes that wait for each other's nodes: none would ever start."""
+    """Raise DocumentError for a cycle in the topological order: processes that wait for each other never start."""
     waits: dict[str, dict[str, Entry]] = {}
     process_by_node = {each.full_name: process_of(each) for each in entries}
     for each in entries:
@@ -204,7 +240,7 @@ def _check_circles(entries: Sequence[Entry]) -> None:
 
 
 def _circle_error(circle: list[str], waits: Mapping[str, Mapping[str, Entry]]) -> DocumentError:
-    """Make the error about processes each of which waits for the next one; the last is the first again."""
+    """Return the error about a cycle of processes: each waits for the next, the last one is the first again."""
     first = min(circle, key=list(waits).index)
     at = circle.index(first)
     circle = [*circle[at:], *circle[1 : at + 1]]

@@ -1,6 +1,6 @@
-"""Start what waits for something else as soon as that is there: nodes, topics and services, by what they announce.
+"""Readiness conditions (`start_after`): hold processes back until nodes, topics or services are announced.
 
-A launcher looks at the network only while something is held back.
+A launcher joins the network only while something is held back.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from robolink.arguments.remapping import RemapKind, parse_remap_rule, remap_name
 from robolink.exceptions import RobolinkError, WireError
 from robolink.launch.reading.entry import Entry
-from robolink.plainfile import LONGEST_SOURCE, read_plain
-from robolink.remapping import RemapKind, parse_remap_rule, remap_name
+from robolink.system.plainfile import LONGEST_SOURCE, read_plain
 
 if TYPE_CHECKING:
     import ast
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from robolink.workspace import NodeSource
 
 PATIENCE = 5.0
-"""Seconds after which it is told what something still waits for."""
+"""Time after which the unmet conditions are reported once, in seconds."""
 
 _LEAVING = 5.0
-"""Seconds in which the network is left, or given up while it is being opened."""
+"""Timeout of leaving the network, or of giving it up while it is being opened, in seconds."""
 
 _WAITS_FOR = {
     "node": "node {}: it is not there yet",
@@ -36,19 +36,19 @@ _WAITS_FOR = {
 
 
 class Awaited(NamedTuple):
-    """What something waits for."""
+    """A readiness condition of a process."""
 
     kind: str
-    """node, topic or service."""
+    """`node`, `topic` or `service`."""
     names: tuple[str, ...]
-    """Its full name; a node whose name is in its code only may have one of several."""
+    """Full name; several candidates for a node whose name is only in its code."""
 
     def __str__(self) -> str:
         return _WAITS_FOR[self.kind].format(self.names[0])
 
 
 def awaited(entry: Entry, named: Mapping[str, Entry]) -> Iterator[Awaited]:
-    """Yield what a node or command waits for, under the names that its own remappings make of it.
+    """Yield the readiness conditions of a node or command, with its own remappings applied.
 
     `named` are all nodes and commands of the system, by their full names.
     """
@@ -65,7 +65,7 @@ def awaited(entry: Entry, named: Mapping[str, Entry]) -> Iterator[Awaited]:
 
 
 def _names_of(full_name: str, entry: Entry | None) -> tuple[str, ...]:
-    """Give the names that a node may be announced by: that of the launch file, else those that its code gives it."""
+    """Return the names by which a node may be announced: the launch file's, else those in its code."""
     if entry is None or entry.node.name or entry.source is None:
         return (full_name,)
     namespace = full_name.rpartition("/")[0]
@@ -73,7 +73,7 @@ def _names_of(full_name: str, entry: Entry | None) -> tuple[str, ...]:
 
 
 def names_in(source: NodeSource) -> list[str]:
-    """Give the names that the code of a node gives to nodes, as far as they stand in its class, or else its file."""
+    """Return the node names that stand as literals in a node's class, or else in its file."""
     import ast
 
     try:
@@ -86,7 +86,7 @@ def names_in(source: NodeSource) -> list[str]:
 
 
 def _node_name(call: ast.Call) -> str:
-    """Give what a call of ``super().__init__``, ``Node`` or ``create_node`` gives as a node's name."""
+    """Return the node name in a call of ``super().__init__``, ``Node`` or ``create_node``; empty for other calls."""
     import ast
 
     called = getattr(call.func, "attr", getattr(call.func, "id", ""))
@@ -97,10 +97,10 @@ def _node_name(call: ast.Call) -> str:
 
 
 class Readiness:
-    """Keeps account of what is announced of that which processes wait for; from any thread.
+    """Tracks which readiness conditions are met. Thread-safe.
 
-    `held` says what each waits for, by its name. To be told of every node and end of the network, as
-    `Transport.watch` does; what has gone again is not there.
+    `held` has the conditions of each process by its name. `heard` is to be called for every token of the network, as
+    `Transport.watch` does; a token that has gone no longer counts.
     """
 
     def __init__(self, held: Mapping[str, Sequence[Awaited]]) -> None:
@@ -111,15 +111,15 @@ class Readiness:
 
     @property
     def held(self) -> list[str]:
-        """The names of the processes that still wait."""
+        """Names of the processes that still wait."""
         return list(self._held)
 
     def knows(self, text: str) -> bool:
-        """Whether somebody waits for what a token announces."""
+        """True if a process waits for what a token announces."""
         return _key(text) in self._wanted
 
-    def heard(self, text: str, alive: bool) -> list[str]:
-        """Hear of a token that came or went; give the processes for which all is there now, each once."""
+    def note_token(self, text: str, alive: bool) -> list[str]:
+        """Note a token that came or went; return the processes whose conditions are all met now, each once."""
         key = _key(text)
         if key not in self._wanted:
             return []
@@ -131,7 +131,7 @@ class Readiness:
         return ready
 
     def missing(self) -> dict[str, list[Awaited]]:
-        """Give what each process still waits for."""
+        """Return the unmet conditions of each process that still waits."""
         with self._lock:
             return {name: [each for each in held if not self._is_there(each)] for name, held in self._held.items()}
 
@@ -140,7 +140,7 @@ class Readiness:
 
 
 def _key(text: str) -> tuple[str, str]:
-    """Give what a token says that is there: its kind and full name; empty ones for what nobody can wait for."""
+    """Return the kind and full name that a token announces; empty ones for tokens that no condition can name."""
     from robolink.wire import EndpointKind, NodeToken, parse_token
 
     try:
@@ -160,16 +160,23 @@ def waiting(
     say: Callable[[str], object],
     *,
     patience: float = PATIENCE,
+    enclave: str = "",
 ) -> Iterator[None]:
-    """Call `release(name)`, on a thread of the network's, when all is there that the process of that name waits for.
+    """Watch the network while the block runs, and release held processes as their conditions are met.
 
-    What is still waited for after `patience` seconds is told by `say`, once. The network is left when nothing is held
-    any more.
+    Args:
+        held: Conditions of each process that is held back, by its name.
+        release: Called with the name of a process when all its conditions are met, on a thread of the network's.
+        say: Called with a text for each process that still waits after `patience`, or if the network cannot be joined.
+        patience: Time until then, in seconds.
+        enclave: Enclave with whose keys the network is joined; '' for `/`.
+
+    The network is left when nothing is held any more.
     """
     if not held:
         yield
         return
-    watch = _Watch(held, release)
+    watch = _Watch(held, release, enclave)
     thread = threading.Thread(target=watch.run, args=(say, patience), name="launch readiness", daemon=True)
     thread.start()
     try:
@@ -180,22 +187,25 @@ def waiting(
 
 
 class _Watch:
-    """Looks at the network as long as something is held."""
+    """The thread that watches the network while a process is held back."""
 
-    def __init__(self, held: Mapping[str, Sequence[Awaited]], release: Callable[[str], object]) -> None:
+    def __init__(
+        self, held: Mapping[str, Sequence[Awaited]], release: Callable[[str], object], enclave: str = ""
+    ) -> None:
         self.over = threading.Event()
+        self._enclave = enclave or None
         self._readiness = Readiness(held)
         self._release = release
 
     def run(self, say: Callable[[str], object], patience: float) -> None:
-        """Watch until nothing is held, or it is over."""
+        """Watch until nothing is held, or until the watch is stopped."""
         from robolink.transport import connect
         from robolink.transport.network import domain_id
         from robolink.wire import graph_pattern
 
         try:
             domain = domain_id(os.environ)
-            session = connect(os.environ.get("ROBOLINK_TRANSPORT") or "zenoh", domain)
+            session = connect(os.environ.get("ROBOLINK_TRANSPORT") or "zenoh", domain, enclave=self._enclave)
         except (RobolinkError, ValueError) as error:
             say(f"cannot look for what {', '.join(self._readiness.held)} waits for: {error}")
             return
@@ -209,8 +219,8 @@ class _Watch:
             session.close()
 
     def _hear(self, text: str, alive: bool) -> bool:
-        """Hear of a token that came or went; False for one that nobody waits for."""
-        for name in self._readiness.heard(text, alive):
+        """Note a token that came or went; return False for one that no process waits for."""
+        for name in self._readiness.note_token(text, alive):
             self._release(name)
         if not self._readiness.held:
             self.over.set()

@@ -1,4 +1,4 @@
-"""Which files the processes of a launch file are made of: what `launch --watch` looks at."""
+"""File sets of the processes of a launch file: what `launch --watch` watches."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 
 
 def files_of(launched: Iterable[Launched]) -> dict[str, list[Path]]:
-    """Give the Python files of each process: of its nodes, or those that its command names.
+    """Return the Python files of each process: of its nodes, or those that its command names.
 
-    What comes from an installed package has none.
+    Nodes of an installed package have none.
     """
     return {each.name: [*_of_nodes(each.entries), *_of_command(each.command)] for each in launched}
 
 
 def roots_of(launched: Iterable[Launched]) -> list[Path]:
-    """Give the folders, besides a file's own, from which nodes import what the user wrote: those of packages."""
+    """Return the folders, besides a file's own, from which nodes import the user's code: those of packages."""
     entries = [entry for each in launched for entry in each.entries]
     roots = [entry.source.root for entry in entries if entry.source is not None and entry.source.root is not None]
     for home in dict.fromkeys(entry.home for entry in entries if entry.home is not None):
@@ -31,7 +31,7 @@ def roots_of(launched: Iterable[Launched]) -> list[Path]:
 
 
 def settings_of(launched: Iterable[Launched]) -> set[Path]:
-    """Give the launch files and parameter files, which are read once, before anything is started."""
+    """Return the launch files and parameter files, which are read once, before anything is started."""
     return {file.resolve() for each in launched for entry in each.entries for file in entry.files}
 
 

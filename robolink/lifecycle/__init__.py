@@ -1,4 +1,4 @@
-"""Managed nodes: they are configured, activated, deactivated and cleaned up when somebody says so.
+"""Managed (lifecycle) nodes: they are configured, activated, deactivated and cleaned up on request.
 
 class Camera(LifecycleNode):
     def on_configure(self, state):

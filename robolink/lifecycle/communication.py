@@ -1,4 +1,4 @@
-"""How others see and drive a managed node: five services below its name, and the topic ~/transition_event."""
+"""Services and events of a managed node, by which others observe and drive it: five services, ~/transition_event."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from robolink.callback_groups import CallbackGroup
 
 EVENTS_DEPTH = 10
-"""How many events are kept for a slow subscription, as rcl_lifecycle does it."""
+"""Depth of the events' publisher in messages, as in rcl_lifecycle."""
 
 
 class Communication:
-    """The services and the topic of one managed node. `change` makes a transition and says whether it succeeded."""
+    """The services and the topic of one managed node. `change` makes a transition; True if it succeeded."""
 
     def __init__(
         self, node: Node, machine: LifecycleStateMachine, change: Callable[[int], bool], group: CallbackGroup
@@ -46,7 +46,7 @@ class Communication:
             setattr(machine, f"service_{name}", service)
 
     def publish(self, step: Step) -> None:
-        """Tell everybody of a transition."""
+        """Publish an event of a transition."""
         made = _described(step)
         event = TransitionEvent(
             timestamp=self._node.get_clock().now().nanoseconds,

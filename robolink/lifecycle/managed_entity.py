@@ -1,69 +1,67 @@
-"""What a managed node tells of its transitions: its publishers, and whatever else a program makes."""
+"""Managed entities: publishers and other parts of a managed node that follow its transitions."""
 
 from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, overload
 
+from robolink.lifecycle.state_machine import LifecycleState
 from robolink.lifecycle.state_machine import TransitionCallbackReturn as TransitionCallbackReturn
-
-if TYPE_CHECKING:
-    from robolink.lifecycle.node import LifecycleState
 
 SUCCESS = TransitionCallbackReturn.SUCCESS
 
 
 class ManagedEntity:
-    """Something that goes through its node's transitions; each method is given the state before.
+    """Base class of what follows a node's transitions; each method gets the state before.
 
-    What is not overridden succeeds. FAILURE leads back to the state before, ERROR to `on_error` of the node.
+    A method that is not overridden succeeds. FAILURE leads back to the state before, ERROR to `on_error` of the node.
     """
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Get ready to be activated."""
+        """Prepare for activation; `state` is the one before."""
         return SUCCESS
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Undo what `on_configure` did."""
+        """Undo `on_configure`; `state` is the one before."""
         return SUCCESS
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Give up everything: the node will do nothing more."""
+        """Release everything before the node's end; `state` is the one before."""
         return SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Begin to work."""
+        """Start to work; `state` is the one before."""
         return SUCCESS
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Stop working, but stay ready."""
+        """Stop working, but stay configured; `state` is the one before."""
         return SUCCESS
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Tidy up after an error: SUCCESS makes the node unconfigured, anything else ends it."""
+        """Clean up after an error; `state` is the one before. SUCCESS makes the node unconfigured, else it ends."""
         return SUCCESS
 
 
 class SimpleManagedEntity(ManagedEntity):
-    """A managed entity that knows whether it is active, and no more."""
+    """A managed entity with a flag that it is active."""
 
     def __init__(self) -> None:
         self._enabled = False
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Be active from now on."""
+        """Set the flag; `state` is the one before."""
         self._enabled = True
         return SUCCESS
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Be active no longer."""
+        """Clear the flag; `state` is the one before."""
         self._enabled = False
         return SUCCESS
 
     @property
     def is_activated(self) -> bool:
-        """Whether it is active."""
+        """True while it is active."""
         return self._enabled
 
     @staticmethod
@@ -82,7 +80,12 @@ class SimpleManagedEntity(ManagedEntity):
     def when_enabled(
         wrapped: Callable[..., None] | None = None, *, when_not_enabled: Callable[..., None] | None = None
     ) -> Any:
-        """Decorate a method that does nothing while the entity is inactive; then `when_not_enabled()` is called."""
+        """Decorate a method so that it does nothing while the entity is inactive.
+
+        Args:
+            wrapped: The method; None, as in ``@when_enabled(...)``, returns a decorator.
+            when_not_enabled: Called without arguments instead of the method while the entity is inactive.
+        """
 
         def decorate(method: Callable[..., None]) -> Callable[..., None]:
             @functools.wraps(method)

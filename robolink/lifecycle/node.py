@@ -1,18 +1,19 @@
-"""Managed nodes: a state machine, the callbacks of its transitions, and the services by which others drive it."""
+"""Managed (lifecycle) node: a state machine, the callbacks of its transitions, and services to drive it."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from robolink.exceptions import ExternalShutdownException
 from robolink.interfaces.lifecycle_msgs.msg import State, Transition
 from robolink.lifecycle.communication import Communication
 from robolink.lifecycle.managed_entity import ManagedEntity
 from robolink.lifecycle.publisher import LifecyclePublisher
+from robolink.lifecycle.state_machine import LifecycleState as LifecycleState
 from robolink.lifecycle.state_machine import LifecycleStateMachine, TransitionError
 from robolink.lifecycle.state_machine import TransitionCallbackReturn as TransitionCallbackReturn
 from robolink.node import Node
-from robolink.tracebacks import formatted
+from robolink.text.tracebacks import formatted
 
 if TYPE_CHECKING:
     from robolink.callback_groups import CallbackGroup
@@ -27,31 +28,32 @@ CALLBACKS = {
     State.TRANSITION_STATE_DEACTIVATING: "on_deactivate",
     State.TRANSITION_STATE_ERRORPROCESSING: "on_error",
 }
-"""What runs in each state that is passed through."""
+"""Callback by transition state."""
 
 SHUTDOWNS = {
     State.PRIMARY_STATE_UNCONFIGURED: Transition.TRANSITION_UNCONFIGURED_SHUTDOWN,
     State.PRIMARY_STATE_INACTIVE: Transition.TRANSITION_INACTIVE_SHUTDOWN,
     State.PRIMARY_STATE_ACTIVE: Transition.TRANSITION_ACTIVE_SHUTDOWN,
 }
-
-
-class LifecycleState(NamedTuple):
-    """A state, as callbacks of transitions are given it."""
-
-    label: str
-    state_id: int
+"""Shutdown transition by primary state."""
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """What makes a node a managed one; used beside `Node` by whoever needs both in another order than LifecycleNode.
-
-    Raises RuntimeError where there is no Node, TypeError when `enable_communication_interface` is no bool.
-    """
+    """Mixin that makes a Node a managed one, for classes that need another order of bases than LifecycleNode."""
 
     def __init__(
         self, *, enable_communication_interface: bool = True, callback_group: CallbackGroup | None = None
     ) -> None:
+        """Create the state machine and its services.
+
+        Args:
+            enable_communication_interface: True offers the services and the topic by which others observe and drive it.
+            callback_group: Group of the services; the node's default group by default.
+
+        Raises:
+            RuntimeError: if Node is not among the class's bases.
+            TypeError: if `enable_communication_interface` is no bool.
+        """
         if not isinstance(self, Node):
             raise RuntimeError("a LifecycleNodeMixin needs Node beside it among the class's bases")
         if not isinstance(enable_communication_interface, bool):
@@ -62,33 +64,33 @@ class LifecycleNodeMixin(ManagedEntity):
             group = callback_group or self.default_callback_group
             Communication(self, self._state_machine, self._succeeds_, group)
 
-    # What a program does
+    # Transitions on request
 
     def trigger_configure(self) -> TransitionCallbackReturn:
-        """Configure it; how `on_configure` ended, ERROR too when the state is another than unconfigured."""
+        """Configure the node; return the result of `on_configure`, or ERROR unless it is unconfigured."""
         return self._change_state_(Transition.TRANSITION_CONFIGURE)
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
-        """Undo `trigger_configure`; how `on_cleanup` ended, ERROR too when the state is another than inactive."""
+        """Undo `trigger_configure`; return the result of `on_cleanup`, or ERROR unless it is inactive."""
         return self._change_state_(Transition.TRANSITION_CLEANUP)
 
     def trigger_activate(self) -> TransitionCallbackReturn:
-        """Have it work; how `on_activate` ended, ERROR too when the state is another than inactive."""
+        """Activate the node; return the result of `on_activate`, or ERROR unless it is inactive."""
         return self._change_state_(Transition.TRANSITION_ACTIVATE)
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
-        """Have it stop working; how `on_deactivate` ended, ERROR too when the state is another than active."""
+        """Deactivate the node; return the result of `on_deactivate`, or ERROR unless it is active."""
         return self._change_state_(Transition.TRANSITION_DEACTIVATE)
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
-        """End it for good; how `on_shutdown` ended. Raises TransitionError (a RuntimeError) when it has ended."""
+        """End the node for good; return the result of `on_shutdown`. Raises TransitionError if it has ended."""
         state_id, label = self._state_machine.current_state
         if state_id not in SHUTDOWNS:
             raise TransitionError(f"no shutdown from {label}")
         return self._change_state_(SHUTDOWNS[state_id])
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Tell `entity` of the transitions to come. Raises TypeError for what is no ManagedEntity."""
+        """Register `entity` for the transitions to come. Raises TypeError if it is no ManagedEntity."""
         if not isinstance(entity, ManagedEntity):
             raise TypeError(f"expected a ManagedEntity, got {entity!r}")
         self._managed_entities[entity] = None
@@ -102,9 +104,17 @@ class LifecycleNodeMixin(ManagedEntity):
         publisher_class: None = None,
         **kwargs: Any,
     ) -> LifecyclePublisher[MsgT]:
-        """Make a publisher that sends only while the node is active, from its next activation on.
+        """Create a publisher that sends only while the node is active, from its next activation on.
 
-        The keywords are those of `create_publisher`, but for `publisher_class`: that raises TypeError.
+        Args:
+            msg_type: Class of the messages.
+            topic: Name of the topic.
+            qos_profile: QoS profile, or its depth.
+            publisher_class: Must be None: it is LifecyclePublisher.
+            kwargs: The other keywords of `Node.create_publisher`.
+
+        Raises:
+            TypeError: if `publisher_class` is given.
         """
         if publisher_class is not None:
             raise TypeError("create_lifecycle_publisher() takes no publisher_class: it is LifecyclePublisher")
@@ -116,38 +126,38 @@ class LifecycleNodeMixin(ManagedEntity):
         return publisher
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher[Any]) -> bool:
-        """Undeclare such a publisher; False when it is none of this node's."""
+        """Destroy `publisher`; False if it is none of this node's."""
         self._managed_entities.pop(publisher, None)
         return self._node_.destroy_publisher(publisher)
 
-    # What a subclass overrides: each tells the managed entities, in the order in which they were made, until one of
-    # them does not succeed, and gives back how that went.
+    # A subclass overrides these: each calls the managed entities, in the order in which they were made, until one of
+    # them does not succeed, and returns that result.
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Get ready to be activated; `state` is the one before."""
+        """Prepare for activation; `state` is the one before."""
         return self._tell_entities_("on_configure", state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Undo what `on_configure` did."""
+        """Undo `on_configure`; `state` is the one before."""
         return self._tell_entities_("on_cleanup", state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Give up everything: the node will do nothing more."""
+        """Release everything before the node's end; `state` is the one before."""
         return self._tell_entities_("on_shutdown", state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Begin to work: from now on its publishers send."""
+        """Start to work: from now on its publishers send; `state` is the one before."""
         return self._tell_entities_("on_activate", state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Stop working, but stay ready: its publishers send no longer."""
+        """Stop working, but stay configured: its publishers send no longer; `state` is the one before."""
         return self._tell_entities_("on_deactivate", state)
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Tidy up after a callback's error: SUCCESS makes the node unconfigured, anything else ends it."""
+        """Clean up after a callback's error; `state` is the one before. On SUCCESS it is unconfigured, else it ends."""
         return self._tell_entities_("on_error", state)
 
-    # How a transition goes
+    # Course of a transition
 
     @property
     def _node_(self) -> Node:
@@ -175,7 +185,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return result
 
     def _run_callback_(self, before: LifecycleState) -> TransitionCallbackReturn:
-        """Run the callback of the current state; one that raises, or says nothing of how it went, is an ERROR."""
+        """Run the callback of the current state; one that raises, or returns anything but a result, is an ERROR."""
         name = CALLBACKS[self._state_machine.current_state[0]]
         try:
             return _checked(getattr(self, name)(before), name, self)
@@ -200,10 +210,19 @@ def _checked(result: Any, name: str, of: object) -> TransitionCallbackReturn:
 
 
 class LifecycleNode(LifecycleNodeMixin, Node):
-    """A managed node: it is set up, starts, stops and ends when it is told to, by its program or by others."""
+    """A managed node: it is configured, activated, deactivated and ended on request, of its program or of others."""
 
     def __init__(self, node_name: str, *, enable_communication_interface: bool = True, **kwargs: Any) -> None:
-        """Make one; the other keywords are those of `Node`."""
+        """Create a managed node.
+
+        Args:
+            node_name: Name of the node.
+            enable_communication_interface: True offers the services and the topic by which others observe and drive it.
+            kwargs: The other keywords of `Node`.
+
+        Raises:
+            TypeError: if `enable_communication_interface` is no bool.
+        """
         Node.__init__(self, node_name, **kwargs)
         try:
             LifecycleNodeMixin.__init__(self, enable_communication_interface=enable_communication_interface)

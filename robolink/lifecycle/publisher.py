@@ -1,4 +1,4 @@
-"""The publisher of a managed node: it sends only while the node is active."""
+"""Publisher of a managed node: it sends only while the node is active."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from robolink.publisher import MsgT, Publisher
 
 
 class LifecyclePublisher(SimpleManagedEntity, Publisher[MsgT]):
-    """A publisher that drops what it is given while its node is not active; made by `create_lifecycle_publisher`."""
+    """A publisher that drops messages while its node is not active; made by `create_lifecycle_publisher`.
+
+    `args` and `kwargs` are those of `Publisher`.
+    """
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         SimpleManagedEntity.__init__(self)
@@ -18,12 +21,12 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher[MsgT]):
         self._warned = False
 
     def on_activate(self, state: Any) -> TransitionCallbackReturn:
-        """Send from now on."""
+        """Send from now on; `state` is the one before."""
         self._warned = False
         return super().on_activate(state)
 
     def publish(self, msg: MsgT | bytes) -> None:
-        """Send a message while active, as `Publisher.publish` does; else drop it, with one warning a time."""
+        """Publish `msg` while active, as `Publisher.publish` does; else drop it, with one warning a time."""
         if self._enabled:
             Publisher.publish(self, msg)
         elif not self._warned:

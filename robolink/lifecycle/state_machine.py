@@ -1,4 +1,4 @@
-"""The states of a managed node and the steps between them, as ROS 2's design of managed nodes has them.
+"""State machine of a managed node, as ROS 2's design of managed nodes has it.
 
 https://design.ros2.org/articles/node_lifecycle.html; the numbers are those of lifecycle_msgs.
 """
@@ -29,23 +29,30 @@ STATES = {
     State.TRANSITION_STATE_DEACTIVATING: "deactivating",
     State.TRANSITION_STATE_ERRORPROCESSING: "errorprocessing",
 }
-"""Every state, by its number."""
+"""Names of all states, by number."""
 
 
 class TransitionCallbackReturn(IntEnum):
-    """How a callback of a transition ended; the numbers are those of lifecycle_msgs."""
+    """Result of a transition's callback; the numbers are those of lifecycle_msgs."""
 
     SUCCESS = Transition.TRANSITION_CALLBACK_SUCCESS
     FAILURE = Transition.TRANSITION_CALLBACK_FAILURE
     ERROR = Transition.TRANSITION_CALLBACK_ERROR
 
     def to_label(self) -> str:
-        """Give the name of the transition that follows: ``transition_success`` and its sisters."""
+        """Return the name of the transition that follows, such as ``transition_success``."""
         return f"transition_{self.name.lower()}"
 
 
+class LifecycleState(NamedTuple):
+    """A state, as callbacks of transitions get it."""
+
+    label: str
+    state_id: int
+
+
 class Step(NamedTuple):
-    """One transition: its number, its name, and the states that it leads from and to."""
+    """A transition: its number, its name, and the states that it leads from and to."""
 
     id: int
     label: str
@@ -60,14 +67,14 @@ def _step(id_: int, label: str, start: int, goal: int) -> Step:
 
 
 def _ends(first: int, passing: int, success: int, failure: int) -> list[Step]:
-    """Give the three ways in which a state that is passed through can end; an error in an error is the end."""
+    """Return the three ways in which a transition state can end; an error in an error is the end."""
     error = State.TRANSITION_STATE_ERRORPROCESSING if passing != State.TRANSITION_STATE_ERRORPROCESSING else failure
     goals = zip(TransitionCallbackReturn, (success, failure, error), strict=True)
     return [_step(first + at, how.to_label(), passing, goal) for at, (how, goal) in enumerate(goals)]
 
 
 def _round(id_: int, label: str, ends: int, way: tuple[int, int, int]) -> list[Step]:
-    """Give a transition between two primary states by way of a third, with its ends; a failure leads back."""
+    """Return a transition between two primary states by way of a third, with its ends; a failure leads back."""
     start, passing, goal = way
     return [_step(id_, label, start, passing), *_ends(ends, passing, goal, start)]
 
@@ -101,7 +108,7 @@ def _all_steps() -> tuple[Step, ...]:
 
 
 STEPS = _all_steps()
-"""Every transition, in the order in which ROS 2 lists them."""
+"""All transitions, in the order in which ROS 2 lists them."""
 
 
 class TransitionError(RobolinkError, RuntimeError):
@@ -109,14 +116,14 @@ class TransitionError(RobolinkError, RuntimeError):
 
 
 class LifecycleStateMachine:
-    """Which state a node is in; it calls `on_step` with each transition, and is safe to use from any thread."""
+    """State machine of a node: it calls `on_step` with each transition. Usable from any thread."""
 
     initialized = True
     available_states = list(STATES.items())
-    """Every state: its number and its name."""
+    """All states: number and name."""
     transition_graph = list(STEPS)
     service_change_state: Service | None = None
-    """By this and the next four others drive it; None without a communication interface."""
+    """First of the five services by which others drive it; None without a communication interface."""
     service_get_state: Service | None = None
     service_get_available_states: Service | None = None
     service_get_available_transitions: Service | None = None
@@ -129,24 +136,24 @@ class LifecycleStateMachine:
 
     @property
     def current_state(self) -> tuple[int, str]:
-        """The state's number and name."""
+        """Number and name of the state."""
         return self._state, STATES[self._state]
 
     @property
     def available_transitions(self) -> list[Step]:
-        """The transitions that lead from the current state."""
+        """Transitions that lead from the current state."""
         return [step for step in STEPS if step.start_id == self._state]
 
     def get_transition_by_label(self, label: str) -> int:
-        """Give the number of a transition from the current state. Raises TransitionError when there is none."""
+        """Return the number of a transition from the current state. Raises TransitionError if there is none."""
         return self._find(label, "label").id
 
     def trigger_transition_by_id(self, transition_id: int, publish: bool = True) -> None:
-        """Make a step, and tell of it if `publish`. Raises TransitionError when the state has no such transition."""
+        """Make the transition `transition_id`; call `on_step` if `publish`. Raises TransitionError if there is none."""
         self._make(transition_id, "id", publish)
 
     def trigger_transition_by_label(self, label: str, publish: bool = True) -> None:
-        """Make a step, and tell of it if `publish`. Raises TransitionError when the state has no such transition."""
+        """Make a transition (`label`), and call `on_step` if `publish`. Raises TransitionError if there is none."""
         self._make(label, "label", publish)
 
     def _make(self, wanted: int | str, field: str, publish: bool) -> None:

@@ -1,4 +1,4 @@
-"""Messages: the base class, ROS's field types as annotations, and the bytes on the wire."""
+"""Messages: the base class, ROS's field types as annotations, and the CDR codec."""
 
 from robolink.message.action import Action, action_type
 from robolink.message.annotations import (

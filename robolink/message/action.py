@@ -24,25 +24,26 @@ from robolink.message.description import TypeDescription, combine
 from robolink.message.service import Service
 
 PARTS = ("Goal", "Result", "Feedback")
+"""Names of the three message classes of an action."""
 
 
 class ActionImpl(msgspec.Struct, frozen=True):
-    """The services and topics that an action is made of, by rclpy's names."""
+    """Services and topics that an action is made of, by rclpy's names."""
 
     SendGoalService: type[Service]
-    """Request: goal_id (UUID) and goal. Response: accepted, and stamp, the time of that."""
+    """Request: goal_id (UUID) and goal. Response: accepted, and stamp, its time."""
     GetResultService: type[Service]
     """Request: goal_id. Response: status, a code of action_msgs/msg/GoalStatus, and result."""
     FeedbackMessage: type[Message]
-    """goal_id and feedback."""
+    """Message of goal_id and feedback."""
     CancelGoalService: type[Service]
-    """action_msgs/srv/CancelGoal, the same for all actions."""
+    """Service action_msgs/srv/CancelGoal, the same for all actions."""
     GoalStatusMessage: type[Message]
-    """action_msgs/msg/GoalStatusArray, the same for all actions."""
+    """Message action_msgs/msg/GoalStatusArray, the same for all actions."""
 
 
 class _ImplOfAction:
-    """`Fibonacci.Impl`, made when it is first asked for: it needs types of the packages above."""
+    """Descriptor of `Fibonacci.Impl`, made when it is first asked for: it needs types of the packages above."""
 
     def __get__(self, _: object, owner: type[Action]) -> ActionImpl:
         if "_impl" not in owner.__dict__:
@@ -93,7 +94,7 @@ def _message(action: type[Action], name: str, annotations: dict[str, Any]) -> ty
 
 
 class Action:
-    """An action type; a subclass has the message classes `Goal`, `Result` and `Feedback`."""
+    """Base class of action types; a subclass has the message classes `Goal`, `Result` and `Feedback`."""
 
     __ros_type__: ClassVar[str]
     _impl: ClassVar[ActionImpl]
@@ -101,13 +102,13 @@ class Action:
     if TYPE_CHECKING:
 
         class Goal(Message):
-            """What a client wants done."""
+            """Goal of a client."""
 
         class Result(Message):
-            """What came of it."""
+            """Result of a goal."""
 
         class Feedback(Message):
-            """How far it is."""
+            """Progress of a goal."""
 
         Impl: ClassVar[ActionImpl]
     else:
@@ -126,7 +127,7 @@ class Action:
 
     @classmethod
     def describe(cls) -> TypeDescription:
-        """Describe the action as rosidl does: its three messages, two services and the feedback message."""
+        """Return the description of the action as rosidl has it: three messages, two services, the feedback message."""
         parts: dict[str, Any] = {
             "goal": cls.Goal,
             "result": cls.Result,
@@ -139,7 +140,7 @@ class Action:
 
 
 def action_type(cls: Any) -> type[Action]:
-    """Give `cls` back if it is an action class. Raises MessageError otherwise."""
+    """Return `cls` if it is an action class. Raises MessageError otherwise."""
     if isinstance(cls, type) and issubclass(cls, Action):
         return cls
     raise MessageError(f"{cls!r} is no action class")

@@ -1,4 +1,4 @@
-"""ROS's field types as Python annotations, and what an annotation means on the wire.
+"""ROS's field types as Python annotations, and their layout on the wire.
 
 x: float64                                      float64 x
 ranges: Sequence[float32]                       float32[] ranges
@@ -15,14 +15,12 @@ import functools
 import types
 import typing
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
+from typing import Annotated, Any, ClassVar, TypeVar
 
 import msgspec
 
 from robolink.exceptions import MessageError
 
-if TYPE_CHECKING:
-    from robolink.message.base import Message
 Sequence = collections.abc.MutableSequence
 
 
@@ -30,7 +28,7 @@ MadeT = TypeVar("MadeT")
 
 
 def once_per_type(make: Callable[[type[Any]], MadeT]) -> Callable[[type[Any]], MadeT]:
-    """Remember what `make` made of each class: functools.cache, whose own signature refuses classes."""
+    """Cache the result of `make` for each class: functools.cache, whose own signature refuses classes."""
     known: dict[type[Any], MadeT] = {}
 
     @functools.wraps(make)
@@ -43,19 +41,19 @@ def once_per_type(make: Callable[[type[Any]], MadeT]) -> Callable[[type[Any]], M
 
 
 class Primitive(msgspec.Struct, frozen=True):
-    """Marks an annotation as one of ROS's primitive types."""
+    """Mark of an annotation of one of ROS's primitive types."""
 
     name: str
 
 
 class Size(msgspec.Struct, frozen=True):
-    """A sequence of exactly `length` elements."""
+    """Mark of a sequence of exactly `length` elements."""
 
     length: int
 
 
 class AtMost(msgspec.Struct, frozen=True):
-    """A sequence of at most `length` elements, a string of as many bytes, or a wstring of as many UTF-16 units."""
+    """Mark of a sequence of at most `length` elements, a string of bytes, or a wstring of UTF-16 units."""
 
     length: int
 
@@ -77,7 +75,7 @@ string = Annotated[str, Primitive("string")]
 wstring = Annotated[str, Primitive("wstring")]
 
 PLAIN = {bool: "bool", int: "int64", float: "float64", str: "string", bytes: "byte"}
-"""What Python's own types stand for when they are used as they are."""
+"""ROS types of Python's own types, where they are used as they are."""
 
 NUMERIC = {
     "int8": "b",
@@ -92,35 +90,37 @@ NUMERIC = {
     "float32": "f",
     "float64": "d",
 }
-"""Primitive name to the type code that `struct` and `array` share; their sequences are array.array."""
+"""Type codes, shared by `struct` and `array`, of the numeric primitives; their sequences are array.array."""
 
 
 class FieldType(msgspec.Struct, frozen=True):
-    """What one field is on the wire."""
+    """Type of one field on the wire."""
 
     base: str
     """A primitive's name, or the type name of a message such as ``geometry_msgs/msg/Point``."""
-    message: type[Message] | None = None
+    message: type[Any] | None = None
+    """Class of a nested message; any class here, since `base.Message` is made of field types."""
     string_bound: int = 0
+    """Largest length of a bounded string (in bytes) or wstring (in characters); 0 is unbounded."""
     shape: str = "one"
-    """``one``, ``array`` (fixed size), ``bounded`` or ``sequence``."""
+    """Shape: ``one``, ``array`` (fixed size), ``bounded`` or ``sequence``."""
     size: int = 0
-    """The number of elements of an array, the most that a bounded sequence takes."""
+    """Number of elements of an array, or the upper bound of a bounded sequence."""
 
     @property
     def code(self) -> str | None:
-        """The `array` type code where the elements are numbers, else None."""
+        """Type code of `array` if the elements are numbers, else None."""
         return NUMERIC.get(self.base)
 
     def __str__(self) -> str:
-        """As a .msg file would say it."""
+        """Return the type as a .msg file has it."""
         text = f"{self.base}<={self.string_bound}" if self.string_bound else self.base.replace("/msg/", "/")
         brackets = {"one": "", "array": f"[{self.size}]", "bounded": f"[<={self.size}]", "sequence": "[]"}
         return text + brackets[self.shape]
 
 
 def field_type(annotation: Any, where: str) -> FieldType:
-    """Read an annotation. Raises MessageError that names `where` when it is no ROS type."""
+    """Return the field type of an annotation. Raises MessageError that names `where` if it is no ROS type."""
     marks, plain = _split(annotation)
     if typing.get_origin(plain) in (collections.abc.MutableSequence, collections.abc.Sequence, list):
         (element,) = typing.get_args(plain)
@@ -154,7 +154,7 @@ def _with_shape(element: FieldType, marks: tuple[Any, ...]) -> FieldType:
 
 
 def constant_type(annotation: Any) -> Any | None:
-    """The type inside ClassVar[...], or None when the annotation is a field's."""
+    """Return the type inside ClassVar[...], or None if the annotation is a field's."""
     if annotation is ClassVar:
         return Any
     if typing.get_origin(annotation) is ClassVar:

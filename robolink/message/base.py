@@ -1,4 +1,4 @@
-"""The base class of every message: a msgspec Struct whose fields all have ROS's defaults.
+"""Base class of every message: a msgspec Struct whose fields all have ROS's defaults.
 
 A subclass states its fields and nothing else::
 
@@ -22,35 +22,24 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from robolink.exceptions import EncodeError, MessageError, nearest
+from robolink.exceptions import MessageError, nearest
 from robolink.message import annotations as ros
 from robolink.message.annotations import FieldType
+from robolink.message.numbers import DTYPES, FixedNumbers, Numbers
 from robolink.message.slot_types import SlotTypes, idl_name
 from robolink.message.spelling import wrong_name
 
 ZEROS: dict[str, Any] = {"bool": False, "byte": b"\x00", "string": "", "wstring": ""}
-DTYPES = {
-    "b": "int8",
-    "B": "uint8",
-    "h": "int16",
-    "H": "uint16",
-    "i": "int32",
-    "I": "uint32",
-    "q": "int64",
-    "Q": "uint64",
-    "f": "float32",
-    "d": "float64",
-}
-"""`array` type code to numpy's name of the same type."""
+"""Default values of the primitives that are no numbers."""
 
 
 class MessageMeta(msgspec.StructMeta):
-    """Makes a Struct of a class body: reads its annotations, gives every field ROS's default."""
+    """Metaclass of messages: reads the annotations of a class body and sets ROS's defaults."""
 
     def __new__(
         mcls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], type_name: str | None = None
     ) -> Any:
-        """`type_name` is ``package/msg/Name``; without it the module and class say what the type is called.
+        """Create a message class. `type_name` is ``package/msg/Name``; by default of the module's and class's names.
 
         The Struct also takes its fields by position, for the codec alone: a metaclass's class calls slowly by name.
         """
@@ -74,20 +63,27 @@ class MessageMeta(msgspec.StructMeta):
             __ros_defaults__=defaults,
         )
         converted = {field: kind for field, kind in fields.items() if kind.shape != "one" and kind.code}
+        if any(kind.shape != "array" for kind in converted.values()):
+            namespace.setdefault("__copy__", _copied)
+            namespace.setdefault("__reduce__", _reduced)
         # Numbers and text make no reference cycles: without the collector's header a message is made faster.
         cycles = any(kind.shape != "one" and not kind.code for kind in fields.values())
         cls = super().__new__(
             mcls, name, bases, namespace, eq=False, forbid_unknown_fields=True, gc=cycles or not fields
         )
-        # rosidl's slots: programs walk them for the names of the fields
-        cls.__slots__ = tuple(f"_{field}" for field in fields)  # type: ignore[attr-defined]
         for field, kind in converted.items():
-            setattr(cls, field, (_FixedNumbers if kind.shape == "array" else _Numbers)(cls, field, kind))
+            setattr(cls, field, (FixedNumbers if kind.shape == "array" else Numbers)(cls, field, kind))
+        # rosidl's slots: programs walk them, and get the fields by these names. Attributes of their own, since with a
+        # `__getattr__` each field would be read four times more slowly on Python 3.10 and 3.11.
+        cls.__slots__ = tuple(f"_{field}" for field in fields)  # type: ignore[attr-defined]
+        for field in fields:
+            if f"_{field}" not in namespace:
+                setattr(cls, f"_{field}", cls.__dict__[field])
         return cls
 
 
 class _Extended(MessageMeta):
-    """Makes the class of a message that adds methods and attributes, but no fields, to another message."""
+    """Metaclass of a message that adds methods and attributes, but no fields, to another message."""
 
     def __new__(mcls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], type_name: str = "") -> Any:
         if _annotations(namespace):
@@ -113,8 +109,23 @@ def _bare(cls: Any) -> Any:
 
 
 def _parts(message: Any) -> Any:
-    """Say of what a copy is made, as `copy` and `pickle` ask it."""
+    """Return what a copy is made of, for `copy` and `pickle`."""
     return _bare, (type(message),), (vars(message), {name: getattr(message, name) for name in message.__ros_fields__})
+
+
+def _settled(message: Any) -> Any:
+    """Return the message with views of bytes received turned into arrays, which msgspec would copy as they are."""
+    for name in message.__ros_fields__:
+        getattr(message, name)
+    return message
+
+
+def _copied(message: Any) -> Any:
+    return msgspec.Struct.__copy__(_settled(message))  # type: ignore[attr-defined]
+
+
+def _reduced(message: Any) -> Any:
+    return msgspec.Struct.__reduce__(_settled(message))
 
 
 def _annotations(namespace: dict[str, Any]) -> dict[str, Any]:
@@ -124,7 +135,7 @@ def _annotations(namespace: dict[str, Any]) -> dict[str, Any]:
 
 
 def _type_name(module: str, qualname: str) -> str:
-    """``robolink.interfaces.std_srvs.srv`` and ``SetBool.Request`` make ``std_srvs/srv/SetBool_Request``."""
+    """Return the type name of a class: ``std_srvs/srv/SetBool_Request`` of `std_srvs.srv.SetBool.Request`."""
     name = "_".join(part for part in qualname.rpartition("<locals>.")[2].split("."))
     *_, package, kind, part = ["", "", *module.split(".")]
     if not part.startswith("_"):  # a private part of a package is skipped: sensor_msgs.msg._camera
@@ -170,7 +181,7 @@ def _check_defaults(type_name: str, fields: dict[str, FieldType], defaults: dict
 
 
 def _default(kind: FieldType, given: Any) -> Any:
-    """Give what msgspec takes as a field's default: a value, or a factory for what can change."""
+    """Return a field's default for msgspec: a value, or a factory for what can change."""
     if kind.shape == "one":
         if kind.message is not None:
             return msgspec.field(default_factory=kind.message) if given is msgspec.NODEFAULT else given
@@ -196,101 +207,6 @@ def _numpy_zeros(kind: FieldType) -> Any:
     import numpy as np  # late: most commands make no message with a fixed array
 
     return np.zeros(kind.size, DTYPES[kind.code or "d"])
-
-
-class _Numbers:
-    """A field that is a sequence of numbers, kept as an array.array.
-
-    An assignment converts at once. The constructor, which stores without asking, is made good at the first look.
-    """
-
-    def __init__(self, cls: Any, name: str, kind: FieldType) -> None:
-        member = cls.__dict__[name]
-        self.stored: Callable[[Any], Any] = member.__get__
-        self.store: Callable[[Any, Any], None] = member.__set__
-        self.kind, self.code = kind, kind.code or "d"
-        self.shape = (kind.size,)
-        self.where = f"{cls.__name__}.{name}"
-
-    def __get__(self, message: Any, owner: type | None = None) -> Any:
-        if message is None:
-            return self
-        value = self.stored(message)
-        if type(value) is not array or value.typecode != self.code:
-            value = self.convert(value)
-            self.store(message, value)
-        return value
-
-    def __set__(self, message: Any, value: Any) -> None:
-        self.store(message, self.convert(value))
-
-    def convert(self, value: Any) -> Any:
-        """Give `value` as it is kept. Raises EncodeError that names the field."""
-        if type(value) is array and value.typecode == self.code:
-            return value
-        if type(value) is memoryview and value.format == self.code and value.contiguous:
-            return value  # a large uint8[] arrives as a view of the bytes received
-        try:
-            if hasattr(value, "__array_interface__"):
-                return array(self.code, _as_numpy(value, self.code).tobytes())
-            return array(self.code, value)
-        except (TypeError, ValueError, OverflowError) as error:
-            raise EncodeError(f"{self.where}: expected {self.kind}, got {_shown(value)} ({error})") from None
-
-
-class _FixedNumbers(_Numbers):
-    """A field that is a fixed number of numbers, kept as a numpy array."""
-
-    dtype: Any = "not known before numpy is imported"
-
-    def __get__(self, message: Any, owner: type | None = None) -> Any:
-        if message is None:
-            return self
-        value = self.stored(message)
-        if getattr(value, "dtype", None) is not self.dtype or value.shape != self.shape or not value.flags.c_contiguous:
-            value = self.convert(value)
-            self.store(message, value)
-        return value
-
-    def convert(self, value: Any) -> Any:
-        """Give `value` as it is kept. Raises EncodeError that names the field."""
-        try:
-            found = _as_numpy(value, self.code)
-        except (TypeError, ValueError, OverflowError) as error:
-            raise EncodeError(f"{self.where}: expected {self.kind}, got {_shown(value)} ({error})") from None
-        if found.shape != self.shape:
-            raise EncodeError(f"{self.where}: expected {self.kind}, got {found.size} elements")
-        self.dtype = found.dtype
-        return found
-
-
-def _as_numpy(value: Any, code: str) -> Any:
-    import numpy as np
-
-    dtype = np.dtype(DTYPES[code])
-    given = np.asarray(memoryview(value) if code == "B" and isinstance(value, (bytes, bytearray)) else value)
-    if given.dtype.kind == "f" and code == "Q" and isinstance(value, (list, tuple)) and _are_uint64(value):
-        given = np.array(value, dtype)  # numpy makes floats of ints that lie on both sides of 2**63
-    if given.dtype == dtype:
-        return np.ascontiguousarray(given)
-    # Python ints are int64 to numpy: they may go into narrower types when the values fit.
-    narrowed = given.dtype.kind in "iub" and dtype.kind in "iu"
-    if given.size and not narrowed and not np.can_cast(given.dtype, dtype, "same_kind"):
-        raise TypeError(f"{given.dtype} is not {dtype}")
-    if dtype.kind in "iu" and given.size:
-        low, high = np.iinfo(dtype).min, np.iinfo(dtype).max
-        if given.min() < low or given.max() > high:
-            raise OverflowError(f"out of {low} to {high}")
-    return np.ascontiguousarray(given.astype(dtype))
-
-
-def _are_uint64(values: Any) -> bool:
-    return all(isinstance(each, int) and 0 <= each < 1 << 64 for each in values)
-
-
-def _shown(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 if TYPE_CHECKING:
@@ -327,11 +243,6 @@ else:
             """Each field's name and its type, as rosidl says it: ``double``, ``sequence<float>``."""
             return {name: idl_name(kind) for name, kind in cls.__ros_fields__.items()}
 
-        def __getattr__(self, name: str) -> Any:
-            if name[1:] in self.__ros_fields__ and name[0] == "_":  # what `__slots__` calls a field
-                return getattr(self, name[1:])
-            raise AttributeError(_no_field(self.__class__, name))
-
         def __eq__(self, other: object) -> bool:
             if other.__class__ is not self.__class__:
                 return NotImplemented
@@ -344,17 +255,12 @@ else:
             return f"{package}.{kind}.{name}({', '.join(_shown_fields(self))})"
 
 
-@functools.lru_cache(maxsize=256)  # programs ask `hasattr(message, "header")` of each message
-def _no_field(cls: Any, name: str) -> str:
-    known = cls.__ros_fields__
-    near = "" if name.startswith("__") else nearest(name, known)
-    return f"{cls.__ros_type__} has no field {name!r}{near}, only {', '.join(known)}"
-
-
 def _set_fields(message: Any, **fields: Any) -> None:
+    known = message.__ros_fields__
     for name, value in fields.items():
-        if name not in message.__ros_fields__:
-            raise TypeError(_no_field(message.__class__, name))
+        if name not in known:
+            only = f"{nearest(name, known)}, only {', '.join(known)}"
+            raise TypeError(f"{message.__ros_type__} has no field {name!r}{only}")
         setattr(message, name, value)
 
 
@@ -373,11 +279,11 @@ def _same(left: Any, right: Any) -> bool:
 def _shown_fields(message: Any) -> Iterator[str]:
     for name in message.__ros_fields__:
         value = getattr(message, name)
-        yield f"{name}={value.tolist() if isinstance(value, (array, memoryview)) else value!r}"
+        yield f"{name}={value.tolist() if isinstance(value, array) else value!r}"
 
 
 def message_type(cls: Any) -> type[Message]:
-    """Give `cls` back if it is a message class, or the one that it extends. Raises MessageError otherwise."""
+    """Return `cls` if it is a message class, or the one that it extends. Raises MessageError otherwise."""
     if isinstance(cls, type) and hasattr(cls, "__ros_fields__"):
         return next(each for each in cls.__mro__ if "__ros_fields__" in vars(each))
     raise MessageError(f"{cls!r} is no message class")

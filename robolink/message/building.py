@@ -1,4 +1,4 @@
-"""Builds the class of a type from its text (.msg, .srv, .action) or from the description that a node gave of it."""
+"""Building of classes from the text of a type (.msg, .srv, .action) or from the description that a node sent."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from typing import Any
 
 import msgspec
 
-from robolink.exceptions import DefinitionError, MessageError, NotFoundError, shown
+from robolink.exceptions import DefinitionError, MessageError, NotFoundError
 from robolink.message import literals
 from robolink.message.annotations import FieldType
 from robolink.message.base import Message
+from robolink.message.class_factory import DEEPEST, MessageParts, action_class, message_class, service_class
 from robolink.message.definition import LARGEST, Definition, Field, Section
 from robolink.message.description import (
     BOUNDED_STRING,
@@ -24,17 +25,17 @@ from robolink.message.description import (
     hash_of,
     type_hash,
 )
-from robolink.message.making import DEEPEST, MessageParts, action_class, message_class, service_class
 from robolink.message.spelling import is_part, split_type_name, wrong_name
+from robolink.system.terminal import shown
 
 Resolve = Callable[[str], type[Message]]
-"""Gives the message class of a full type name; raises NotFoundError or MessageError when there is none."""
+"""Function from a full type name to its message class; raises NotFoundError or MessageError if there is none."""
 
 
 def build(definition: Definition, resolve: Resolve) -> type[Any]:
-    """Make the message, service or action class that a definition describes.
+    """Return the message, service or action class of a definition.
 
-    `resolve` gives the classes of nested messages by their full names. Raises DefinitionError, with the place in the
+    `resolve` returns the classes of nested messages by their full names. Raises DefinitionError, with the place in the
     text, for one that it does not know.
     """
     if len(definition.sections) == 1:
@@ -74,7 +75,7 @@ def _resolved(definition: Definition, field: Field, resolve: Resolve) -> FieldTy
 
 
 def _look_up(name: str, resolve: Resolve) -> type[Message]:
-    """A bare ``Header`` is the package's own, as for rosidl, and else std_msgs', as in files of ROS 1."""
+    """Return a nested message's class: a bare ``Header`` is the package's own, as for rosidl, else std_msgs'."""
     try:
         return resolve(name)
     except NotFoundError:
@@ -99,15 +100,15 @@ UNSUPPORTED = {
     19: "fixed string",
     20: "fixed wstring",
 }
-"""Type ids that type_description_interfaces knows and no .msg file can say."""
+"""Names of the type ids that type_description_interfaces has and no .msg file can have."""
 MOST_TYPES, MOST_FIELDS = 1_000, 20_000
 """Of one description: types that it refers to, and fields of them all."""
 
 
 def checked_class(description: TypeDescription, expected_hash: str, resolve: Resolve | None = None) -> type[Any]:
-    """Make the class of a description whose hash is the expected one (``RIHS01_...``).
+    """Return the class of a description whose hash is the expected one (``RIHS01_...``).
 
-    Raises MessageError that names both hashes when it is not, and for what class_of_description refuses.
+    Raises MessageError that names both hashes if it is not, and for what class_of_description refuses.
     """
     found = hash_of(description)
     if found != expected_hash:
@@ -117,9 +118,9 @@ def checked_class(description: TypeDescription, expected_hash: str, resolve: Res
 
 
 def class_of_description(description: TypeDescription, resolve: Resolve | None = None) -> type[Any]:
-    """Make the message, service or action class of a description.
+    """Return the message, service or action class of a description.
 
-    Where `resolve` gives a class that is the same as a referenced one (by hash), that class is used. Raises
+    Where `resolve` returns a class that is the same as a referenced one (by hash), that class is used. Raises
     MessageError for a description that is contradictory, cyclic, too large, or uses names or types that no .msg file
     can have. Nothing in it is taken on trust.
     """
@@ -132,7 +133,7 @@ def class_of_description(description: TypeDescription, resolve: Resolve | None =
 
 
 class _Maker:
-    """Makes the classes of one description, each referenced type once."""
+    """Builder of the classes of one description, each referenced type once."""
 
     def __init__(self, description: TypeDescription, resolve: Resolve | None) -> None:
         self.description, self.resolve = description, resolve
@@ -153,7 +154,7 @@ class _Maker:
             raise MessageError(f"a description of {fields} fields, over {MOST_FIELDS}")
 
     def top(self) -> type[Any]:
-        """Make the class that is asked for."""
+        """Return the class that is asked for."""
         name = self.description.type_name
         if self._consists_of(SERVICE_FIELDS):
             request, response = (self.message(f"{name}_{part}") for part in ("Request", "Response"))
@@ -164,13 +165,13 @@ class _Maker:
         return self.message(name)
 
     def _consists_of(self, parts: dict[str, str]) -> bool:
-        """Whether the fields are those of a service or an action, and their types its own parts."""
+        """True if the fields are those of a service or an action, and their types its own parts."""
         name = self.description.type_name
         wanted = [(field, name + suffix) for field, suffix in parts.items()]
         return [(field.name, field.nested_type_name) for field in self.description.fields] == wanted
 
     def message(self, name: str) -> type[Message]:
-        """Make the class of a described message, and before it those of its fields."""
+        """Return the class of a described message, after those of its fields."""
         if name in self.made:
             return self.made[name]
         if name not in self.types:
@@ -192,7 +193,7 @@ class _Maker:
         return self.under_way[-1] if self.under_way else self.description.type_name
 
     def _known(self, made: type[Message]) -> type[Message]:
-        """Give the class that this process already has of the same type, or else the one just made."""
+        """Return the class that this process already has of the same type, or else the one just made."""
         if self.resolve is None or made.__ros_type__ == self.description.type_name:
             return made
         try:
@@ -231,7 +232,7 @@ class _Maker:
 
 
 def _kind(type_id: int, where: str) -> tuple[str, str, bool]:
-    """Give the primitive's name, empty for a message, the shape, and whether it is a bounded string."""
+    """Return the primitive's name (empty for a message), the shape, and True for a bounded string."""
     if not 0 < type_id < 192:
         raise MessageError(f"{where}: there is no type id {type_id}")
     offset = type_id // 48 * 48
@@ -250,7 +251,7 @@ def _kind(type_id: int, where: str) -> tuple[str, str, bool]:
 
 
 def _default(field: FieldDescription, kind: FieldType) -> dict[str, Any]:
-    """Read a default. It is no part of the type (the hash leaves it out): one that does not fit is left out."""
+    """Return a field's default. It is no part of the type and its hash: one that does not fit is left out."""
     try:
         return {field.name: literals.as_rosidl_said(kind, field.default_value)}
     except ValueError:
@@ -258,7 +259,7 @@ def _default(field: FieldDescription, kind: FieldType) -> dict[str, Any]:
 
 
 def _difference(given: TypeDescription, right: TypeDescription) -> str:
-    """Say where a description differs from what its class is described as; '' when it does not."""
+    """Return where a description differs from that of its class; '' if it does not."""
     if hash_of(given) == hash_of(right):
         return ""
     names, right_names = ([each.type_name for each in one.referenced] for one in (given, right))

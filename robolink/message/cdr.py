@@ -1,4 +1,4 @@
-"""The CDR codec: for each message type, code generated once that packs and unpacks it.
+"""CDR codec: for each message type, generated code that packs and unpacks it.
 
 The wire is XCDR1 as ROS 2 has it: four bytes of encapsulation header, then each primitive aligned to its own size,
 counted from the byte after the header. Neighbouring primitives are packed by one `struct.Struct`. Behind a string or
@@ -21,12 +21,12 @@ from robolink.message.check import explain
 
 LITTLE, BIG = b"\x00\x01\x00\x00", b"\x00\x00"
 TRAILING = 3
-"""Bytes of padding that may follow a message: some writers fill up to a multiple of four."""
+"""Upper bound of the padding behind a message in bytes: some writers fill up to a multiple of four."""
 
 
 @once_per_type
 def encoder(cls: type[Message]) -> Callable[[Any], bytes]:
-    """Give the function that turns a message of this class into bytes.
+    """Return the function that encodes a message of the class `cls` as bytes.
 
     It raises EncodeError, whose text names the field, for a value that does not fit.
     """
@@ -38,7 +38,7 @@ def encoder(cls: type[Message]) -> Callable[[Any], bytes]:
 
 @once_per_type
 def decoder(cls: type[Message]) -> Callable[[bytes], Any]:
-    """Give the function that turns bytes into a message of this class. It raises DecodeError, and nothing else."""
+    """Return the function that decodes bytes into a message of the class `cls`. It raises DecodeError only."""
     return _reader(message_type(cls), "<", functools.partial(_decode_other, cls))
 
 
@@ -73,12 +73,12 @@ def _compile(text: str, names: dict[str, Any], name: str) -> Callable[[Any], Any
 
 
 def encode(message: Message) -> bytes:
-    """Turn a message into bytes. Raises EncodeError that names the field which does not fit."""
+    """Encode `message` as CDR, little-endian with its header. Raises EncodeError that names the wrong field."""
     return encoder(type(message))(message)
 
 
 def decode(cls: type[Message], data: bytes) -> Any:
-    """Turn bytes, little- or big-endian, into a message. Raises DecodeError, and nothing else."""
+    """Decode `data`, CDR in either byte order, into a message of `cls`. Raises DecodeError, and nothing else."""
     return decoder(cls)(bytes(data))
 
 

@@ -1,4 +1,4 @@
-"""Where primitives stand: runs of fixed-size fields, and their `struct` formats in each of the eight phases."""
+"""Alignment of primitives in CDR: runs of fixed-size fields, and their `struct` formats in each of the eight phases."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ from collections.abc import Sequence
 from robolink.message.annotations import NUMERIC
 
 CODES = {**NUMERIC, "bool": "?", "byte": "c"}
+"""Type codes of all primitives of fixed size."""
 SIZES = {code: struct.calcsize("<" + code) for code in "bBhHiIqQfd?c"}
+"""Sizes in bytes by type code."""
 
 
 def padded(codes: Sequence[str], phase: int, order: str) -> struct.Struct:
-    """Give the Struct of these primitives, one after the other, when the first free byte is at `phase` (mod 8)."""
+    """Return the Struct of these primitives, one after the other, when the first free byte is at `phase` (mod 8)."""
     text, at = order, phase
     for code in codes:
         size = SIZES[code]
@@ -23,7 +25,7 @@ def padded(codes: Sequence[str], phase: int, order: str) -> struct.Struct:
 
 
 def phases(codes: Sequence[str], order: str, shift: int = 0) -> tuple[struct.Struct, ...]:
-    """Give the Structs for all eight phases. Index with ``(offset + shift) & 7`` for the phase of the body."""
+    """Return the Structs for all eight phases. Index with ``(offset + shift) & 7`` for the phase of the body."""
     return tuple(padded(codes, (at - shift) % 8, order) for at in range(8))
 
 
@@ -36,14 +38,14 @@ class Lines:
         self.serial = 0
         self.constants: dict[str, object] = {}
         self.names: dict[int, str] = {}
-        """The name of each constant, by identity; `constants` keeps them alive, so that no two have the same."""
+        """Names of the constants, by identity; `constants` keeps them alive, so that no two have the same."""
 
     def add(self, line: str) -> None:
         """Append a line at the current depth."""
         self.lines.append("    " * self.depth + line)
 
     def fresh(self, prefix: str) -> str:
-        """Make a name that was not used before."""
+        """Return a name that was not used before."""
         self.serial += 1
         return f"{prefix}{self.serial}"
 

@@ -1,4 +1,4 @@
-"""Generates the function that unpacks a message: one `struct` call a run, one copy for each array."""
+"""Code generator of decoders: one `struct` call a run, one copy for each array."""
 
 from __future__ import annotations
 
@@ -9,15 +9,16 @@ from typing import Any
 
 from robolink.exceptions import MessageError
 from robolink.message.annotations import FieldType
-from robolink.message.base import DTYPES, Message
+from robolink.message.base import Message
 from robolink.message.cdr_layout import CODES, SIZES, Lines, padded, phases
+from robolink.message.numbers import DTYPES
 
 VIEW_FROM = 65536
-"""A uint8[] of at least so many bytes arrives as a read-only view of the bytes received: no copy of an image."""
+"""Size in bytes from which a sequence of numbers is a view of the bytes received, until a program asks for it."""
 
 
 class ReaderSource:
-    """The text of ``run(data) -> message``. ``i`` is the index in the data; the body's phase is ``i - 4``."""
+    """Source text of ``run(data) -> message``. ``i`` is the index in the data; the body's phase is ``i - 4``."""
 
     def __init__(self, cls: type[Message], order: str) -> None:
         self.out = Lines()
@@ -28,7 +29,7 @@ class ReaderSource:
         self.at: int | None = 4
         self.fixed = _is_fixed(cls)
         self.headed = False
-        """Whether the first run of primitives has read the encapsulation header along with it."""
+        """True once the first run of primitives has read the encapsulation header along with it."""
         self.run: list[tuple[str, str]] = []
         made = self._message(cls)
         self._flush()
@@ -37,7 +38,7 @@ class ReaderSource:
         self.out.add(f"return {made}")
 
     def text(self) -> str:
-        """The whole function."""
+        """Return the source text of the function."""
         start = ["def run(data):", "    try:"]
         if not self.headed:
             start.append(f"        if data[0] or data[1] != {int(self.order == '<')}: return other(data)")
@@ -45,7 +46,7 @@ class ReaderSource:
         return "\n".join([*start, *self.out.lines, *end])
 
     def _message(self, cls: type[Message]) -> str:
-        """Read all fields; give the expression that makes the message of them."""
+        """Read all fields; return the expression that makes the message of them."""
         if not cls.__ros_fields__:
             self.run.append(("B", self.out.fresh("_")))
         parts = [self._field(kind) for kind in cls.__ros_fields__.values()]  # by position: twice as fast as by name
@@ -107,13 +108,12 @@ class ReaderSource:
         self.out.depth += 1
         self._align(size, known_to=4)
         self._span(f"{size} * {count}" if size > 1 else count)
-        if code == "B":
-            self.out.add(f"if {count} >= {VIEW_FROM}: {name} = memoryview(data)[i:j]")
-            self.out.add(f"else: {name}.frombytes(data[i:j])")
-        else:
-            self.out.add(f"{name}.frombytes(data[i:j])")
         if self.swap and size > 1:
-            self.out.add(f"{name}.byteswap()")
+            self.out.add(f"{name}.frombytes(data[i:j]); {name}.byteswap()")
+        else:
+            view = "memoryview(data)[i:j]" if code == "B" else f"memoryview(data)[i:j].cast({code!r})"
+            self.out.add(f"if {count} >= {VIEW_FROM // size}: {name} = {view}")
+            self.out.add(f"else: {name}.frombytes(data[i:j])")
         self.out.add("i = j")
         self.out.depth -= 1
         return name
@@ -143,7 +143,7 @@ class ReaderSource:
         return name
 
     def _elements(self, kind: FieldType, count: str) -> str:
-        """One element after the other; each takes a byte at least, so a count beyond the data is refused at once."""
+        """Read the elements one by one; each takes a byte at least, so a count beyond the data is refused at once."""
         name = self.out.fresh("v")
         self.out.add(f"if {count} > end - i: raise MessageError('cut off')")
         self.out.add(f"{name} = []")
@@ -200,7 +200,7 @@ class ReaderSource:
 
 
 def _is_fixed(cls: type[Message]) -> bool:
-    """Whether all messages of the class have the same size, all of it primitives."""
+    """True if all messages of the class have the same size, all of it primitives."""
     return all(
         kind.shape == "one"
         and kind.base not in ("string", "wstring")

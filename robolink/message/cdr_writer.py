@@ -1,4 +1,4 @@
-"""Generates the function that packs a message: one `struct` call a run, one buffer for each array."""
+"""Code generator of encoders: one `struct` call a run, one buffer for each array."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PADS = tuple(bytes(n) for n in range(8))
 
 
 class WriterSource:
-    """The text of ``run(m) -> bytes``; `phase` is the offset mod 8 where it is known, else None and in ``o``."""
+    """Source text of ``run(m) -> bytes``; `phase` is the offset mod 8 where it is known, else None and in ``o``."""
 
     def __init__(self, cls: type[Message]) -> None:
         self.out = Lines()
@@ -29,7 +29,7 @@ class WriterSource:
         self._fields(cls, "m")  # whoever encodes has chosen the function by the message's class
 
     def text(self) -> str:
-        """The whole function."""
+        """Return the source text of the function."""
         if not self.chunks and self.phase == 0:  # all of it has a fixed size: one call, no list of parts
             codes, values = [code for code, _ in self.run], ", ".join(value for _, value in self.run)
             packer = self.out.constant("S", padded_with_head(codes))
@@ -118,9 +118,9 @@ class WriterSource:
             self._elements(kind, name)
 
     def _numbers(self, kind: FieldType, field: Any, path: str) -> None:
-        """A buffer as it is. Behind a count everything is aligned to 4; only wider elements may need padding."""
+        """Write a buffer as it is. Behind a count everything is aligned to 4; only wider elements may need padding."""
         name, size = self.out.fresh("v"), SIZES[field.code]
-        stored, converted = self.out.constant("G", field.stored), self.out.constant("F", field.__get__)
+        stored, converted = self.out.constant("G", field.stored), self.out.constant("F", field.packable)
         if kind.shape == "array":
             self.out.add(f"{name} = {converted}({path})")
             self._flush()
@@ -149,7 +149,7 @@ class WriterSource:
         self._part("PADS[n]")
 
     def _elements(self, kind: FieldType, name: str) -> None:
-        """One element after the other: messages, strings, bytes."""
+        """Write one element after the other: messages, strings, bytes."""
         self._at_run_time()
         element = self.out.fresh("e")
         self.out.add(f"for {element} in {name}:")
@@ -210,7 +210,7 @@ class WriterSource:
 
 
 def _has_loops(cls: type[Message]) -> bool:
-    """Whether there are sequences whose elements are packed one by one."""
+    """True if there are sequences whose elements are packed one by one."""
     return any(
         (kind.shape != "one" and not kind.code and kind.base != "bool")
         or (kind.message is not None and _has_loops(kind.message))
@@ -219,13 +219,13 @@ def _has_loops(cls: type[Message]) -> bool:
 
 
 def padded_with_head(codes: list[str]) -> Any:
-    """Pack the header and a whole message of fixed size in one call."""
+    """Return the function that packs the header and a whole message of fixed size in one call."""
     body = padded(codes, 0, "<")
     return struct.Struct("<4s" + body.format[1:]).pack
 
 
 def wide(text: str) -> bytes:
-    """A wstring's characters: UTF-16 code units, each in four bytes, and no NUL behind them.
+    """Encode a wstring: UTF-16 code units, each in four bytes, and no NUL behind them.
 
     So ROS 2 writes it (rosidl_typesupport_fastrtps_cpp's serialization_helpers.hpp in Jazzy; Fast-CDR 1.0 itself in
     Humble), though DDS-XTypes now has two bytes for each.

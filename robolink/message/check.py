@@ -1,4 +1,4 @@
-"""Finds the field that does not fit its type, once packing a message has failed: slow, and only then."""
+"""Validation of a message's fields, once packing it has failed: slow, and only then."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from robolink.message.cdr_layout import CODES
 
 
 def explain(cls: type[Message], message: Any) -> str:
-    """Say which field of a message does not fit: ``Twist.linear.x: expected float64, got 'fast'``; '' if all fit."""
+    """Return which field of a message does not fit: ``Twist.linear.x: expected float64, got 'fast'``; '' if all fit."""
     name = cls.__ros_type__.rpartition("/")[2]
     return next(_wrong_in(cls, message, name), "")
 
 
 def explain_value(kind: FieldType, value: Any, path: str) -> str:
-    """Say what of one field's value does not fit; '' if all does."""
+    """Return what of one field's value does not fit; '' if all does."""
     return next(_wrong(kind, value, path), "")
 
 
@@ -85,7 +85,7 @@ def _is_bool(value: Any) -> bool:
 
 
 def bools(values: Any) -> bytes:
-    """A bool sequence's bytes. Raises TypeError for what is neither True nor False (nor 1, 0 or numpy's)."""
+    """Return a bool sequence's bytes. Raises TypeError for any but True and False (and 1, 0 and numpy's)."""
     for value in values:
         if not _is_bool(value):
             raise TypeError(f"{value!r} is no bool")

@@ -1,4 +1,4 @@
-"""Messages to and from plain dicts and lists, as YAML and JSON have them."""
+"""Conversion of messages to and from plain dicts and lists, as YAML and JSON have them."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from robolink.message.check import explain
 
 
 def from_builtins(cls: type[Message], data: Any) -> Any:
-    """Make a message of a mapping; what the mapping leaves out keeps its default.
+    """Return a message of the class `cls` from a mapping; fields that `data` leaves out keep their defaults.
 
-    Raises EncodeError that names the field, for an unknown one with the nearest that exists.
+    Raises EncodeError that names the field; for an unknown one also the nearest that exists.
 
     >>> from_builtins(Twist, {"linear": {"x": 0.3}}).linear.x
     0.3
@@ -66,14 +66,14 @@ def _nested(cls: type[Message], value: Any, path: str) -> Message:
 
 
 def _octets(kind: FieldType, value: Any) -> Any:
-    """A byte is written as a number in YAML and is a bytes object of length one in a message."""
+    """Return a byte of YAML, a number, as a message holds it: a bytes object of length one."""
     if kind.shape == "one":
         return bytes((value,)) if isinstance(value, int) and 0 <= value < 256 else value
     return [bytes((each,)) if isinstance(each, int) and 0 <= each < 256 else each for each in value]
 
 
 def to_builtins(message: Message) -> dict[str, Any]:
-    """Turn a message into dicts, lists, strings and numbers, fields in their order."""
+    """Return `message` as dicts, lists, strings and numbers, fields in their order."""
     return {name: _plain(getattr(message, name)) for name in message.__ros_fields__}
 
 

@@ -1,7 +1,7 @@
-"""Reads the text of .msg, .srv and .action files: fields, constants, defaults and the comments beside them.
+"""Parser of .msg, .srv and .action files: fields, constants, defaults and the comments beside them.
 
-The rules are those of rosidl's adapter. A message has one section, a service two and an action three, parted by lines
-of ``---``; each section is a message type of its own.
+The rules are those of rosidl's adapter. A message has one section, a service two and an action three, separated by
+lines of ``---``; each section is a message type of its own.
 """
 
 from __future__ import annotations
@@ -13,17 +13,18 @@ from typing import Any, NoReturn
 
 import msgspec
 
-from robolink.exceptions import DefinitionError, MessageError, nearest, shown
+from robolink.exceptions import DefinitionError, MessageError, nearest
 from robolink.message import literals
 from robolink.message.annotations import FieldType
 from robolink.message.description import TYPE_IDS
 from robolink.message.spelling import is_part, split_type_name, wrong_name
+from robolink.system.terminal import shown
 
 SECTIONS = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
-"""What the types of a file's sections add to the name of the file's type."""
+"""Suffixes of the types of a file's sections, behind the name of the file's type."""
 LONGEST_LINE, LONGEST_TEXT = 65_536, 4_000_000
 LARGEST = 2**32 - 1
-"""The highest bound of a string, sequence or array: a length is a uint32 on the wire."""
+"""Upper bound of the size of a string, sequence or array: a length is a uint32 on the wire."""
 
 ELEMENT_LINE = re.compile(r"(?P<type>[^\s#]+)(?P<gap>\s*)(?P<name>[^\s=#]*)\s*(?P<rest>.*)")
 TYPE = re.compile(r"(?P<base>[^\[\]<]+)(?:<=(?P<bound>[^\[\]]*))?(?:\[(?P<limit><=)?(?P<size>[^\[\]]*)\])?")
@@ -40,7 +41,7 @@ MEANT = {
     "time": "builtin_interfaces/Time",
     "duration": "builtin_interfaces/Duration",
 }
-"""What who writes another system's name for a type means."""
+"""ROS type names by the names that other systems use."""
 
 
 class Constant(msgspec.Struct, frozen=True):
@@ -49,13 +50,13 @@ class Constant(msgspec.Struct, frozen=True):
     type: FieldType
     name: str
     value: Any
-    """A bool, int (byte and char too), float or str."""
+    """The value: a bool, int (byte and char too), float or str."""
     above: tuple[str, ...] = ()
-    """The comment lines above it, without their ``#``."""
+    """Comment lines above it, without their ``#``."""
     behind: str = ""
-    """The comment behind it, and those in indented lines below it."""
+    """Comment behind it, and those in indented lines below it."""
     line: int = 0
-    """Where it stands in the file's text, counted from 1."""
+    """Line in the file's text, from 1."""
 
 
 class Field(msgspec.Struct, frozen=True):
@@ -64,40 +65,40 @@ class Field(msgspec.Struct, frozen=True):
     type: FieldType
     name: str
     default: Any = None
-    """None when the text gives none; else as Constant.value, or a list of such."""
+    """Default value as Constant.value, or a list of such; None if the text has none."""
     above: tuple[str, ...] = ()
     behind: str = ""
     line: int = 0
     column: int = 1
-    """Where its type begins in that line, counted from 1."""
+    """Column of its type in that line, from 1."""
 
 
 class Section(msgspec.Struct, frozen=True):
-    """One message type of a file: all of a .msg, or what stands between the ``---`` of the others."""
+    """One message type of a file: all of a .msg, or a part between the ``---`` of the others."""
 
     type_name: str
-    """``std_srvs/srv/SetBool_Request``."""
+    """Type name, such as ``std_srvs/srv/SetBool_Request``."""
     comment: tuple[str, ...]
-    """The lines of comment at its head, without their ``#``."""
+    """Comment lines at its head, without their ``#``."""
     fields: tuple[Field, ...]
     constants: tuple[Constant, ...]
     text: str
 
 
 class Definition(msgspec.Struct, frozen=True):
-    """What a .msg, .srv or .action file says."""
+    """Content of a .msg, .srv or .action file."""
 
     type_name: str
-    """``pkg/msg/Name``, ``pkg/srv/Name`` or ``pkg/action/Name``."""
+    """Type name: ``pkg/msg/Name``, ``pkg/srv/Name`` or ``pkg/action/Name``."""
     sections: tuple[Section, ...]
-    """One for a message, two for a service (request, response), three for an action (goal, result, feedback)."""
+    """One section of a message, two of a service (request, response), three of an action (goal, result, feedback)."""
     text: str
     origin: str
-    """Where the text comes from, as errors name it."""
+    """Name of the text's source in errors."""
 
 
 def parse(text: str, type_name: str, origin: str = "<text>") -> Definition:
-    """Read the text of an interface file. `type_name` is ``pkg/msg/Name``, ``pkg/srv/Name`` or ``pkg/action/Name``.
+    """Parse the text of an interface file. `type_name` is ``pkg/msg/Name``, ``pkg/srv/Name`` or ``pkg/action/Name``.
 
     Raises DefinitionError, whose text begins with ``origin:line:column``.
     """
@@ -113,7 +114,7 @@ def parse(text: str, type_name: str, origin: str = "<text>") -> Definition:
 
 
 class _Reader:
-    """Reads one text; knows what to name in errors."""
+    """Parser of one text, with its name for errors."""
 
     def __init__(self, type_name: str, origin: str) -> None:
         self.type_name, self.origin = type_name, origin
@@ -137,7 +138,7 @@ class _Reader:
         return lines
 
     def sections(self, lines: list[str], kind: str, suffixes: tuple[str, ...]) -> tuple[Section, ...]:
-        """Part the lines at ``---`` and read what is between."""
+        """Split the lines at ``---`` and parse each section."""
         parted: list[list[str]] = [[]]
         starts = [1]
         for number, line in enumerate(lines, 1):
@@ -158,7 +159,7 @@ class _Reader:
 
 
 class _SectionReader:
-    """Reads the lines of one message type, one after the other."""
+    """Parser of the lines of one message type, one after the other."""
 
     def __init__(self, reader: _Reader, lines: list[str], start: int) -> None:
         self.reader, self.lines, self.start = reader, lines, start
@@ -180,7 +181,7 @@ class _SectionReader:
         )
 
     def _head(self) -> int:
-        """How many lines are at the head: comments from the very first line on, as rosidl has it."""
+        """Return the number of lines at the head: comments from the very first line on, as rosidl has it."""
         count = 0
         while count < len(self.lines) and self.lines[count].startswith("#"):
             count += 1
@@ -250,7 +251,7 @@ class _SectionReader:
 
 
 def field_type(text: str, package: str) -> FieldType:
-    """Read a type as a field of a message in `package` may have it: ``string<=5[<=3]``. Raises MessageError."""
+    """Parse a type of a field in a message of `package`, such as ``string<=5[<=3]``. Raises MessageError."""
     found = TYPE.fullmatch(text)
     if found is None:
         raise MessageError(f"'{shown(text)}' is no type: write float64, float64[], float64[3], float64[<=3] ...")
@@ -275,7 +276,7 @@ def _count(digits: str, text: str) -> int:
 
 
 def _nested(text: str, package: str) -> str:
-    """Give the full name of a message type: ``Point``, ``pkg/Point`` and ``pkg/msg/Point`` are possible."""
+    """Return the full name of a message type: ``Point``, ``pkg/Point`` and ``pkg/msg/Point`` are possible."""
     if text.startswith("@"):
         raise MessageError(f"'{shown(text)}': annotations belong to .idl files")
     parts = text.split("/")
@@ -293,7 +294,7 @@ def _nested(text: str, package: str) -> str:
 
 
 def _split_comment(text: str) -> tuple[str, str]:
-    """Part a value from the comment behind it; a ``#`` within quotes is the value's."""
+    """Split a value from the comment behind it; a ``#`` within quotes is the value's."""
     sign, gap, rest = re.match(r"(=?)(\s*)(.*)", text, re.DOTALL).groups()  # type: ignore[union-attr]
     quoted = VALUE.fullmatch(rest)
     if quoted is not None:
@@ -304,6 +305,6 @@ def _split_comment(text: str) -> tuple[str, str]:
 
 
 def dedented(comments: Iterable[str]) -> tuple[str, ...]:
-    """Comment lines without the space that all begin with, and without empty ones at either end."""
+    """Return comment lines without the space that all begin with, and without empty ones at either end."""
     text = textwrap.dedent("\n".join(comments)).strip("\n")
     return tuple(text.split("\n")) if text else ()

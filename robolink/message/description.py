@@ -1,4 +1,4 @@
-"""What a type is, as data: its description, the RIHS01 hash of it, and the message that carries it.
+"""Type descriptions: a type as data, its RIHS01 hash, and the message that carries it.
 
 The description's form and the hash are REP 2016's: SHA-256 of the description as JSON in rosidl's spelling.
 """
@@ -29,12 +29,13 @@ TYPE_IDS = {
     "string": 17,
     "wstring": 18,
 }
+"""Ids of the primitives in type_description_interfaces/msg/FieldType."""
 NESTED, BOUNDED_STRING = 1, 4
 SHAPES = {"one": 0, "array": 48, "bounded": 96, "sequence": 144}
 PLACEHOLDER = "structure_needs_at_least_one_member"
-"""The field that rosidl gives to an empty message, since C has no empty structs."""
+"""Name of the field that rosidl adds to an empty message, since C has no empty structs."""
 HASHED = ("type_id", "capacity", "string_capacity", "nested_type_name")
-"""What of a field's type goes into the hash, beside its name and in this order."""
+"""Attributes of a field's type in the hash, beside its name and in this order."""
 
 
 class FieldDescription(msgspec.Struct, frozen=True):
@@ -46,7 +47,7 @@ class FieldDescription(msgspec.Struct, frozen=True):
     string_capacity: int = 0
     nested_type_name: str = ""
     default_value: str = ""
-    """As rosidl writes it: Python's str of the value. It is no part of the type and of its hash."""
+    """Default as rosidl writes it: Python's str of the value. It is no part of the type and of its hash."""
 
 
 class TypeDescription(msgspec.Struct, frozen=True):
@@ -60,7 +61,7 @@ class TypeDescription(msgspec.Struct, frozen=True):
 
 @once_per_type
 def describe(cls: type[Message]) -> TypeDescription:
-    """Describe a message class."""
+    """Return the description of the message class `cls`."""
     reached: dict[str, TypeDescription] = {}
     for kind in cls.__ros_fields__.values():
         if kind.message is not None:
@@ -86,13 +87,13 @@ def _field(name: str, kind: FieldType, defaults: dict[str, Any]) -> FieldDescrip
 
 
 def described(cls: type[Any]) -> TypeDescription:
-    """Describe a message, service or action class."""
+    """Return the description of a message, service or action class."""
     description: TypeDescription = describe(cls) if hasattr(cls, "__ros_fields__") else cls.describe()
     return description
 
 
 def combine(type_name: str, parts: dict[str, type[Any]]) -> TypeDescription:
-    """Describe a service or action: a type whose fields are the messages and services it is made of."""
+    """Return the description of a service or action: a type whose fields are its messages and services."""
     reached: dict[str, TypeDescription] = {}
     for cls in parts.values():
         part = described(cls)
@@ -103,7 +104,7 @@ def combine(type_name: str, parts: dict[str, type[Any]]) -> TypeDescription:
 
 
 def hash_of(description: TypeDescription) -> str:
-    """``RIHS01_`` and 64 hex digits."""
+    """Return the RIHS01 hash of a description: ``RIHS01_`` and 64 hex digits."""
     import hashlib
     import json
 
@@ -125,7 +126,7 @@ def _plain(description: TypeDescription) -> dict[str, Any]:
 
 @once_per_type
 def has_buffer_fields(cls: type[Any]) -> bool:
-    """Return whether a message, or one inside it, has a field `uint8[]`: Lyrical sends such messages in another way.
+    """True if a message, or one inside it, has a field `uint8[]`: Lyrical sends such messages in another way.
 
     rosidl has the same function; its `rosidl::Buffer` may lie elsewhere than in main memory.
     """
@@ -138,17 +139,17 @@ def has_buffer_fields(cls: type[Any]) -> bool:
 
 @once_per_type
 def type_hash(cls: type[Any]) -> str:
-    """The RIHS01 hash of a message, service or action class."""
+    """Return the RIHS01 hash of `cls`, a message, service or action class."""
     return hash_of(described(cls))
 
 
 def type_name(cls: type[Any]) -> str:
-    """``geometry_msgs/msg/Twist`` for the class Twist."""
+    """Return the type name of `cls`, such as ``geometry_msgs/msg/Twist``."""
     return str(cls.__ros_type__)
 
 
 def to_message(description: TypeDescription) -> Any:
-    """Put a description into a type_description_interfaces/msg/TypeDescription."""
+    """Convert a description to a type_description_interfaces/msg/TypeDescription."""
     from robolink.interfaces.type_description_interfaces import msg
 
     return msg.TypeDescription(
@@ -168,7 +169,7 @@ def _individual(description: TypeDescription) -> Any:
 
 
 def from_message(message: Any) -> TypeDescription:
-    """Take a description out of a type_description_interfaces/msg/TypeDescription, unchecked."""
+    """Convert a type_description_interfaces/msg/TypeDescription to a description, unchecked."""
     referenced = tuple(_from_individual(each) for each in message.referenced_type_descriptions)
     return msgspec.structs.replace(_from_individual(message.type_description), referenced=referenced)
 

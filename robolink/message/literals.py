@@ -1,4 +1,4 @@
-r"""Constants and default values as .msg files write them: ``0x1F``, ``true``, ``"two\nlines"``, ``[1, 2]``.
+r"""Parser and writer of constants and defaults in .msg files: ``0x1F``, ``true``, ``"two\nlines"``, ``[1, 2]``.
 
 rosidl's reading is followed, with two leniencies: a ``#`` or ``=`` within quotes belongs to the string, and a string's
 bound counts what the wire counts (bytes; UTF-16 units of a wstring).
@@ -13,8 +13,8 @@ from typing import Any
 
 import msgspec
 
-from robolink.exceptions import shown
 from robolink.message.annotations import NUMERIC, FieldType
+from robolink.system.terminal import quoted, shown
 
 INTEGER = re.compile(r"[+-]?(?:[0-9](?:_?[0-9])*|0[xX](?:_?[0-9a-fA-F])+|0[oO](?:_?[0-7])+|0[bB](?:_?[01])+)")
 FLOAT = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf|infinity|nan)", re.IGNORECASE)
@@ -27,7 +27,7 @@ BOOLS = {"true": True, "1": True, "false": False, "0": False}
 
 
 def read(kind: FieldType, text: str) -> Any:
-    """Read a value of a primitive type or an array of one. Raises ValueError that says what was found.
+    """Parse a value of a primitive type or an array of one. Raises ValueError with what was found.
 
     Numbers come as int and float (byte and char as 0 to 255), arrays as lists.
     """
@@ -41,7 +41,7 @@ def read(kind: FieldType, text: str) -> Any:
 
 
 def elements(kind: FieldType, text: str) -> list[Any]:
-    """Read what stands between an array's brackets. Raises ValueError that says what was found."""
+    """Parse the elements between an array's brackets. Raises ValueError with what was found."""
     one = msgspec.structs.replace(kind, shape="one", size=0)
     values: list[Any] = []
     text, at = text.strip(), 0
@@ -87,7 +87,7 @@ def _integer(base: str, text: str) -> int:
 
 
 def checked(kind: FieldType, value: Any) -> Any:
-    """Give a single value back if it fits its type. Raises ValueError."""
+    """Return a single value if it fits its type. Raises ValueError."""
     if kind.base in ("string", "wstring"):
         wide = kind.base == "wstring"
         length = len(value.encode("utf-16-le")) // 2 if wide else len(value.encode())
@@ -130,12 +130,12 @@ def _escaped(found: re.Match[str]) -> str:
 
 
 def write(kind: FieldType, value: Any) -> str:
-    """Write a value, as messages hold it, so that `read` gives it back."""
+    """Format a value, as messages hold it, so that `read` returns it."""
     if kind.shape != "one":
         one = msgspec.structs.replace(kind, shape="one", size=0)
         return f"[{', '.join(write(one, each) for each in value)}]"
     if kind.base in ("string", "wstring"):
-        return _quoted(str(value))
+        return quoted(str(value), also="#=")  # which rosidl takes for itself even in quotes
     if kind.base == "bool":
         return "true" if value else "false"
     if NUMERIC.get(kind.base) in ("f", "d"):
@@ -143,22 +143,8 @@ def write(kind: FieldType, value: Any) -> str:
     return str(value[0] if isinstance(value, bytes) else int(value))
 
 
-def _quoted(text: str) -> str:
-    r"""In double quotes; ``#`` and ``=``, which rosidl takes for itself even in quotes, as ``\x23`` and ``\x3d``."""
-    return '"' + "".join(_character(each) for each in text) + '"'
-
-
-def _character(each: str) -> str:
-    if each in '\\"':
-        return "\\" + each
-    if each.isprintable() and each not in "#=":
-        return each
-    code = ord(each)
-    return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}" if code < 65536 else f"\\U{code:08x}"
-
-
 def as_rosidl_says(kind: FieldType, value: Any) -> str:
-    """Write a default as rosidl puts it into FieldDescription.default_value: Python's str, of arrays as tuples."""
+    """Format a default as rosidl does in FieldDescription.default_value: Python's str, of arrays as tuples."""
     if kind.shape != "one":
         one = msgspec.structs.replace(kind, shape="one", size=0)
         return repr(tuple(_plain(one, each) for each in value))
@@ -166,7 +152,7 @@ def as_rosidl_says(kind: FieldType, value: Any) -> str:
 
 
 def as_rosidl_said(kind: FieldType, text: str) -> Any:
-    """Read what `as_rosidl_says` wrote. Raises ValueError."""
+    """Parse what `as_rosidl_says` formatted. Raises ValueError."""
     if kind.shape != "one":
         if not (text.startswith("(") and text.endswith(")")):
             raise ValueError(f"'{shown(text)}' is no default of {kind}")

@@ -1,4 +1,4 @@
-"""A message on one line, as short as it can be told: what is not zero, empty or the default, by its path."""
+"""Summary of a message on one line: the fields that are not zero, empty or the default, by their paths."""
 
 from __future__ import annotations
 
@@ -6,20 +6,20 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
-from robolink.exceptions import shown
 from robolink.message.show import Style, shown_data
+from robolink.system.terminal import shown
 
 ELEMENTS = 4
-"""Elements of a sequence that are shown."""
+"""Upper bound of the elements shown of a sequence."""
 MEASURED = 10_000
-"""Numbers of which the least and the greatest are told; of more, an image say, only the first."""
+"""Longest sequence of which the least and the greatest number are shown; of a longer one, an image say, the first."""
 WIDTH = 110
-"""Characters of a line; a longer one leaves out what stands before a scan's ranges, else what stands last."""
+"""Width of a line in characters; a longer one leaves out what is before a scan's ranges, else what is last."""
 _TEXTS = Style(longest=60)
 
 
 def short(message: Any) -> str:
-    """Give a message on one line.
+    """Return a message on one line.
 
     >>> from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
     >>> short(Twist(linear=Vector3(x=0.25)))
@@ -68,7 +68,7 @@ def _leaves(message: Any, usual: Any, path: str) -> Iterator[tuple[str, Any]]:
 
 
 def _plain(value: Any) -> Any:
-    """Give a field as plain data; of a sequence what is short."""
+    """Return a field as plain data; of a sequence only a part."""
     if isinstance(value, (str, bytes)) or not hasattr(value, "__len__"):
         return shown_data(value, _TEXTS)
     if hasattr(next(iter(value), None), "__ros_fields__"):
@@ -96,7 +96,7 @@ def _element(message: Any) -> _Element:
 
 
 class _Numbers(NamedTuple):
-    """Many numbers: how many, the least finite one and the greatest."""
+    """Summary of many numbers: how many, the least finite one and the greatest."""
 
     length: int
     least: float

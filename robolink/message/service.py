@@ -1,4 +1,4 @@
-"""The base class of service types: a request and a response message.
+"""Base class of service types: a request and a response message.
 
 class SetBool(Service):
     class Request(Message):
@@ -20,7 +20,7 @@ from robolink.message.description import TypeDescription, combine
 
 
 class _EventOfService:
-    """`SetBool.Event`, made when it is first asked for: it needs a type of the packages above."""
+    """Descriptor of `SetBool.Event`, made when it is first asked for: it needs a type of the packages above."""
 
     def __get__(self, _: object, owner: type[Service]) -> type[Message]:
         if "_event" not in owner.__dict__:
@@ -39,7 +39,7 @@ def _event_type(service: type[Service]) -> type[Message]:
     body = {
         "__module__": service.__module__,
         "__qualname__": f"{service.__qualname__}.Event",
-        "__doc__": f"What service introspection publishes of {service.__name__}.",
+        "__doc__": f"Events of {service.__name__}, which service introspection publishes.",
         "__annotations__": annotations,
     }
     made: type[Message] = MessageMeta("Event", (Message,), body, type_name=f"{service.__ros_type__}_Event")
@@ -47,7 +47,7 @@ def _event_type(service: type[Service]) -> type[Message]:
 
 
 class Service:
-    """A service type; a subclass has the message classes `Request` and `Response`."""
+    """Base class of service types; a subclass has the message classes `Request` and `Response`."""
 
     __ros_type__: ClassVar[str]
     _event: ClassVar[type[Message]]
@@ -55,13 +55,13 @@ class Service:
     if TYPE_CHECKING:
 
         class Request(Message):
-            """What a client asks."""
+            """Request of a client."""
 
         class Response(Message):
-            """What a server answers."""
+            """Response of a server."""
 
         class Event(Message):
-            """What service introspection publishes."""
+            """Event of service introspection."""
 
     else:
         Event = _EventOfService()
@@ -80,13 +80,13 @@ class Service:
 
     @classmethod
     def describe(cls) -> TypeDescription:
-        """Describe the service as rosidl does: request, response and event message."""
+        """Return the description of the service as rosidl has it: request, response and event message."""
         parts = {"request_message": cls.Request, "response_message": cls.Response, "event_message": cls.Event}
         return combine(cls.__ros_type__, parts)
 
 
 def service_type(cls: Any) -> type[Service]:
-    """Give `cls` back if it is a service class. Raises MessageError otherwise."""
+    """Return `cls` if it is a service class. Raises MessageError otherwise."""
     if isinstance(cls, type) and issubclass(cls, Service):
         return cls
     raise MessageError(f"{cls!r} is no service class")

@@ -1,4 +1,4 @@
-"""A message as text for people: YAML like ros2's, or the values between commas; long ones are cut short."""
+"""Text of a message for people: YAML like ros2's, or comma-separated values; long ones are cut short."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.message.convert import to_builtins
 from robolink.message.slot_types import IDL_NAMES
-from robolink.terminal import fit, is_fit
+from robolink.system.terminal import fit, is_fit
 
 if TYPE_CHECKING:
     from robolink.message.annotations import FieldType
@@ -18,27 +18,27 @@ LONGEST = 128
 """Elements of a sequence, and characters of a text, that are shown unless all are asked for."""
 
 WIDEST = 2**31 - 1
-"""Columns of a line of YAML: it is never broken."""
+"""Width of a line of YAML in columns: it is never broken."""
 
 
 class Style(NamedTuple):
-    """How much of a message is shown, and in which style of YAML."""
+    """Options of how much of a message is shown, and in which style of YAML."""
 
     longest: int | None = LONGEST
     """Elements, or characters, after which comes '...'; None for all."""
     arrays: bool = True
-    """Whether sequences are shown, or only described."""
+    """True shows sequences, False only describes them."""
     strings: bool = True
-    """Whether texts are shown, or only described."""
+    """True shows texts, False only describes them."""
     flow: bool = False
-    """YAML's {a: [1, 2]} in place of indented blocks."""
+    """True writes YAML's {a: [1, 2]}, False indented blocks."""
 
 
 USUAL = Style()
 
 
 def as_yaml(value: Any, style: Style = USUAL) -> str:
-    """YAML of a message or of a field of one, without the last line break; fit for a terminal, and the same text."""
+    """Return the YAML of a message or a field, without the last line break; fit for a terminal, and the same text."""
     import yaml
 
     text = yaml.dump(
@@ -70,12 +70,12 @@ def _dumper() -> Any:
 
 
 def as_csv(value: Any, style: Style = USUAL) -> str:
-    """The values of all fields, also those deep inside, with commas between them; text stands as it is, as in ros2."""
+    """Return the values of all fields, nested ones too, separated by commas; text stands as it is, as in ros2."""
     return ",".join(map(str, _leaves(shown_data(value, style))))
 
 
 def plain(value: Any) -> Any:
-    """Give a message, or a field of one, as dicts, lists and scalars."""
+    """Return a message, or a field of one, as dicts, lists and scalars."""
     if hasattr(value, "__ros_fields__"):
         return to_builtins(value)
     if hasattr(value, "tolist"):
@@ -88,7 +88,7 @@ def plain(value: Any) -> Any:
 
 
 def shown_data(value: Any, style: Style, kind: FieldType | None = None) -> Any:
-    """Give what is shown of a value as plain data; what is cut off is never converted, so images cost nothing."""
+    """Return what is shown of a value as plain data; what is cut off is never converted, so images cost nothing."""
     if hasattr(value, "__ros_fields__"):
         return {name: shown_data(getattr(value, name), style, each) for name, each in value.__ros_fields__.items()}
     if isinstance(value, dict):

@@ -1,4 +1,4 @@
-"""What a message class says of its fields in rosidl's words: the names and objects that programs written for it read.
+"""rosidl's descriptions of a message's fields: the names and objects that programs written for it read.
 
 The names are those of ROS 2's IDL mapping (https://design.ros2.org/articles/legacy_interface_definition.html): a .msg
 `float64` is a `double`, `bool` a `boolean`, `byte` an `octet`, and `float32[]` a `sequence<float>`.
@@ -13,75 +13,75 @@ import msgspec
 from robolink.message.annotations import FieldType
 
 IDL_NAMES = {"bool": "boolean", "byte": "octet", "char": "uint8", "float32": "float", "float64": "double"}
-"""What rosidl calls a primitive where its name differs from the .msg file's."""
+"""rosidl's names of the primitives where they differ from the .msg file's."""
 
 
 class BasicType(msgspec.Struct, frozen=True):
-    """A number, a boolean or an octet."""
+    """Type of a number, a boolean or an octet."""
 
     typename: str
 
 
 class NamespacedType(msgspec.Struct, frozen=True):
-    """Another message: ``NamespacedType(("geometry_msgs", "msg"), "Point")``."""
+    """Type of a nested message: ``NamespacedType(("geometry_msgs", "msg"), "Point")``."""
 
     namespaces: tuple[str, ...]
     name: str
 
     def namespaced_name(self) -> tuple[str, ...]:
-        """All parts of the name."""
+        """Return all parts of the name."""
         return (*self.namespaces, self.name)
 
 
 class UnboundedString(msgspec.Struct, frozen=True):
-    """A string."""
+    """Type of a string."""
 
 
 class BoundedString(msgspec.Struct, frozen=True):
-    """A string of at most `maximum_size` bytes."""
+    """Type of a string of at most `maximum_size` bytes."""
 
     maximum_size: int
 
 
 class UnboundedWString(msgspec.Struct, frozen=True):
-    """A wstring."""
+    """Type of a wstring."""
 
 
 class BoundedWString(msgspec.Struct, frozen=True):
-    """A wstring of at most `maximum_size` UTF-16 units."""
+    """Type of a wstring of at most `maximum_size` UTF-16 units."""
 
     maximum_size: int
 
 
 class Array(msgspec.Struct, frozen=True):
-    """Exactly `size` elements."""
+    """Type of exactly `size` elements."""
 
     value_type: Any
     size: int
 
 
 class BoundedSequence(msgspec.Struct, frozen=True):
-    """At most `maximum_size` elements."""
+    """Type of at most `maximum_size` elements."""
 
     value_type: Any
     maximum_size: int
 
 
 class UnboundedSequence(msgspec.Struct, frozen=True):
-    """Any number of elements."""
+    """Type of any number of elements."""
 
     value_type: Any
 
 
 class SlotTypes:
-    """The attribute `SLOT_TYPES` of a message class: an object for each field, made when it is asked for."""
+    """Descriptor `SLOT_TYPES` of a message class: an object for each field, made when it is asked for."""
 
     def __get__(self, message: Any, owner: Any) -> tuple[Any, ...]:
         return tuple(slot_type(kind) for kind in owner.__ros_fields__.values())
 
 
 def slot_type(kind: FieldType) -> Any:
-    """Give the object that describes a field."""
+    """Return the object that describes a field."""
     element = _element(kind)
     if kind.shape == "one":
         return element
@@ -102,7 +102,7 @@ def _element(kind: FieldType) -> Any:
 
 
 def idl_name(kind: FieldType) -> str:
-    """Give a field's type as one word: ``sequence<float>``, ``double[36]``, ``string<10>``, ``geometry_msgs/Point``."""
+    """Return a field's type as a text: ``sequence<float>``, ``double[36]``, ``string<10>``, ``geometry_msgs/Point``."""
     element = IDL_NAMES.get(kind.base, kind.base.replace("/msg/", "/"))
     if kind.string_bound:
         element += f"<{kind.string_bound}>"

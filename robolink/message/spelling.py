@@ -1,21 +1,22 @@
-"""How ROS 2 spells the names of packages, types, fields and constants (rosidl's rules)."""
+"""rosidl's rules for the names of packages, types, fields and constants."""
 
 from __future__ import annotations
 
 import re
 
-from robolink.exceptions import MessageError, shown
+from robolink.exceptions import MessageError
+from robolink.system.terminal import shown
 
 LOWER = r"[a-z](?:_?[a-z0-9])*"
 PATTERNS = {"package": LOWER, "type": r"[A-Z][A-Za-z0-9]*", "field": LOWER, "constant": r"[A-Z](?:_?[A-Z0-9])*"}
-"""As text: every command imports this module, most need one of them at most."""
+"""Regular expressions of the names, as text: every command imports this module, most need one of them at most."""
 PART = (
     r"[A-Z][A-Za-z0-9]*_(?:Request|Response|Event|Goal|Result|Feedback|FeedbackMessage"
     r"|(?:SendGoal|GetResult)(?:_Request|_Response|_Event)?)"
 )
-"""What rosidl calls the parts of a service or an action: ``SetBool_Request``."""
+"""Regular expression of rosidl's names for the parts of a service or an action, such as ``SetBool_Request``."""
 LONGEST = 255
-"""Characters in a name; rosidl's own limit (HashedTypeDescription.schema.json)."""
+"""Upper bound of a name's length in characters; rosidl's own limit (HashedTypeDescription.schema.json)."""
 
 RIGHT = {
     "package": "a-z, digits and single underscores, as in my_robot_msgs",
@@ -23,10 +24,11 @@ RIGHT = {
     "field": "a-z, digits and single underscores, as in max_speed",
     "constant": "A-Z, digits and single underscores, as in MAX_SPEED",
 }
+"""Rules of the names in words."""
 
 
 def wrong_name(what: str, name: str) -> str:
-    """Say what is wrong with the name of a `what` (a key of PATTERNS); '' when it is right.
+    """Return what is wrong with the name of a `what` (a key of PATTERNS); '' if it is right.
 
     >>> wrong_name("field", "maxSpeed")
     "'maxSpeed' is no field name: a-z, digits and single underscores, as in max_speed"
@@ -54,5 +56,5 @@ def split_type_name(name: str) -> tuple[str, str, str]:
 
 
 def is_part(kind: str, short: str) -> bool:
-    """Whether a type is the part of a service or action, by its kind and name: ``srv``, ``SetBool_Request``."""
+    """True if a type is the part of a service or action, by its kind and name: ``srv``, ``SetBool_Request``."""
     return kind != "msg" and len(short) <= LONGEST and re.fullmatch(PART, short) is not None

@@ -1,10 +1,11 @@
-"""Writes the .msg, .srv or .action text of a class: the text that it came from, or one made of its fields."""
+"""Writer of a class as .msg, .srv or .action text: the text that it came from, or one made of its fields."""
 
 from __future__ import annotations
 
 import ast
 import inspect
 import textwrap
+import threading
 from collections.abc import Iterator
 from typing import Any
 
@@ -16,18 +17,22 @@ from robolink.message.base import Message
 from robolink.message.definition import SECTIONS
 
 WIDTH = 120
-"""Characters in a line of comment, its ``#`` included."""
+"""Width of a line of comment in characters, its ``#`` included."""
+
+
+_parsing = threading.Lock()
+"""Held while source is parsed: Python 3.11's parsers, in two threads, raise SystemError at each other."""
 
 
 class Comments(msgspec.Struct, frozen=True):
-    """What a Python class body says beside a field or constant."""
+    """Comments of a field or constant in a Python class body."""
 
     above: tuple[str, ...] = ()
     behind: str = ""
 
 
 def text_of(cls: type[Any]) -> str:
-    """Give the text of a message, service or action class, as an interface file would have it.
+    """Return the text of a message, service or action class, as an interface file would have it.
 
     A class that came from an interface file has that file's text. Of a class written in Python the docstring stands
     at the head, and comments and docstrings of its fields stand beside them.
@@ -64,7 +69,7 @@ def _message_text(cls: type[Message]) -> str:
 
 
 def _type(kind: FieldType, cls: type[Message]) -> str:
-    """The type as a field of `cls` says it: messages of its own package by their bare name."""
+    """Return the type of a field of `cls`: messages of its own package by their bare name."""
     own = cls.__ros_type__.partition("/")[0] + "/"
     text = str(kind)
     return text.removeprefix(own) if text.count("/") == 1 else text
@@ -77,7 +82,7 @@ def _head(cls: type[Any]) -> Iterator[str]:
 
 
 def _wrapped(text: str) -> list[str]:
-    """Lines of comment; a line that is indented, an example, stays as it is."""
+    """Return the lines of a comment; a line that is indented, an example, stays as it is."""
     if not text.strip():
         return ["#"]
     if text[0].isspace() or len(text) <= WIDTH - 2:
@@ -92,11 +97,12 @@ def _with_comments(line: str, comments: Comments) -> Iterator[str]:
 
 
 def _comments(cls: type[Message]) -> dict[str, Comments]:
-    """What the class's source says about its fields: ``#`` above and behind, and the docstring below."""
+    """Return the comments of a class's source by field: ``#`` above and behind, and the docstring below."""
     try:
         source = textwrap.dedent(inspect.getsource(cls))
-        body = ast.parse(source).body[0]
-    except (OSError, TypeError, SyntaxError, IndexError):  # no source: made at run time, or typed in
+        with _parsing:
+            body = ast.parse(source).body[0]
+    except (OSError, TypeError, SyntaxError, IndexError, SystemError):  # no source: made at run time, or typed in
         return {}
     if not isinstance(body, ast.ClassDef):
         return {}
@@ -123,7 +129,7 @@ def _comment(line: str) -> str:
 
 
 def _docstring(following: ast.stmt | None) -> list[str]:
-    """The lines of a statement that is nothing but a string."""
+    """Return the lines of a statement that is nothing but a string."""
     value = following.value if isinstance(following, ast.Expr) else None
     if isinstance(value, ast.Constant) and isinstance(value.value, str):
         return inspect.cleandoc(value.value).splitlines()

@@ -1,17 +1,19 @@
-"""A 2D world with robots: exact lidar, driven by force, deterministic. Knows no nodes and no messages."""
+"""Deterministic 2D simulator: robots driven by force, exact lidars. Knows no nodes and no messages."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robolink.lacking import lazily
+from robolink.text.suggestions import lazily
 
 if TYPE_CHECKING:
-    from robolink.sim.description import Pose, RobotDescription, WorldDescription
+    from robolink.sim.description import RobotDescription, WorldDescription
     from robolink.sim.driving.drive import CommandError
     from robolink.sim.physics.placing import WorldError
-    from robolink.sim.readings import Inertia, Reading, Scan, Velocity, WheelState
+    from robolink.sim.quantities import Pose
+    from robolink.sim.readings import Inertia, Scan, Velocity, WheelState
     from robolink.sim.robot import Robot
+    from robolink.sim.schedule import Reading
     from robolink.sim.world import World
     from robolink.sim.worldfile import check_world, load_world
 
@@ -35,8 +37,8 @@ __all__ = [
 _HOMES = {
     "CommandError": "driving.drive",
     "Inertia": "readings",
-    "Pose": "description",
-    "Reading": "readings",
+    "Pose": "quantities",
+    "Reading": "schedule",
     "Robot": "robot",
     "RobotDescription": "description",
     "Scan": "readings",

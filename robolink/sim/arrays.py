@@ -1,4 +1,4 @@
-"""The types of what is computed for many at once."""
+"""Type aliases of numpy arrays, and of poses as plain tuples."""
 
 from __future__ import annotations
 
@@ -12,4 +12,4 @@ Array: TypeAlias = "npt.NDArray[np.float64]"
 Indices: TypeAlias = "npt.NDArray[np.intp]"
 
 Place: TypeAlias = "tuple[float, float, float]"
-"""x, y and heading in the world: a pose as a plain tuple, where many are made at each step."""
+"""A pose (x, y, heading in the world) as a plain tuple, where many are made at each step."""

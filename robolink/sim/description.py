@@ -1,4 +1,4 @@
-"""What a world file may say, as Structs: the keys, their units, limits and defaults.
+"""Structs of a world file: its keys, with their units, limits and defaults.
 
 Metres, radians (degrees where a field of view is meant), seconds, kilograms. Poses are ``[x, y, theta]``.
 """
@@ -7,39 +7,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Literal
 
 from msgspec import Meta, Struct
 
-from robolink import plane
-
-FARTHEST = 100_000.0
-"""Metres from the origin at most."""
+from robolink.sim.quantities import Length, Limit, Mass, Point, Pose, Rate, Share
+from robolink.sim.sensors import Sensor
 
 GRAVITY = 9.81
-"""m/s²."""
-
-Coordinate: TypeAlias = Annotated[float, Meta(ge=-FARTHEST, le=FARTHEST)]
-Angle: TypeAlias = Annotated[float, Meta(ge=-6.2832, le=6.2832)]  # one turn: who writes 90 meant degrees
-Length: TypeAlias = Annotated[float, Meta(ge=0.001, le=100_000.0)]
-Mass: TypeAlias = Annotated[float, Meta(ge=0.001, le=100_000.0)]
-Rate: TypeAlias = Annotated[float, Meta(ge=0.001, le=10_000.0)]
-Limit: TypeAlias = Annotated[float, Meta(ge=0.001, le=1000.0)]
-Share: TypeAlias = Annotated[float, Meta(ge=0.0, le=1.0)]
-Point: TypeAlias = tuple[Coordinate, Coordinate]
-
-
-class Pose(Struct, frozen=True, array_like=True, forbid_unknown_fields=True):
-    """A place and a heading in the plane: metres, and radians counter-clockwise from the x axis."""
-
-    x: Coordinate
-    y: Coordinate
-    theta: Angle = 0.0
-
-    @property
-    def place(self) -> plane.Pose:
-        """The same as `robolink.plane` computes with."""
-        return plane.Pose(self.x, self.y, self.theta)
+"""Acceleration of gravity, in m/s²."""
 
 
 class Settings(Struct, frozen=True, forbid_unknown_fields=True):
@@ -60,7 +36,7 @@ class Wall(Struct, frozen=True, forbid_unknown_fields=True):
     reflectance: Share = 1.0
 
     def segments(self) -> list[tuple[Point, Point]]:
-        """Give the wall as pairs of end points."""
+        """Return the wall as pairs of end points."""
         ends = [*self.polyline[1:], self.polyline[0]] if self.closed else self.polyline[1:]
         return list(zip(self.polyline, ends, strict=False))
 
@@ -69,11 +45,11 @@ class MapWalls(Wall, frozen=True):
     """The walls that a map's occupied cells have towards free ones: each two points of `polyline` are one of them."""
 
     def segments(self) -> list[tuple[Point, Point]]:
-        """Give the walls as pairs of end points."""
+        """Return the walls as pairs of end points."""
         return list(zip(self.polyline[::2], self.polyline[1::2], strict=True))
 
     def enclose(self, x: float, y: float) -> bool:
-        """Say whether a point is among occupied cells: on the way out from there one meets an odd number of walls."""
+        """True if a point is among occupied cells: a ray from there crosses an odd number of walls."""
         met = 0
         for (x1, y1), (x2, y2) in self.segments():
             met += (y1 > y) != (y2 > y) and x1 + (y - y1) * (x2 - x1) / (y2 - y1) > x
@@ -91,24 +67,24 @@ class Shape(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     polygon: Annotated[tuple[Point, ...], Meta(min_length=3, max_length=1000)] | None = None
 
     def corners(self) -> list[Point]:
-        """Give the corners of a box or polygon, counter-clockwise; a circle has none."""
+        """Return the corners of a box or polygon, counter-clockwise; a circle has none."""
         if self.polygon is not None:
             return list(self.polygon if signed_area(self.polygon) > 0.0 else reversed(self.polygon))
         x, y = (side / 2 for side in self.box or (0.0, 0.0))
         return [(x, y), (-x, y), (-x, -y), (x, -y)] if self.box else []
 
     def inner_radius(self) -> float:
-        """Give the distance of the nearest point of the outline from the origin, in metres; 0 if that is outside."""
+        """Return the distance of the nearest point of the outline from the origin, in metres; 0 if that is outside."""
         if self.polygon is not None:
             return _inner_radius(self.corners())
         return self.circle or min(self.box or (0.0, 0.0)) / 2
 
     def outer_radius(self) -> float:
-        """Give the distance of the farthest point from the origin, in metres."""
+        """Return the distance of the farthest point from the origin, in metres."""
         return self.circle or max((math.hypot(*corner) for corner in self.corners()), default=0.0)
 
     def inertia(self, mass: float) -> float:
-        """Give the moment of inertia about the origin of a solid of this shape, in kg m²."""
+        """Return the moment of inertia about the origin of a solid of this shape, in kg m²."""
         if self.circle is not None:
             return mass * self.circle**2 / 2
         corners = self.corners()
@@ -119,12 +95,12 @@ class Shape(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
 
 def signed_area(polygon: Sequence[Point]) -> float:
-    """Give the area of a polygon in m², negative if it goes round clockwise."""
+    """Return the area of a polygon in m², negative if it goes round clockwise."""
     return math.fsum(x1 * y2 - x2 * y1 for (x1, y1), (x2, y2) in _pairs(polygon)) / 2
 
 
 def turn(a: Point, b: Point, c: Point) -> float:
-    """Give twice the area of a triangle in m²: positive if c lies to the left of the way from a to b."""
+    """Return twice the signed area of a triangle in m²: positive if c lies to the left of the way from a to b."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
@@ -133,7 +109,7 @@ def _pairs(polygon: Sequence[Point]) -> Iterator[tuple[Point, Point]]:
 
 
 def _inner_radius(corners: Sequence[Point]) -> float:
-    """Give the distance from the origin to a polygon's nearest edge; 0 unless the origin lies inside."""
+    """Return the distance from the origin to a polygon's nearest edge; 0 unless the origin lies inside."""
     inside, nearest = False, math.inf
     for (x1, y1), (x2, y2) in _pairs(corners):
         if (y1 > 0.0) != (y2 > 0.0) and x1 - y1 * (x2 - x1) / (y2 - y1) > 0.0:
@@ -145,7 +121,7 @@ def _inner_radius(corners: Sequence[Point]) -> float:
 
 
 class Obstacle(Shape, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """A thing in the way: fixed, or with a mass one that can be pushed, or one that moves along a `path` by itself.
+    """An obstacle: fixed, or with a `mass` one that can be pushed, or one that moves along a `path` by itself.
 
     It goes along its path at `speed` m/s whatever is in its way, to the end and back, or round and round if the
     path is `closed`. `reflectance` is the share of light that it sends back.
@@ -160,7 +136,7 @@ class Obstacle(Shape, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     @property
     def start(self) -> Pose:
-        """Where it is in the beginning: its pose, or the first point of its path."""
+        """The pose at the start: `pose`, or the first point of `path`."""
         return self.pose or Pose(*(self.path or ((0.0, 0.0),))[0])
 
 
@@ -171,7 +147,7 @@ class Map(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Drive(Struct, frozen=True, forbid_unknown_fields=True):
-    """What drives a robot: limits in m/s, rad/s, m/s², rad/s²; it stops `timeout` seconds after its last command.
+    """The drive of a robot: limits in m/s, rad/s, m/s², rad/s²; it stops `timeout` seconds after its last command.
 
     `diff` goes ahead and turns; `omni` goes sideways too; `ackermann` steers like a car, its reference point in the
     middle of the rear axle, `wheelbase` metres behind the front axle, and turns its wheels by `steer_max` radians at
@@ -202,7 +178,7 @@ class Wheel(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class OdomNoise(Struct, frozen=True, forbid_unknown_fields=True):
-    """How wrong the speeds of odometry are, as standard deviations: a share of `v` and of `w`, anew at each step."""
+    """Noise of the speeds of odometry: standard deviations as a share of `v` and of `w`, drawn at each step."""
 
     v: Share = 0.0
     w: Share = 0.0
@@ -216,128 +192,28 @@ class Odom(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class GroundTruth(Struct, frozen=True, forbid_unknown_fields=True):
-    """Where the robot truly is, published `rate` times a second."""
+    """The true pose and speeds, published `rate` times a second."""
 
     rate: Rate = 10.0
-
-
-class Sensor:
-    """What a robot senses with; a sensor's first key says its kind and names its topic."""
-
-    __slots__ = ()
-    rate: float
-
-    @property
-    def kind(self) -> str:
-        """The kind of sensor, as a world file spells it: `lidar`, `imu` ..."""
-        fields: tuple[str, ...] = self.__struct_fields__  # type: ignore[attr-defined]
-        return fields[0]
-
-    @property
-    def topic(self) -> str:
-        """The topic that the sensor publishes on."""
-        return str(getattr(self, self.kind))
-
-    @property
-    def mount(self) -> Pose | None:
-        """Where it is on the robot; None for a sensor that has no place of its own."""
-        return getattr(self, "offset", None)
-
-
-class Looking(Sensor):
-    """A sensor that looks or feels into a sector, `fov` degrees wide."""
-
-    __slots__ = ()
-    fov: float
-
-    @property
-    def right(self) -> float:
-        """The right end of its sector, in degrees from ahead: `start`, by default half of `fov` to the right."""
-        start: float | None = getattr(self, "start", None)
-        return -self.fov / 2 if start is None else start
-
-
-class Bumper(Looking, Struct, frozen=True, forbid_unknown_fields=True):
-    """Tells, on the topic `bumper`, whether the robot touches something within `fov` degrees about `start`'s middle.
-
-    `fov` and `start` (the sector's right end; by default half of `fov` to the right) are in degrees.
-    """
-
-    bumper: str
-    rate: Rate = 10.0
-    fov: Annotated[float, Meta(ge=0.01, le=360.0)] = 360.0
-    start: Annotated[float, Meta(ge=-360.0, le=360.0)] | None = None
-
-
-class ImuNoise(Struct, frozen=True, forbid_unknown_fields=True):
-    """Standard deviations of a reading: turning in rad/s, acceleration in m/s²."""
-
-    gyro: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0
-    accel: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0
-
-
-class Imu(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
-    """An inertial unit on the topic `imu`: heading, turning speed and acceleration, in the robot's frame."""
-
-    imu: str
-    rate: Rate = 50.0
-    noise: ImuNoise = ImuNoise()
-
-
-class RangeFinder(Looking, Struct, frozen=True, forbid_unknown_fields=True):
-    """A sonar or infrared sensor on the topic `range_finder`: the distance to the nearest thing within its cone.
-
-    `fov` is in degrees, `range` is [nearest, farthest] in metres, `noise` a standard deviation in metres, `offset`
-    its pose on the robot.
-    """
-
-    range_finder: str
-    rate: Rate = 10.0
-    fov: Annotated[float, Meta(ge=0.01, le=180.0)] = 15.0
-    range: tuple[Annotated[float, Meta(ge=0.0, le=10_000.0)], Length] = (0.02, 4.0)
-    noise: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0
-    offset: Pose = Pose(0.0, 0.0, 0.0)
-    radiation: Literal["ultrasound", "infrared"] = "ultrasound"
-
-
-class Encoders(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
-    """The turns of all wheels on the topic `encoders`, counted in `ticks` to a turn (0: exactly)."""
-
-    encoders: str
-    rate: Rate = 50.0
-    ticks: Annotated[int, Meta(ge=0, le=10_000_000)] = 0
-
-
-class Lidar(Looking, Struct, frozen=True, forbid_unknown_fields=True):
-    """A planar laser scanner that publishes on the topic `lidar`.
-
-    `fov` and `start` (the first beam; by default half of `fov` to the right) are in degrees, `range` is
-    [nearest, farthest] in metres, `noise` a standard deviation in metres, `dropout` the share of beams that get
-    no return, `offset` its pose on the robot. A full circle has a beam each 360/beams degrees, so that none is
-    doubled; a smaller field of view has a beam at both ends. With `intensities` a scan also tells how much light
-    came back: the reflectance of what was hit, times the cosine of the angle at which the beam met it.
-    """
-
-    lidar: str
-    rate: Rate = 10.0
-    beams: Annotated[int, Meta(ge=2, le=100_000)] = 360
-    fov: Annotated[float, Meta(ge=0.01, le=360.0)] = 360.0
-    start: Annotated[float, Meta(ge=-360.0, le=360.0)] | None = None
-    range: tuple[Annotated[float, Meta(ge=0.0, le=10_000.0)], Length] = (0.12, 12.0)
-    noise: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0
-    dropout: Share = 0.0
-    offset: Pose = Pose(0.0, 0.0, 0.0)
-    intensities: bool = False
 
 
 MOST_WALLS, MOST_OBSTACLES, MOST_ROBOTS, MOST_SENSORS = 10_000, 5_000, 1_000, 100
-"""How many of each a world file may list, and a robot of sensors; a map has walls of its own."""
+"""Most walls, obstacles and robots of a world file, and most sensors of a robot; the walls of a map do not count."""
 
 
 class RobotDescription(Struct, frozen=True, forbid_unknown_fields=True):
-    """A robot: where it starts, its outline, what drives it and what it senses.
+    """Robot of a world file.
 
-    With `wheels` their motors can be driven one by one, and what turns is told by encoders.
+    Args:
+        name: Name, which is that of its namespace.
+        pose: Pose at the start, in metres and radians.
+        shape: Outline.
+        mass: Mass in kg.
+        drive: Drive, with its limits.
+        wheels: Wheels, whose motors can be driven one by one, with encoders.
+        odom: Odometry, with its noise.
+        ground_truth: True pose, as it is published.
+        sensors: Sensors.
     """
 
     name: str
@@ -352,7 +228,7 @@ class RobotDescription(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class WorldDescription(Struct, frozen=True, forbid_unknown_fields=True):
-    """A whole world file."""
+    """Whole world file: settings of the `world`, its `map`, `walls`, `obstacles` and `robots`."""
 
     world: Settings = Settings()
     map: Map | None = None
@@ -361,18 +237,8 @@ class WorldDescription(Struct, frozen=True, forbid_unknown_fields=True):
     robots: Annotated[tuple[RobotDescription, ...], Meta(max_length=MOST_ROBOTS)] = ()
 
 
-SENSORS: dict[str, type[Sensor]] = {
-    "lidar": Lidar,
-    "bumper": Bumper,
-    "imu": Imu,
-    "range_finder": RangeFinder,
-    "encoders": Encoders,
-}
-"""The kinds of sensors, by the key that says which."""
-
-
 def steps_between(rate: float, dt: float) -> int:
-    """Give the whole number of steps of `dt` seconds from one reading to the next at `rate` Hz; 0 if there is none."""
+    """Return the whole number of steps of `dt` seconds between two readings at `rate` Hz; 0 if it is not whole."""
     steps = 1.0 / (rate * dt)
     whole = round(steps)
     return whole if whole >= 1 and abs(steps - whole) < 1e-6 * steps else 0

@@ -1,20 +1,23 @@
-"""What a robot tells of itself: its speeds, its wheels, and what its sensors have measured."""
+"""Values that a robot and its sensors measure: speeds, wheels, scans, inertia."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import NamedTuple
 
 from robolink.sim.arrays import Array
-from robolink.sim.description import Sensor
-
-if TYPE_CHECKING:
-    from robolink.sim.robot import Robot
 
 
 class Scan(NamedTuple):
-    """One scan: angles in radians, ranges in metres as float64; +inf no return, -inf nearer than `range_min`.
+    """Scan of a lidar.
 
-    `intensities` are the shares of light that came back, 0 to 1, if the lidar has them.
+    Args:
+        angle_min: Angle of the first beam, in radians.
+        angle_max: Angle of the last beam, in radians.
+        angle_increment: Angle from beam to beam, in radians.
+        range_min: Shortest range that is measured, in metres.
+        range_max: Longest range that is measured, in metres.
+        ranges: Ranges in metres, float64; +inf is no return, -inf is nearer than `range_min`.
+        intensities: Shares of the light that came back, 0 to 1, if the lidar has them.
     """
 
     angle_min: float
@@ -27,7 +30,7 @@ class Scan(NamedTuple):
 
 
 class Velocity(NamedTuple):
-    """Forward speed in m/s, turning speed in rad/s counter-clockwise, and speed to the left in m/s."""
+    """Velocity: `v` forward in m/s, `w` of turning in rad/s counter-clockwise, and `sideways`, to the left, in m/s."""
 
     v: float
     w: float
@@ -35,7 +38,7 @@ class Velocity(NamedTuple):
 
 
 class WheelState(NamedTuple):
-    """How far a motor has turned its wheel since the start, in radians, and how fast it turns, in rad/s."""
+    """State of the wheel of a `motor`: `position`, the angle turned since the start in rad, and `speed` in rad/s."""
 
     motor: str
     position: float
@@ -43,24 +46,16 @@ class WheelState(NamedTuple):
 
 
 class Inertia(NamedTuple):
-    """What an inertial unit reads: heading in radians, turning in rad/s, acceleration ahead and to the left in m/s²."""
+    """Reading of an inertial unit.
+
+    Args:
+        heading: Heading in radians.
+        turning: Turning speed in rad/s, to the left if positive.
+        ax: Acceleration ahead, in m/s².
+        ay: Acceleration to the left, in m/s².
+    """
 
     heading: float
     turning: float
     ax: float
     ay: float
-
-
-Value: TypeAlias = "Scan | bool | Inertia | float | tuple[WheelState, ...]"
-
-
-class Reading(NamedTuple):
-    """What one sensor has measured.
-
-    `value` is a `Scan` of a lidar, whether a bumper was touched since its last reading, the `Inertia` of an imu,
-    the metres of a range finder (inf and -inf as of a scan), the `WheelState` of each of the encoders' wheels.
-    """
-
-    robot: Robot
-    sensor: Sensor
-    value: Value

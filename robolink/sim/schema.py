@@ -1,4 +1,4 @@
-"""The JSON schema of world files: what editors complete, explain and underline while one writes.
+"""The JSON schema of world files, with which editors complete, explain and check them.
 
 Draft 7, which the editors' YAML servers know; msgspec writes a later draft, whose pairs look otherwise.
 """
@@ -11,7 +11,8 @@ from typing import Any, TypeAlias
 
 import msgspec
 
-from robolink.sim.description import SENSORS, Sensor, WorldDescription
+from robolink.sim.description import WorldDescription
+from robolink.sim.sensors import SENSORS, Sensor
 
 Schema: TypeAlias = "dict[str, Any]"
 
@@ -21,76 +22,67 @@ MEANINGS = {
     "WorldDescription.world": "The world as a whole.",
     "WorldDescription.map": "A map of ROS's map_server, whose occupied cells become walls.",
     "WorldDescription.walls": "Lines of walls, without thickness.",
-    "WorldDescription.obstacles": "What else stands or moves in the world.",
+    "WorldDescription.obstacles": "Obstacles: fixed, pushed, or moving along a path.",
     "WorldDescription.robots": "The robots; with several, each one's name is the namespace of its topics.",
-    "Settings.name": "What the world is called.",
+    "Settings.name": "Name of the world.",
     "Settings.size": "Width and height in metres, from [0, 0]; everything must lie within.",
-    "Settings.dt": "Seconds of a step.",
-    "Settings.rtf": "How many times faster than real time; 0 is as fast as it goes.",
-    "Settings.seed": "What all noise is made from: the same seed, the same noise.",
+    "Settings.dt": "Length of a step in seconds.",
+    "Settings.rtf": "Real-time factor; 0 is as fast as possible.",
+    "Settings.seed": "Seed of all noise: the same seed, the same noise.",
     "Map.yaml": "The path of the map's YAML file, from the world file's folder.",
     "Wall.polyline": "Points [x, y] in metres, joined in this order.",
-    "Wall.closed": "Whether the last point is joined to the first.",
-    "Obstacle.pose": "Where it stands: [x, y, theta].",
-    "Obstacle.mass": "Kilograms: with a mass it can be pushed.",
+    "Wall.closed": "True: the last point is joined to the first.",
+    "Obstacle.pose": "Pose: [x, y, theta].",
+    "Obstacle.mass": "Mass in kg: with a mass it can be pushed.",
     "Obstacle.path": "Points [x, y] along which it moves by itself.",
-    "Obstacle.speed": "m/s along its path.",
-    "Obstacle.closed": "Round and round, from the last point of the path to the first, instead of to and fro.",
-    "Pose.x": "Metres.",
-    "Pose.y": "Metres.",
-    "Pose.theta": "Radians, counter-clockwise from the x axis.",
+    "Obstacle.speed": "Speed along its path, in m/s.",
+    "Obstacle.closed": "True: round and round, from the last point to the first; false: to and fro.",
+    "Pose.x": "Position along x, in metres.",
+    "Pose.y": "Position along y, in metres.",
+    "Pose.theta": "Heading in radians, counter-clockwise from the x axis.",
     "RobotDescription.name": "Letters, digits and '_', a letter first.",
-    "RobotDescription.pose": "Where it starts: [x, y, theta].",
-    "RobotDescription.shape": "Its outline about its origin; 0.17 m round by default.",
-    "RobotDescription.mass": "Kilograms.",
-    "RobotDescription.drive": "What drives it, and its limits.",
+    "RobotDescription.pose": "Pose at the start: [x, y, theta].",
+    "RobotDescription.shape": "Outline about its origin; a circle with a radius of 0.17 m by default.",
+    "RobotDescription.mass": "Mass in kg.",
+    "RobotDescription.drive": "Kind of drive, and its limits.",
     "RobotDescription.wheels": "Wheels, each turned by a motor of its own that can be driven by name.",
     "RobotDescription.odom": "Odometry, on the topic odom and as a transform.",
-    "RobotDescription.ground_truth": "Where it truly is.",
-    "RobotDescription.sensors": "What it senses with; each one's first key says its kind and names its topic.",
+    "RobotDescription.ground_truth": "True pose, on the topic ground_truth.",
+    "RobotDescription.sensors": "Sensors; the first key of each is its kind, with its topic as the value.",
     "Drive.type": "diff: ahead and round; omni: sideways too; ackermann: steered like a car.",
-    "Drive.v_max": "Most m/s.",
-    "Drive.w_max": "Most rad/s.",
-    "Drive.a_max": "Most m/s².",
-    "Drive.alpha_max": "Most rad/s².",
-    "Drive.timeout": "Seconds after the last command until it stops.",
-    "Drive.wheelbase": "Metres between the axles (ackermann).",
-    "Drive.steer_max": "Most radians that the front wheels turn by (ackermann).",
-    "Drive.steer_rate": "Most rad/s that they turn at (ackermann).",
+    "Drive.v_max": "Largest speed in m/s.",
+    "Drive.w_max": "Largest turning speed in rad/s.",
+    "Drive.a_max": "Largest acceleration in m/s².",
+    "Drive.alpha_max": "Largest angular acceleration in rad/s².",
+    "Drive.timeout": "Time from the last command until it stops, in seconds.",
+    "Drive.wheelbase": "Distance between the axles in metres (ackermann).",
+    "Drive.steer_max": "Largest steering angle in radians (ackermann).",
+    "Drive.steer_rate": "Largest steering speed in rad/s (ackermann).",
     "Wheel.motor": "The motor's name.",
-    "Wheel.at": "Where it stands on the robot, and which way it rolls: [x, y, theta].",
-    "Wheel.radius": "Metres.",
-    "Wheel.speed_max": "Most rad/s.",
-    "Odom.noise": "How wrong odometry's speeds are.",
+    "Wheel.at": "Position on the robot and rolling direction: [x, y, theta].",
+    "Wheel.radius": "Radius in metres.",
+    "Wheel.speed_max": "Largest speed in rad/s.",
+    "Odom.noise": "Noise of the speeds of odometry.",
     "OdomNoise.v": "Standard deviation as a share of the speed.",
     "OdomNoise.w": "Standard deviation as a share of the turning speed.",
-    "ImuNoise.gyro": "Standard deviation in rad/s.",
-    "ImuNoise.accel": "Standard deviation in m/s².",
-    "Imu.noise": "Standard deviations of a reading.",
-    "Bumper.fov": "Degrees of the sector that feels; 360 is all round.",
-    "Encoders.ticks": "Ticks to a turn; 0 counts exactly.",
-    "RangeFinder.radiation": "What it measures with.",
-    "Lidar.beams": "Beams of a scan.",
-    "Lidar.dropout": "The share of beams that get no return.",
-    "Lidar.intensities": "Whether a scan also tells how much light came back.",
     "box": "Length along x and width along y in metres.",
     "circle": "Radius in metres.",
     "polygon": "Corners [x, y] in metres, in their order round the outline.",
     "fov": "Field of view in degrees.",
     "noise": "Standard deviation in metres.",
-    "offset": "Where it sits on the robot: [x, y, theta].",
-    "range": "Nearest and farthest in metres.",
-    "rate": "Times a second; a whole number of steps must lie between two.",
-    "reflectance": "The share of light that it sends back, which a lidar's intensities tell.",
-    "start": "Degrees of the right end of the field of view; by default half of it to the right.",
+    "offset": "Pose on the robot: [x, y, theta].",
+    "range": "Shortest and longest range in metres.",
+    "rate": "Rate in Hz; the period must be a whole number of steps.",
+    "reflectance": "Share of light that it reflects, for a lidar's intensities.",
+    "start": "Right end of the field of view in degrees; by default half of it to the right.",
 }
-"""What each key means, by Struct and key, or by a key that means the same wherever it stands."""
+"""Descriptions of keys: by Struct and key, or by a key that means the same everywhere; those of sensors stand there."""
 
 _OUTLINES = [{"required": [kind]} for kind in ("box", "circle", "polygon")]
 
 
 def world_schema() -> Schema:
-    """Give the schema of world files as plain data."""
+    """Return the schema of world files as plain data."""
     types = [WorldDescription, *SENSORS.values()]
     _, parts = msgspec.json.schema_components(types, schema_hook=_any_sensor, ref_template="#/definitions/{name}")
     definitions = {name: _described(name, _draft_7(part)) for name, part in sorted(parts.items())}
@@ -101,19 +93,19 @@ def world_schema() -> Schema:
 
 
 def schema_text() -> str:
-    """Give the schema as the text of a file."""
+    """Return the schema as the text of a file."""
     return json.dumps(world_schema(), indent=2, ensure_ascii=False) + "\n"
 
 
 def _any_sensor(kind: type) -> Schema:
-    """Give the schema of what can stand in a list of sensors."""
+    """Return the schema of an item in a list of sensors."""
     if kind is not Sensor:
         raise NotImplementedError(kind)
     return {"oneOf": [{"$ref": f"#/definitions/{each.__name__}"} for each in SENSORS.values()]}
 
 
 def _draft_7(part: Any) -> Any:
-    """Spell a part of a schema as draft 7 does: pairs, and what stands beside a reference."""
+    """Convert a part of a schema to draft 7: pairs, and keys beside a reference."""
     if isinstance(part, list):
         return [_draft_7(each) for each in part]
     if not isinstance(part, dict):
@@ -121,7 +113,7 @@ def _draft_7(part: Any) -> Any:
     told = {key: value for key, value in part.items() if key != "default" or _is_telling(value)}
     made = {key: _draft_7(value) for key, value in told.items()}
     if "description" in made:
-        made["description"] = inspect.cleandoc(made["description"])
+        made["description"] = inspect.cleandoc(made["description"]).partition("\n\nArgs:")[0]  # keys say their own
     if "prefixItems" in made:
         made["items"], made["additionalItems"] = made.pop("prefixItems"), False
     if "$ref" in made and len(made) > 1:
@@ -130,15 +122,20 @@ def _draft_7(part: Any) -> Any:
 
 
 def _is_telling(default: Any) -> bool:
-    """Say whether a default tells a writer anything: those of whole parts only say that they may be left out."""
+    """True if a default helps a writer: those of whole parts only say that they may be left out."""
     return default is not None and default != [] and not isinstance(default, dict)
 
 
 def _described(name: str, part: Schema) -> Schema:
-    """Add what each key of a Struct means."""
+    """Add the description of each key of a Struct. Raises LookupError for a key that has none."""
     for key, schema in part.get("properties", {}).items():
-        meaning = "The topic that it publishes on." if key in SENSORS else MEANINGS.get(f"{name}.{key}")
-        schema["description"] = meaning or MEANINGS[key]
+        topic = "The topic that it publishes on." if key in SENSORS else None
+        meaning = schema.get("description") or topic or MEANINGS.get(f"{name}.{key}") or MEANINGS.get(key)
+        if meaning is None:
+            raise LookupError(
+                f"{name}.{key} has no description for editors: give it Annotated[..., Meta(description=...)]"
+            )
+        schema["description"] = meaning
         if "$ref" in schema:
             schema["allOf"] = [{"$ref": schema.pop("$ref")}]
     return part

@@ -14,7 +14,8 @@ from types import MappingProxyType
 
 import pymunk
 
-from robolink.exceptions import NotFoundError, shown
+from robolink.exceptions import NotFoundError
+from robolink.geometry import plane
 from robolink.sim.checks.problem import Problem
 from robolink.sim.checks.robots import robot_problems
 from robolink.sim.checks.worlds import mass_problems
@@ -24,24 +25,27 @@ from robolink.sim.physics.bodies import body_at, floor_friction, pushable_body, 
 from robolink.sim.physics.contacts import Contacts
 from robolink.sim.physics.mover import Mover
 from robolink.sim.physics.placing import WorldError, check_pose
-from robolink.sim.readings import Reading
 from robolink.sim.robot import Robot, WorldParts
+from robolink.sim.schedule import Reading, Schedule
 from robolink.sim.sensing.fixed import nearest_wall_distance
 from robolink.sim.sensing.scene import Scene
-from robolink.sim.sensing.schedule import Schedule
+from robolink.system.terminal import shown
 
 _ITERATIONS = 20
 
 _LOOK = 0.1
-"""Seconds after which the robots' places count into their areas: more often would cost, and show nothing more."""
+"""Period in seconds at which the robots' positions count into their areas: more often would cost and show no more."""
 
 
 class World:
-    """A world made from a description; to reset it, make another one.
+    """A simulated world with its robots; to reset it, make another one.
 
-    Time is `steps` times `dt_ns`: an integer. Everything is a pure function of the description, the seed (by
-    default the description's) and the commands with the steps at which they came. `robots` are those that are in
-    the world now, by their names.
+    Time is `steps` times `dt_ns`: an integer. Everything is a pure function of the description, the seed and the
+    commands with the steps at which they came. `robots` are those that are in the world now, by their names.
+
+    Args:
+        description: The world, as from `load_world`.
+        seed: Seed of all noise; None: that of the description.
     """
 
     def __init__(self, description: WorldDescription, *, seed: int | None = None) -> None:
@@ -50,9 +54,10 @@ class World:
         self.steps = 0
         self._dt = dt = description.world.dt
         self._steps_between_looks = max(1, round(_LOOK / dt))
-        self._space = _space(description)
-        self._scene, self._fleet, self._contacts = Scene(description), Fleet(self._space), Contacts(self._space, dt)
+        self._space = space = _space(description)
+        self._scene, self._fleet, self._contacts = Scene(description, space), Fleet(space), Contacts(space, dt)
         self._movers: list[Mover] = []
+        self._obstacles: list[pymunk.Body] = []
         for obstacle in description.obstacles:
             self._add_obstacle(obstacle)
         seed = description.world.seed if seed is None else seed
@@ -65,36 +70,41 @@ class World:
 
     @property
     def time_ns(self) -> int:
-        """Simulated nanoseconds since the start."""
+        """Simulated time since the start, in nanoseconds."""
         return self.steps * self.dt_ns
 
     @property
     def contacts(self) -> int:
-        """How often robots have run into something since the start, those that have left counted too."""
+        """Number of contacts of robots that have begun since the start, with those of robots that have left."""
         return self._contacts.begun
 
     def step(self) -> None:
-        """Move the world on by one step of `dt`."""
+        """Advance the world by one step."""
         self._fleet.advance(self.steps)
         for mover in self._movers:
             mover.aim(self.steps + 1)
         self._space.step(self._dt)
         self.steps += 1
-        if self.steps % self._steps_between_looks == 0:
-            for robot in self._robots.values():
-                robot._note_place()
         self._scene.step = self.steps
         self._contacts.measure()
+        self._fleet.moved()
+        if self.steps % self._steps_between_looks == 0:
+            for robot in self._robots.values():
+                robot.note_place()
 
     def readings(self) -> list[Reading]:
         """Measure with all sensors that are due at the present step; each call is a new measurement."""
         return self._schedule.readings(self.steps)
 
     def spawn(self, description: RobotDescription) -> Robot:
-        """Put another robot into the world and give it.
+        """Add a robot to the world and return it.
 
-        Raises `WorldError` when its name is taken, when it would start inside of something, or for what
-        `load_world` would refuse in a world file.
+        Args:
+            description: The robot, as in a world file.
+
+        Raises:
+            WorldError: if its name is taken, if it would start inside of something, or if `load_world` would refuse
+                it in a world file.
         """
         for problem in self._problems(description):
             raise WorldError(f"robot '{shown(description.name)}': {problem.path}: {problem.message}")
@@ -109,7 +119,7 @@ class World:
         return robot
 
     def _problems(self, robot: RobotDescription) -> Iterator[Problem]:
-        """Yield what is wrong with a robot that is to come into this world."""
+        """Yield the problems of a robot to spawn in this world."""
         for each in robot_problems(robot, self._dt):
             yield each._replace(path=each.path.removeprefix("."))
         if all(robot.mass > each.mass for each in self.description.robots):  # else it makes nothing worse
@@ -119,18 +129,22 @@ class World:
             yield from (each._replace(path="mass") for each in mass_problems([robot, other.description], ()))
 
     def delete(self, name: str) -> None:
-        """Take a robot out of the world. Raises `NotFoundError` when there is none of that name."""
+        """Remove the robot called `name`. Raises `NotFoundError` if there is none."""
         if name not in self._robots:
             raise NotFoundError("robot", shown(name), self._robots)
         self._robots.pop(name)._leave()
         self._plan()
 
     def nearest_wall_distance(self, x: float, y: float) -> float:
-        """Give the distance in metres from a point to the nearest wall or fixed obstacle; inf if there is none."""
+        """Return the metres from the point `x`, `y` to the nearest wall or fixed obstacle; inf if there is none."""
         return nearest_wall_distance(self._scene.fixed_segments, self._scene.fixed_circles, x, y)
 
+    def obstacle_poses(self) -> list[plane.Pose]:
+        """Return where the description's obstacles are now, in their order."""
+        return [plane.Pose(*each.position, each.angle) for each in self._obstacles]
+
     def _plan(self) -> None:
-        """Find out anew which sensors there are."""
+        """Make the schedule of all present sensors."""
         sensors = [(robot, each) for robot in self._robots.values() for each in robot._devices.values()]
         self._schedule = Schedule(sensors, self._dt)
 
@@ -150,6 +164,7 @@ class World:
             body = pushable_body(obstacle, obstacle.mass)
         else:
             body = body_at(obstacle.start, None, obstacle)
+        self._obstacles.append(body)
         shapes = solids(obstacle, body)
         self._space.add(body, *shapes)
         if obstacle.path is not None:
@@ -162,7 +177,7 @@ class World:
 
 
 def _space(description: WorldDescription) -> pymunk.Space:
-    """Make a space with its walls; contacts are solved to a tenth of a millimetre."""
+    """Make a Chipmunk space with its walls; contacts are solved to a tenth of a millimetre."""
     space = pymunk.Space()
     space.iterations = _ITERATIONS
     space.collision_slop = 1e-4

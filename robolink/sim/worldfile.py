@@ -1,4 +1,4 @@
-"""Reads world files, and finds in them what is wrong.
+"""Reader of world files, with all their mistakes by line and column.
 
 description = load_world("configs/worlds/corners.yaml")
 """
@@ -13,22 +13,29 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
-from robolink import yamlfile
-from robolink.exceptions import MOST_TOLD, DocumentError, RobolinkError, few, nearest
+from robolink.documents import yamlfile
+from robolink.documents.limits import MOST_TOLD, first_mistakes
+from robolink.documents.yamlfile import Document
+from robolink.exceptions import DocumentError, RobolinkError, nearest
 from robolink.sim.checks.worlds import mass_problems, misfits, problems
-from robolink.sim.description import SENSORS, Sensor, WorldDescription
-from robolink.yamlfile import Document
+from robolink.sim.description import WorldDescription
+from robolink.sim.sensors import SENSORS, Sensor
 
 if TYPE_CHECKING:
     from robolink.sim.maps.gridmap import GridMap
 
 
 def load_world(path: str | os.PathLike[str], *, text: str | None = None) -> WorldDescription:
-    """Read a world file, ours or Webots' (`.wbt`), or `text` in its place; a map of ROS becomes walls.
+    """Read a world file, robolink's or Webots' (`.wbt`); a map of ROS becomes walls.
 
-    Raises `DocumentError` with `file:line:column` for everything that is wrong with it: YAML, an unknown key, a
-    value of the wrong type or out of range, a degenerate shape, shapes that overlap, a robot that starts inside
-    something, a map that cannot be read.
+    Args:
+        path: The file; its folder is where a map's path begins.
+        text: Read instead of the file's content; None reads the file.
+
+    Raises:
+        DocumentError: with `file:line:column`, at the first mistake: YAML, an unknown key, a value of the wrong type
+            or out of range, a degenerate shape, shapes that overlap, a robot that starts inside something, a map
+            that cannot be read.
     """
     if _is_webots(path):
         return _load_webots(path, text)
@@ -41,14 +48,19 @@ def load_world(path: str | os.PathLike[str], *, text: str | None = None) -> Worl
 
 
 class Checked(NamedTuple):
-    """What a world file describes, or None if anything is wrong with it, and what that is."""
+    """Result of a check: the description, or None if there is any mistake, and the mistakes."""
 
     description: WorldDescription | None
     errors: list[RobolinkError]
 
 
 def check_world(path: str | os.PathLike[str], *, text: str | None = None) -> Checked:
-    """Read a world file as `load_world` does, but give all mistakes that can be seen at once."""
+    """Read a world file as `load_world`, but return all mistakes that can be seen at once.
+
+    Args:
+        path: The file.
+        text: Read instead of the file's content; None reads the file.
+    """
     if _is_webots(path):
         try:
             return Checked(_load_webots(path, text), [])
@@ -64,7 +76,7 @@ def check_world(path: str | os.PathLike[str], *, text: str | None = None) -> Che
         description = _with_map(document, grid)
     except DocumentError as error:
         errors.append(error)
-    errors += few(_mistakes(document, description, grid), MOST_TOLD + 2)  # finding what overlaps takes time
+    errors += first_mistakes(_mistakes(document, description, grid), MOST_TOLD + 2)  # finding what overlaps takes time
     return Checked(None if errors else description, errors)
 
 
@@ -73,7 +85,7 @@ def _is_webots(path: str | os.PathLike[str]) -> bool:
 
 
 def sensor_class(kind: type, data: Any) -> type[Sensor]:
-    """Give the class of a sensor, which one of its keys tells. Raises ValueError when none does, or several."""
+    """Return the class of a sensor by the one key that names its kind. Raises ValueError if none does, or several."""
     if not isinstance(data, dict):
         raise ValueError("expected a mapping such as {lidar: scan}")
     kinds = [key for key in data if key in SENSORS]
@@ -88,7 +100,7 @@ def sensor_class(kind: type, data: Any) -> type[Sensor]:
 def _mistakes(
     document: Document[WorldDescription], description: WorldDescription, grid: GridMap | None
 ) -> Iterator[DocumentError]:
-    """Yield what is wrong with a world file whose every value is of the right type and in its range."""
+    """Yield the mistakes of a world file whose every value is of the right type and in its range."""
     data: Any = document.data
     masses = mass_problems(description.robots, description.obstacles)
     for each in itertools.chain(misfits(data), problems(description, grid), masses):
@@ -96,7 +108,7 @@ def _mistakes(
 
 
 def _map_of(document: Document[WorldDescription]) -> GridMap | None:
-    """Read the map that a world file names, from its own folder."""
+    """Read the map that a world file names, relative to its folder."""
     if document.value.map is None:
         return None
     from robolink.sim.maps.gridmap import load_map
@@ -104,7 +116,9 @@ def _map_of(document: Document[WorldDescription]) -> GridMap | None:
     path = Path(document.name).parent / document.value.map.yaml
     try:
         return load_map(path)
-    except yamlfile.DocumentNotFoundError as error:
+    except DocumentError as error:
+        if error.line:  # the map's own mistake, with its place in the map's file
+            raise
         raise document.error("$.map.yaml", str(error)) from None
 
 

@@ -1,6 +1,6 @@
-"""What happens in a system, as small Structs for programs that want to know: `msgspec.json` writes each as an object.
+"""Events of a supervisor, as Structs for other programs: `msgspec.json` encodes each as an object.
 
-The key `event` says which one it is; `at` is in seconds since 1970.
+The key `event` has its name; `at` is in seconds since 1970.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ from robolink.supervisor.policy import State
 
 
 class Status(msgspec.Struct, frozen=True):
-    """How one process stands now."""
+    """Current `state` of the process called `name`."""
 
     name: str
     pid: int | None
-    """The number of the process and of its process group while it runs."""
+    """Id of the process and of its process group while it runs."""
     state: State
     restarts: int
-    """How often it was started again."""
+    """Number of restarts."""
     returncode: int | None
-    """How it ended last: an exit code, or -N for signal N."""
+    """Last return code: an exit code, or -N for signal N; None before the first end."""
     since: float
-    """When it came into its state, in seconds since 1970."""
+    """Time at which it came into its state, in seconds since 1970."""
 
 
 class Started(msgspec.Struct, frozen=True, tag_field="event", tag="started"):
@@ -72,14 +72,14 @@ class Stopping(msgspec.Struct, frozen=True, tag_field="event", tag="stopping"):
 
 
 class Said(msgspec.Struct, frozen=True, tag_field="event", tag="said"):
-    """The launcher told the user something."""
+    """The launcher printed a line of its own."""
 
     text: str
     at: float
 
 
 class Ended(msgspec.Struct, frozen=True, tag_field="event", tag="ended"):
-    """The whole system is over; `logs` is the folder with what was printed, if there is one."""
+    """The whole system has ended; `logs` is the folder of its log files, if there is one."""
 
     code: int
     logs: str

@@ -1,4 +1,4 @@
-"""Decide when a system's processes start, start again and stop: events in, actions out.
+"""Restart policy of a system as a pure state machine: events in, actions out.
 
 Times are seconds of any one clock and there are no processes here, so that the same decisions are made for real
 processes, for nodes in virtual time, and in tests.
@@ -13,22 +13,22 @@ from typing import Literal, TypeAlias
 from robolink.supervisor.rules import Rules, Step, described, exit_code, is_orderly
 
 _ECHO = 0.2
-"""Seconds in which a second interrupt is the first one again: a terminal and a wrapper may both deliver it."""
+"""Debounce time of interrupts, in seconds: a terminal and a wrapper may both deliver the same one."""
 
 State: TypeAlias = Literal["held", "waiting", "running", "stopping", "stopped", "ended"]
-"""Held: not released yet; waiting: to be started, or started again; stopped: as somebody asked; ended: by itself."""
+"""Process states. Held: not released yet; waiting: for its (re)start; stopped: on request; ended: by itself."""
 
 
 @dataclass(frozen=True)
 class Start:
-    """Start the process called `name`; it does not run now."""
+    """Action: start the process `name`, which does not run."""
 
     name: str
 
 
 @dataclass(frozen=True)
 class Ask:
-    """Ask the process called `name` to stop."""
+    """Action: ask the process `name` to stop."""
 
     name: str
     step: Step
@@ -36,7 +36,7 @@ class Ask:
 
 @dataclass(frozen=True)
 class Say:
-    """Tell the user."""
+    """Action: print a line to the user."""
 
     text: str
 
@@ -46,49 +46,49 @@ Action: TypeAlias = "Start | Ask | Say"
 
 @dataclass
 class Tracked:
-    """What is known of one process; for others to read."""
+    """State of one process; read-only for others."""
 
     name: str
     rules: Rules
     state: State
     since: float = 0.0
-    """When it came into its state."""
+    """Time at which it came into its state."""
     starts: int = 0
     returncode: int | None = None
-    """How it ended last."""
+    """Last return code; None before the first end."""
     cause: str = ""
-    """Why it ended last, in words."""
+    """Cause of the last end, in words; empty if unknown."""
     due: float | None = None
-    """When it is started again, or asked harder to stop."""
+    """Time of its restart, or of the next step of stopping it; None if nothing is planned."""
     step: Step | None = None
-    """How hard it has been asked to stop."""
+    """Last step by which it was asked to stop; None if it was not."""
     is_restart: bool = False
-    """Whether it is started again once it has stopped."""
+    """True if it is to be restarted once it has stopped."""
     streak: int = 0
     respawned: list[float] = field(default_factory=list)
 
     @property
     def is_alive(self) -> bool:
-        """Whether it runs, asked to stop or not."""
+        """True while it runs, asked to stop or not."""
         return self.state in ("running", "stopping")
 
     @property
     def restarts(self) -> int:
-        """How often it was started again, for whatever reason."""
+        """Number of restarts, for whatever reason."""
         return max(0, self.starts - 1)
 
 
 class Policy:
-    """Runs a system until a process ends whose end is not to be ignored, none is left, or somebody wants an end.
+    """State machine of a whole system: it ends on request, with its last process, or with one whose end counts.
 
-    `ends` is when the system ends by itself; it may still be set before `begin`. On the way to its end, processes are
-    asked harder every `patience` seconds. Call `begin` first; do what each call returns, in that order.
+    `ends` is the time at which the system ends by itself; it may still be set before `begin`. While it stops, processes
+    are asked by the next step every `patience` seconds. Call `begin` first; carry out the returned actions in order.
     """
 
     def __init__(self, rules: Mapping[str, Rules], *, ends: float | None = None, patience: float = 5.0) -> None:
         self.processes = {name: _tracked(name, each) for name, each in rules.items()}
         self.step: Step | None = None
-        """How hard the whole system has been asked to stop."""
+        """Last step by which the whole system was asked to stop; None if it was not."""
         self.ends = ends
         self._patience = patience
         self._code: int | None = None
@@ -97,12 +97,12 @@ class Policy:
 
     @property
     def alive(self) -> list[str]:
-        """The names of the processes that run."""
+        """Names of the processes that run."""
         return [name for name, each in self.processes.items() if each.is_alive]
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing is left to wait for: none runs and none will."""
+        """True once no process runs and none will."""
         if self.step is Step.GIVE_UP:
             return True
         coming = any(each.state in ("held", "waiting") for each in self.processes.values())
@@ -110,7 +110,7 @@ class Policy:
 
     @property
     def deadline(self) -> float | None:
-        """When `woken` should be called, if nothing else happens before; None: not at all."""
+        """Time at which `woken` is to be called if nothing else happens before; None if not at all."""
         if self.is_over:
             return None
         if self.step is not None:
@@ -120,26 +120,26 @@ class Policy:
 
     @property
     def code(self) -> int:
-        """The system's exit code.
+        """Exit code of the system.
 
-        That is the code of the process whose end was the system's: the first whose end is not ignored, or else the
+        It is the code of the process whose end was the system's: the first whose end is not ignored, or else the
         last of all; 128 + N when signal N killed it. After an orderly stop on request it is 0; when a process ended
         in disorder on the way, the first such one's.
         """
         return self._code or 0
 
     def begin(self, now: float) -> list[Action]:
-        """Start all that is not held."""
+        """Start the system: all processes that are not held."""
         for each in self.processes.values():
             each.since = now
         return self._start_all(lambda each: each.state == "waiting" and each.due is None, now)
 
     def released(self, name: str, now: float) -> list[Action]:
-        """What a held process waits for is there."""
+        """Handle that the conditions of a held process are met."""
         return self._start_all(lambda each: each.name == name and each.state == "held", now)
 
     def exited(self, name: str, returncode: int, now: float, cause: str = "") -> list[Action]:
-        """A process ended, with a return code as `Popen` has it: negative for a signal. `cause` is told."""
+        """Handle the end of a process, with `Popen`'s return code: negative for a signal. `cause` is shown to users."""
         each = self.processes[name]
         if not each.is_alive:
             return []
@@ -159,7 +159,7 @@ class Policy:
         return [*(told or [Say(f"{name} has stopped")]), *self._only_held(now)]
 
     def interrupted(self, now: float, *, in_hurry: bool = True) -> list[Action]:
-        """The user wants an end, or, when it is on its way already and they are in a hurry, a quicker one."""
+        """Handle a request to end the system; if it is stopping already, `in_hurry` goes on to the next step."""
         if self.step is not None:
             is_echo = now - self._asked < _ECHO
             return self._harder(now) if in_hurry and not is_echo else []
@@ -167,7 +167,7 @@ class Policy:
         return [Say("stopping (Ctrl-C again to hurry)"), *self._harder(now)]
 
     def woken(self, now: float) -> list[Action]:
-        """Time passed."""
+        """Handle that time has passed: due restarts, steps of stopping, and the end of the system."""
         if self.deadline is None or now < self.deadline:
             return []
         if self.step is not None:
@@ -183,7 +183,7 @@ class Policy:
         ]
 
     def restart(self, name: str, now: float) -> list[Action]:
-        """Somebody wants a process anew: it is stopped in order first if it runs. That is no failure of its."""
+        """Handle a request to restart a process: it is stopped in order first if it runs, which is no failure."""
         each = self.processes[name]
         if why_not := self.why_not_restarted(name):
             return [Say(f"{name} is not restarted: {why_not}")]
@@ -194,14 +194,14 @@ class Policy:
         return [] if each.step is not None else [Say(f"restarting {name}"), *self._one_harder(each, now)]
 
     def why_not_restarted(self, name: str) -> str:
-        """Say why `restart` would do nothing now; '' if it would."""
+        """Return why `restart` would do nothing now; '' if it would do something."""
         if self.step is not None:
             return "the system is stopping"
         is_held = self.processes[name].state == "held"
         return "it is not started yet, since it waits for something else" if is_held else ""
 
     def stop_one(self, name: str, now: float) -> list[Action]:
-        """Somebody wants one process to stop, and the others to go on."""
+        """Handle a request to stop one process; the others go on."""
         each = self.processes[name]
         if self.why_not_stopped(name):
             return []
@@ -215,7 +215,7 @@ class Policy:
         return [Say(f"{name} is not started{again}"), *self._only_held(now)]
 
     def why_not_stopped(self, name: str) -> str:
-        """Say why `stop_one` would do nothing now; '' if it would."""
+        """Return why `stop_one` would do nothing now; '' if it would do something."""
         each = self.processes[name]
         if self.step is not None:
             return "the system is stopping"
@@ -237,7 +237,7 @@ class Policy:
         return [Start(each.name)]
 
     def _ended(self, each: Tracked, how: str, ran: float, now: float) -> list[Action]:
-        """A process ended that nobody had asked to."""
+        """Handle the end of a process that was not asked to stop."""
         rule, code = each.rules.respawn, each.returncode or 0
         mark = ";" if ": " in how else ":"  # behind a cause or not
         if rule.wants(code):
@@ -258,7 +258,7 @@ class Policy:
         return [Say(how)]
 
     def _only_held(self, now: float) -> list[Action]:
-        """Say so when all that is left waits for something that may never come; end when it never will."""
+        """Report it if all that is left waits for conditions that may never be met; end if they never will."""
         left = [each for each in self.processes.values() if each.state not in ("ended", "stopped")]
         if not left or any(each.state != "held" for each in left):
             return []
@@ -270,7 +270,7 @@ class Policy:
         return [Say(f"nothing runs any more, and {told}"), *self._harder(now)]
 
     def _ended_for(self, held: Tracked) -> str:
-        """Give the process that has ended and that a held one, or one that this waits for, waits for; '' for none."""
+        """Return the ended process for which a held one waits, directly or through others; '' for none."""
         seen, asked = set[str](), [held.name]
         while asked:
             name = asked.pop(0)
@@ -284,7 +284,7 @@ class Policy:
         return ""
 
     def _harder(self, now: float) -> list[Action]:
-        """Ask all that run to stop, but none again as it was asked before: that might disturb its orderly end."""
+        """Ask all that run to stop, but none by a step twice: that might disturb its orderly end."""
         self.step = Step.INTERRUPT if self.step is None else Step(min(self.step + 1, Step.GIVE_UP))
         self._asked = now
         if self.step is Step.GIVE_UP:
@@ -319,13 +319,13 @@ def _tracked(name: str, rules: Rules) -> Tracked:
 
 
 def _move(each: Tracked, state: State, now: float) -> None:
-    """Bring a process into a state in which nothing is planned for it yet."""
+    """Set the state of a process and clear its plans."""
     is_restart = each.is_restart and state == "stopping"
     each.state, each.since, each.due, each.step, each.is_restart = state, now, None, None, is_restart
 
 
 def _why(each: Tracked, returncode: int, cause: str, ran: float) -> str:
-    """Say why a process ended; the same as before a new start that helped nothing is said once."""
+    """Return the cause as the end of a sentence: " as before" if it is the same as before a restart in vain."""
     is_in_vain = each.streak > 0 and ran < each.rules.respawn.within
     if cause and is_in_vain and (returncode, cause) == (each.returncode, each.cause):
         return " as before"
@@ -333,7 +333,7 @@ def _why(each: Tracked, returncode: int, cause: str, ran: float) -> str:
 
 
 def _respawn(each: Tracked, ran: float, now: float) -> str:
-    """Plan a process's new start and say it."""
+    """Plan the restart of a process and return a text about it."""
     rule = each.rules.respawn
     each.streak = 0 if ran >= rule.within else each.streak
     pause = rule.pause(each.streak)

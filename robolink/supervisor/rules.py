@@ -1,4 +1,4 @@
-"""What shall become of a process that ends, and what an end is called."""
+"""Restart rules of a process, with exponential backoff, and the classification of exit codes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ OnExit: TypeAlias = Literal["shutdown", "ignore"]
 
 
 class Step(IntEnum):
-    """How hard a process is asked to stop."""
+    """Escalation steps of stopping a process."""
 
     INTERRUPT = 0
     TERMINATE = 1
@@ -23,10 +23,10 @@ class Step(IntEnum):
 
 @dataclass(frozen=True)
 class Restarts:
-    """Whether a process that ends by itself is started again: after any end, or any but exit code 0.
+    """Restart rule of a process that ends by itself: `when` says never, after any end, or after any but exit code 0.
 
-    It waits `delay` seconds, twice as long each time (up to `delay_max`), until it has once run for `within`
-    seconds. With `most` new starts in the last `within` seconds it is given up.
+    Exponential backoff: it waits `delay` seconds, twice as long each time (up to `delay_max`), until the process has
+    once run for `within` seconds. After `most` restarts in the last `within` seconds it is given up.
     """
 
     when: RespawnWhen = "never"
@@ -36,20 +36,21 @@ class Restarts:
     within: float = 60.0
 
     def wants(self, returncode: int) -> bool:
-        """Whether an end with this return code is one to start again after."""
+        """True if a process that ended with this `returncode`, as `Popen` has it, is to be restarted."""
         return self.when == "always" or (self.when == "on_failure" and returncode != 0)
 
     def pause(self, streak: int) -> float:
-        """Give the seconds to wait when `streak` new starts in a row have led to nothing."""
+        """Return the backoff in seconds after `streak` restarts in a row that did not last."""
         longest = max(self.delay, self.delay_max)
         return min(longest, self.delay * 2.0 ** min(streak, 60))
 
 
 @dataclass(frozen=True)
 class Rules:
-    """What a launcher does about one process; `held`: it starts only when it is released.
+    """Rules of one process: `respawn` for restarts, `on_exit` for the meaning of its end for the system.
 
-    `awaits` are the processes without which it never will be; it may wait for other things besides.
+    One that is `held` starts only when it is released. `awaits` are the processes without which it will never be
+    released; it may wait for other things besides.
     """
 
     respawn: Restarts = field(default_factory=Restarts)
@@ -59,12 +60,12 @@ class Rules:
 
 
 def exit_code(returncode: int) -> int:
-    """Give a return code as shells count: 128 + N for a process killed by signal N."""
+    """Convert a `Popen` return code to a shell's exit code: 128 + N for a process killed by signal N."""
     return 128 - returncode if returncode < 0 else returncode
 
 
 def described(returncode: int) -> str:
-    """Say how a process ended: `ended with exit code 3`, `was killed by SIGSEGV`."""
+    """Describe a return code in words: `ended with exit code 3`, `was killed by SIGSEGV`."""
     if returncode == 0:
         return "has ended"
     if returncode in _WINDOWS_ENDS:
@@ -88,14 +89,14 @@ _WINDOWS_ENDS = {
     0xC0000374: "a damaged heap",
     0xC0000409: "a damaged stack, or abort()",
 }
-"""Return codes of Windows (NTSTATUS) that stand for what would be a signal elsewhere."""
+"""Names of the Windows return codes (NTSTATUS) that would be a signal elsewhere."""
 
 
 def is_orderly(returncode: int, step: Step, cause: str = "") -> bool:
-    """Whether a process that had been asked to stop, as hard as `step`, ended as one that obeys.
+    """True if a process that had been asked to stop by `step` ended in an orderly way.
 
-    One that lets a KeyboardInterrupt pass does so too, and a Python that is interrupted before it has begun: it may
-    make any error of that.
+    An uncaught KeyboardInterrupt is orderly too, and so is a Python that is interrupted before its program began: it
+    may turn that into any error.
     """
     obeyed = {0, 128 + signal.SIGINT, 128 + signal.SIGTERM}
     if sys.platform == "win32":

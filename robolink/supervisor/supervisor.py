@@ -1,4 +1,4 @@
-"""Run processes as one system: one loop that waits for events and does what the policy says."""
+"""Event loop of the supervisor: waits for events and carries out the policy's actions."""
 
 from __future__ import annotations
 
@@ -15,38 +15,46 @@ from types import FrameType
 from typing import TextIO, TypeAlias
 
 from robolink.exceptions import NotFoundError
-from robolink.queues import get_within
 from robolink.supervisor.events import Status
 from robolink.supervisor.policy import Action, Ask, Policy, Say, Start
 from robolink.supervisor.processes.affinity import set_affinity
 from robolink.supervisor.processes.guardian import Guardian
 from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.supervisor.processes.process import Child, Process, ProcessStartError
+from robolink.supervisor.reporting.dispatcher import EventDispatcher
+from robolink.supervisor.reporting.logs import RunLogs
+from robolink.supervisor.reporting.notifier import OnEvent
 from robolink.supervisor.rules import Step
-from robolink.supervisor.telling.logs import RunLogs
-from robolink.supervisor.telling.notifier import OnEvent
-from robolink.supervisor.telling.teller import Teller
+from robolink.system.queues import get_within
 
 _LEFT_BEHIND = 1.0
-"""Seconds between SIGTERM and SIGKILL for processes that still run when we have to leave."""
+"""Time between SIGTERM and SIGKILL for processes that still run when the supervisor has to leave, in seconds."""
 
 
 _LOOK_UP = 0.25
-"""Seconds after which a wait ends by itself. On Windows Ctrl-C does not end one, and elsewhere a signal may come
+"""Longest single wait of the loop, in seconds. On Windows Ctrl-C does not end one, and elsewhere a signal may come
 between the last look for signals and the wait, and be seen only after it."""
 
 _NOT_STARTED = 127
-"""The exit code, as in a shell, of what cannot be started (again) while the system runs."""
+"""Exit code, as in a shell, of a process that cannot be started (again) while the system runs."""
 
 _Event: TypeAlias = Callable[[float], list[Action]]
-"""What happened, as a function of the time at which the loop learns of it."""
+"""Event of the loop, as a function of the time at which the loop takes it."""
 
 
 class Supervisor:
-    """Runs processes as one system, until one ends whose end is not to be ignored, or the user wants an end.
+    """Runs processes as one system, until one ends whose end counts, or the user asks for the end.
 
-    `logs` keeps what is printed, `on_event` is called with each `Event`, on a thread of its own. All methods but
-    `run` may be called from any thread, before and while it runs.
+    All methods but `run` may be called from any thread, before and while it runs.
+
+    Args:
+        processes: The processes, with unique names.
+        output: Terminal or file for their lines; None is `sys.stdout`.
+        patience: Time between the steps of stopping a process, in seconds.
+        logs: Log files of the run; None writes none.
+        on_event: Called with each `Event`, on a background thread.
+        clock: Source of monotonic time, in seconds.
+        start: Starts a process; tests pass a fake.
 
     >>> Supervisor([Process("hello", [sys.executable, "-c", "print('hi')"])]).run()
     [hello] hi
@@ -77,22 +85,26 @@ class Supervisor:
         self._lock = threading.Lock()  # held whenever the policy is asked
         self._has_begun = False
         self.leavings: list[Path] = []
-        """Files to remove if we should be killed: to be filled before `run`, or on the way into what is beside it."""
+        """Files that the guardian removes if this process is killed; fill it before or while entering `beside`."""
+        self.is_asked_to_end = False
+        """True from the first signal or `stop` on, even while the loop is busy and has not taken it yet."""
 
     def run(self, duration: float | None = None, beside: Iterable[AbstractContextManager[object]] = ()) -> int:
-        """Run the system, for at most `duration` seconds; give its exit code. It runs inside all that is `beside` it.
+        """Run the system, for at most `duration` seconds, and return its exit code.
 
-        That is the code of the process whose end was the system's (128 + N when signal N killed it): the first that
+        `beside` are context managers that are entered before the first process starts and left at the end.
+
+        The code is that of the process whose end was the system's (128 + N when signal N killed it): the first that
         ends, but for those whose rules start them again or ignore their end; or the last of all. It is 0 when all
         ended in order because the user (SIGINT, SIGTERM, SIGHUP) or the duration wanted it. Stopping goes by
         SIGINT, SIGTERM and SIGKILL to each process group, with `patience` seconds between; a second SIGINT
         goes straight to the next step. Raises `ProcessStartError`, after stopping what had been started.
         """
         with ExitStack() as stack:
-            stack.enter_context(_signals(self._interrupted, self._paused, self._events.put))
+            stack.enter_context(_signals(self._interrupt, lambda: self._events.put(self._paused)))
             for each in beside:
                 stack.enter_context(each)
-            self._teller = stack.enter_context(closing(self._make_teller()))
+            self._dispatcher = stack.enter_context(closing(self._make_dispatcher()))
             self._lifeline = stack.enter_context(closing(Lifeline()))
             self._guardian = stack.enter_context(closing(Guardian(self._lifeline.mark, leavings=self.leavings)))
             stack.callback(self._clear_away)
@@ -103,41 +115,41 @@ class Supervisor:
                 with self._lock:
                     actions = event(self._clock())
                 self._do(actions)
-            self._teller.ended(self._policy.code, self._policy.alive)
+            self._dispatcher.ended(self._policy.code, self._policy.alive)
         return self._policy.code
 
     def stop(self) -> None:
-        """Ask for an end of the whole system."""
-        self._events.put(self._interrupted)
+        """Stop the whole system; returns at once."""
+        self._interrupt()
 
     def restart(self, name: str) -> None:
-        """Stop one process in order and start it again; if it does not run, start it. Raises NotFoundError."""
+        """Stop the process `name` in order and start it again; if it does not run, start it. Raises NotFoundError."""
         self._put_about(name, lambda now: self._policy.restart(name, now))
 
     def why_not_restarted(self, name: str) -> str:
-        """Say why `restart` would do nothing now; '' if it would."""
+        """Return why `restart` of the process `name` would do nothing now; '' if it would do something."""
         with self._lock:
             return self._policy.why_not_restarted(name)
 
     def stop_one(self, name: str) -> None:
-        """Stop one process in order; the others go on, if there are any. Raises NotFoundError."""
+        """Stop the process `name` in order; the others go on, if there are any. Raises NotFoundError."""
         self._put_about(name, lambda now: self._policy.stop_one(name, now))
 
     def why_not_stopped(self, name: str) -> str:
-        """Say why `stop_one` would do nothing now; '' if it would."""
+        """Return why `stop_one` of the process `name` would do nothing now; '' if it would do something."""
         with self._lock:
             return self._policy.why_not_stopped(name)
 
     def release(self, name: str) -> None:
-        """Start a held process: what it waits for is there. Raises NotFoundError."""
+        """Start the held process `name`, since its conditions are met. Raises NotFoundError."""
         self._put_about(name, lambda now: self._policy.released(name, now))
 
     def say(self, text: str) -> None:
-        """Tell the user, as the launcher does; nothing is told after the end."""
+        """Print `text` to the user as a line of the launcher's own; after the end it is lost."""
         self._events.put(lambda now: [Say(text)])
 
     def status(self) -> list[Status]:
-        """Say how each process stands."""
+        """Return the current state of each process."""
         with self._lock:
             begin = time.time() - self._clock()
             return [
@@ -154,13 +166,13 @@ class Supervisor:
             raise NotFoundError("process", name, self._processes)
         self._events.put(event)
 
-    def _make_teller(self) -> Teller:
-        return Teller(
+    def _make_dispatcher(self) -> EventDispatcher:
+        return EventDispatcher(
             list(self._processes), self._output, logs=self._logs, on_event=self._on_event, on_broken=self._unread
         )
 
     def _unread(self, reason: str) -> None:
-        """Nobody reads the output any more: that ends a system, as it ends any program in a pipe."""
+        """Handle a broken output pipe: it ends the system, as it ends any program in a pipe."""
         self.say(f"nobody reads the output any more: {reason}")
         self.stop()
 
@@ -171,7 +183,7 @@ class Supervisor:
             return self._policy.begin(now)
 
     def _next_event(self) -> _Event:
-        """Wait for something to happen, if only for the time to pass at which the policy wants to be woken."""
+        """Wait for the next event, which is a wake-up when the policy's deadline comes first."""
         deadline = self._policy.deadline
         timeout = _LOOK_UP if deadline is None else min(_LOOK_UP, max(0.0, deadline - self._clock()))
         try:
@@ -185,11 +197,11 @@ class Supervisor:
             if isinstance(action, Start):
                 self._start(self._processes[action.name])
             elif isinstance(action, Say):
-                self._teller.say(action.text)
+                self._dispatcher.say(action.text)
             elif action.name in self._children:
                 self._children[action.name].ask(action.step)
         if asked:
-            self._teller.stopping(asked)
+            self._dispatcher.stopping(asked)
 
     def _start(self, process: Process) -> None:
         name = process.name
@@ -203,27 +215,31 @@ class Supervisor:
         self._guardian.guard(child.group)
         self._children[name] = child
         if process.cpu and (why_not := set_affinity(child.group, process.cpu)):
-            self._teller.say(f"{name}: {why_not}")
-        self._teller.started(name, child.group, self._policy.processes[name].restarts)
-        child.watch(self._teller.line, lambda name, code: self._events.put(partial(self._exited, name, code)))
+            self._dispatcher.say(f"{name}: {why_not}")
+        self._dispatcher.started(name, child.group, self._policy.processes[name].restarts)
+        child.watch(self._dispatcher.line, lambda name, code: self._events.put(partial(self._exited, name, code)))
 
     def _exited(self, name: str, returncode: int, now: float, cause: str = "") -> list[Action]:
         child = self._children.pop(name, None)
         if child is not None:
             self._guardian.release(child.group)
         each = self._policy.processes[name]
-        cause = self._teller.exited(each, 0 if child is None else child.group, returncode, cause)
+        cause = self._dispatcher.exited(each, 0 if child is None else child.group, returncode, cause)
         actions = self._policy.exited(name, returncode, now, cause)
         if each.state == "waiting" and each.due is not None:
-            self._teller.restarting(name, each.due - now)
+            self._dispatcher.restarting(name, each.due - now)
         return actions
 
+    def _interrupt(self, *, in_hurry: bool = False) -> None:
+        self.is_asked_to_end = True
+        self._events.put(partial(self._interrupted, in_hurry=in_hurry))
+
     def _interrupted(self, now: float, *, in_hurry: bool = False) -> list[Action]:
-        """The user, or whoever started us, wants an end."""
+        """Handle an interrupt from the user, or from the parent process."""
         return self._policy.interrupted(now, in_hurry=in_hurry)
 
     def _paused(self, now: float) -> list[Action]:
-        """Pause with all processes, as a shell's Ctrl-Z does with a program; go on when we are let go on."""
+        """Handle Ctrl-Z: pause all processes and this one; resume them when this one is resumed."""
         if sys.platform != "win32":
             for child in self._children.values():
                 child.pause()
@@ -235,7 +251,7 @@ class Supervisor:
         return []
 
     def _clear_away(self) -> None:
-        """Kill what still runs: after an orderly end nothing does."""
+        """Kill the processes that still run; after an orderly end there are none."""
         for child in self._children.values():
             child.ask(Step.TERMINATE)
         deadline = time.monotonic() + _LEFT_BEHIND
@@ -247,14 +263,17 @@ class Supervisor:
 
 
 @contextmanager
-def _signals(interrupted: Callable[..., list[Action]], paused: _Event, put: Callable[[_Event], None]) -> Iterator[None]:
-    """Turn signals into events while this lasts; only a main thread can."""
+def _signals(interrupt: Callable[..., None], pause: Callable[[], None]) -> Iterator[None]:
+    """Convert signals to events while the block runs; only a main thread can."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
 
     def handle(number: int, frame: FrameType | None) -> None:
-        put(paused if number in _PAUSING else partial(interrupted, in_hurry=number in _HURRYING))
+        if number in _PAUSING:
+            pause()
+        else:
+            interrupt(in_hurry=number in _HURRYING)
 
     wanted = [*_HURRYING, *(each for each in (*_ENDING, *_PAUSING) if signal.getsignal(each) != signal.SIG_IGN)]
     previous = {number: signal.signal(number, handle) for number in wanted}

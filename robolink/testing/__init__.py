@@ -1,4 +1,4 @@
-"""Whole systems of nodes in a test: started, watched, disturbed and replayed, in one process and in virtual time.
+"""Whole systems of nodes in a test: started, observed, disturbed and replayed, in one process and in virtual time.
 
     from robolink.testing import System
 
@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robolink.lacking import lazily
+from robolink.text.suggestions import lazily
 
 if TYPE_CHECKING:
     from robolink.testing.expectations import ExpectationError, NodeFailure

@@ -1,17 +1,25 @@
-"""The time of a system under test, as its test sees it."""
+"""Clock of a system under test."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
-if TYPE_CHECKING:
-    from robolink.testing.system import System
+
+class Timed(Protocol):
+    """Protocol of a system whose time can pass."""
+
+    @property
+    def time(self) -> float:
+        """Seconds since the beginning of the system."""
+
+    def run(self, seconds: float) -> None:
+        """Let `seconds` pass."""
 
 
 class SystemClock:
-    """Tells how late it is in a system, and lets time pass there."""
+    """The clock of a system: returns its time and lets it pass. Made by `System`, as `system.clock`."""
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: Timed) -> None:
         self._system = system
 
     @property
@@ -20,11 +28,26 @@ class SystemClock:
         return self._system.time
 
     def run(self, seconds: float) -> None:
-        """Let so many seconds pass."""
+        """Let time pass.
+
+        Args:
+            seconds: Duration in seconds of the system's time.
+
+        Raises:
+            NodeFailure: if a program failed meanwhile.
+            ValueError: if `seconds` is negative or not finite.
+        """
         __tracebackhide__ = True
         self._system.run(seconds)
 
     def run_until(self, seconds: float) -> None:
-        """Let time pass until so many seconds since the beginning; at once if they are over."""
+        """Let time pass until a point in time; return at once if it is over.
+
+        Args:
+            seconds: Seconds since the beginning of the system.
+
+        Raises:
+            NodeFailure: if a program failed meanwhile.
+        """
         __tracebackhide__ = True
         self._system.run(max(0.0, seconds - self.now))

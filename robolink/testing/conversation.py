@@ -1,4 +1,4 @@
-"""What a test says to its system and hears of it: topics that it publishes, and lists that fill with messages."""
+"""The topics that a test itself publishes, and those that it records in lists."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ if TYPE_CHECKING:
     from robolink.node import Node
     from robolink.publisher import Publisher
     from robolink.qos import QoSProfile
-    from robolink.testing.recorder import Ear
+    from robolink.testing.recorder import TopicQueue
     from robolink.testing.story import Story
 
 
 class Conversation:
-    """What the test's own node publishes, and what is kept for the test from when it asked."""
+    """Publishers of the test's own node, and the lists that fill with messages for the test."""
 
     def __init__(self, node: Node, story: Story) -> None:
         self._node, self._story = node, story
-        self._kept: list[tuple[Ear, list[Any], type[Message] | None]] = []
+        self._kept: list[tuple[TopicQueue, list[Any], type[Message] | None]] = []
         self._publishers: dict[tuple[str, type[Message]], Publisher[Any]] = {}
 
     def publish(self, topic: str, message: Message, qos: QoSProfile | int) -> None:
-        """Publish a message. Raises TypeError for what is none."""
+        """Publish a message. Raises TypeError if `message` is no message."""
         __tracebackhide__ = True
         if not isinstance(topic, str) or isinstance(message, type) or not hasattr(message, "__ros_fields__"):
             raise TypeError(f"publish takes a topic and a message, got {topic!r} and {message!r}")
@@ -33,22 +33,22 @@ class Conversation:
         self._story.note_said(key[0])
 
     def keep(self, topic: str, given: type[Message] | None) -> list[Any]:
-        """Give a list that fills, at each `hear`, with what is published from now on; of this class, if it is given."""
+        """Return a list that fills at each `hear` with what is published from now on, of the class `given` if any."""
         heard: list[Any] = []
         self._kept.append((self._story.recorder.listen(self._node.resolve_topic_name(topic)), heard, given))
         self.hear()
         return heard
 
     def hear(self) -> None:
-        """Put what has come into the lists."""
-        for ear, heard, given in self._kept:
-            heard.extend(self._story.decoded(topic, sample.payload, given) for topic, sample in ear.take())
+        """Move messages that have arrived into the lists."""
+        for queue, heard, given in self._kept:
+            heard.extend(self._story.decoded(topic, sample.payload, given) for topic, sample in queue.take())
 
     @property
     def topics(self) -> list[str]:
-        """The topics that are kept, then those that the test publishes."""
-        return [*(ear.name for ear, _, _ in self._kept), *(name for name, _ in self._publishers)]
+        """The topics that are recorded, then those that the test publishes."""
+        return [*(queue.name for queue, _, _ in self._kept), *(name for name, _ in self._publishers)]
 
     def close(self) -> None:
-        """Hear no more."""
+        """Stop recording."""
         self._kept.clear()

@@ -1,4 +1,4 @@
-"""What a test is told when something did not come true: what was expected, what there was instead, and how to replay.
+"""Errors and texts for a test whose expectation failed: what was expected, what came instead, and how to replay.
 
 ExpectationError (AssertionError)      something did not come, or came that must not
 └─ NodeFailure                         a program of the system failed
@@ -12,15 +12,15 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 from robolink.exceptions import RobolinkError
-from robolink.names import near
-from robolink.testing.timeline import Moment, table
+from robolink.testing.timeline import Event, table
+from robolink.text.names import near
 
 MOST_NAMES = 12
-"""Topics that are listed when there is none of a name."""
+"""Upper bound of the topics that are listed when there is none of a name."""
 
 
 class ExpectationError(RobolinkError, AssertionError):
-    """What a test expected of a system did not come true; the text says what was there instead."""
+    """An expectation of a test did not come true; the text has what came instead."""
 
 
 class NodeFailure(ExpectationError):  # noqa: N818 - it is what has happened, and an AssertionError
@@ -36,21 +36,21 @@ class ClosedError(RobolinkError, RuntimeError):
 
 
 class Ends(NamedTuple):
-    """Who has to do with a topic or service: names of nodes."""
+    """The nodes at both ends of a topic, by full name."""
 
-    given: tuple[str, ...]
-    """Who publishes or serves it."""
-    taken: tuple[str, ...]
-    """Who subscribes to it or calls it."""
+    publishers: tuple[str, ...]
+    """Nodes that publish it."""
+    subscribers: tuple[str, ...]
+    """Nodes that subscribe to it."""
     types: tuple[str, ...]
 
 
-class Told(NamedTuple):
-    """The parts of what a test is told."""
+class FailureText(NamedTuple):
+    """The parts of a failure's text; `str` joins them."""
 
     headline: str
     begin_ns: int
-    moments: Sequence[Moment] = ()
+    events: Sequence[Event] = ()
     unheard: Sequence[str] = ()
     faults: Sequence[str] = ()
     real_time: Sequence[str] = ()
@@ -58,8 +58,8 @@ class Told(NamedTuple):
 
     def __str__(self) -> str:
         parts = [self.headline]
-        if self.moments:
-            parts.append("what came last:\n" + table(self.moments, self.begin_ns))
+        if self.events:
+            parts.append("what came last:\n" + table(self.events, self.begin_ns))
         parts += self.unheard
         if self.faults:
             parts.append("faults: " + "; ".join(self.faults))
@@ -73,28 +73,28 @@ class Told(NamedTuple):
 def nothing_came(
     name: str, ends: Ends, known: Iterable[tuple[str, str]], tried: int, when: str, condition: str = ""
 ) -> str:
-    """Say why what was expected of a topic did not come: `known` are the topics there are, with their types."""
+    """Return why no message came on a topic: `known` are the existing topics with their types."""
     wanted = condition or "the condition"
     if tried == 1:
         return f"the only message on {name} did not fulfil {wanted} {when}"
     if tried:
         return f"none of the {tried} messages on {name} fulfilled {wanted} {when}"
-    if ends.given:
-        return f"nothing came on {name} {when}, which {_and(ends.given)} may publish"
-    if ends.taken:
-        listen = "listens" if len(ends.taken) == 1 else "listen"
-        return f"nobody publishes {name} [{', '.join(ends.types)}], to which {_and(ends.taken)} {listen} {when}"
+    if ends.publishers:
+        return f"nothing came on {name} {when}, which {_and(ends.publishers)} may publish"
+    if ends.subscribers:
+        listen = "listens" if len(ends.subscribers) == 1 else "listen"
+        return f"nobody publishes {name} [{', '.join(ends.types)}], to which {_and(ends.subscribers)} {listen} {when}"
     return no_such("topic", name, known, when)
 
 
 def too_early(name: str, earlier: int) -> str:
-    """Say that messages came before they were expected; '' of none."""
+    """Return a note that messages came before they were expected; '' for none."""
     does = "does" if earlier == 1 else "do"
     return f"; {earlier} came before and {does} not count: begin messages('{name}') before" if earlier else ""
 
 
 def no_such(kind: str, name: str, known: Iterable[tuple[str, str]], when: str) -> str:
-    """Say that there is no topic or service of a name, and what there is, with types."""
+    """Return that there is no topic or service of a name, and which there are, with types."""
     there = dict(known)
     listed = [f"{each} [{there[each]}]" for each in sorted(there)]
     more = f" and {len(listed) - MOST_NAMES} more" if len(listed) > MOST_NAMES else ""
@@ -103,17 +103,17 @@ def no_such(kind: str, name: str, known: Iterable[tuple[str, str]], when: str) -
 
 
 def seconds(value: float) -> str:
-    """Spell seconds for people."""
+    """Format seconds for people."""
     return f"{value:.3f}".rstrip("0").rstrip(".") + " s"
 
 
 def span(begin: float, end: float) -> str:
-    """Say from when to when something was waited for."""
+    """Format the interval of a wait."""
     return f"within {seconds(end - begin)} (from {seconds(begin)} to {seconds(end)})"
 
 
 def named(condition: Callable[..., object] | None) -> str:
-    """Give the name of a condition, for people; '' for a lambda."""
+    """Return the name of a condition for people; '' for a lambda."""
     name = getattr(condition, "__name__", "")
     return "" if name == "<lambda>" else name
 

@@ -1,4 +1,4 @@
-"""Waits for what a test expects of its system, and says what there was instead when it did not come."""
+"""Waiting for messages, log lines, futures and responses, with an ExpectationError at the timeout."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Predicate = Callable[[Any], object]
 
 
 class Expecting:
-    """Waits in a system; `run_until(condition, within)` lets its time pass. Each raises ExpectationError in the end."""
+    """The waits of a system, each with an ExpectationError at timeout; `run_until(condition, within)` passes time."""
 
     def __init__(
         self,
@@ -37,48 +37,50 @@ class Expecting:
         self._found: dict[str, int] = {}
 
     def begin(self) -> None:
-        """Have messages count that are heard from now on."""
+        """Make only messages from now on count."""
         self._begin = self._story.recorder.now()
 
     # Messages
 
     def message(self, topic: str, predicate: Predicate | None, within: float, given: type[Message] | None) -> Any:
-        """Give the first message that fulfils a condition, or any; it is of the class `given`, if there is one."""
+        """Return the first message that meets a condition, or any; it is of the class `given`, if there is one."""
         __tracebackhide__ = True
         name, begin = self._stage.node.resolve_topic_name(topic), self._story.time
         met, tried = self._met(name, predicate, within, given)
         if not met:
             headline = self._story.why_nothing_came(name, tried, span(begin, begin + within), named(predicate))
-            raise ExpectationError(self._story.told(headline, name, others=self._concerned(name)))
+            raise ExpectationError(self._story.failure_text(headline, name, others=self._concerned(name)))
         return met[0]
 
     def no_message(self, topic: str, predicate: Predicate | None, during: float, given: type[Message] | None) -> None:
-        """Let time pass in which no message may fulfil a condition, or none may come at all."""
+        """Let time pass in which no message may meet a condition, or none may come at all."""
         __tracebackhide__ = True
         name = self._stage.node.resolve_topic_name(topic)
         met, _ = self._met(name, predicate, during, given)
         if met:
             which = f"that fulfils {named(predicate) or 'the condition'}" if predicate else "at all"
             headline = f"a message came on {name} at {seconds(self._story.time)}, where none {which} was expected"
-            raise ExpectationError(self._story.told(headline, name, others=self._concerned(name)))
+            raise ExpectationError(self._story.failure_text(headline, name, others=self._concerned(name)))
 
     def _met(
         self, name: str, predicate: Predicate | None, within: float, given: type[Message] | None
     ) -> tuple[list[Any], int]:
-        """Wait for a message that fulfils a condition: give it, if it came, and how many were looked at."""
+        """Wait for a message that meets a condition: return it, if it came, and the number that was looked at."""
         __tracebackhide__ = True
         if isinstance(predicate, type):
             raise TypeError(f"{predicate.__name__} is no condition: give it as type={predicate.__name__}")
         met: list[Any] = []
         tried, recorder = 0, self._story.recorder
-        with recorder.listening(name) as ear:
+        with recorder.listening(name) as queue:
             begin, own = max(self._begin, self._found.get(name, 0)), self._story.graph.own_name
             earlier = recorder.since(name, begin, but=own)
-            waiting, twice = deque(earlier), {sample.attachment for _, sample in earlier if sample.attachment}
+            # The queue repeats what was kept for late subscriptions, or came while it was made. An attachment has the
+            # publisher's id and a sequence number: no two messages share one.
+            waiting, seen = deque(earlier), {sample.attachment for _, sample in earlier if sample.attachment}
 
             def came() -> bool:
                 nonlocal tried
-                waiting.extend(each for each in ear.take() if each[1].attachment not in twice)
+                waiting.extend(each for each in queue.take() if each[1].attachment not in seen)
                 while waiting:
                     topic, sample = waiting.popleft()
                     self._found[name] = recorder.after(name, sample)
@@ -93,14 +95,14 @@ class Expecting:
         return met, tried
 
     def _concerned(self, name: str) -> list[str]:
-        """Give a topic, what those hear that publish it, and what the test itself hears and says."""
+        """Return a topic, the inputs of its publishers, and what the test itself records and publishes."""
         heard = self._story.graph.heard_by_publishers_of(name)
         return list(dict.fromkeys([name, *heard, *self._conversation.topics]))
 
     # Anything else
 
     def condition(self, condition: Callable[[], object], within: float) -> None:
-        """Wait until a condition holds, which may look at what is kept."""
+        """Wait until a condition holds, which may look at what is recorded."""
         __tracebackhide__ = True
         begin = self._story.time
 
@@ -111,18 +113,18 @@ class Expecting:
         if not self._run_until(holds, within):
             what = named(condition) or "what was waited for"
             headline = f"{what} did not come true {span(begin, begin + within)}"
-            raise ExpectationError(self._story.told(headline, others=dict.fromkeys(self._conversation.topics)))
+            raise ExpectationError(self._story.failure_text(headline, others=dict.fromkeys(self._conversation.topics)))
 
     def result(self, future: Future[T], within: float) -> T:
-        """Give the result of a future, or raise what it holds."""
+        """Return the result of a future, or raise its exception."""
         __tracebackhide__ = True
         begin = self._story.time
         if not self._run_until(lambda: future.done() or future.cancelled(), within):
-            raise ExpectationError(self._story.told(f"the future was not done {span(begin, begin + within)}"))
+            raise ExpectationError(self._story.failure_text(f"the future was not done {span(begin, begin + within)}"))
         return cast(T, future.result())
 
     def log_line(self, words: str, within: float) -> Record:
-        """Give the next line of the log with these words, behind the one that was given last."""
+        """Return the next log record with these words, behind the one that was found last."""
         __tracebackhide__ = True
         begin, first = self._story.time, self._read_logs
         found: list[Record] = []
@@ -139,21 +141,25 @@ class Expecting:
         if not self._run_until(came, within):
             self._read_logs = first
             headline = f"nobody logged '{words}' {span(begin, begin + within)}"
-            raise ExpectationError(self._story.told(headline, all_logs=True))
+            raise ExpectationError(self._story.failure_text(headline, all_logs=True))
         return found[0]
 
     def answer(self, kind: type[Any], name: str, request: Any, within: float) -> Any:
-        """Give what a service answers."""
+        """Return the response of a service."""
         __tracebackhide__ = True
         node = self._stage.node
         full, begin = node.resolve_service_name(name), self._story.time
         client = node.create_client(kind, name)
         try:
             if not self._run_until(client.service_is_ready, within):
-                raise ExpectationError(self._story.told(self._no_service(full, kind, span(begin, begin + within))))
+                raise ExpectationError(
+                    self._story.failure_text(self._no_service(full, kind, span(begin, begin + within)))
+                )
             future = client.call_async(kind.Request() if request is None else request)
             if not self._run_until(future.done, within):
-                raise ExpectationError(self._story.told(f"{full} did not answer {span(begin, self._story.time)}"))
+                raise ExpectationError(
+                    self._story.failure_text(f"{full} did not answer {span(begin, self._story.time)}")
+                )
             return future.result()
         finally:
             node.destroy_client(client)

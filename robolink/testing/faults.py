@@ -1,4 +1,4 @@
-"""What a test has go wrong in a system on purpose, in plain words: messages, connections, programs and clocks."""
+"""Faults that a test injects by method calls: into messages, connections, programs and clocks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import msgspec
 from robolink.faults.description import ClockFault, Crash, MessageFault, Partition
 from robolink.faults.file import mistakes_of
 from robolink.faults.patterns import listed, mistake_in
-from robolink.testing.stage import Named
+from robolink.testing.node_names import Named
 
 if TYPE_CHECKING:
     from robolink.faults import FaultReport
@@ -23,33 +23,34 @@ Names: TypeAlias = str | Named | Sequence[str | Named]
 """One name or several, or nodes; `*` stands for any letters of one token of a name, `**` for any number of tokens."""
 
 
-class Striking(Protocol):
-    """Has faults strike the programs of a system."""
+class FaultTarget(Protocol):
+    """Protocol of what applies faults to the programs of a system."""
 
     def now(self) -> float:
-        """Give the seconds of the run."""
+        """Return the time of the run in seconds."""
 
     def add(self, fault: Fault) -> FaultReport | None:
-        """Have a fault from now on; give what tells what it does to messages."""
+        """Apply a fault from now on; return the report of its effects on messages, if it is a fault of messages."""
 
     def read(self, path: str | PathLike[str]) -> None:
-        """Have all that a file of faults says."""
+        """Apply all faults of a file."""
 
     def clear(self) -> None:
-        """Have no faults of messages and connections any more."""
+        """Remove all faults of messages and connections."""
 
 
 class Faults:
-    """Faults that a test adds: each holds from now on, or `during` so many seconds, or until `clear`.
+    """Fault injection for a test: each fault holds from now on, for `during` seconds if given, or until `clear`.
 
-    They lie between programs: what a program says to itself never travels. `sender` and `receiver` are nodes, any when
-    not given. With `service`, the name is that of a service, whose requests and answers are meant. What a test looks at
-    (`expect`, `messages`) is what was published: faults strike later, on the way to each node. A value that cannot be
-    raises ValueError.
+    Faults act between programs: a message inside of one program never travels. What a test observes (`expect`,
+    `messages`) is what was published: faults act later, on the way to each node.
+
+    Names of topics, services and nodes may have wildcards: `*` for any letters of one token, `**` for any number of
+    tokens; several names are a list. With ``zenoh`` all methods but `clear` raise OnlyInMemoryError.
     """
 
-    def __init__(self, striking: Striking) -> None:
-        self._striking = striking
+    def __init__(self, target: FaultTarget) -> None:
+        self._target = target
 
     def lose(
         self,
@@ -62,9 +63,25 @@ class Faults:
         service: bool = False,
         during: float | None = None,
     ) -> FaultReport | None:
-        """Lose this share of the messages of a topic; with `burst`, in runs of so many on average."""
+        """Lose some of the messages of a topic or service.
+
+        Args:
+            topic: Name of the topic (or service), or several.
+            share: Probability of loss of each message, from 0 to 1.
+            burst: Mean length of a run of lost messages, 1 or more; None loses each message independently.
+            sender: Nodes whose messages are concerned; any by default.
+            receiver: Nodes on the way to which messages are lost; any by default.
+            service: True if `topic` names a service, whose requests and responses are meant.
+            during: Duration in seconds; None means until `clear`.
+
+        Returns:
+            Counts of what was lost, which follow the run.
+
+        Raises:
+            ValueError: if a value is out of range, or a name has a mistake.
+        """
         way = self._way(topic, service, sender, receiver, during)
-        return self._striking.add(_checked(MessageFault(**way, loss=share, burst=burst)))
+        return self._target.add(_checked(MessageFault(**way, loss=share, burst=burst)))
 
     def delay(
         self,
@@ -78,12 +95,26 @@ class Faults:
         service: bool = False,
         during: float | None = None,
     ) -> FaultReport | None:
-        """Have messages of a topic come later by so many seconds, more or less by up to `jitter`.
+        """Delay the messages of a topic or service.
 
-        They keep their order unless `reorder`.
+        Args:
+            topic: Name of the topic (or service), or several.
+            seconds: Delay in seconds.
+            jitter: Largest deviation from the delay in seconds, more or less, drawn for each message.
+            reorder: True lets messages overtake each other; by default they keep their order.
+            sender: Nodes whose messages are concerned; any by default.
+            receiver: Nodes on the way to which messages are delayed; any by default.
+            service: True if `topic` names a service, whose requests and responses are meant.
+            during: Duration in seconds; None means until `clear`.
+
+        Returns:
+            Counts of what was delayed, which follow the run.
+
+        Raises:
+            ValueError: if a value is out of range, or a name has a mistake.
         """
         way = self._way(topic, service, sender, receiver, during)
-        return self._striking.add(_checked(MessageFault(**way, latency=seconds, jitter=jitter, reorder=reorder)))
+        return self._target.add(_checked(MessageFault(**way, latency=seconds, jitter=jitter, reorder=reorder)))
 
     def duplicate(
         self,
@@ -95,14 +126,37 @@ class Faults:
         service: bool = False,
         during: float | None = None,
     ) -> FaultReport | None:
-        """Have this share of the messages of a topic come twice."""
+        """Deliver some of the messages of a topic or service twice.
+
+        Args:
+            topic: Name of the topic (or service), or several.
+            share: Probability that a message comes twice, from 0 to 1.
+            sender: Nodes whose messages are concerned; any by default.
+            receiver: Nodes on the way to which messages are duplicated; any by default.
+            service: True if `topic` names a service, whose requests and responses are meant.
+            during: Duration in seconds; None means until `clear`.
+
+        Returns:
+            Counts of what was duplicated, which follow the run.
+
+        Raises:
+            ValueError: if a value is out of range, or a name has a mistake.
+        """
         way = self._way(topic, service, sender, receiver, during)
-        return self._striking.add(_checked(MessageFault(**way, duplication=share)))
+        return self._target.add(_checked(MessageFault(**way, duplication=share)))
 
     def partition(self, *groups: Names, during: float | None = None) -> FaultReport | None:
-        """Part nodes: those of different groups do not reach each other.
+        """Partition the network: nodes of different groups do not reach each other.
 
-        Of one group alone, all other nodes are the second.
+        Args:
+            groups: Each a node or several. Of one group alone, all other nodes are the second.
+            during: Duration in seconds; None means until `clear`.
+
+        Returns:
+            Counts of what was lost, which follow the run.
+
+        Raises:
+            ValueError: if no group is given, a name is in two groups, or a value is out of range.
         """
         between = [_given(each) for each in groups]
         if not between:
@@ -112,29 +166,51 @@ class Faults:
         names = [each.lstrip("/") for group in between for each in listed(group)]
         if twice := next((each for each in names if names.count(each) > 1), None):
             raise ValueError(f"partition: '{twice}' is named twice, so that nobody is parted from it")
-        return self._striking.add(_checked(Partition(between=[*between], **self._times(during))))
+        return self._target.add(_checked(Partition(between=[*between], **self._times(during))))
 
     def crash(self, node: str | Named, *, after: float = 0.0, restart_after: float | None = None) -> None:
-        """Kill a node's program `after` so many seconds, and start it again `restart_after` so many more."""
+        """Kill a node's program, as `kill -9` does.
+
+        Args:
+            node: The node, or its name.
+            after: Seconds from now until it is killed.
+            restart_after: Seconds from then until it is started again; None leaves that to its launch file's rules.
+
+        Raises:
+            ValueError: if a value is out of range, or the name has a mistake.
+        """
         if not after >= 0:
             raise ValueError(f"after: expected seconds, 0 or more, got {after!r}")
-        at = self._striking.now() + after
-        self._striking.add(_checked(Crash(node=_name_of(node), at=at, restart_after=restart_after)))
+        at = self._target.now() + after
+        self._target.add(_checked(Crash(node=_name_of(node), at=at, restart_after=restart_after)))
 
     def skew(self, node: Names, seconds: float = 0.0, *, drift: float = 0.0) -> None:
-        """Give nodes that start from now on a clock that is ahead by so many seconds, and gains `drift` per second."""
-        self._striking.add(_checked(ClockFault(node=_given(node), offset=seconds, drift=drift)))
+        """Set a wrong clock for nodes that start from now on.
+
+        Args:
+            node: The nodes, or their names.
+            seconds: Offset of their clock in seconds; positive is ahead.
+            drift: Error of its rate in seconds gained per second, from -0.1 to 0.1.
+
+        Raises:
+            ValueError: if a value is out of range, or a name has a mistake.
+        """
+        self._target.add(_checked(ClockFault(node=_given(node), offset=seconds, drift=drift)))
 
     def read(self, path: str | PathLike[str]) -> None:
-        """Have all that a file of faults says, as `robolink simulate --faults` does; its times begin with the system.
+        """Apply all faults of a file, as `robolink simulate --faults` does.
 
-        Raises DocumentError with `file:line:column`.
+        Args:
+            path: Path of the file. Its times count from the system's beginning.
+
+        Raises:
+            DocumentError: if the file has a mistake, with `file:line:column`.
         """
-        self._striking.read(path)
+        self._target.read(path)
 
     def clear(self) -> None:
-        """Have messages come again as they should. What is on its way still arrives when it would have."""
-        self._striking.clear()
+        """Remove all faults of messages and connections. A message under way still arrives when it would have."""
+        self._target.clear()
 
     def _way(self, name: Names, service: bool, sender: Names, receiver: Names, during: float | None) -> dict[str, Any]:
         kind = "service" if service else "topic"
@@ -143,7 +219,7 @@ class Faults:
     def _times(self, during: float | None) -> dict[str, Any]:
         if during is not None and not during > 0:
             raise ValueError(f"during: expected seconds, more than 0, got {during!r}")
-        now = self._striking.now()
+        now = self._target.now()
         return {"after": now, "until": None if during is None else now + during}
 
 
@@ -162,7 +238,7 @@ def _name_of(given: Any) -> str:
 
 
 def _checked(fault: F) -> F:
-    """Give a fault, since it can be: as strict as a file of faults, but one of no effect is none. Raises ValueError."""
+    """Return a fault if it is valid: as strict as a file of faults, but one of no effect is none. Raises ValueError."""
     __tracebackhide__ = True
     told: dict[str, Any] = msgspec.to_builtins(fault)
     try:

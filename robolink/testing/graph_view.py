@@ -1,4 +1,4 @@
-"""Who is there in a system under test: nodes, topics and services as they are announced, without the test's own."""
+"""The graph of a system under test: nodes, topics and services as they are announced, without the test's own."""
 
 from __future__ import annotations
 
@@ -11,32 +11,33 @@ if TYPE_CHECKING:
     from robolink.node import Node
 
 EVERYBODYS_TOPICS = ("/parameter_events", "/rosout")
+"""Topics that every node has."""
 EVERYBODYS_SERVICES = ("rcl_interfaces/", "type_description_interfaces/")
-"""How the types begin of services that every node has."""
+"""Prefixes of the types of services that every node has."""
 
 
 class GraphView:
-    """What everybody but this node announces now; what every node has is left out."""
+    """The graph as one node sees it, without that node and without what every node has."""
 
     def __init__(self, own: Node) -> None:
         self._own, self._graph = own, own.context.graph
         self.own_name = own.get_fully_qualified_name()
 
     def nodes(self) -> list[str]:
-        """Give the full names of all nodes, sorted."""
+        """Return the full names of all nodes, sorted."""
         return sorted({each.full_node_name for each in self._graph.nodes()} - {self.own_name})
 
     def topics(self) -> dict[str, str]:
-        """Give all topics with their types; several types of one are parted by a comma."""
+        """Return the types of all topics by name; several types of one topic are separated by a comma."""
         named = {name: (self.ends(name), types) for name, types in self._own.get_topic_names_and_types()}
         return {
             name: ", ".join(types)
             for name, (ends, types) in named.items()
-            if (ends.given or ends.taken) and name not in EVERYBODYS_TOPICS
+            if (ends.publishers or ends.subscribers) and name not in EVERYBODYS_TOPICS
         }
 
     def services(self) -> dict[str, str]:
-        """Give all services with their types."""
+        """Return the types of all services by name."""
         return {
             each.name: each.type_name
             for each in self._graph.endpoints(EndpointKind.SERVICE)
@@ -44,7 +45,7 @@ class GraphView:
         }
 
     def ends(self, name: str) -> Ends:
-        """Give who publishes a topic and who subscribes to it."""
+        """Return the nodes that publish a topic and those that subscribe to it."""
         publishers = self._graph.endpoints(EndpointKind.PUBLISHER, name=name)
         subscriptions = self._graph.endpoints(EndpointKind.SUBSCRIPTION, name=name)
         return Ends(
@@ -54,7 +55,7 @@ class GraphView:
         )
 
     def heard_by_publishers_of(self, name: str) -> list[str]:
-        """Name the topics to which those subscribe that publish this one: what they make it of."""
-        publishers = set(self.ends(name).given)
+        """Return the topics to which the publishers of a topic subscribe: the inputs that it is made of."""
+        publishers = set(self.ends(name).publishers)
         subscriptions = self._graph.endpoints(EndpointKind.SUBSCRIPTION)
         return sorted({each.name for each in subscriptions if each.full_node_name in publishers} - {*EVERYBODYS_TOPICS})

@@ -1,4 +1,4 @@
-"""Reads a launch file for a test: with arguments, and with parameters that the test sets."""
+"""Reading of launch files for tests: with arguments, and with parameters that the test sets."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from robolink.simulating.settings import with_parameters
+from robolink.documents.yamlfile import spell
+from robolink.simulate.settings import with_parameters
 from robolink.workspace import find_launch, find_node
-from robolink.yamlfile import spell
 
 if TYPE_CHECKING:
     from robolink.launch import Entry
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 
 def read(file: str | PathLike[str], arguments: Mapping[str, Any], values: Mapping[str, Any]) -> list[Entry]:
-    """Give what a launch file says; `values` are parameters as ``{"wall_follower.speed": 0.2}``.
+    """Read a launch file; `values` are parameters as ``{"wall_follower.speed": 0.2}``.
 
-    Raises NotFoundError for a file, node or argument that is not there, and DocumentError.
+    Raises NotFoundError for a file, node or argument that does not exist, and DocumentError for a mistake in the file.
     """
     from robolink.launch import read_launch_file
 
@@ -29,7 +29,7 @@ def read(file: str | PathLike[str], arguments: Mapping[str, Any], values: Mappin
 
 
 def entry_of(spec: str, wanted: Wanted) -> list[Entry]:
-    """Give the entry for one node, as if a launch file said this of it. Raises NotFoundError, with the nearest name."""
+    """Return the launch entry of one node, as if a launch file had it. Raises NotFoundError, with the nearest name."""
     from robolink.launch import read_launch_file
 
     source = find_node(spec)

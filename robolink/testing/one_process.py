@@ -1,4 +1,4 @@
-"""The stage on which all programs of a system live in this process: in memory, in virtual time, with faults."""
+"""In-process runner of a system under test: all programs in memory, in virtual time, with fault injection."""
 
 from __future__ import annotations
 
@@ -14,27 +14,28 @@ from typing import TYPE_CHECKING, Any
 
 from robolink import logging
 from robolink.faults.report import Why
+from robolink.host import Host, Program
+from robolink.host.call_sites import is_users
+from robolink.host.supervision import Supervision
 from robolink.launch import processes
 from robolink.message import type_hash
-from robolink.names import meant, the_one
 from robolink.node import Node
-from robolink.oneprocess import Host, Program
-from robolink.oneprocess.places import is_users
-from robolink.oneprocess.supervision import Supervision
-from robolink.simulating.settings import numpy_seeded
+from robolink.simulate.settings import numpy_seeded
 from robolink.supervisor.rules import Step, is_orderly
 from robolink.testing.faults import Faults
 from robolink.testing.launching import entry_of
-from robolink.testing.stage import Failure, Named, Wanted, full
-from robolink.testing.strikes import Strikes
+from robolink.testing.node_faults import ProgramFaults
+from robolink.testing.node_names import Named, full
+from robolink.testing.stage import Failure, Wanted
+from robolink.text.names import meant, the_one
 from robolink.transport.memory import MemoryTransport
 
 if TYPE_CHECKING:
     from robolink.launch import Entry, Launched
     from robolink.logging import Record
     from robolink.message import Message
+    from robolink.running.timebase import TimeBase
     from robolink.testing.recorder import Topic
-    from robolink.timebase import TimeBase
     from robolink.transport import Transport
 
 
@@ -46,7 +47,7 @@ class Tester(Node):
 
 
 class OneProcess:
-    """Runs all programs of a system in this process; `seed` decides all that is drawn."""
+    """Runner of all programs of a system in this process; `seed` decides all that is drawn."""
 
     virtual = True
 
@@ -57,8 +58,8 @@ class OneProcess:
         self.expected: set[str] = set()
         with ExitStack() as stack:
             self.host = stack.enter_context(Host(seed=seed, connect=self._connect, clock=self._clock))
-            self.strikes = Strikes(self, seed)
-            self.faults = Faults(self.strikes)
+            self.program_faults = ProgramFaults(self, seed)
+            self.faults = Faults(self.program_faults)
             self.host.on_exit.append(self._on_exit)
             logging.add_handler(self.logs.append)
             stack.callback(logging.remove_handler, self.logs.append)
@@ -73,13 +74,13 @@ class OneProcess:
     # The host is made first: it asks for both only once a program starts.
 
     def _connect(self, program: str) -> Transport:
-        return self.strikes.injector.connect(program)
+        return self.program_faults.injector.connect(program)
 
     def _clock(self, program: str, time: TimeBase) -> TimeBase:
-        return self.strikes.injector.clock(program, time)
+        return self.program_faults.injector.clock(program, time)
 
     def now_ns(self) -> int:
-        """Give the virtual time."""
+        """Return the virtual time in ns."""
         return self.host.time.now()
 
     def session(self) -> Transport:
@@ -89,13 +90,13 @@ class OneProcess:
     # Programs
 
     def start(self, wanted: Wanted) -> Any:
-        """Start a node; give it, or the program of a script."""
+        """Start a node; return it, or the program of a script."""
         failed = len(self.failures)
         try:
             if isinstance(wanted.what, type):
                 return self._started_class(wanted.what, wanted)
             (launched,) = processes(entry_of(str(wanted.what), wanted))
-            self._introduce(launched)
+            self._register(launched)
             program = self.host.start(launched.name, launched.members, env=launched.env)
             if program.error is not None:
                 raise program.error
@@ -106,7 +107,7 @@ class OneProcess:
 
     def _started_class(self, node_class: type[Node], wanted: Wanted) -> Any:
         called = self._free_name(wanted.namespace, wanted.name or _name_in(node_class) or node_class.__name__)
-        self.strikes.injector.introduce(called, [called])
+        self.program_faults.injector.register(called, [called])
         node = self.host.start_node(
             node_class,
             name=wanted.name,
@@ -116,22 +117,22 @@ class OneProcess:
             args=wanted.args,
             called=called,
         )
-        self.strikes.tell_of_right_clock(called, node.get_fully_qualified_name().strip("/"))
+        self.program_faults.warn_of_right_clock(called, node.get_fully_qualified_name().strip("/"))
         return node
 
     def _free_name(self, namespace: str, name: str) -> str:
-        """Give a name for a program that no other has."""
+        """Return a name for a program that no other has."""
         first = f"{namespace.strip('/')}/{name}".lstrip("/")
         names = (first if number == 1 else f"{first}_{number}" for number in range(1, len(self.host.programs) + 2))
         return next(each for each in names if each not in self.host.programs)
 
     def launch(self, entries: Sequence[Entry], faults: str | PathLike[str] | None = None) -> None:
-        """Start what a launch file says, by its rules, with what a file of faults says; commands are left out."""
+        """Start the nodes of a launch file by its rules, with the faults of a file; commands are left out."""
         launched = processes(entries)
         for each in launched:
-            self._introduce(each)
+            self._register(each)
         if faults is not None:
-            self.strikes.read(faults)
+            self.program_faults.read(faults)
         for each in launched:
             if not each.members:
                 logging.get_logger("robolink.testing").warning(
@@ -142,11 +143,11 @@ class OneProcess:
         supervision.begin()
         self.run_until(lambda: False, 0.0)
 
-    def _introduce(self, launched: Launched) -> None:
-        self.strikes.injector.introduce(launched.name, (entry.name for entry in launched.entries))
+    def _register(self, launched: Launched) -> None:
+        self.program_faults.injector.register(launched.name, (entry.name for entry in launched.entries))
 
     def _node_of(self, program: Program) -> Any:
-        """Give the node of a program, once it has made it; of one that makes none at once, the program."""
+        """Return the node of a program, once it has made it; the program itself if it makes none at once."""
         self.run_until(lambda: bool(program.nodes) or program.is_over, 0.0)
         nodes = program.nodes
         return nodes[0] if nodes else program
@@ -168,12 +169,12 @@ class OneProcess:
         return self._node_of(made)
 
     def supervision_of(self, program: str) -> Supervision | None:
-        """Give what sees to the rules of a program that a launch file started."""
+        """Return the supervision of a program that a launch file started; None of another."""
         return next((each for each in self.supervisions if program in each.policy.processes), None)
 
     @contextmanager
     def _expecting(self, program: str) -> Iterator[None]:
-        """What ends meanwhile because the test wants it is no failure, and no rule of a launch file is applied."""
+        """Expect the end of a program: it is no failure, and no rule of a launch file is applied."""
         self.expected.add(program)
         if not self.host.program(program).is_over:
             supervision = self.supervision_of(program)
@@ -186,18 +187,18 @@ class OneProcess:
 
     @property
     def programs(self) -> list[str]:
-        """The names of all programs, ended ones too."""
+        """Names of all programs, ended ones too."""
         programs = [each for name, each in self.host.programs.items() if name != self._own]
         shown = Counter(map(_called, programs))
         return [each.name if shown[_called(each)] > 1 else _called(each) for each in programs]
 
     def program_of(self, node: str | Named) -> str:
-        """Give the program of a node, or of the only one of this name in any namespace. Raises NotFoundError."""
+        """Return the program of a node, or of the only one of this name in any namespace. Raises NotFoundError."""
         of_it = [] if isinstance(node, str) else [each for each, it in self.host.programs.items() if node in it.nodes]
         if of_it:
             return of_it[0]
         by_node: dict[str, str] = {}
-        for program, names in self.strikes.injector.network.programs.items():
+        for program, names in self.program_faults.injector.network.programs.items():
             by_node.update((name, program) for name in names - by_node.keys())
         found = {by_node[each] for each in meant(full(node), by_node)}
         return found.pop() if len(found) == 1 else by_node[the_one("node", full(node), sorted(by_node))]
@@ -211,22 +212,22 @@ class OneProcess:
     # Time
 
     def run_until(self, condition: Callable[[], bool], within: float) -> bool:
-        """Let time pass until the condition holds, so many seconds at most; whether it holds."""
+        """Let time pass until the condition holds or `within` seconds are over; True if it holds."""
         return self.host.run_until(condition, within)
 
-    # What is known of the programs
+    # State of the programs
 
     def nodes(self) -> list[Node]:
-        """Give all nodes."""
+        """Return all nodes."""
         return [node for program in self.host.programs.values() for node in program.nodes]
 
     def nodes_beside(self, started: Any) -> list[Node]:
-        """Give the nodes of a program, or of that of a node."""
+        """Return the nodes of a program, or of a node's program."""
         program = started if isinstance(started, Program) else self.host.program(self.program_of(started))
         return program.nodes
 
     def class_of(self, topic: Topic) -> type[Message] | None:
-        """Give the message class of a publisher."""
+        """Return the message class of a topic's publisher; None if no node here publishes it."""
         for node in self.nodes():
             for each in node.publishers:
                 if each.topic_name == topic.name and type_hash(each.msg_type) == topic.type_hash:
@@ -235,16 +236,16 @@ class OneProcess:
         return None
 
     def real_time_use(self) -> list[str]:
-        """Tell which nodes slept or started threads in real time, and where."""
+        """Return which nodes slept or started threads in real time, and where."""
         return [f"{each.program} {each.what} ({each.place})" for each in self.host.real_time_use]
 
     def fault_reports(self) -> list[str]:
-        """Tell what each fault of messages has done."""
-        return [str(each) for each in self.strikes.injector.network.reports]
+        """Return the effects of each fault of messages."""
+        return [str(each) for each in self.program_faults.injector.network.reports]
 
     def faults_in_vain(self) -> list[str]:
-        """Tell of faults that name what was never there, or whose time came and that met nothing; not of wildcards."""
-        unmet = self.strikes.injector.unmet()
+        """Return faults that name what never existed, or whose time came and that met nothing; no wildcards."""
+        unmet = self.program_faults.injector.unmet()
         return [each.text for each in unmet if each.why in (Why.WRONG_NAME, Why.IN_VAIN)]
 
     def close(self) -> None:
@@ -253,7 +254,7 @@ class OneProcess:
 
 
 def _name_in(node_class: type[Node]) -> str:
-    """Give the name that the code of a class gives its nodes, if it stands there: programs are called so.
+    """Return the name that the code of a class gives its nodes, if it stands there: programs are called so.
 
     A wrong clock must be known by it before there is a node: a context has its time from when it is made on, and the
     node gives its name only then. All other faults learn names as nodes are announced.
@@ -267,13 +268,13 @@ def _name_in(node_class: type[Node]) -> str:
 
 
 def _called(program: Program) -> str:
-    """Give a program's name for people: that of its node, if it has one."""
+    """Return a program's name for people: that of its node, if it has one."""
     nodes = program.nodes
     return nodes[0].get_fully_qualified_name().strip("/") if len(nodes) == 1 else program.name
 
 
 def _why(program: Program) -> str:
-    """Say in one line why a program has ended."""
+    """Return in one line why a program has ended."""
     error = program.error
     if error is None:
         return f"it ended with exit code {program.returncode}"

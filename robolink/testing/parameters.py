@@ -1,4 +1,4 @@
-"""Reads and sets the parameters of a system's nodes: of those in this process directly, of others by their services."""
+"""Parameters of a system's nodes: of those in this process directly, of others by their services."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from robolink.exceptions import (
     ParameterNotDeclaredException,
     nearest,
 )
-from robolink.names import meant
 from robolink.parameter import Parameter, parameter_value_to_python
 from robolink.parameter_client import AsyncParameterClient
-from robolink.parameter_rules import WrittenParameter
-from robolink.simulating.undeclared import is_among
+from robolink.parameters.rules import WrittenParameter
+from robolink.simulate.undeclared import is_among
 from robolink.testing.expectations import ExpectationError
-from robolink.testing.stage import Named
+from robolink.testing.node_names import Named
+from robolink.text.names import meant
 
 if TYPE_CHECKING:
     from robolink.node import Node
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from robolink.testing.stage import Stage
 
 PATIENCE = 5.0
-"""Seconds that a node has to say what it has declared."""
+"""Timeout of a node's answer about its declared parameters, in seconds."""
 
 
 class _Given(NamedTuple):
@@ -37,14 +37,14 @@ class _Given(NamedTuple):
 
 
 class Parameters:
-    """The parameters of all nodes, and what of them the test gave to nodes at their start."""
+    """The parameters of all nodes, and those that the test gave to nodes at their start."""
 
     def __init__(self, stage: Stage, graph: GraphView, expecting: Expecting) -> None:
         self._stage, self._graph, self._expecting = stage, graph, expecting
         self._given: list[_Given] = []
 
     def value_of(self, node: str, name: str, within: float) -> Any:
-        """Give the value of a parameter of the node with this full name."""
+        """Return the value of a parameter of the node with this full name."""
         own = self._node_here(node)
         if own is not None:
             return own.get_parameter(name).value
@@ -75,7 +75,7 @@ class Parameters:
         return client
 
     def _node_here(self, node: str) -> Node | None:
-        """Give the node if it lives in this process, None if another has it. Raises NotFoundError for neither."""
+        """Return the node if it lives in this process, None if another has it. Raises NotFoundError for neither."""
         for each in self._stage.nodes():
             if each.get_fully_qualified_name() == node:
                 return each
@@ -84,7 +84,7 @@ class Parameters:
             raise NotFoundError("node", node, known, "this system")
         return None
 
-    # What was given at the start
+    # Parameters given at the start
 
     def note_given(self, started: Any, names: Iterable[str]) -> None:
         """Note what was given to what `start` has started."""
@@ -124,7 +124,7 @@ class Parameters:
         )
 
     def _declared(self, node: str | Named, full_name: str) -> set[str] | None:
-        """Give the names of all that a node has declared so far; None if it does not say."""
+        """Return the names of all parameters that a node has declared so far; None if it does not answer."""
         if isinstance(node, str):
             here = (each for each in self._stage.nodes() if each.get_fully_qualified_name() == full_name)
             node = next(here, node)

@@ -1,4 +1,4 @@
-"""robolink's plugin for pytest: a system of nodes as a fixture, and the seed that replays what failed.
+"""pytest plugin of robolink: a system of nodes as a fixture, and the seed that replays a failure.
 
 pytest loads this in every project where robolink is installed, so nothing of robolink is imported before a test asks
 for one of the fixtures, and a project's own fixtures of the same names go first.
@@ -24,10 +24,16 @@ if TYPE_CHECKING:
     from robolink.testing.system import System
 
 SEED = "--robolink-seed"
+"""Option of pytest for the seed of every system."""
+RECORD = "--robolink-record"
+"""Option of pytest for the folder of the bags of tests that fail."""
 SEEDS = 100_000
+"""Count of the seeds from which the default and the random one come."""
 MOST_SEED = 2**32 - 1
+"""Upper bound of a seed."""
 RANDOM = "random"
 HASH_SEED = "PYTHONHASHSEED"
+"""Environment variable that fixes the order of a set of texts."""
 TRANSPORTS = ("memory", "zenoh")
 
 
@@ -43,7 +49,7 @@ _seed.__name__ = f"whole number up to {MOST_SEED}, or '{RANDOM}'"  # how argpars
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the options that tests of robot systems have."""
+    """Add robolink's command-line options to pytest."""
     group = parser.getgroup("robolink", "systems of robolink's nodes")
     group.addoption(
         SEED,
@@ -58,15 +64,20 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default=TRANSPORTS[0],
         help="memory: in this process and in virtual time (default); zenoh: real processes in real time",
     )
+    group.addoption(
+        RECORD,
+        metavar="FOLDER",
+        help="record the system of every test into a bag in FOLDER, and keep those of tests that fail",
+    )
 
 
 _SYSTEM = pytest.StashKey["System"]()
 _HAS_FAILED = pytest.StashKey[bool]()
-"""Whether a test has ended before its time: it failed, or was skipped."""
+"""Stash key of the flag that a test has ended early: it failed, or was skipped."""
 
 
 def _seed_for(item: pytest.Item) -> int:
-    """Give a test's seed: the same in every run, wherever its file lies, unless one was asked for."""
+    """Return a test's seed: the same in every run, wherever its file lies, unless one was asked for."""
     asked: int | str | None = item.config.getoption(SEED)
     if isinstance(asked, int):
         return asked
@@ -74,7 +85,7 @@ def _seed_for(item: pytest.Item) -> int:
 
 
 def _name_from_here(item: pytest.Item) -> str:
-    """Give how a test is called in the folder where pytest was: its own name for it begins at the project's root."""
+    """Return a test's name in the folder where pytest was started: its own name for it begins at the project's root."""
     _, colons, inside = item.nodeid.partition("::")
     try:
         file = os.path.relpath(item.path, item.config.invocation_params.dir)
@@ -85,7 +96,7 @@ def _name_from_here(item: pytest.Item) -> str:
 
 @pytest.fixture
 def system(request: pytest.FixtureRequest) -> Iterator[System]:
-    """Give a system without nodes, for this test alone; at its end nothing of it is left."""
+    """A system without nodes, for this test alone; at its end nothing of it is left."""
     from robolink.testing.system import System
 
     item = request.node
@@ -96,6 +107,9 @@ def system(request: pytest.FixtureRequest) -> Iterator[System]:
     replay = f"{before}pytest '{_name_from_here(item)}' {SEED} {seed}{where}"
     with System(seed=seed, transport=transport, replay=replay) as made:
         item.stash[_SYSTEM], item.stash[_HAS_FAILED] = made, False
+        folder = item.config.getoption(RECORD)
+        if folder:
+            made.record_for_failure(Path(folder), item.name)
         yield made
         made.check()
         if item.stash[_HAS_FAILED]:
@@ -104,13 +118,13 @@ def system(request: pytest.FixtureRequest) -> Iterator[System]:
 
 @pytest.fixture
 def node(system: System) -> Node:
-    """Give a node of the test's own in the system: for publishers, subscriptions and clients."""
+    """A node of the test's own in the system, for publishers, subscriptions and clients."""
     return system.node
 
 
 @pytest.fixture
 def virtual_time(system: System) -> SystemClock:
-    """Give the system's time, which passes only when the test lets it: `now` and `run(seconds)`."""
+    """The system's clock, which passes only when the test lets it: `now` and `run(seconds)`."""
     if not system.virtual:
         pytest.skip("real processes have no virtual time: this test needs --robolink-transport memory")
     return system.clock
@@ -132,12 +146,14 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[Any]) -> 
     if isinstance(error, OnlyInMemoryError):
         report.outcome = "skipped"
         report.longrepr = (str(item.path), item.location[1] or 0, f"Skipped: {error}")
-    elif report.failed and not isinstance(error, ExpectationError):  # which says so itself
-        report.sections.append(("robolink", made.story.whole()))
+    elif report.failed:
+        if not isinstance(error, ExpectationError):  # which says so itself
+            report.sections.append(("robolink", made.story.whole()))
+        report.sections += [("robolink", f"the bag of this test: {each}") for each in made.keep_bags()]
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:
-    """Say once, below failures that have a replay, what their seed does not decide."""
+    """Note once, below failures that have a replay, what their seed does not decide."""
     reports = (each for kind in ("failed", "error") for each in terminalreporter.stats.get(kind, ()))
     if sys.flags.hash_randomization and not os.environ.get(HASH_SEED) and any(map(_has_replay, reports)):
         terminalreporter.write_line(f"robolink: the order of sets of texts is chance; {HASH_SEED}=0 makes it the same")
@@ -148,7 +164,7 @@ def _has_replay(report: Any) -> bool:
 
 
 def pytest_exception_interact(call: pytest.CallInfo[Any], report: pytest.CollectReport | pytest.TestReport) -> None:
-    """Say how a file of tests imports rclpy's names, where it could not."""
+    """Add advice to a file of tests that could not import rclpy's names."""
     error = call.excinfo.value.__cause__ if call.excinfo else None
     if isinstance(report, pytest.CollectReport) and isinstance(error, ModuleNotFoundError):
         name = (error.name or "").partition(".")[0]
@@ -164,12 +180,12 @@ def _is_ros(name: str) -> bool:
 
 
 _ROBOLINK = Path(__file__).parents[1]
-_WAYS = (_ROBOLINK / "testing", _ROBOLINK / "oneprocess")
-"""What stands between a test and its nodes' code, and says nothing to either."""
+_WAYS = (_ROBOLINK / "testing", _ROBOLINK / "host")
+"""Folders of the frames between a test and its nodes' code, which help neither."""
 
 
 def _leave_out_ways(error: BaseException) -> None:
-    """Leave robolink's own ways out of what is shown of an error; of one that says what is wrong, also its place."""
+    """Remove robolink's own frames from an error's traceback; from one that explains itself, its place too."""
     from robolink.exceptions import RobolinkError
 
     step = error.__traceback__

@@ -1,4 +1,4 @@
-"""The stage on which the programs of a system are processes, which talk over Zenoh in real time."""
+"""Multi-process runner of a system under test: each program is a process, in real time over Zenoh."""
 
 from __future__ import annotations
 
@@ -18,14 +18,15 @@ from robolink.faults.injector import Fault
 from robolink.interfaces.rcl_interfaces.msg import Log
 from robolink.interfaces.rcl_interfaces.srv import ListParameters
 from robolink.logging import LoggingSeverity, Record
-from robolink.names import the_one
 from robolink.node import Node
 from robolink.qos import qos_profile_rosout_default
 from robolink.testing.expectations import NodeFailure, OnlyInMemoryError
 from robolink.testing.faults import Faults
 from robolink.testing.launching import entry_of
-from robolink.testing.stage import Failure, Named, Wanted, full
+from robolink.testing.node_names import Named, full
+from robolink.testing.stage import Failure, Wanted
 from robolink.testing.supervisor_thread import Launch
+from robolink.text.names import the_one
 from robolink.transport.free_domain import free_domain
 from robolink.transport.zenoh import ZenohTransport
 from robolink.wire import NodeToken, graph_pattern
@@ -39,20 +40,21 @@ if TYPE_CHECKING:
     from robolink.transport import Transport
 
 NETWORK = "localhost"
+"""Network of the processes: this machine's loopback alone."""
 UP_WITHIN = 30.0
-"""Seconds in which a node that is started must be announced."""
+"""Timeout of a started node's announcement, in seconds."""
 ANSWERS_WITHIN = 5.0
-"""Seconds that a node which is announced has to be made and to answer."""
+"""Timeout of an announced node's first answer, in seconds: until then it is still made."""
 DOWN_WITHIN = 20.0
-"""Seconds in which a process that is to end has ended: it is killed before."""
+"""Timeout of a process that is to end, in seconds: it is killed before."""
 UNKNOWN_WITHIN = 5.0
-"""Seconds in which the others learn that a process has ended."""
+"""Timeout in which the others learn that a process has ended, in seconds."""
 SLICE = 0.02
-"""Seconds after which a wait looks whether what it waits for has come."""
+"""Period in seconds at which a wait checks its condition."""
 
 
 class RemoteNode:
-    """A node in another process, by its name: what it does is seen by topics, services and log lines.
+    """Stand-in for a node in another process, by its name: it is observed by topics, services and log lines.
 
     `beside` are the full names of all nodes that its program had when it was announced.
     """
@@ -61,20 +63,20 @@ class RemoteNode:
         self.program, self.beside, self._full_name = program, beside, full_name
 
     def get_fully_qualified_name(self) -> str:
-        """Give namespace and name."""
+        """Return the node's namespace and name."""
         return self._full_name
 
     def get_name(self) -> str:
-        """Give the node's name."""
+        """Return the node's name."""
         return self._full_name.rpartition("/")[2]
 
     def get_namespace(self) -> str:
-        """Give the node's namespace, with its leading slash."""
+        """Return the node's namespace, with its leading slash."""
         return self._full_name.rpartition("/")[0] or "/"
 
 
 class Processes:
-    """Runs each program of a system as a process, on a domain of their own; `start` gives what stands for its node."""
+    """Runner of each program of a system as a process, on a domain of their own."""
 
     virtual = False
 
@@ -85,9 +87,9 @@ class Processes:
         self._launches: list[Launch] = []
         self._exits: queue.SimpleQueue[Exited] = queue.SimpleQueue()
         self._expected: set[int | None] = set()
-        """The numbers of the processes that the test has had ended."""
+        """Ids of the processes that the test itself has ended."""
         self._shown: dict[str, str] = {}
-        """The names of nodes, by their programs'."""
+        """Names of nodes, by their programs'."""
         with ExitStack() as stack:
             self.domain = stack.enter_context(free_domain())
             context = Context(transport=self.session())
@@ -109,7 +111,7 @@ class Processes:
     # Programs
 
     def start(self, wanted: Wanted) -> RemoteNode:
-        """Start a node, and wait until it is made. Raises NodeFailure when it ends before."""
+        """Start a node and wait until it is made; return its stand-in. Raises NodeFailure if it ends before."""
         __tracebackhide__ = True
         called = self._free_name(wanted)
         before = set(self.node.context.graph.nodes())
@@ -117,14 +119,14 @@ class Processes:
         return self._node(called, before)
 
     def _free_name(self, wanted: Wanted) -> str:
-        """Find a name for a program: that of its node, if it is given one."""
+        """Return a free name for a program: that of its node, if it is given one."""
         own = wanted.name or (wanted.what.__name__ if isinstance(wanted.what, type) else Path(wanted.what).stem)
         name, taken = f"{wanted.namespace.strip('/')}/{own}".lstrip("/"), self._all_names()
         names = (name if number == 1 else f"{name}_{number}" for number in range(1, len(taken) + 2))
         return next(each for each in names if each not in taken)
 
     def launch(self, entries: Sequence[Entry], faults: str | PathLike[str] | None = None) -> None:
-        """Start what a launch file says, and wait until every node is made that waits for nothing."""
+        """Start the nodes of a launch file, and wait until every node is made that waits for nothing."""
         __tracebackhide__ = True
         if faults is not None:
             self.faults.read(faults)
@@ -202,7 +204,7 @@ class Processes:
         return self._node(program, before)
 
     def _end(self, program: str, act: Callable[[Launch], object]) -> None:
-        """Have a program end, and wait until it has and its node is announced no more."""
+        """End a program, and wait until it has ended and its node is announced no more."""
         launch = self._launch_of(program)
         pid, before = launch.pid(program), self._count_of(program)
         self._expected.add(pid)
@@ -218,7 +220,7 @@ class Processes:
 
     @property
     def programs(self) -> list[str]:
-        """The names of all programs, ended ones too: that of the node where it is one program's alone."""
+        """Names of all programs, ended ones too: that of the node where it is one program's alone."""
         shown = {name: self._shown.get(name, name) for name in self._all_names()}
         times = Counter(shown.values())
         return [name if times[node] > 1 else node for name, node in shown.items()]
@@ -227,7 +229,7 @@ class Processes:
         return [name for launch in self._launches for name in launch.names]
 
     def program_of(self, node: str | Named) -> str:
-        """Give a node's program, or that of this name, in any namespace if it is the only one. Raises NotFoundError."""
+        """Return the program of a node, or of the only one of this name in any namespace. Raises NotFoundError."""
         if isinstance(node, RemoteNode):
             return node.program
         found = the_one("node", full(node), self.programs, "this system")
@@ -239,7 +241,7 @@ class Processes:
     # Time
 
     def run_until(self, condition: Callable[[], bool], within: float) -> bool:
-        """Let real time pass until the condition holds, so many seconds at most; whether it holds."""
+        """Let real time pass until the condition holds or `within` seconds are over; True if it holds."""
         deadline = time.monotonic() + within
         while True:
             self._take_exits()
@@ -257,31 +259,31 @@ class Processes:
                 why = each.how + (f": {each.cause}" if each.cause else "")
                 self.failures.append(Failure(self._shown.get(each.name, each.name), int(each.at * 1e9), why))
 
-    # What is known of the programs
+    # State of the programs
 
     def nodes(self) -> list[Node]:
-        """Give the test's own node: all others live elsewhere."""
+        """Return the test's own node: all others live elsewhere."""
         return [self.node]
 
     def nodes_beside(self, started: RemoteNode) -> Sequence[str]:
-        """Give the names of the nodes of a node's program that are there."""
+        """Return the names of the nodes of a node's program that exist now."""
         there = {each.full_node_name for each in self.node.context.graph.nodes()}
         return [each for each in started.beside if each in there]
 
     def class_of(self, topic: Topic) -> type[Message] | None:
-        """Give nothing: the class must be installed, or asked of the node."""
+        """Return None: the class must be installed, or asked of the node."""
         return None
 
     def fault_reports(self) -> list[str]:
-        """Give nothing: there are no faults."""
+        """Return nothing: there are no faults."""
         return []
 
     def faults_in_vain(self) -> list[str]:
-        """Give nothing, likewise."""
+        """Return nothing: there are no faults."""
         return []
 
     def real_time_use(self) -> list[str]:
-        """Give nothing: all of it is real time."""
+        """Return nothing: all of it is real time."""
         return []
 
     def _on_log(self, log: Log) -> None:
@@ -299,7 +301,7 @@ class Processes:
 
 
 def _spec(what: type[Node] | str | Path) -> str:
-    """Give how `robolink run` finds it. Raises OnlyInMemoryError for a class that no file gives."""
+    """Return the name by which `robolink run` finds it. Raises OnlyInMemoryError for a class that no file gives."""
     if not isinstance(what, type):
         return str(what)
     if "<locals>" in what.__qualname__:
@@ -316,22 +318,22 @@ def _severity(level: int) -> LoggingSeverity:
 
 
 class _NoFaults:
-    """Refuses faults: between real processes there is nothing that could lose a message on purpose."""
+    """Refusal of all faults: between real processes nothing can lose a message on purpose."""
 
     def now(self) -> float:
-        """Give nothing that counts."""
+        """Return a time that nothing uses."""
         return 0.0
 
     def add(self, fault: Fault) -> None:
-        """Refuse it."""
+        """Refuse a fault."""
         raise _only_in_memory(type(fault).__name__)
 
     def read(self, path: str | PathLike[str]) -> None:
-        """Refuse it."""
+        """Refuse a file of faults."""
         raise _only_in_memory(str(path))
 
     def clear(self) -> None:
-        """There are none."""
+        """Do nothing: there are no faults."""
 
 
 def _only_in_memory(what: str) -> OnlyInMemoryError:

@@ -1,6 +1,6 @@
-"""The last messages of every topic of a system, as bytes: for whoever wants to know afterwards what was said.
+"""Recorder of the last messages of every topic of a system, as bytes, for the text of a failure.
 
-What is kept is read only when it is shown, and nobody in the system sees that there is a listener.
+A message is decoded only when it is shown, and nobody in the system sees that there is a listener.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ from robolink.wire import (
 )
 
 KEPT = 20
-"""Messages of each topic."""
+"""Count of messages kept of each topic."""
 
 _LATCHED = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
-class Heard(NamedTuple):
-    """Something that was published, when it was heard (nanoseconds of the system's time), and as which of all."""
+class Recorded(NamedTuple):
+    """A recorded message: the system's time in ns, the raw sample, and its number among all messages."""
 
     time_ns: int
     arrived: Any
@@ -41,20 +41,20 @@ class Heard(NamedTuple):
 
 
 class Topic:
-    """One topic of one type: its last messages, and who listens to it beside."""
+    """One topic of one type, with its last messages."""
 
     def __init__(self, token: EndpointToken) -> None:
         self.token, self.name = token, token.name
         self.type_name, self.type_hash = token.type_name, token.type_hash
         self.key = format_key(DataKey(token.domain, token.name, token.type_name, token.type_hash))
         self.count = 0
-        self.kept: deque[Heard] = deque(maxlen=KEPT)
+        self.kept: deque[Recorded] = deque(maxlen=KEPT)
 
 
 class Recorder:
-    """Hears all that is published on a domain, from the moment when its publisher is announced.
+    """Recorder of all messages on a domain, from the moment when their publisher is announced.
 
-    `transport` is a session of its own, `now` the time in nanoseconds that each message is noted with. `on_first` is
+    `transport` is a session of its own, `now` returns the time in ns that each message is noted with. `on_first` is
     called with each topic when its first message comes.
     """
 
@@ -66,39 +66,39 @@ class Recorder:
         on_first: Callable[[Topic], object] = lambda topic: None,
     ) -> None:
         self.topics: dict[str, Topic] = {}
-        """By key: two publishers of one topic may differ in type."""
+        """Topics by key: two publishers of one topic may differ in type."""
         self._transport, self._now, self._on_first = transport, now, on_first
         self._senders: dict[bytes, str] = {}
         self._numbers = itertools.count()
-        self._ears: list[Ear] = []
+        self._queues: list[TopicQueue] = []
         self._followers: list[Callable[[Topic], object]] = []
         self._lock = threading.RLock()  # over Zenoh, news of publishers come on a thread of its own
         transport.watch(graph_pattern(domain), self._on_token)
 
     def named(self, name: str) -> list[Topic]:
-        """Give the topics of this name: none, one, or as many as there are types."""
+        """Return the topics of this name: none, one, or as many as there are types."""
         with self._lock:
             return [each for each in self.topics.values() if each.name == name]
 
-    def listen(self, name: str) -> Ear:
-        """Begin to keep what is published on a topic, now or later; what publishers keep for late ones comes first."""
-        ear = Ear(name, self._transport)
+    def listen(self, name: str) -> TopicQueue:
+        """Start a queue of what is published on a topic, now or later; what publishers keep for late ones is first."""
+        queue = TopicQueue(name, self._transport)
         with self._lock:
-            self._ears.append(ear)
+            self._queues.append(queue)
             for topic in self.named(name):
-                ear.hear(topic)
-        return ear
+                queue.hear(topic)
+        return queue
 
     @contextmanager
-    def listening(self, name: str) -> Iterator[Ear]:
+    def listening(self, name: str) -> Iterator[TopicQueue]:
         """Listen for as long as a `with` lasts."""
-        ear = self.listen(name)
+        queue = self.listen(name)
         try:
-            yield ear
+            yield queue
         finally:
             with self._lock:
-                self._ears.remove(ear)
-            ear.close()
+                self._queues.remove(queue)
+            queue.close()
 
     def now(self) -> int:
         """Return a number that is above those of all that was heard so far, and below those of what comes."""
@@ -120,7 +120,7 @@ class Recorder:
         numbers = (each.number for each in kept if self.sample(each).attachment == sample.attachment)
         return next(numbers, next(self._numbers)) + 1
 
-    def tell_of_topics(self, follower: Callable[[Topic], object]) -> None:
+    def follow_topics(self, follower: Callable[[Topic], object]) -> None:
         """Call `follower(topic)` for each topic that there is, and for each that comes."""
         with self._lock:
             self._followers.append(follower)
@@ -132,12 +132,20 @@ class Recorder:
         read = self._transport.read
         self._transport.subscribe(topic.key, _LATCHED, lambda arrived: callback(read(arrived).payload))
 
-    def sample(self, heard: Heard) -> Sample:
-        """Give the bytes of what was heard."""
+    def arrivals(self, topic: Topic, sink: Callable[[Any], object]) -> None:
+        """Call `sink` with all that arrives on a topic from now on, where it is published; `sample_of` reads it."""
+        self._transport.subscribe(topic.key, _LATCHED, sink)
+
+    def sample_of(self, arrived: Any) -> Sample:
+        """Return what arrived."""
+        return self._transport.read(arrived)
+
+    def sample(self, heard: Recorded) -> Sample:
+        """Return the bytes of a recorded message."""
         return self._transport.read(heard.arrived)
 
     def sender(self, sample: Sample) -> str:
-        """Name the node that published it; '' when nobody knows."""
+        """Return the full name of the node that published a sample; '' if it is unknown."""
         with suppress(WireError):
             return self._senders.get(unpack_attachment(sample.attachment).gid, "")
         return ""
@@ -167,18 +175,18 @@ class Recorder:
             if not topic.count:
                 self._on_first(topic)
             topic.count += 1
-            keep(Heard(now(), arrived, number()))
+            keep(Recorded(now(), arrived, number()))
 
         self._transport.subscribe(topic.key, _LATCHED, note)
-        for ear in self._ears:
-            if ear.name == topic.name:
-                ear.hear(topic)
+        for queue in self._queues:
+            if queue.name == topic.name:
+                queue.hear(topic)
         for follower in self._followers:
             follower(topic)
 
 
-class Ear:
-    """What is heard of one topic from now on, until it is taken."""
+class TopicQueue:
+    """Queue of the messages of one topic from now on, until they are taken."""
 
     def __init__(self, name: str, transport: Transport) -> None:
         self.name = name
@@ -187,12 +195,12 @@ class Ear:
         self._handles: list[Handle] = []
 
     def hear(self, topic: Topic) -> None:
-        """Listen to it in this type, too."""
+        """Subscribe to the topic in this type, too."""
         put = self._arrived.append
         self._handles.append(self._transport.subscribe(topic.key, _LATCHED, lambda arrived: put((topic, arrived))))
 
     def take(self) -> list[tuple[Topic, Sample]]:
-        """Take what has come since the last time, in its order."""
+        """Return what has come since the last call, in its order."""
         taken = []
         while self._arrived:
             topic, arrived = self._arrived.popleft()
@@ -200,6 +208,6 @@ class Ear:
         return taken
 
     def close(self) -> None:
-        """Hear no more."""
+        """Close the subscriptions."""
         for each in self._handles:
             each.close()

@@ -1,4 +1,4 @@
-"""The robots of the simulated world of a system under test, as they truly are: not what their sensors tell."""
+"""True state of the robots in a simulated world, which no sensor noise changes."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Protocol
 
 from robolink.exceptions import NotFoundError, RobolinkError
+from robolink.geometry.plane import Area, pose_of
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticArray
 from robolink.interfaces.nav_msgs.msg import Odometry
-from robolink.names import the_one
-from robolink.plane import Area, pose_of
 from robolink.serialization import deserialize_message
+from robolink.text.names import the_one
 
 if TYPE_CHECKING:
     from robolink.sim import Pose
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from robolink.testing.recorder import Recorder, Topic
 
 TRUTH = "/ground_truth"
-"""How the topics end on which a world tells where a robot truly is."""
+"""Suffix of the topics on which a world publishes the true pose of its robots."""
 DIAGNOSTICS = "/diagnostics"
-"""Where a world tells, each second, how many things were run into."""
+"""Topic on which a world publishes its number of contacts, each second."""
 _JUMP = 3.0
-"""How many times farther away than its speed allows a robot must be to have been put there."""
+"""Factor on the distance that its speed allows, above which a robot was put elsewhere and did not drive."""
 
 
 class NoRobotError(NotFoundError):
@@ -35,33 +35,33 @@ class NoRobotError(NotFoundError):
 
 
 class SimulatedRobot(Protocol):
-    """A robot of the world, as it truly is: metres, radians, seconds."""
+    """A robot of the simulated world in its true state: metres, radians, seconds."""
 
     name: str
 
     @property
     def pose(self) -> Pose:
-        """Where it is."""
+        """Pose in the world: `x` and `y` in m, `theta` in rad."""
 
     @property
     def twist(self) -> Velocity:
-        """How fast it goes: along (`v`), about (`w`) and across (`sideways`) its heading."""
+        """Velocity along its heading (`v`, m/s), about it (`w`, rad/s) and across it (`sideways`, m/s)."""
 
     @property
     def driven(self) -> float:
-        """Metres that it has driven since the beginning."""
+        """Metres driven since the beginning."""
 
     @property
     def area(self) -> Area:
-        """The box in which it has been since the beginning."""
+        """Bounding box in m of where it has been since the beginning."""
 
     @property
     def contacts(self) -> int:
-        """How many things it has run into since the beginning."""
+        """Count of the things it has run into since the beginning."""
 
 
 def chosen(robots: Iterable[tuple[str, SimulatedRobot]], name: str | None) -> SimulatedRobot:
-    """Give the robot of a name, as `robots_of` gives it, or the only one. Raises NotFoundError."""
+    """Return the robot of a name, as `robots_of` names it, or the only one. Raises NotFoundError."""
     found = list(robots)
     names = [each for each, _ in found]
     if not found:
@@ -73,13 +73,13 @@ def chosen(robots: Iterable[tuple[str, SimulatedRobot]], name: str | None) -> Si
     return next(robot for each, robot in found if name in (None, each))
 
 
-class RobotElsewhere:
-    """A robot whose world is another process: it tells of it by topics."""
+class RemoteRobot:
+    """A robot whose world is another process, by the topics of that world."""
 
     driven = 0.0
-    """Metres that it has driven since the first word of it; where it was put elsewhere, nothing is added."""
+    """Metres driven since its first message; a jump to another place adds nothing."""
     contacts = 0
-    """How many things all robots of its world have run into: what is told each second."""
+    """Contacts of all robots of its world, updated each second."""
 
     def __init__(self, topic: str) -> None:
         self.name = topic.removesuffix(TRUTH).strip("/") or "robot"
@@ -88,19 +88,19 @@ class RobotElsewhere:
 
     @property
     def pose(self) -> Pose:
-        """Where it truly is: metres, and the heading in radians."""
+        """Pose in the world: `x` and `y` in m, `theta` in rad."""
         from robolink.sim import Pose
 
         return Pose(0.0, 0.0) if self._last is None else Pose(*pose_of(self._last.pose.pose))
 
     @property
     def area(self) -> Area:
-        """The box in metres in which it has been since the first word of it."""
+        """Bounding box in m of where it has been since its first message."""
         return Area(0.0, 0.0, 0.0, 0.0) if self._area is None else self._area
 
     @property
     def twist(self) -> Velocity:
-        """How fast it goes: along, about and across its heading."""
+        """Velocity along its heading (`v`, m/s), about it (`w`, rad/s) and across it (`sideways`, m/s)."""
         from robolink.sim.readings import Velocity
 
         if self._last is None:
@@ -108,16 +108,16 @@ class RobotElsewhere:
         told = self._last.twist.twist
         return Velocity(told.linear.x, told.angular.z, told.linear.y)
 
-    def tell(self, payload: bytes) -> None:
-        """Take in where it is."""
+    def update(self, payload: bytes) -> None:
+        """Update its state from an Odometry."""
         told: Odometry = deserialize_message(payload, Odometry)
         if self._last is not None:
             self.driven += _way(self._last, told)
         x, y, _ = pose_of(told.pose.pose)
         self._last, self._area = told, (self._area or Area(x, y, x, y)).grown(x, y)
 
-    def diagnose(self, payload: bytes) -> None:
-        """Take in what the world tells of itself."""
+    def update_contacts(self, payload: bytes) -> None:
+        """Update its contacts from a DiagnosticArray."""
         told: DiagnosticArray = deserialize_message(payload, DiagnosticArray)
         found = [int(value.value) for each in told.status for value in each.values if value.key == "contacts"]
         self.contacts = found[0] if found else self.contacts
@@ -132,21 +132,21 @@ def _way(one: Odometry, other: Odometry) -> float:
     return way if way <= _JUMP * (speed * seconds + 0.01) else 0.0
 
 
-class RobotsElsewhere:
-    """The robots of which somebody tells on the network."""
+class RemoteRobots:
+    """The robots that worlds in other processes publish."""
 
     def __init__(self, recorder: Recorder) -> None:
         self._recorder = recorder
-        self.robots: list[RobotElsewhere] = []
-        recorder.tell_of_topics(self._on_topic)
+        self.robots: list[RemoteRobot] = []
+        recorder.follow_topics(self._on_topic)
 
     def _on_topic(self, topic: Topic) -> None:
         if topic.name.endswith(TRUTH) and topic.type_name == Odometry.__ros_type__:
-            self.robots.append(RobotElsewhere(topic.name))
-            self._recorder.hear(topic, self.robots[-1].tell)
+            self.robots.append(RemoteRobot(topic.name))
+            self._recorder.hear(topic, self.robots[-1].update)
         elif topic.name == DIAGNOSTICS and topic.type_name == DiagnosticArray.__ros_type__:
             self._recorder.hear(topic, self._diagnose)
 
     def _diagnose(self, payload: bytes) -> None:
         for each in self.robots:
-            each.diagnose(payload)
+            each.update_contacts(payload)

@@ -1,4 +1,4 @@
-"""What a system under test runs on: programs in this process, or processes of their own; both look the same to it."""
+"""The runner of a system under test, as a protocol: programs in this process, or processes of their own."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ import inspect
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias, runtime_checkable
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
+
+from robolink.testing.node_names import Named
 
 if TYPE_CHECKING:
     from robolink.launch.reading.entries import Entry
@@ -18,29 +20,11 @@ if TYPE_CHECKING:
     from robolink.transport import Transport
 
 Startable: TypeAlias = "type[Node] | Callable[[], object] | str | Path"
-"""A Node class, what `robolink run` finds by this name, a file, or a main() of one."""
-
-
-@runtime_checkable
-class Named(Protocol):
-    """A node, or what stands for it."""
-
-    def get_fully_qualified_name(self) -> str:
-        """Give namespace and name."""
-
-
-def full(node: str | Named) -> str:
-    """Spell the name of a node with its leading slash. Raises TypeError for what is no node."""
-    __tracebackhide__ = True
-    if isinstance(node, str):
-        return f"/{node.strip('/')}"
-    if isinstance(node, Named) and not isinstance(node, type):
-        return node.get_fully_qualified_name()
-    raise TypeError(f"expected a node or its name, got {node!r}")
+"""A Node class, a name as `robolink run` finds it, a file, or a main() of one."""
 
 
 def startable(what: Any) -> type[Node] | str | Path:
-    """Give what can be started: a class, or how `robolink run` finds it. Raises TypeError."""
+    """Return what can be started: a class, or the name by which `robolink run` finds it. Raises TypeError."""
     __tracebackhide__ = True
     from robolink.node import Node
 
@@ -55,7 +39,7 @@ def startable(what: Any) -> type[Node] | str | Path:
 
 
 class Wanted(NamedTuple):
-    """A node to start, and what it is told at its start."""
+    """A node to start, with the arguments of its start."""
 
     what: type[Node] | str | Path
     name: str = ""
@@ -66,7 +50,7 @@ class Wanted(NamedTuple):
 
 
 class Failure(NamedTuple):
-    """A program that ended and should not have: which, when (the system's nanoseconds), and why."""
+    """A program that ended and should not have: its name, the system's time in ns, the reason, and its exception."""
 
     program: str
     time_ns: int
@@ -75,30 +59,30 @@ class Failure(NamedTuple):
 
 
 class Stage(Protocol):
-    """Runs the programs of a system, and lets their time pass."""
+    """Protocol of a runner: it runs the programs of a system and lets their time pass."""
 
     virtual: bool
-    """Whether time passes only while `run_until` runs."""
+    """True if time passes only while `run_until` runs."""
     domain: int
     node: Node
     """The test's own node."""
     begin_ns: int
-    """The system's time at its beginning."""
+    """The system's time at its beginning, in ns."""
     faults: Faults
     failures: list[Failure]
     logs: list[Record]
 
     def now_ns(self) -> int:
-        """Give the system's time, in nanoseconds."""
+        """Return the system's time in ns."""
 
     def session(self) -> Transport:
         """Open a session on the network of the system that no fault touches."""
 
     def start(self, wanted: Wanted) -> Any:
-        """Start a node; give it, or what stands for it."""
+        """Start a node; return it, or its stand-in."""
 
     def launch(self, entries: Sequence[Entry], faults: str | PathLike[str] | None = None) -> None:
-        """Start what a launch file says, with what a file of faults says, which may concern its very start."""
+        """Start the nodes of a launch file, with the faults of a file, which may concern their very start."""
 
     def stop(self, program: str) -> None:
         """End a program in order."""
@@ -111,31 +95,31 @@ class Stage(Protocol):
 
     @property
     def programs(self) -> list[str]:
-        """The names of all programs, ended ones too: that of the node where it is one program's alone."""
+        """Names of all programs, ended ones too: that of the node where it is one program's alone."""
 
     def program_of(self, node: str | Named) -> str:
-        """Give the program of a node, or that in which one of this name runs. Raises NotFoundError."""
+        """Return the program of a node, or that in which one of this name runs. Raises NotFoundError."""
 
     def run_until(self, condition: Callable[[], bool], within: float) -> bool:
-        """Let time pass until the condition holds, so many seconds at most; whether it holds."""
+        """Let time pass until the condition holds or `within` seconds are over; True if it holds."""
 
     def nodes_beside(self, started: Any) -> Sequence[str | Named]:
-        """Give the nodes that what `start` gave is one of: those of its program; none before it has made them."""
+        """Return the nodes of the program that `start` returned a node of; none before it has made them."""
 
     def nodes(self) -> list[Node]:
-        """Give the nodes that live in this process, the test's own included."""
+        """Return the nodes that live in this process, the test's own included."""
 
     def class_of(self, topic: Topic) -> type[Message] | None:
-        """Give the message class that a topic's own publishers have, where that can be known without asking."""
+        """Return the message class that a topic's own publishers have, where that can be known without asking."""
 
     def fault_reports(self) -> list[str]:
-        """Tell what each fault of messages has done so far."""
+        """Return the effects of each fault of messages so far."""
 
     def faults_in_vain(self) -> list[str]:
-        """Tell which faults have come to nothing, so that a test with them has shown nothing, and why."""
+        """Return the faults that had no effect, so that a test with them has shown nothing, and why."""
 
     def real_time_use(self) -> list[str]:
-        """Tell which nodes slept or started threads in real time, and where."""
+        """Return which nodes slept or started threads in real time, and where."""
 
     def close(self) -> None:
         """End all programs and leave the network."""

@@ -1,4 +1,4 @@
-"""The choice of what a system under test runs on, by the name of its transport."""
+"""Choice of the runner of a system under test, by the name of its transport."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def make_stage(transport: str, seed: int) -> Stage:
-    """Make the stage that a name stands for, memory or zenoh. Raises ValueError for another name."""
+    """Make the runner of a transport. Raises ValueError for another name than memory and zenoh."""
     if transport == "zenoh":
         from robolink.testing.processes import Processes  # late, as below: a test needs one of the two
 

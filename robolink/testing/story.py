@@ -1,12 +1,11 @@
-"""The story of a system under test: what was published, by whom, what went wrong, and how to see it again."""
+"""Log of a system under test: what was published, by which node, what failed, and how to replay it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from robolink.names import near
-from robolink.testing.expectations import ExpectationError, Told, nothing_came, seconds, too_early
+from robolink.testing.expectations import ExpectationError, FailureText, nothing_came, seconds, too_early
 from robolink.testing.graph_view import EVERYBODYS_TOPICS, GraphView
 from robolink.testing.recorder import Recorder, Topic
 from robolink.testing.timeline import (
@@ -15,10 +14,11 @@ from robolink.testing.timeline import (
     MOST_OF_BACKGROUND,
     MOST_OF_ONE,
     MOST_OF_OTHERS,
-    Moment,
+    Event,
     logs_of,
     messages_of,
 )
+from robolink.text.names import near
 
 if TYPE_CHECKING:
     from robolink.message import Message
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 
 class Story:
-    """What is known of the system on a stage, and what a test is told of it when something did not come true.
+    """Log of a system, and the texts made of it for a failed test.
 
-    `replay` is what should be typed to see it again.
+    `replay` is the command that repeats the test.
     """
 
     def __init__(self, stage: Stage, replay: str) -> None:
@@ -37,7 +37,7 @@ class Story:
         self._said: dict[str, None] = {}
         self.graph = GraphView(stage.node)
         self.recorder = Recorder(stage.session(), stage.domain, stage.now_ns, self._learn)
-        """What was last published on each topic."""
+        """The last messages of each topic."""
 
     @property
     def time(self) -> float:
@@ -47,10 +47,10 @@ class Story:
     def _since(self, time_ns: int) -> float:
         return (time_ns - self._stage.begin_ns) / 1e9
 
-    # What messages are
+    # Decoding
 
     def decoded(self, topic: Topic, payload: bytes, given: type[Message] | None = None) -> Any:
-        """Give a message of a topic; its class is the publishers' own, unless it is given.
+        """Return a message of a topic; its class is the publishers' own, unless it is given.
 
         Raises ExpectationError for a class that is not the topic's, and TypeLookupError when nobody knows the class.
         """
@@ -76,49 +76,49 @@ class Story:
 
         return type_of(self._stage.node.context, topic.token)
 
-    # What is told
+    # Texts
 
     def note_said(self, topic: str) -> None:
         """Note that the test itself has published on a topic."""
         self._said[topic] = None
 
     def _said_in_vain(self) -> list[str]:
-        """Tell to which topics the test publishes that nobody hears, with the nearest that somebody does."""
+        """Return to which topics the test publishes that nobody subscribes, with the nearest that somebody does."""
         vain = [each for each in self._said if not self._stage.node.count_subscribers(each)]
-        heard = [each for each in self.graph.topics() if self.graph.ends(each).taken] if vain else []
+        heard = [each for each in self.graph.topics() if self.graph.ends(each).subscribers] if vain else []
         return [f"nobody listens to {each}{near(each, heard)}" for each in vain]
 
     def whole(self) -> str:
-        """Tell what was last published on each topic, what was logged, what failed, and how to replay it."""
+        """Return what was last published on each topic, what was logged, what failed, and how to replay it."""
         topics = [each.name for each in self.recorder.topics.values() if each.name not in EVERYBODYS_TOPICS]
-        return self.told(f"the system after {self.time:.3f} s", others=topics)
+        return self.failure_text(f"the system after {self.time:.3f} s", others=topics)
 
-    def told(
+    def failure_text(
         self, headline: str, topic: str | None = None, *, others: Iterable[str] = (), all_logs: bool = False
     ) -> str:
-        """Put together what a test is told: `topic` is what it is about, `others` have to do with it."""
+        """Return the text of a failure: `topic` is what it is about, `others` are related to it."""
         stage = self._stage
         most = {each: MOST_OF_BACKGROUND if each in BACKGROUND else MOST_OF_OTHERS for each in others}
         if topic is not None:
             most[topic] = MOST_OF_ONE
-        moments = [
+        events = [
             each
             for name, count in most.items()
             for found in self.recorder.named(name)
             for each in messages_of(self.recorder, found, self._class_of, count)
         ]
-        moments += logs_of(stage.logs, MOST_LOGS, all_logs)
-        moments += [Moment(each.time_ns, "failed", each.program, each.why) for each in stage.failures]
+        events += logs_of(stage.logs, MOST_LOGS, all_logs)
+        events += [Event(each.time_ns, "failed", each.program, each.why) for each in stage.failures]
         faults, real_time = stage.fault_reports(), stage.real_time_use()
-        return str(Told(headline, stage.begin_ns, moments, self._said_in_vain(), faults, real_time, self._replay))
+        return str(FailureText(headline, stage.begin_ns, events, self._said_in_vain(), faults, real_time, self._replay))
 
-    def told_of(self, failures: Iterable[Failure]) -> str:
-        """Tell which programs failed, when and why."""
+    def failures_text(self, failures: Iterable[Failure]) -> str:
+        """Return which programs failed, when and why."""
         lines = (f"{each.program} failed at {seconds(self._since(each.time_ns))}: {each.why}" for each in failures)
-        return self.told("\n".join(lines))
+        return self.failure_text("\n".join(lines))
 
     def why_nothing_came(self, topic: str, tried: int, when: str, condition: str) -> str:
-        """Say why no message came that fulfils a condition: `tried` is how many were looked at."""
+        """Return why no message came that meets a condition: `tried` is how many were looked at."""
         known = self.graph.topics().items()
         why = nothing_came(topic, self.graph.ends(topic), known, tried, when, condition)
         before = 0 if tried else sum(each.count for each in self.recorder.named(topic))

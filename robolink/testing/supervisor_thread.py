@@ -1,4 +1,4 @@
-"""A supervisor on a thread, which runs the processes of one launch under test."""
+"""Thread that runs a supervisor, for the processes of one launch under test."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from robolink.launch import Entry
 
 TOLD_WITHIN = 5.0
-"""Seconds in which a supervisor does what it is asked to."""
+"""Timeout of a supervisor's answer to a request, in seconds."""
 
 
 class Launch:
     """The processes of one launch file, or of one node that was started `alone` and is called so, under a supervisor.
 
-    That has a thread. `on_exit` is called, on another one, with each process that ends.
+    The supervisor has a thread. `on_exit` is called, on another one, with each process that ends.
     """
 
     def __init__(
@@ -73,19 +73,19 @@ class Launch:
             self._on_exit(event)
 
     def awaited_nodes(self) -> int:
-        """Say how many nodes are to be announced: those of the processes that run and wait for nothing."""
+        """Return the number of nodes to be announced: those of the processes that run and wait for nothing."""
         running = {each.name for each in self.supervisor.status() if each.state in ("waiting", "running")}
         return sum(len(each.members) for name, each in self._launched.items() if name in running)
 
     def pid(self, name: str) -> int | None:
-        """Give the number of a process that runs."""
+        """Return the id of a process that runs; None of another."""
         return self._status(name).pid
 
     def _status(self, name: str) -> Status:
         return next(each for each in self.supervisor.status() if each.name == name)
 
     def stop(self, name: str) -> None:
-        """Have a process end in order; the others go on."""
+        """End a process in order; the others go on."""
         self.supervisor.stop_one(name)
 
     def kill(self, name: str) -> None:
@@ -122,11 +122,11 @@ class Launch:
 
     @property
     def waits(self) -> bool:
-        """Whether something of it waits for something else."""
+        """True while a process waits for something else."""
         return bool(self._readiness.held)
 
     def hear(self, text: str, alive: bool) -> bool:
-        """Hear of a token that came or went, and start what may start now; False for one that nothing waits for."""
-        for name in self._readiness.heard(text, alive):
+        """Start the processes that a new or lost token allows to start; False for a token that nothing waits for."""
+        for name in self._readiness.note_token(text, alive):
             self.supervisor.release(name)
         return self._readiness.knows(text)

@@ -1,6 +1,6 @@
-"""Transforms between frames, over time: all that tf2_ros offers under one roof.
+"""Transforms between frames, over time: the API of ROS 2's tf2_ros.
 
-A node that wants to know where things are has a Buffer and a TransformListener that fills it::
+A node that looks up transforms has a Buffer and a TransformListener that fills it::
 
     self.buffer = Buffer()
     self.listener = TransformListener(self.buffer, self)
@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robolink.lacking import lazily
+from robolink.text.suggestions import lazily
 
 if TYPE_CHECKING:
     from robolink.interfaces.geometry_msgs.msg import TransformStamped

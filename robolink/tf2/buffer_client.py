@@ -1,4 +1,4 @@
-"""Lookups that another node's buffer answers: a BufferServer, or ROS 2's."""
+"""Client of a remote transform buffer: look-ups that a BufferServer, robolink's or ROS 2's, answers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robolink.interfaces.builtin_interfaces.msg import Time as TimeMsg
 from robolink.interfaces.geometry_msgs.msg import TransformStamped
 from robolink.interfaces.tf2_msgs.action import LookupTransform
 from robolink.interfaces.tf2_msgs.msg import TF2Error
-from robolink.queues import A_WHILE
+from robolink.system.queues import A_WHILE
 from robolink.task import Future
 from robolink.tf2.buffer_interface import BufferInterface
 from robolink.tf2.buffer_server import CODES
@@ -22,15 +22,25 @@ from robolink.tf2.exceptions import TimeoutException, TransformException
 from robolink.tf2.waiting import check
 
 if TYPE_CHECKING:
+    from robolink.context import Context
     from robolink.node import Node
 
 EXCEPTIONS = {code: kind for kind, code in CODES.items()}
+"""Exceptions by the code of a result."""
 
 
 class BufferClient(BufferInterface):
-    """Asks the buffer that is served as the action `ns`; something must spin the node, as a callback of it does.
+    """Client of the buffer that a BufferServer offers as an action.
 
-    A lookup takes its own timeout and `timeout_padding` at most. `check_frequency` is tf2's, and not needed here.
+    The node must be spun, unless one of its own callbacks asks.
+
+    Times are `Time` or `builtin_interfaces/msg/Time`; zero means the latest.
+
+    Args:
+        node: Node that asks.
+        ns: Name of the server's action.
+        check_frequency: Unused; an argument of tf2's client, which polls at this rate in Hz.
+        timeout_padding: Time that an answer may take beyond a look-up's own timeout; 2 s by default.
     """
 
     def __init__(
@@ -51,9 +61,17 @@ class BufferClient(BufferInterface):
         time: Any,
         timeout: Duration = Duration(),  # noqa: B008
     ) -> TransformStamped:
-        """Give the transform that takes what is given in `source_frame` to `target_frame`, at a time, 0 the latest.
+        """Return the transform that takes coordinates in `source_frame` to coordinates in `target_frame`.
 
-        Raises what `Buffer.lookup_transform` raises, and TimeoutException when the server is not there or silent.
+        Args:
+            target_frame: Name of the frame to which data are transformed.
+            source_frame: Name of the frame in which data are given.
+            time: Time of the transform; zero means the latest.
+            timeout: Longest wait of the server for the transform; zero does not wait.
+
+        Raises:
+            TimeoutException: if there is no server, or it does not answer in time.
+            TransformException: any of `Buffer.lookup_transform`, as the server found it.
         """
         goal = LookupTransform.Goal(target_frame=target_frame, source_frame=source_frame, source_time=_message(time))
         return self._ask(goal, timeout)
@@ -67,7 +85,20 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Duration = Duration(),  # noqa: B008
     ) -> TransformStamped:
-        """Give the transform from one frame and time to another; `fixed_frame` stands still in between."""
+        """Return the transform from `source_frame` at one time to `target_frame` at another.
+
+        Args:
+            target_frame: Name of the frame to which data are transformed.
+            target_time: Time at which the target frame is taken; zero means the latest.
+            source_frame: Name of the frame in which data are given.
+            source_time: Time at which the source frame is taken; zero means the latest.
+            fixed_frame: Name of a frame that does not move between the two times.
+            timeout: Longest wait of the server for the transform; zero does not wait.
+
+        Raises:
+            TimeoutException: if there is no server, or it does not answer in time.
+            TransformException: any of `Buffer.lookup_transform_full`, as the server found it.
+        """
         goal = LookupTransform.Goal(
             target_frame=target_frame,
             source_frame=source_frame,
@@ -85,7 +116,14 @@ class BufferClient(BufferInterface):
         time: Any,
         timeout: Duration = Duration(),  # noqa: B008
     ) -> bool:
-        """Say whether `lookup_transform` would succeed."""
+        """True if `lookup_transform` would succeed with these arguments.
+
+        Args:
+            target_frame: Name of the frame to which data are transformed.
+            source_frame: Name of the frame in which data are given.
+            time: Time of the transform; zero means the latest.
+            timeout: Longest wait of the server for the transform; zero does not wait.
+        """
         try:
             self.lookup_transform(target_frame, source_frame, time, timeout)
         except TransformException:
@@ -101,7 +139,16 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Duration = Duration(),  # noqa: B008
     ) -> bool:
-        """Say whether `lookup_transform_full` would succeed."""
+        """True if `lookup_transform_full` would succeed with these arguments.
+
+        Args:
+            target_frame: Name of the frame to which data are transformed.
+            target_time: Time at which the target frame is taken; zero means the latest.
+            source_frame: Name of the frame in which data are given.
+            source_time: Time at which the source frame is taken; zero means the latest.
+            fixed_frame: Name of a frame that does not move between the two times.
+            timeout: Longest wait of the server for the transform; zero does not wait.
+        """
         try:
             self.lookup_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
         except TransformException:
@@ -127,15 +174,8 @@ class BufferClient(BufferInterface):
         executor, context = self.node.executor, self.node.context
         if executor is not None and executor.spins_here:
             executor.serve_until(future, deadline)
-        elif context.time.virtual:
-            context.time.wait_until(future.done, deadline)
         else:
-            came = threading.Event()
-            future.when_done(came.set)
-            while not came.wait(min(A_WHILE, max(0.0, (deadline - context.time.steady()) / 1e9))):
-                check([context])
-                if context.time.steady() >= deadline:
-                    break
+            context.time.wait_notified(future.done, deadline, lambda _: _block(future, deadline, context))
         if not future.done():
             future.cancel()
             raise TimeoutException(
@@ -144,12 +184,22 @@ class BufferClient(BufferInterface):
         return future.result()
 
     def destroy(self) -> None:
-        """Ask no more."""
+        """Close the action client."""
         self.action_client.destroy()
 
 
+def _block(future: Future[Any], deadline: int, context: Context) -> None:
+    """Block until the future is done or steady time is `deadline`; raise as `check` does when the context ends."""
+    came = threading.Event()
+    future.when_done(came.set)
+    while not came.wait(min(A_WHILE, max(0.0, (deadline - context.time.steady()) / 1e9))):
+        check([context])
+        if context.time.steady() >= deadline:
+            break
+
+
 def _found(answer: Any) -> TransformStamped:
-    """Give the transform of an answer, or raise the exception that it stands for."""
+    """Return the transform of a result, or raise the exception of its code."""
     error, transform = answer.result.error, answer.result.transform
     if error.error != TF2Error.NO_ERROR:
         raise EXCEPTIONS.get(error.error, TransformException)(error.error_string)

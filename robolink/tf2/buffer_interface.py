@@ -1,4 +1,4 @@
-"""What every source of transforms offers, and which function transforms which type of object."""
+"""Base class of transform buffers, and the registries of functions that transform and convert objects by type."""
 
 from __future__ import annotations
 
@@ -25,10 +25,11 @@ TransformableObjectType: TypeAlias = "type[Any]"
 DoTransform: TypeAlias = Callable[[Any, TransformStamped], Any]
 
 KNOW_THE_STANDARD_TYPES = ("robolink.tf2.geometry", "robolink.tf2.point_cloud")
+"""Modules that register the standard message types."""
 
 
 class TypeException(RobolinkError, TypeError):  # noqa: N818 - tf2's name
-    """An object's type was never registered."""
+    """An object's type was never registered; `errstr` says which."""
 
     def __init__(self, errstr: str) -> None:
         super().__init__(errstr)
@@ -36,7 +37,7 @@ class TypeException(RobolinkError, TypeError):  # noqa: N818 - tf2's name
 
 
 class NotImplementedException(RobolinkError, NotImplementedError):  # noqa: N818 - tf2's name
-    """A subclass of BufferInterface lacks what it must have."""
+    """A subclass of BufferInterface lacks a method that it must have."""
 
     def __init__(self) -> None:
         self.errstr = "CanTransform or LookupTransform not implemented"
@@ -44,10 +45,9 @@ class NotImplementedException(RobolinkError, NotImplementedError):  # noqa: N818
 
 
 class BufferInterface:
-    """The base of buffers: a subclass says how to look up, and gets transforming for it.
+    """Base class of buffers: a subclass implements the look-ups, and `transform` works with them.
 
-    Times are `Time` or `builtin_interfaces/msg/Time`, where zero is the latest; `timeout` is how long to wait until
-    the transform is there.
+    Times are `Time` or `builtin_interfaces/msg/Time`; zero means the latest.
     """
 
     def __init__(self) -> None:
@@ -60,9 +60,21 @@ class BufferInterface:
         timeout: Duration = Duration(),  # noqa: B008 - tf2's signature
         new_type: TransformableObjectType | None = None,
     ) -> Any:
-        """Give an object that has a header as it is in another frame, on request converted to another type.
+        """Transform an object with a header into another frame, at the time of its header.
 
-        Raises TypeException for a type that was not registered, and what `lookup_transform` raises.
+        Args:
+            object_stamped: The object, of a registered type: the stamped messages of geometry_msgs, PointCloud2, or one
+                that was added to `TransformRegistration`. It is not changed.
+            target_frame: Name of the frame into which it is transformed.
+            timeout: Longest wait for the transform; zero does not wait.
+            new_type: Type to which the result is converted, see `convert`; None keeps the type.
+
+        Returns:
+            A new object.
+
+        Raises:
+            TypeException: if the object's type or `new_type` is not registered.
+            TransformException: any of `lookup_transform`.
         """
         do_transform = self.registration.get(type(object_stamped))
         header = object_stamped.header
@@ -78,7 +90,23 @@ class BufferInterface:
         timeout: Duration = Duration(),  # noqa: B008
         new_type: TransformableObjectType | None = None,
     ) -> Any:
-        """Give an object as it is in another frame at another time; `fixed_frame` stands still in between."""
+        """Transform an object with a header into another frame at another time.
+
+        Args:
+            object_stamped: The object, of a registered type. It is not changed.
+            target_frame: Name of the frame into which it is transformed.
+            target_time: Time at which the target frame is taken; zero means the latest.
+            fixed_frame: Name of a frame that does not move between the object's time and `target_time`.
+            timeout: Longest wait for the transform; zero does not wait.
+            new_type: Type to which the result is converted, see `convert`; None keeps the type.
+
+        Returns:
+            A new object.
+
+        Raises:
+            TypeException: if the object's type or `new_type` is not registered.
+            TransformException: any of `lookup_transform_full`.
+        """
         do_transform = self.registration.get(type(object_stamped))
         header = object_stamped.header
         source = (header.frame_id, header.stamp)
@@ -92,7 +120,17 @@ class BufferInterface:
         time: Any,
         timeout: Duration = Duration(),  # noqa: B008
     ) -> TransformStamped:
-        """Give the transform that takes what is given in `source_frame` to `target_frame`."""
+        """Return the transform that takes coordinates in `source_frame` to coordinates in `target_frame` (abstract).
+
+        Args:
+            target_frame: Name of the frame to which data are transformed.
+            source_frame: Name of the frame in which data are given.
+            time: Time of the transform; zero means the latest.
+            timeout: Longest wait for the transform; zero does not wait.
+
+        Raises:
+            NotImplementedException: always, here.
+        """
         raise NotImplementedException
 
     def lookup_transform_full(
@@ -104,7 +142,19 @@ class BufferInterface:
         fixed_frame: str,
         timeout: Duration = Duration(),  # noqa: B008
     ) -> TransformStamped:
-        """Give the transform from one frame and time to another; `fixed_frame` stands still in between."""
+        """Return the transform from one frame and time to another (abstract).
+
+        Args:
+            target_frame: Name of the frame to which data are transformed.
+            target_time: Time at which the target frame is taken; zero means the latest.
+            source_frame: Name of the frame in which data are given.
+            source_time: Time at which the source frame is taken; zero means the latest.
+            fixed_frame: Name of a frame that does not move between the two times.
+            timeout: Longest wait for the transform; zero does not wait.
+
+        Raises:
+            NotImplementedException: always, here.
+        """
         raise NotImplementedException
 
     def can_transform(
@@ -114,7 +164,17 @@ class BufferInterface:
         time: Any,
         timeout: Duration = Duration(),  # noqa: B008
     ) -> Any:
-        """Say whether `lookup_transform` would succeed."""
+        """True if `lookup_transform` would succeed (abstract).
+
+        Args:
+            target_frame: Name of the frame to which data are transformed.
+            source_frame: Name of the frame in which data are given.
+            time: Time of the transform; zero means the latest.
+            timeout: Longest wait for the transform; zero does not wait.
+
+        Raises:
+            NotImplementedException: always, here.
+        """
         raise NotImplementedException
 
     def can_transform_full(
@@ -126,57 +186,69 @@ class BufferInterface:
         fixed_frame: str,
         timeout: Duration = Duration(),  # noqa: B008
     ) -> Any:
-        """Say whether `lookup_transform_full` would succeed."""
+        """True if `lookup_transform_full` would succeed (abstract).
+
+        Args:
+            target_frame: Name of the frame to which data are transformed.
+            target_time: Time at which the target frame is taken; zero means the latest.
+            source_frame: Name of the frame in which data are given.
+            source_time: Time at which the source frame is taken; zero means the latest.
+            fixed_frame: Name of a frame that does not move between the two times.
+            timeout: Longest wait for the transform; zero does not wait.
+
+        Raises:
+            NotImplementedException: always, here.
+        """
         raise NotImplementedException
 
 
 class TransformRegistration:
-    """The functions that transform objects, by type; all instances share them."""
+    """Registry of the functions that transform objects, by type; all instances share it."""
 
     _functions: ClassVar[dict[type[Any], DoTransform]] = {}
 
     def print_me(self) -> None:
-        """Print what is registered."""
+        """Print the registry."""
         print(self._functions)  # noqa: T201 - that is what it is for
 
     def add(self, key: TransformableObjectType, callback: DoTransform) -> None:
-        """Have objects of a type transformed by ``callback(object, transform)``, which gives a new object."""
+        """Register `callback(object, transform)`, which returns a new object, for the type `key`."""
         self._functions[key] = callback
 
     def get(self, key: TransformableObjectType) -> DoTransform:
-        """Give the function for a type. Raises TypeException for one that was not registered."""
+        """Return the function of the type `key`. Raises TypeException if it is not registered."""
         return _registered(self._functions, key)
 
 
 class ConvertRegistration:
-    """The functions that convert objects, by type; all instances share them."""
+    """Registry of the functions that convert objects, by type; all instances share it."""
 
     _to_msg: ClassVar[dict[Any, Callable[[Any], Any]]] = {}
     _from_msg: ClassVar[dict[Any, Callable[[Any], Any]]] = {}
     _convert: ClassVar[dict[Any, Callable[[Any], Any]]] = {}
 
     def add_to_msg(self, key: TransformableObjectType, callback: Callable[[Any], Any]) -> None:
-        """Have objects of a type made into messages so."""
+        """Register `callback(object)`, which returns a message, for the type `key`."""
         self._to_msg[key] = callback
 
     def add_from_msg(self, key: TransformableObjectType, callback: Callable[[Any], Any]) -> None:
-        """Have objects of a type made of messages so."""
+        """Register `callback(message)`, which returns an object, for the type `key`."""
         self._from_msg[key] = callback
 
     def add_convert(self, key: tuple[type[Any], type[Any]], callback: Callable[[Any], Any]) -> None:
-        """Have objects of the first type made into the second so."""
+        """Register `callback(object)`, which converts from the first type of `key` to the second."""
         self._convert[key] = callback
 
     def get_to_msg(self, key: TransformableObjectType) -> Callable[[Any], Any]:
-        """Give what makes a message of a type. Raises TypeException."""
+        """Return the function from the type `key` to a message. Raises TypeException if it is not registered."""
         return _registered(self._to_msg, key)
 
     def get_from_msg(self, key: TransformableObjectType) -> Callable[[Any], Any]:
-        """Give what makes a type of a message. Raises TypeException."""
+        """Return the function from a message to the type `key`. Raises TypeException if it is not registered."""
         return _registered(self._from_msg, key)
 
     def get_convert(self, key: tuple[type[Any], type[Any]]) -> Callable[[Any], Any]:
-        """Give what makes the second type of the first. Raises TypeException."""
+        """Return the function from the first type of `key` to the second. Raises TypeException if there is none."""
         return _registered(self._convert, key)
 
 
@@ -190,7 +262,10 @@ def _registered(functions: dict[Any, Callable[..., Any]], key: Any) -> Callable[
 
 
 def convert(a: TransformableObject, b_type: TransformableObjectType) -> Any:
-    """Give `a` as an object of another type; a copy where it is of that type already. Raises TypeException."""
+    """Convert `a` to the type `b_type`; a deep copy if it is of that type already.
+
+    Raises TypeException if no conversion is registered.
+    """
     registered = ConvertRegistration()
     try:
         direct = registered.get_convert((type(a), b_type))
@@ -206,6 +281,6 @@ def _converted(found: Any, new_type: TransformableObjectType | None) -> Any:
 
 
 def Stamped(obj: TransformableObject, stamp: Any, frame_id: str) -> Any:  # noqa: N802 - tf2's name
-    """Give an object a header, and give it back."""
+    """Set the header of `obj` from `stamp` (a time message) and `frame_id`, and return `obj`."""
     obj.header = Header(stamp=stamp, frame_id=frame_id)
     return obj

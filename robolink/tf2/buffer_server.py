@@ -1,4 +1,4 @@
-"""A buffer that others ask over the network: they need no listener, and no traffic of /tf, of their own."""
+"""Server of a transform buffer: other nodes look up transforms without a listener, and traffic of /tf, of their own."""
 
 from __future__ import annotations
 
@@ -32,13 +32,18 @@ CODES: dict[type[TransformException], int] = {
     InvalidArgumentException: TF2Error.INVALID_ARGUMENT_ERROR,
     TimeoutException: TF2Error.TIMEOUT_ERROR,
 }
-"""The number that stands for each exception in a result."""
+"""Codes of the exceptions in a result."""
 
 
 class BufferServer:
-    """Answers lookups of a buffer as the action tf2_msgs/action/LookupTransform, under the name `ns`.
+    """Server of a buffer's look-ups, as the action tf2_msgs/action/LookupTransform.
 
-    A goal waits until its transform is there or its timeout has passed, and tells then why there is none.
+    A goal waits until its transform is there or its timeout has passed; its result then has the transform or the error.
+
+    Args:
+        buffer: Buffer whose transforms are served.
+        node: Node that offers the action; it must be spun.
+        ns: Name of the action.
     """
 
     def __init__(self, buffer: Buffer, node: Node, ns: str) -> None:
@@ -66,7 +71,7 @@ class BufferServer:
         return result
 
     async def _wait(self, key: bytes, goal: LookupTransform.Goal) -> None:
-        """Wait until the transform is there, cannot come, is wanted no more, or the timeout has passed."""
+        """Wait until the transform is there or cannot come, the goal is cancelled, or the timeout has passed."""
         span, future = nanoseconds(goal.timeout), self._future(goal)
         if span <= 0:
             future.cancel()
@@ -96,7 +101,7 @@ class BufferServer:
         return CancelResponse.ACCEPT
 
     def destroy(self) -> None:
-        """Answer no more."""
+        """Close the action server."""
         self.action_server.destroy()
 
 

@@ -1,4 +1,4 @@
-"""What is known of one frame: where it stood in its parent, at which times."""
+"""Cache of one frame's transforms to its parent, by time."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from robolink.tf2.exceptions import ExtrapolationException
 from robolink.tf2.rigid import Rigid, between
 
 LATEST = 0
-"""The time that stands for the latest there is."""
+"""Time in ns that means the latest time known."""
 
 
 class Link(NamedTuple):
-    """A frame in its parent at one time: `one`, or what lies at `ratio` between `one` and `other`."""
+    """A frame in its parent at one time in ns: `one`, or the interpolation at `ratio` between `one` and `other`."""
 
     parent: str
     stamp: int
@@ -22,12 +22,12 @@ class Link(NamedTuple):
     ratio: float = 0.0
 
     def rigid(self) -> Rigid:
-        """The transform from the frame to its parent."""
+        """Return the transform from the frame to its parent."""
         return self.one if self.other is None else between(self.one, self.other, self.ratio)
 
 
 class TimeCache:
-    """A frame that moves: its transforms of the last `keep` nanoseconds, in order of their stamps."""
+    """Cache of a moving frame: its transforms of the last `keep` ns, in order of their stamps."""
 
     is_static = False
 
@@ -37,9 +37,10 @@ class TimeCache:
         self._known: list[tuple[str, Rigid]] = []
 
     def insert(self, stamp: int, parent: str, rigid: Rigid) -> bool:
-        """Keep a transform; False when it is too old. One of the same stamp gives way.
+        """Insert a transform; False if it is too old. It replaces one of the same stamp.
 
-        What is older than `keep` goes when the next one comes: of a frame that is seldom sent two are always there.
+        What is older than `keep` is removed when the next one comes: of a frame that is seldom sent two are always
+        there.
         """
         stamps = self._stamps
         if stamps:
@@ -58,7 +59,7 @@ class TimeCache:
         return True
 
     def at(self, time: int) -> Link:
-        """Give where the frame was at a time. Raises ExtrapolationException where that is not known."""
+        """Return the transform at a time. Raises ExtrapolationException if it is not known then."""
         stamps = self._stamps
         if time == LATEST and stamps:
             return Link(self._known[-1][0], stamps[-1], self._known[-1][1])
@@ -83,13 +84,13 @@ class TimeCache:
         return f"{begin} into the past.  Requested time {asked} but the earliest data is at time {seconds(first)}"
 
     def parent_near(self, time: int) -> str | None:
-        """Give the parent at a time, or at the nearest time that is known; None after `clear`."""
+        """Return the parent at a time, or at the nearest time that is known; None after `clear`."""
         if not self._stamps:
             return None
         return self._known[max(0, bisect_right(self._stamps, time) - 1)][0]
 
     def clear(self) -> None:
-        """Forget all transforms."""
+        """Remove all transforms."""
         self._stamps.clear()
         self._known.clear()
 
@@ -98,17 +99,17 @@ class TimeCache:
 
     @property
     def newest(self) -> int:
-        """The latest stamp; 0 when there is none."""
+        """Latest stamp in ns; 0 if there is none."""
         return self._stamps[-1] if self._stamps else 0
 
     @property
     def oldest(self) -> int:
-        """The earliest stamp; 0 when there is none."""
+        """Earliest stamp in ns; 0 if there is none."""
         return self._stamps[0] if self._stamps else 0
 
 
 class StaticCache:
-    """A frame that never moves: its only transform holds at every time."""
+    """Cache of a static frame: its only transform holds at every time."""
 
     is_static = True
     newest = oldest = 0
@@ -117,20 +118,20 @@ class StaticCache:
         self._parent, self._rigid = parent, rigid
 
     def at(self, time: int) -> Link:
-        """Give where the frame is."""
+        """Return the transform."""
         return Link(self._parent, LATEST, self._rigid)
 
     def parent_near(self, time: int) -> str:
-        """Give the parent."""
+        """Return the parent."""
         return self._parent
 
     def clear(self) -> None:
-        """Keep it: what is static is sent once, and would not come again."""
+        """Do nothing: a static transform is sent once, and would not come again."""
 
     def __len__(self) -> int:
         return 1
 
 
 def seconds(nanoseconds: int) -> str:
-    """Spell a time as tf2 does: seconds with six decimals."""
+    """Format a time in ns as tf2 does: seconds with six decimals."""
     return f"{nanoseconds / 1e9:.6f}"

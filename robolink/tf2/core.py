@@ -1,4 +1,4 @@
-"""The buffer of transforms between frames: what tf2_py offers, for any thread."""
+"""Thread-safe buffer of transforms between frames: the API of ROS 2's tf2_py."""
 
 from __future__ import annotations
 
@@ -18,21 +18,29 @@ from robolink.tf2.velocity import Velocity, velocity_of
 from robolink.time import Time
 
 CACHE_TIME = 10 * S_TO_NS
-"""Nanoseconds for which transforms are kept."""
+"""Default time for which transforms are kept, in ns."""
 
 LOGGER = "tf2_buffer"
+"""Name of the logger of all buffers."""
 
 MOST_COMPLAINTS = 1000
-"""Kinds of refused transforms that are counted."""
+"""Upper bound of the kinds of refused transforms that are counted."""
 
 ROLES = ("target", "source", "fixed")
+"""Names of the frame arguments of a look-up, in their order."""
 
 
 class BufferCore:
-    """Transforms of the last `cache_time`, ten seconds by default; static ones for ever.
+    """Transforms of the last seconds, by frame; static ones for ever.
 
-    Times are given as `Time`, as `builtin_interfaces/msg/Time`, or as anything with `nanoseconds`; zero is the
-    latest time at which all transforms of the chain are known. All methods may be called from any thread.
+    Times are `Time`, `builtin_interfaces/msg/Time`, or any object with `nanoseconds`; zero means the latest time at
+    which the whole chain is known. All methods may be called from any thread.
+
+    Args:
+        cache_time: Duration for which transforms are kept; 10 s by default.
+
+    Raises:
+        TypeError: if `cache_time` is no duration.
     """
 
     def __init__(self, cache_time: Any = None) -> None:
@@ -41,21 +49,34 @@ class BufferCore:
         self._refused: dict[tuple[str, str], int] = {}
         self._lock = threading.RLock()
 
-    # What comes in
+    # Input
 
     def set_transform(self, transform: Any, authority: str) -> None:
-        """Remember a TransformStamped; `authority` is who says so. One that cannot be is warned about and ignored.
+        """Insert a transform. An invalid one (no frame, a loop, not a number, too old) is ignored with a warning.
 
-        Raises TypeError for an object of another form.
+        Args:
+            transform: A TransformStamped.
+            authority: Name of its source, for warnings and lists of frames.
+
+        Raises:
+            TypeError: if `transform` is no TransformStamped.
         """
         self._set(transform, authority, static=False)
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
-        """Remember a TransformStamped that holds at every time; see `set_transform`."""
+        """Insert a transform that holds at every time. An invalid one is ignored with a warning.
+
+        Args:
+            transform: A TransformStamped.
+            authority: Name of its source, for warnings and lists of frames.
+
+        Raises:
+            TypeError: if `transform` is no TransformStamped.
+        """
         self._set(transform, authority, static=True)
 
     def _set(self, given: Any, authority: str, *, static: bool) -> bool:
-        """Take it in; whether it was taken."""
+        """Insert a transform; True if it was valid."""
         try:
             parent, child = given.header.frame_id.removeprefix("/"), given.child_frame_id.removeprefix("/")
             stamp = nanoseconds(given.header.stamp)
@@ -85,25 +106,44 @@ class BufferCore:
             )
 
     def clear(self) -> None:
-        """Forget all transforms but the static ones; the frames stay known."""
+        """Remove all transforms but the static ones; the frames stay known."""
         with self._lock:
             self._tree.clear()
 
-    # What is asked
+    # Queries
 
     def lookup_transform_core(self, target_frame: str, source_frame: str, time: Any) -> TransformStamped:
-        """Give the transform that takes what is given in `source_frame` to `target_frame`.
+        """Return the transform that takes coordinates in `source_frame` to `target_frame`, without waiting.
 
-        Raises LookupException, ConnectivityException, ExtrapolationException or InvalidArgumentException.
+        Args:
+            target_frame: Name of the frame to which data are transformed.
+            source_frame: Name of the frame in which data are given.
+            time: Time of the transform; zero means the latest.
+
+        Raises:
+            LookupException: if a frame is unknown.
+            ConnectivityException: if no chain of transforms connects the frames.
+            ExtrapolationException: if the buffer has no data at this time.
+            InvalidArgumentException: if a name is empty or begins with a slash.
+            TypeError: if `time` is of another type.
         """
         return _message(target_frame, source_frame, *self._lookup(target_frame, source_frame, nanoseconds(time)))
 
     def lookup_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> TransformStamped:
-        """Give the transform from `source_frame` at one time to `target_frame` at another.
+        """Return the transform from `source_frame` at one time to `target_frame` at another, without waiting.
 
-        `fixed_frame` is what stands still between the two times. Raises what `lookup_transform_core` raises.
+        Args:
+            target_frame: Name of the frame to which data are transformed.
+            target_time: Time at which the target frame is taken; zero means the latest.
+            source_frame: Name of the frame in which data are given.
+            source_time: Time at which the source frame is taken; zero means the latest.
+            fixed_frame: Name of a frame that does not move between the two times.
+
+        Raises:
+            TransformException: any of `lookup_transform_core`.
+            TypeError: if a time is of another type.
         """
         with self._lock:
             self._check_all("lookupTransform", target_frame, source_frame, fixed_frame)
@@ -112,7 +152,16 @@ class BufferCore:
         return _message(target_frame, source_frame, signed(compose(here, there)), stamp)
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[bool, str]:
-        """Say whether `lookup_transform_core` would succeed now, and if not, why."""
+        """Return if `lookup_transform_core` would succeed now, and the reason why not.
+
+        Args:
+            target_frame: Name of the frame to which data are transformed.
+            source_frame: Name of the frame in which data are given.
+            time: Time of the transform; zero means the latest.
+
+        Returns:
+            True and '', or False and the reason.
+        """
         try:
             with self._lock:
                 self._tree.path(target_frame, source_frame, nanoseconds(time), "canTransform argument")
@@ -123,7 +172,18 @@ class BufferCore:
     def can_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> tuple[bool, str]:
-        """Say whether `lookup_transform_full_core` would succeed now, and if not, why."""
+        """Return if `lookup_transform_full_core` would succeed now, and the reason why not.
+
+        Args:
+            target_frame: Name of the frame to which data are transformed.
+            target_time: Time at which the target frame is taken; zero means the latest.
+            source_frame: Name of the frame in which data are given.
+            source_time: Time at which the source frame is taken; zero means the latest.
+            fixed_frame: Name of a frame that does not move between the two times.
+
+        Returns:
+            True and '', or False and the reason.
+        """
         try:
             with self._lock:
                 self._check_all("canTransform", target_frame, source_frame, fixed_frame)
@@ -133,16 +193,21 @@ class BufferCore:
         return self.can_transform_core(fixed_frame, source_frame, source_time) if can else (can, why)
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
-        """Give the latest time at which the whole chain is known; zero where all of it is static.
+        """Return the latest time at which the whole chain between two frames is known; zero if all of it is static.
 
-        Raises what `lookup_transform_core` raises.
+        Args:
+            target_frame: Name of one frame.
+            source_frame: Name of the other.
+
+        Raises:
+            TransformException: any of `lookup_transform_core`.
         """
         with self._lock:
             self._check_all("get_latest_common_time", target_frame, source_frame)
             return Time(nanoseconds=self._tree.path(target_frame, source_frame, LATEST, "get_latest_common_time")[1])
 
     def _is_gone(self, target: str, source: str, time: Any) -> bool:
-        """Whether data of that time would be refused now as too old, by every transform of the chain."""
+        """True if data of that time would be refused now as too old, by every transform of the chain."""
         try:
             with self._lock:
                 latest = self._tree.path(target, source, LATEST, "is_gone argument")[1]
@@ -163,7 +228,21 @@ class BufferCore:
     def lookupVelocityCore(  # noqa: N802 - tf2's name
         self, tracking_frame: str, observation_frame: str, time: Any, averaging_interval: Any
     ) -> Velocity:
-        """Give how `tracking_frame` moves in `observation_frame`: m/s and rad/s, mean values over an interval."""
+        """Return the mean velocity of a frame's origin in another frame.
+
+        Args:
+            tracking_frame: Name of the frame that moves.
+            observation_frame: Name of the frame in which it moves, and along whose axes the velocity is given.
+            time: Middle of the interval; zero means the latest.
+            averaging_interval: Duration over which the mean is taken.
+
+        Returns:
+            Linear velocity in m/s and angular velocity in rad/s, each a tuple of x, y, z.
+
+        Raises:
+            InvalidArgumentException: if the interval holds no two known times.
+            TransformException: any of `lookup_transform_core`.
+        """
         return self.lookupVelocityFullCore(
             tracking_frame, observation_frame, observation_frame, (0, 0, 0), tracking_frame, time, averaging_interval
         )
@@ -178,7 +257,24 @@ class BufferCore:
         time: Any,
         averaging_interval: Any,
     ) -> Velocity:
-        """Give that velocity along the axes of another frame and at another point than the frame's origin."""
+        """Return the mean velocity of a point that is fixed to a moving frame.
+
+        Args:
+            tracking_frame: Name of the frame that moves.
+            observation_frame: Name of the frame in which it moves.
+            reference_frame: Name of the frame along whose axes the velocity is given.
+            reference_point: Coordinates x, y, z in m of the point, in `reference_point_frame`.
+            reference_point_frame: Name of the frame of the point's coordinates.
+            time: Middle of the interval; zero means the latest.
+            averaging_interval: Duration over which the mean is taken.
+
+        Returns:
+            Linear velocity in m/s and angular velocity in rad/s, each a tuple of x, y, z.
+
+        Raises:
+            InvalidArgumentException: if the interval holds no two known times.
+            TransformException: any of `lookup_transform_core`.
+        """
         latest = self.get_latest_common_time(observation_frame, tracking_frame).nanoseconds
         frames = tracking_frame, observation_frame, reference_frame, reference_point_frame
         spans = nanoseconds(time), nanoseconds(averaging_interval, "a duration"), latest
@@ -187,16 +283,16 @@ class BufferCore:
     # All of it
 
     def all_frames_as_yaml(self) -> str:
-        """Give each frame with its parent, who says so, how often, and from when to when, as YAML."""
+        """Return all frames as YAML: parent, authority, rate, first and last time."""
         return listing.as_yaml(self._known())
 
     def all_frames_as_string(self) -> str:
-        """Give a line for each frame that says which parent it has."""
+        """Return a line for each frame with its parent."""
         with self._lock:
             return listing.as_text(self._tree.caches)
 
     def get_all_frame_names(self) -> list[str]:
-        """Give the names of all frames that were ever heard of."""
+        """Return the names of all frames that were ever seen."""
         with self._lock:
             return list(self._tree.caches)
 
@@ -215,7 +311,7 @@ class BufferCore:
     def _chain(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> list[str]:
-        """Give the frames on the way from source to target, by way of the fixed frame."""
+        """Return the frames on the way from source to target, by way of the fixed frame."""
         names = [source_frame]
         ways = ((fixed_frame, source_frame, source_time), (target_frame, fixed_frame, target_time))
         for target, source, time in ways:
@@ -225,7 +321,7 @@ class BufferCore:
 
 
 def nanoseconds(span: Any, what: str = "time") -> int:
-    """Read a Time, a Duration or the message of either. Raises TypeError for anything else."""
+    """Return a Time, a Duration or the message of either in ns; `what` names it in errors. Raises TypeError else."""
     try:
         if hasattr(span, "nanoseconds"):
             return int(span.nanoseconds)

@@ -1,5 +1,5 @@
 # ruff: noqa: N818 - tf2's names
-"""Why a transform could not be given.
+"""Exceptions of tf2.
 
 TransformException (RobolinkError)
 ├─ LookupException (LookupError)             a frame is not known, or frames form a loop
@@ -15,7 +15,7 @@ from robolink.exceptions import RobolinkError
 
 
 class TransformException(RobolinkError):
-    """The root of all errors of tf2."""
+    """Base class of all errors of tf2."""
 
 
 class LookupException(TransformException, LookupError):

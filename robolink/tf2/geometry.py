@@ -1,6 +1,6 @@
-"""Geometry messages in another frame: what tf2_geometry_msgs offers.
+"""Transformation of geometry messages into another frame: the API of ROS 2's tf2_geometry_msgs.
 
-A function takes an object and a TransformStamped, and gives a new object; both arguments stay as they are. Of a type
+A function takes an object and a TransformStamped, and returns a new object; both arguments stay as they are. Of a type
 with a header the new one has the transform's: its frame and its time.
 """
 
@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from robolink.geometry.rotations import quaternion_matrix
 from robolink.interfaces.geometry_msgs.msg import (
     Point,
     Point32,
@@ -34,13 +35,12 @@ from robolink.interfaces.geometry_msgs.msg import (
 )
 from robolink.tf2.buffer_interface import ConvertRegistration, TransformRegistration
 from robolink.tf2.rigid import IDENTITY, Rigid, compose, unit
-from robolink.transformations import quaternion_matrix
 
 T = TypeVar("T")
 
 
 def rigid_of(transform: Transform) -> Rigid:
-    """Read a Transform: its quaternion is scaled to length 1, and means no rotation where it is all zero."""
+    """Return `transform`, a Transform, as seven floats: its quaternion is scaled to length 1; all zero is none."""
     place, turn = transform.translation, transform.rotation
     return (place.x, place.y, place.z, *_unit_quaternion(turn))
 
@@ -52,7 +52,7 @@ def _unit_quaternion(turn: Quaternion) -> tuple[float, float, float, float]:
 
 
 def rotation_of(transform: Transform) -> NDArray[np.float64]:
-    """Give a Transform's rotation as a 3x3 matrix."""
+    """Return the rotation of `transform`, a Transform, as a 3x3 matrix."""
     return quaternion_matrix(_unit_quaternion(transform.rotation))[:3, :3]
 
 
@@ -79,7 +79,7 @@ def _stamped(made: T, transform: TransformStamped) -> T:
 
 
 def do_transform_point(point: Any, transform: TransformStamped) -> Any:
-    """Move a PointStamped, or a bare Point."""
+    """Return `point`, a PointStamped or a bare Point, rotated and moved by `transform`."""
     rigid = rigid_of(transform.transform)
     if isinstance(point, Point):
         return Point(**_moved(rigid, point))
@@ -87,7 +87,7 @@ def do_transform_point(point: Any, transform: TransformStamped) -> Any:
 
 
 def do_transform_vector3(vector3: Any, transform: TransformStamped) -> Any:
-    """Rotate a Vector3Stamped, or a bare Vector3: a vector has no place that could move."""
+    """Return `vector3`, a Vector3Stamped or a bare Vector3, rotated by `transform`: a vector has no place to move."""
     rigid = rigid_of(transform.transform)
     if isinstance(vector3, Vector3):
         return Vector3(**_turned(rigid, vector3))
@@ -95,13 +95,13 @@ def do_transform_vector3(vector3: Any, transform: TransformStamped) -> Any:
 
 
 def do_transform_polygon(polygon: Polygon, transform: TransformStamped) -> Polygon:
-    """Move a Polygon's points."""
+    """Return `polygon` with its points rotated and moved by `transform`."""
     rigid = rigid_of(transform.transform)
     return Polygon(points=[Point32(**_moved(rigid, each)) for each in polygon.points])
 
 
 def do_transform_polygon_stamped(polygon: PolygonStamped, transform: TransformStamped) -> PolygonStamped:
-    """Move a PolygonStamped's points."""
+    """Return `polygon`, stamped as `transform` is, with its points rotated and moved by it."""
     return _stamped(PolygonStamped(polygon=do_transform_polygon(polygon.polygon, transform)), transform)
 
 
@@ -109,7 +109,7 @@ def do_transform_polygon_stamped(polygon: PolygonStamped, transform: TransformSt
 
 
 def do_transform_quaternion(quaternion: Any, transform: TransformStamped) -> Any:
-    """Rotate a QuaternionStamped, or a bare Quaternion; its w comes out positive."""
+    """Return `quaternion`, a QuaternionStamped or a bare Quaternion, rotated by `transform`; its w is positive."""
     rigid = rigid_of(transform.transform)
     if isinstance(quaternion, Quaternion):
         return _oriented(rigid, quaternion)
@@ -117,7 +117,7 @@ def do_transform_quaternion(quaternion: Any, transform: TransformStamped) -> Any
 
 
 def do_transform_pose(pose: Any, transform: TransformStamped) -> Any:
-    """Move and rotate a Pose; a PoseStamped too, which some programs for older releases give it."""
+    """Return `pose` rotated and moved by `transform`; a PoseStamped too, as some programs for older releases need."""
     if isinstance(pose, PoseStamped):
         return do_transform_pose_stamped(pose, transform)
     rigid = rigid_of(transform.transform)
@@ -125,12 +125,12 @@ def do_transform_pose(pose: Any, transform: TransformStamped) -> Any:
 
 
 def do_transform_pose_stamped(pose: PoseStamped, transform: TransformStamped) -> PoseStamped:
-    """Move and rotate a PoseStamped."""
+    """Return `pose`, stamped as `transform` is, rotated and moved by it."""
     return _stamped(PoseStamped(pose=do_transform_pose(pose.pose, transform)), transform)
 
 
 def do_transform_pose_with_covariance(pose: PoseWithCovariance, transform: TransformStamped) -> PoseWithCovariance:
-    """Move and rotate a PoseWithCovariance."""
+    """Return `pose` and its covariance rotated and moved by `transform`."""
     moved = do_transform_pose(pose.pose, transform)
     return PoseWithCovariance(pose=moved, covariance=transform_covariance(pose.covariance, transform))
 
@@ -138,12 +138,15 @@ def do_transform_pose_with_covariance(pose: PoseWithCovariance, transform: Trans
 def do_transform_pose_with_covariance_stamped(
     pose: PoseWithCovarianceStamped, transform: TransformStamped
 ) -> PoseWithCovarianceStamped:
-    """Move and rotate a PoseWithCovarianceStamped."""
+    """Return `pose` and its covariance, stamped as `transform` is, rotated and moved by it."""
     return _stamped(PoseWithCovarianceStamped(pose=do_transform_pose_with_covariance(pose.pose, transform)), transform)
 
 
 def transform_covariance(cov_in: Any, transform: TransformStamped) -> NDArray[np.float64]:
-    """Rotate a covariance of position and orientation: 36 numbers, rows of a 6x6 matrix; `R C R^T` of each quarter."""
+    """Return a covariance of position and orientation, rotated by `transform`.
+
+    `cov_in` has 36 numbers, the rows of a 6x6 matrix; each of its quarters C becomes `R C R^T`.
+    """
     quarters = np.asarray(cov_in, np.float64).reshape(2, 3, 2, 3)
     rotation = rotation_of(transform.transform)
     turned: NDArray[np.float64] = np.einsum("ij,ajbk,lk->aibl", rotation, quarters, rotation)
@@ -154,7 +157,10 @@ def transform_covariance(cov_in: Any, transform: TransformStamped) -> NDArray[np
 
 
 def do_transform_wrench(wrench: Any, transform: TransformStamped) -> Any:
-    """Give a Wrench, or a WrenchStamped, as it acts at the other frame's origin: the force's lever adds a torque."""
+    """Return `wrench`, stamped or not, as it acts at the other frame's origin, by `transform`.
+
+    The lever of the force adds a torque.
+    """
     if isinstance(wrench, WrenchStamped):
         return do_transform_wrench_stamped(wrench, transform)
     rigid = rigid_of(transform.transform)
@@ -167,15 +173,15 @@ def do_transform_wrench(wrench: Any, transform: TransformStamped) -> Any:
 
 
 def do_transform_wrench_stamped(wrench: WrenchStamped, transform: TransformStamped) -> WrenchStamped:
-    """Give a WrenchStamped as it acts at the other frame's origin."""
+    """Return `wrench`, stamped as `transform` is, as it acts at the other frame's origin."""
     return _stamped(WrenchStamped(wrench=do_transform_wrench(wrench.wrench, transform)), transform)
 
 
-# What Buffer.transform finds
+# Registration for Buffer.transform
 
 
 def to_msg_msg(msg: T) -> T:
-    """Give a message as it is: it is one already."""
+    """Return `msg` unchanged."""
     return msg
 
 

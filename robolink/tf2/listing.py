@@ -6,11 +6,11 @@ import sys
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from robolink.terminal import shown
+from robolink.system.terminal import shown
 from robolink.tf2.cache import LATEST, StaticCache, TimeCache, seconds
 
 AT_ONCE = 100_000
-"""Nanoseconds: what came within so short a time is counted as if it had taken so long, as tf2 does."""
+"""Lower bound of the time span of which a rate is computed, in ns, as tf2 has it."""
 
 NOT_TEXT = frozenset(["y", "n", "yes", "no", "true", "false", "on", "off", "null"])
 """Words that are no text in YAML."""
@@ -19,7 +19,7 @@ Caches = Mapping[str, "TimeCache | StaticCache | None"]
 
 
 class Frame(NamedTuple):
-    """What is said of a frame; times in nanoseconds."""
+    """A row of a list of frames; times in ns."""
 
     name: str
     parent: str
@@ -30,7 +30,7 @@ class Frame(NamedTuple):
 
     @property
     def span(self) -> int:
-        """From the earliest to the latest transform."""
+        """Time from the earliest to the latest transform, in ns."""
         return self.newest - self.oldest
 
     @property
@@ -40,7 +40,7 @@ class Frame(NamedTuple):
 
 
 def known(caches: Caches, authorities: Mapping[str, str]) -> list[Frame]:
-    """List the frames that have a parent now."""
+    """Return the frames that have a parent now."""
     found = []
     for name, cache in caches.items():
         if cache is not None and len(cache):
@@ -50,7 +50,7 @@ def known(caches: Caches, authorities: Mapping[str, str]) -> list[Frame]:
 
 
 def as_yaml(frames: list[Frame]) -> str:
-    """Write the YAML that the service tf2_frames answers with."""
+    """Return the YAML that the service tf2_frames answers with."""
     lines = []
     for each in frames:
         lines += [
@@ -66,7 +66,7 @@ def as_yaml(frames: list[Frame]) -> str:
 
 
 def _key(name: str) -> str:
-    """Spell a name as tf2 does, bare, unless YAML would read something else in it."""
+    """Return a name as tf2 spells it, bare, unless YAML would read something else in it."""
     letters = name.replace("_", "").replace("/", "")
     bare = letters.isascii() and letters.isalnum() and not letters[0].isdigit() and name.lower() not in NOT_TEXT
     return name if bare else _quoted(name)
@@ -79,7 +79,7 @@ def _quoted(text: str) -> str:
 
 
 def as_text(caches: Caches) -> str:
-    """Write a line for each frame that has, or had, a parent."""
+    """Return a line for each frame that has, or had, a parent."""
     lines = []
     for name, cache in caches.items():
         if cache is not None:
@@ -89,7 +89,7 @@ def as_text(caches: Caches) -> str:
 
 
 def as_dot(frames: list[Frame], now: int | None) -> str:
-    """Write the tree as a graph; with the time now, also how old each transform is."""
+    """Return the tree as a Graphviz graph; with the time `now` in ns, also the age of each transform."""
     if not frames:
         return 'digraph G {\n"no tf data received"\n}'
     lines = ["digraph G {"]

@@ -1,4 +1,4 @@
-"""Point clouds in another frame: what tf2_sensor_msgs offers."""
+"""Transformation of point clouds into another frame: the API of ROS 2's tf2_sensor_msgs."""
 
 from __future__ import annotations
 
@@ -11,24 +11,30 @@ from numpy.typing import NDArray
 from robolink.interfaces.geometry_msgs.msg import Transform, TransformStamped
 from robolink.interfaces.sensor_msgs.msg import PointCloud2, PointField
 from robolink.interfaces.std_msgs.msg import Header
-from robolink.point_cloud2 import PointCloudError, row_step_of
+from robolink.sensor_msgs_py.point_cloud2 import PointCloudError, row_step_of
 from robolink.tf2.buffer_interface import ConvertRegistration, TransformRegistration
 from robolink.tf2.geometry import from_msg_msg, rotation_of, to_msg_msg
 
 FLOATS = {PointField.FLOAT32: "f4", PointField.FLOAT64: "f8"}
+"""numpy types of the datatypes of coordinates."""
 
 
 def transform_points(point_cloud: NDArray[Any], transform: Transform) -> NDArray[Any]:
-    """Rotate and move points, the rows of an N x 3 array."""
+    """Return the points of an N x 3 array, in m, rotated and moved by `transform`."""
     place = transform.translation
     moved: NDArray[Any] = np.asarray(point_cloud) @ rotation_of(transform).T + (place.x, place.y, place.z)
     return moved
 
 
 def do_transform_cloud(cloud: PointCloud2, transform: Transform | TransformStamped) -> PointCloud2:
-    """Give a copy of a cloud whose x, y and z are in another frame; its other fields and its stamp are the same.
+    """Return a copy of a cloud with x, y and z in another frame; its other fields and its stamp stay.
 
-    Raises PointCloudError where the cloud has no coordinates as floats, or too few bytes.
+    Args:
+        cloud: The cloud, with x, y and z as single floats. It is not changed.
+        transform: A TransformStamped, whose frame the copy gets; or a Transform, which keeps the frame's name.
+
+    Raises:
+        PointCloudError: if the cloud has no coordinates as floats, or too few bytes.
     """
     frame = cloud.header.frame_id
     if isinstance(transform, TransformStamped):
@@ -52,7 +58,7 @@ def do_transform_cloud(cloud: PointCloud2, transform: Transform | TransformStamp
 
 
 def _coordinates(cloud: PointCloud2, data: bytearray) -> list[NDArray[Any]]:
-    """Give views of x, y and z in a cloud's bytes, each height x width."""
+    """Return views of x, y and z in a cloud's bytes, each height x width."""
     fields = {each.name: each for each in cloud.fields}
     if not {"x", "y", "z"} <= fields.keys():
         there = ", ".join(fields) or "none"

@@ -1,4 +1,4 @@
-"""Rigid transforms as seven floats, and what is done with them: for the few at a time that a lookup needs.
+"""Arithmetic of rigid transforms as seven floats, for the few at a time that a look-up needs.
 
 A chain of ten costs less than half of what numpy takes, which is made for many at once (`benchmarks/tf2.py`).
 """
@@ -9,19 +9,20 @@ import math
 from typing import TypeAlias
 
 Rigid: TypeAlias = tuple[float, float, float, float, float, float, float]
-"""x, y, z in metres, then the rotation as a unit quaternion x, y, z, w."""
+"""Position x, y, z in m, then the rotation as a unit quaternion x, y, z, w."""
 
 IDENTITY: Rigid = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+"""The transform that changes nothing."""
 
 UNIT = 1e-12
-"""How far a quaternion's squared norm may be from 1 without being scaled."""
+"""Tolerance of a quaternion's squared norm, within which it is not scaled."""
 
 NEARLY_EQUAL = 1.0 - 1e-9
-"""The cosine of half an angle so small that the straight way between two rotations is as good as the arc."""
+"""Cosine of half an angle, above which two rotations are interpolated on a line instead of the arc."""
 
 
 def compose(outer: Rigid, inner: Rigid) -> Rigid:
-    """Give the transform that applies `inner` first and `outer` then."""
+    """Return the transform that applies `inner` first and `outer` then."""
     ox, oy, oz, x, y, z, w = outer
     ix, iy, iz, a, b, c, d = inner
     # v + 2 w (q x v) + 2 q x (q x v), with t = 2 (q x v)
@@ -38,7 +39,7 @@ def compose(outer: Rigid, inner: Rigid) -> Rigid:
 
 
 def inverse(given: Rigid) -> Rigid:
-    """Give the transform that undoes `given`."""
+    """Return the inverse of a transform."""
     px, py, pz, x, y, z, w = given
     tx, ty, tz = 2.0 * (z * py - y * pz), 2.0 * (x * pz - z * px), 2.0 * (y * px - x * py)
     return (
@@ -53,7 +54,7 @@ def inverse(given: Rigid) -> Rigid:
 
 
 def between(one: Rigid, other: Rigid, ratio: float) -> Rigid:
-    """Give what lies on the way from `one` (ratio 0) to `other` (1): a line for the place, an arc for the rotation."""
+    """Interpolate from `one` (ratio 0) to `other` (ratio 1): linear in position, spherical (slerp) in rotation."""
     rest = 1.0 - ratio
     ax, ay, az, a, b, c, d = one
     bx, by, bz, e, f, g, h = other
@@ -70,7 +71,7 @@ def between(one: Rigid, other: Rigid, ratio: float) -> Rigid:
 
 
 def unit(given: Rigid) -> Rigid:
-    """Scale the quaternion to length 1 where it is off."""
+    """Return a transform with its quaternion scaled to length 1 where it is off."""
     px, py, pz, x, y, z, w = given
     square = x * x + y * y + z * z + w * w
     if abs(square - 1.0) <= UNIT:
@@ -80,7 +81,7 @@ def unit(given: Rigid) -> Rigid:
 
 
 def signed(given: Rigid) -> Rigid:
-    """Choose between q and -q as tf2 does: w is positive where it is beyond a half, else the largest of x, y, z is."""
+    """Return q or -q as tf2 does: w is positive where it is beyond a half, else the largest of x, y, z is."""
     px, py, pz, x, y, z, w = given
     leading = w if w * w > 0.25 else max((x, y, z), key=abs)
     return given if leading >= 0.0 else (px, py, pz, -x, -y, -z, -w)

@@ -1,4 +1,4 @@
-"""Sending transforms that never change: once, and kept for those who come later."""
+"""Broadcaster of static transforms: sent once, and kept for late subscriptions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,12 @@ if TYPE_CHECKING:
 
 
 class StaticTransformBroadcaster:
-    """Publishes transforms on /tf_static; each message has all that were ever sent, the newest of each child frame."""
+    """Publisher of transforms on /tf_static; each message has all that were ever sent, the newest of each child frame.
+
+    Args:
+        node: Node that publishes.
+        qos: Profile or depth of the publisher; depth 1 and TRANSIENT_LOCAL by default.
+    """
 
     def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -24,7 +29,7 @@ class StaticTransformBroadcaster:
         self.net_message = TFMessage()
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - tf2's name
-        """Publish a transform, or several; another one of the same child frame takes its place."""
+        """Publish `transform`, one or several; it replaces an earlier one of the same child frame."""
         kept = {each.child_frame_id: each for each in self.net_message.transforms}
         kept.update({each.child_frame_id: deepcopy(each) for each in as_list(transform)})
         self.net_message.transforms = list(kept.values())

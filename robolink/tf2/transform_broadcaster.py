@@ -1,4 +1,4 @@
-"""Sending transforms that change."""
+"""Broadcaster of transforms that change."""
 
 from __future__ import annotations
 
@@ -13,19 +13,25 @@ if TYPE_CHECKING:
     from robolink.node import Node
 
 DEPTH = 100
+"""Default depth of the publisher, in messages."""
 
 
 class TransformBroadcaster:
-    """Publishes transforms on /tf."""
+    """Publisher of transforms on /tf.
+
+    Args:
+        node: Node that publishes.
+        qos: Profile or depth of the publisher; depth 100 by default.
+    """
 
     def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
         self.pub_tf = node.create_publisher(TFMessage, "/tf", DEPTH if qos is None else qos)
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - tf2's name
-        """Publish a transform, or several in one message."""
+        """Publish `transform`, one or several in one message."""
         self.pub_tf.publish(TFMessage(transforms=as_list(transform)))
 
 
 def as_list(transform: TransformStamped | Iterable[TransformStamped]) -> list[TransformStamped]:
-    """Give one transform, or several, as a list."""
+    """Return one transform, or several, as a list."""
     return list(transform) if isinstance(transform, Iterable) else [transform]

@@ -1,4 +1,4 @@
-"""Listening to /tf and /tf_static, and filling a buffer with what comes."""
+"""Listener to /tf and /tf_static, which fills a buffer."""
 
 from __future__ import annotations
 
@@ -20,14 +20,23 @@ DEFAULT_TF_TOPIC = "/tf"
 DEFAULT_STATIC_TF_TOPIC = "/tf_static"
 
 DEPTH = 100
+"""Default depth of the subscriptions, in messages."""
 WHO = "default_authority"
+"""Authority of all transforms that come from the network."""
 
 
 class TransformListener:
-    """Fills a buffer with the transforms that others publish, while something spins the node.
+    """Listener that fills a buffer with published transforms while its node is spun.
 
-    With `spin_thread` a thread of its own spins it, all its callbacks, until the node is spun otherwise or the context
-    ends; `executor` is what that thread spins.
+    Args:
+        buffer: A Buffer, or any object with `set_transform` and `set_transform_static`.
+        node: Node that subscribes.
+        spin_thread: True spins the node, with all its callbacks, in a thread of its own, until the node is spun
+            otherwise or the context ends; `executor` is that thread's.
+        qos: Profile or depth of the subscription to `tf_topic`; depth 100 by default.
+        static_qos: Profile or depth of the subscription to `tf_static_topic`; depth 100 and TRANSIENT_LOCAL by default.
+        tf_topic: Topic of the transforms that change.
+        tf_static_topic: Topic of the static transforms.
     """
 
     def __init__(
@@ -68,29 +77,29 @@ class TransformListener:
 
     @property
     def buffer(self) -> Any:
-        """What is filled: a Buffer, or anything that has its set_transform and set_transform_static."""
+        """The buffer that is filled: a Buffer, or any object with set_transform and set_transform_static."""
         return self._buffer
 
     @buffer.setter
     def buffer(self, buffer: Any) -> None:
         if isinstance(self._buffer, Buffer):
-            self._buffer.not_fed_by(self)
+            self._buffer.remove_source(self)
         self._buffer = buffer
         if isinstance(buffer, Buffer):
-            buffer.fed_by(self)
+            buffer.add_source(self)
 
     def callback(self, data: TFMessage) -> None:
-        """Take in what moves."""
+        """Insert the transforms of the message `data` into the buffer."""
         for transform in data.transforms:
             self.buffer.set_transform(transform, WHO)
 
     def static_callback(self, data: TFMessage) -> None:
-        """Take in what stands still."""
+        """Insert the static transforms of the message `data` into the buffer."""
         for transform in data.transforms:
             self.buffer.set_transform_static(transform, WHO)
 
     def unregister(self) -> None:
-        """Listen no longer. Safe to call twice."""
+        """Destroy both subscriptions. Safe to call twice."""
         self.node.destroy_subscription(self.tf_sub)
         self.node.destroy_subscription(self.tf_static_sub)
 

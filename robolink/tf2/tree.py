@@ -1,11 +1,12 @@
-"""The frames that are known, and the way from one to another; times in nanoseconds, nothing locked."""
+"""Tree of the known frames, and the path from one frame to another; times in ns, not thread-safe."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 
-from robolink.exceptions import nearest, shown
+from robolink.exceptions import nearest
+from robolink.system.terminal import shown
 from robolink.tf2 import listing
 from robolink.tf2.cache import LATEST, Link, StaticCache, TimeCache
 from robolink.tf2.exceptions import (
@@ -17,23 +18,23 @@ from robolink.tf2.exceptions import (
 from robolink.tf2.rigid import IDENTITY, Rigid, compose, inverse, signed, unit
 
 NORM_TOLERANCE = 0.01
-"""How far a quaternion's squared norm may be from 1."""
+"""Tolerance of a quaternion's squared norm, beyond which it is refused."""
 
 Path = tuple[list[Link], list[Link]]
-"""The links from a source frame up to where it meets a target frame, and from the target up to there."""
+"""Links from a source frame up to where it meets a target frame, and from the target up to there."""
 
 
 class Tree:
-    """Frames by name, each with what is known of it; a frame that is only a parent has no cache."""
+    """Frames by name, each with its cache; a frame that is only a parent has none."""
 
     def __init__(self, keep: int) -> None:
         self.keep = keep
         self.caches: dict[str, TimeCache | StaticCache | None] = {}
 
-    # What comes in
+    # Input
 
     def insert(self, parent: str, child: str, stamp: int, rigid: Rigid, *, static: bool) -> tuple[str, str] | None:
-        """Take a transform in, or give tf2's word for what is wrong with it, and the reason."""
+        """Insert a transform; return None, or tf2's word for what is wrong with it and the reason."""
         wrong = _what_is_wrong(parent, child, rigid)
         if wrong is not None:
             return wrong
@@ -52,7 +53,7 @@ class Tree:
         return None
 
     def _would_loop(self, parent: str, child: str, stamp: int) -> bool:
-        """Whether the parent is below the child at that time, as far as is known."""
+        """True if the parent is below the child at that time, as far as is known."""
         if child not in self.caches or self._parent(child, stamp) == parent:
             return False
         seen: set[str] = set()
@@ -69,15 +70,15 @@ class Tree:
         return None if cache is None else cache.parent_near(stamp)
 
     def clear(self) -> None:
-        """Forget all transforms but the static ones; the frames stay known."""
+        """Remove all transforms but the static ones; the frames stay known."""
         for cache in self.caches.values():
             if cache is not None:
                 cache.clear()
 
-    # What is asked
+    # Queries
 
     def check(self, frame: str, asker: str) -> None:
-        """Raise InvalidArgumentException for a name that cannot be, LookupException for a frame that is not known."""
+        """Raise InvalidArgumentException for an invalid name, LookupException for an unknown frame."""
         if not frame or frame.startswith("/"):
             wrong = "cannot start with a '/'" if frame else "cannot be empty"
             raise InvalidArgumentException(
@@ -88,7 +89,7 @@ class Tree:
             raise LookupException(f'"{shown(frame)}" passed to {asker} does not exist.{close}')
 
     def transform(self, target: str, source: str, time: int, asker: str) -> tuple[Rigid, int]:
-        """Give what takes from source to target at a time, and that time itself where it is the latest."""
+        """Return the transform from source to target at a time, and that time itself where it is the latest."""
         (up, down), stamp = self.path(target, source, time, asker)
         total = _total(up)
         if down:
@@ -96,7 +97,7 @@ class Tree:
         return signed(unit(total)), stamp
 
     def path(self, target: str, source: str, time: int, asker: str) -> tuple[Path, int]:
-        """Find the links between two frames at a time, and that time itself where it is the latest.
+        """Return the links between two frames at a time, and that time itself where it is the latest.
 
         Raises what `check` raises, ConnectivityException and ExtrapolationException.
         """
@@ -113,13 +114,13 @@ class Tree:
         return path if len(stamps) < 2 else self._path(target, source, common), common
 
     def chain(self, target: str, source: str, time: int, asker: str) -> list[str]:
-        """Give the frames from source to target, both with them. Raises what `path` raises."""
+        """Return the frames from source to target, with both of them. Raises what `path` raises."""
         (up, down), _ = self.path(target, source, time, asker)
         names = [source, *(link.parent for link in up)]
         return [*names, *(link.parent for link in reversed(down[:-1])), target] if down else names
 
     def _path(self, target: str, source: str, time: int) -> Path:
-        """Give the links from both frames up to the first frame that they share, and no further."""
+        """Return the links from both frames up to the first frame that they share, and no further."""
         up: list[Link] = []
         down: list[Link] = []
         met = {source: 0}
@@ -148,7 +149,7 @@ class Tree:
         )
 
     def _links(self, frame: str, time: int) -> Iterator[Link]:
-        """Go up from a frame to the root of its tree."""
+        """Yield the links from a frame up to the root of its tree."""
         seen = {frame}
         while True:
             cache = self.caches.get(frame)

@@ -1,4 +1,4 @@
-"""How fast a frame moves in another: the mean between two lookups around a time."""
+"""Mean velocity of a frame in another one, from two look-ups around a time."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from robolink.tf2.rigid import Rigid, compose, inverse, signed
 
 Vector: TypeAlias = tuple[float, float, float]
 Velocity: TypeAlias = tuple[Vector, Vector]
-"""Metres a second, then radians a second about the same axes."""
+"""Linear velocity in m/s, then angular velocity in rad/s about the same axes."""
 
 EARLIEST = 10_000
-"""Nanoseconds: zero would ask for the latest time."""
+"""Earliest time of a look-up in ns: zero would mean the latest."""
 
 Lookup = Callable[[str, str, int], Rigid]
 
 
 def velocity_of(lookup: Lookup, frames: Sequence[str], point: Sequence[float], spans: tuple[int, int, int]) -> Velocity:
-    """Give a mean velocity. `frames`: who moves, in what, along whose axes, and in what `point` is given.
+    """Return a mean velocity. `frames`: which moves, in which, along whose axes, and in which `point` is given.
 
-    `spans` are a time, the interval around it, and the latest time that is known, in nanoseconds. Raises
-    InvalidArgumentException when no time lies between the two lookups, and what a lookup raises.
+    `spans` are a time, the interval around it, and the latest time that is known, in ns. Raises
+    InvalidArgumentException if no time lies between the two look-ups, and what a look-up raises.
     """
     tracking, observation, reference, point_frame = frames
     time, interval, latest = spans

@@ -1,6 +1,8 @@
-"""Carries bytes between nodes: inside one process or over Zenoh, behind one seam."""
+"""Transport layer: carries bytes between nodes, in memory or over Zenoh, behind one interface."""
 
 from __future__ import annotations
+
+import os
 
 from robolink.exceptions import TransportError, nearest
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport
@@ -8,11 +10,21 @@ from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transpo
 __all__ = ["Handle", "Outlet", "Query", "Sample", "Sink", "Transport", "connect"]
 
 
-def connect(url: str | Transport = "zenoh://", domain: int = 0, *, network: str | None = None) -> Transport:
-    """Open a session: `memory://NAME` inside this process, `zenoh://` between processes; a Transport is given back.
+def connect(
+    url: str | Transport = "zenoh://", domain: int = 0, *, network: str | None = None, enclave: str | None = None
+) -> Transport:
+    """Open a session.
 
-    `domain` and `network` (one of `robolink.transport.network.NAMES`, a router's endpoint or a file) are Zenoh's.
-    Raises TransportError, also where the settings of the environment are at fault.
+    Args:
+        url: `memory://NAME` inside this process, `zenoh://` between processes; a Transport is returned as it is.
+        domain: ROS domain id, 0 to 232; for Zenoh only.
+        network: `localhost`, `lan`, `off`, HOST[:PORT], tls/HOST[:PORT], a name of networks.yaml or a file of Zenoh's;
+            None asks the environment. For Zenoh only.
+        enclave: Enclave whose keys and rights it has, where the environment asks for security; None is `/`.
+
+    Raises:
+        TransportError: if the session cannot be opened, or settings of the environment are wrong; SecurityError if
+            keys or rights are missing.
     """
     if isinstance(url, Transport):
         return url
@@ -22,6 +34,10 @@ def connect(url: str | Transport = "zenoh://", domain: int = 0, *, network: str 
             from robolink.transport.memory import MemoryTransport
 
             return MemoryTransport(name)
+        case "zenoh" if not name and os.environ.get("ROS_SECURITY_ENABLE", "false") != "false":
+            from robolink.transport.secured import open_session
+
+            return open_session(domain, network, os.environ, enclave)
         case "zenoh" if not name:
             from robolink.transport.zenoh import ZenohTransport
 

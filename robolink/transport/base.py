@@ -1,8 +1,8 @@
-"""The seam between nodes and a network: bytes, keys and attachments, never a message class.
+"""Transport interface between nodes and a network: bytes, keys and attachments, never a message class.
 
-A transport may call a sink on any thread. A sink must only enqueue; whoever drains the queue turns what arrived
-into bytes with `read` (samples, replies) or `accept` (queries), on its own thread and in its own time. That keeps
-what Zenoh's threads do down to one C call.
+A transport may call a sink on any thread. A sink must only enqueue; the consumer of the queue converts items to
+bytes with `read` (samples, replies) or `accept` (queries), on its own thread and in its own time. That keeps
+the work of Zenoh's threads down to one C call.
 """
 
 from __future__ import annotations
@@ -12,35 +12,33 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
+from robolink.constants import LARGEST_MESSAGE
 from robolink.exceptions import TransportError
 from robolink.qos import QoSProfile
 
 if TYPE_CHECKING:
     from robolink.transport.reach import Link
 
-LARGEST_MESSAGE = 1 << 30
-"""Bytes, with all that Zenoh adds: rmw_zenoh's limit. A session throws away, without a word, what is larger."""
-
 LARGEST_PAYLOAD = LARGEST_MESSAGE - (1 << 16)
-"""Bytes of one message, less what the network adds."""
+"""Largest payload of one message, in bytes: without the network's overhead."""
 
 Sink = Callable[[Any], object]
-"""Called on any thread with something that `Transport.read` or `Transport.accept` understands. Must not block."""
+"""Callback that is called on any thread with an item for `Transport.read` or `Transport.accept`. Must not block."""
 
 
 class Sample(NamedTuple):
-    """What was published, or replied."""
+    """A published payload, or a reply, with its attachment."""
 
     payload: bytes
     attachment: bytes
 
 
 make_sample: Callable[[tuple[bytes, bytes]], Sample] = functools.partial(tuple.__new__, Sample)
-"""Half the time of Sample(), whose `__new__` is Python: for what is run once a message."""
+"""Fast constructor of Sample, in half the time of Sample(), whose `__new__` is Python: for once a message."""
 
 
 def refuse_giant(key: str, payload: bytes) -> None:
-    """Raise TransportError for a payload that every receiver would throw away without a word."""
+    """Raise TransportError for a payload that every receiver would silently drop."""
     if len(payload) > LARGEST_PAYLOAD:
         raise TransportError(
             f"{key[:200]}: a message of {len(payload):,} bytes is larger than ROS 2's network carries"
@@ -49,7 +47,7 @@ def refuse_giant(key: str, payload: bytes) -> None:
 
 
 class Handle(Protocol):
-    """What a declaration gives back; after `close` returns, its sink is not called again."""
+    """Handle of a declaration; after `close` returns, its sink is not called again."""
 
     def close(self) -> None:
         """Undeclare. Safe to call twice."""
@@ -66,30 +64,39 @@ class Outlet(Handle, Protocol):
 
     @property
     def matched(self) -> bool:
-        """Whether anybody subscribes, here or elsewhere, as far as is known."""
+        """True if a subscription is known, here or elsewhere."""
+
+
+class NumberingOutlet(Outlet, Protocol):
+    """Outlet with a lock of its own, under which a message is numbered too: its publisher needs no second one."""
+
+    def put_numbered(self, payload: bytes, attachment: Callable[[], bytes]) -> bytes:
+        """Send as `put` does, with the attachment that `attachment()` makes under the lock; return that."""
 
 
 class Query(Protocol):
-    """A call that arrived at a server. It ends when it is closed, answered or not."""
+    """A request that arrived at a server. It ends when it is closed, answered or not."""
 
     payload: bytes
     attachment: bytes
 
     def reply(self, payload: bytes, attachment: bytes) -> None:
-        """Answer, from any thread. Nothing happens when the caller is gone."""
+        """Send a reply, from any thread. Does nothing when the caller is gone."""
 
     def close(self) -> None:
-        """Say that nothing more will come."""
+        """Finish the call: no more replies will come."""
 
 
 class Transport(ABC):
-    """One session on a network. Every method may be called from any thread."""
+    """One session on a network. All methods are thread-safe."""
 
     url: str
     session_id: str
-    """The session's id on the wire: lower-case hex, as Zenoh prints it."""
+    """Id of the session on the wire: lower-case hex, as Zenoh prints it."""
     threaded: bool
-    """Whether sinks are called on threads of the transport's own (Zenoh), not only inside `put` (memory)."""
+    """True if sinks are called on threads of the transport's own (Zenoh), not only inside `put` (memory)."""
+    enclave: str = ""
+    """Enclave whose keys and rights it has; "" where there is no security."""
 
     @abstractmethod
     def advertise(self, key: str, qos: QoSProfile) -> Outlet:
@@ -108,49 +115,72 @@ class Transport(ABC):
 
     @abstractmethod
     def call(self, key: str, payload: bytes, attachment: bytes, sink: Sink) -> Handle:
-        """Ask whoever serves `key`. `sink` gets each reply, then None once: no more will come.
+        """Send a request to all servers of `key`. `sink` gets each reply, then None once as the end.
 
-        There is no timeout here, since time belongs to clocks: whoever waits gives up by closing the handle, after
+        There is no timeout here, since time belongs to clocks: the caller gives up by closing the handle, after
         which neither replies nor the end come. Closing the session ends its calls.
         """
 
     @abstractmethod
     def announce(self, token: str) -> Handle:
-        """Show `token` to all who watch, until closed or until this process is gone."""
+        """Declare a liveliness token, visible to all watches until it is closed or this process is gone."""
 
     @abstractmethod
     def watch(self, pattern: str, on_change: Callable[[str, bool], object]) -> Handle:
         """Call `on_change(token, alive)` for each token that matches `pattern`, those already there first.
 
-        This one is called on a thread of the transport's own and may do a little work. It may give False for a
-        token that it has no use for: that one is not remembered, so that nonsense costs no memory, and may be told
-        of again.
+        It is called on a thread of the transport's own and may do a little work. It may return False for a token
+        that it has no use for: that one is not remembered, so that nonsense costs no memory, and may be reported
+        again.
         """
 
     @abstractmethod
     def tokens(self, pattern: str) -> list[str]:
-        """List the tokens that match `pattern` now, sorted: also those of peers that this session only just found.
+        """Return the tokens that match `pattern` now, sorted: also those of peers that this session only just found.
 
-        A session of long standing knows them all; one that has just been opened waits until nothing more comes
-        (some 50 ms; half a second where a peer is frozen, 3 s at the most on a busy machine).
-        Not from within `on_change` nor a sink.
+        A session that has been open for a while knows them all; a new one waits until nothing more comes
+        (some 50 ms; half a second where a peer is frozen, 3 s at most on a busy machine).
+        Must not be called from within `on_change` or a sink.
         """
 
     def links(self) -> list[Link]:
-        """List the connections to other sessions; a transport without a network has none."""
+        """Return the connections to other sessions; a transport without a network has none."""
         return []
 
     @abstractmethod
     def read(self, arrived: Any) -> Sample:
-        """Turn what a subscription's or a call's sink got into bytes. Raises TransportError on an error reply."""
+        """Convert an item of a subscription's or a call's sink to bytes.
+
+        Raises TransportError on an error reply, OverwrittenError for a message that its sender has overwritten.
+        """
+
+    def opener(self, check: Callable[[bytes], object], decode: Callable[[bytes], Any]) -> Callable[[Any], Any]:
+        """Return a function that does all of this to an item of a subscription's sink: `read`, `check`, `decode`.
+
+        Args:
+            check: Function of the attachment, which raises an error for one that is wrong.
+            decode: Function of the payload, whose result is returned.
+        """
+        read = self.read
+
+        def opened(arrived: Any) -> Any:
+            payload, attachment = read(arrived)
+            check(attachment)
+            return decode(payload)
+
+        return opened
 
     def size(self, arrived: Any) -> int:
-        """Tell how many bytes the payload of what a subscription's sink got has, without copying them."""
+        """Return the payload size, in bytes, of an item of a subscription's sink, without copying it."""
         return len(self.read(arrived).payload)
+
+    def attachment(self, arrived: Any) -> bytes:
+        """Return the attachment of an item of a subscription's sink, without copying the payload."""
+        return self.read(arrived).attachment
 
     @abstractmethod
     def accept(self, arrived: Any) -> Query:
-        """Turn what a server's sink got into a Query."""
+        """Convert an item of a server's sink to a Query. Raises OverwrittenError, and ends the call, as `read` does."""
 
     @abstractmethod
     def close(self) -> None:

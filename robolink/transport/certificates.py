@@ -1,6 +1,6 @@
-"""Certificates of a Zenoh configuration (TLS): whether its files are sound, and why another session refuses them.
+"""TLS certificate checks of a Zenoh configuration: validates its files, and finds why another session refuses them.
 
-Zenoh says "Timeout!" or nothing at all. Python's `ssl` shakes hands as Zenoh does, and tells the reason.
+Zenoh itself reports "Timeout!" or nothing at all. Python's `ssl` makes the same handshake, and has the reason.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     import zenoh
 
 ANSWER_WITHIN = 1.0
-"""Seconds in which another side has to shake hands; over the slowest links it takes a tenth."""
+"""Timeout of a TLS handshake, in seconds; over the slowest links it takes a tenth."""
 
 SILENT_FOR = 0.3
-"""Seconds without a refusal after which a certificate counts as taken: with TLS 1.3 it comes after the handshake."""
+"""Silence after which a certificate counts as accepted, in s: with TLS 1.3 a refusal comes after the handshake."""
 
 MOST_ASKED = 4
-"""So many endpoints are asked why they refuse."""
+"""Most endpoints that are checked for their reason to refuse."""
 
 _NOT_YET, _EXPIRED = 9, 10
-"""OpenSSL's numbers for what is wrong with a certificate."""
+"""OpenSSL's error numbers of certificates that are not valid yet, or no longer."""
 _WRONG_NAME = (62, 64)
 _SAID = {
     "UNKNOWN_CA": "it does not trust the authority that signed {}",
@@ -36,22 +36,22 @@ _SAID = {
     "HANDSHAKE_FAILURE": "it asks for a certificate, or for another kind of TLS",
     "WRONG_VERSION_NUMBER": "it does not speak TLS",
 }
-"""What the other side's refusals mean."""
+"""Meaning of the peer's TLS alerts."""
 
 
 class Own(NamedTuple):
-    """A certificate by which a session proves who it is, and its key."""
+    """A certificate of this configuration, and its private key."""
 
     used_to: str
-    """`listen` or `connect`: how the settings' names begin."""
+    """`listen` or `connect`: the prefix of the settings' names."""
     certificate: str
     key: str
 
 
 def faults(config: zenoh.Config) -> list[str]:
-    """List what is wrong with a configuration's own files, and would keep everybody out; nothing where no TLS is used.
+    """Return the errors in a configuration's own files that keep everybody out; none where no TLS is used.
 
-    A file that is not there or holds something else, a key that is another certificate's, and what is out of date.
+    These are missing or wrong files, a key of another certificate, and expired certificates.
     """
     if not reach(config).secured:
         return []
@@ -59,9 +59,9 @@ def faults(config: zenoh.Config) -> list[str]:
 
 
 def doubts(config: zenoh.Config) -> list[str]:
-    """List what may keep others out: own certificates that the own authority has not signed.
+    """Return warnings about own certificates that the own authority has not signed.
 
-    It is right only where the other side trusts another authority.
+    Such a certificate is right only where the other side trusts another authority.
     """
     authority = _settings(config)["root_ca_certificate"]
     if not reach(config).secured or not authority or faults(config):
@@ -75,9 +75,9 @@ def doubts(config: zenoh.Config) -> list[str]:
 
 
 def refusals(config: zenoh.Config, endpoints: list[str] | None = None) -> list[str]:
-    """Shake hands at the endpoints that are connected to by TLS, and list the reasons of those where that fails.
+    """Try the TLS handshake at the endpoints of the configuration, and return the reasons of those that refuse.
 
-    `endpoints` are asked instead where they are given. Who does not listen at all is not listed.
+    `endpoints` are tried in their place if given. Endpoints where nobody listens are left out.
     """
     asked = endpoints if endpoints is not None else read(config, "connect/endpoints") or ()
     secured = [address_of(each) for each in asked if each.startswith("tls/")][:MOST_ASKED]
@@ -156,7 +156,7 @@ def _load(context: ssl.SSLContext, own: Own) -> None:
 
 
 def _verified(own: Own, authority: str) -> int:
-    """Shake hands with oneself: OpenSSL's number for what a certificate lacks to whoever trusts `authority`, else 0."""
+    """Try a handshake with oneself; return OpenSSL's error number for a client that trusts `authority`, 0 if valid."""
     import ssl
 
     server, client = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
@@ -189,7 +189,7 @@ def _step(end: ssl.SSLObject) -> None:
 
 
 def _refusal(config: zenoh.Config, endpoint: str) -> str:
-    """Shake hands with whoever listens there; give why that fails, or nothing."""
+    """Try a handshake at an endpoint; return why it fails, or ''."""
     import socket
     import ssl
 

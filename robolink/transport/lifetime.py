@@ -1,10 +1,11 @@
-"""What becomes of open sessions when the interpreter exits or the process forks."""
+"""Exit and fork handlers of open sessions: closes them at interpreter exit, and disables them in forked children."""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import signal
+import sys
 import threading
 import time
 import weakref
@@ -17,19 +18,19 @@ _Kept = TypeVar("_Kept")
 
 
 class Mortal(Protocol):
-    """Something that threads outside Python work for."""
+    """A resource with threads outside Python."""
 
     def close(self) -> None:
         """Stop these threads."""
 
     def disown(self) -> None:
-        """Refuse every further use: this is a forked child, in which the threads are gone."""
+        """Refuse every further use: in a forked child the threads do not exist."""
 
 
 AFTER_FORK = "Zenoh does not survive a fork: start processes by 'spawn', or before the first session is opened"
 
 LAST_WAIT = 3.0
-"""Seconds that the exit waits for sessions that are still closing, and for threads that are at work in Zenoh.
+"""Longest wait of the exit for closing sessions and for threads that are inside Zenoh, in seconds.
 
 One with 30 peers takes 0.3 s; four that leave a busy machine at once take 0.7 s and more.
 """
@@ -37,18 +38,18 @@ One with 30 peers takes 0.3 s; four that leave a busy machine at once take 0.7 s
 _open: weakref.WeakSet[Mortal] = weakref.WeakSet()
 _unfinished: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
 _last: list[object] = []
-"""What the exit closes, and with what daemon threads end: held, since what they free as they end is work in Zenoh."""
+"""Sessions at the exit, and the exceptions that end daemon threads: kept alive, since freeing them runs Zenoh."""
 _inside: set[int] = set()
-"""Threads, by their idents, that are just at work in Zenoh."""
+"""Idents of the threads that are inside Zenoh now."""
 _armed = False
 _forked = False
 _ending = False
 _deadline = 0.0
-"""When the exit waits no longer, by `time.monotonic`."""
+"""End of the exit's wait, by `time.monotonic`."""
 
 
 def watch_over(mortal: Mortal) -> None:
-    """Close it at exit, if it is still there, and disown it in forked children."""
+    """Register a resource: it is closed at exit if it still exists, and disowned in forked children."""
     _arm()
     _open.add(mortal)
     if _ending:
@@ -56,12 +57,12 @@ def watch_over(mortal: Mortal) -> None:
 
 
 def forget(mortal: Mortal) -> None:
-    """It has been closed."""
+    """Unregister a resource that has been closed."""
     _open.discard(mortal)
 
 
 def finish(work: Callable[[], object], within: float) -> None:
-    """Do some last work, in the background if it takes longer than `within` seconds."""
+    """Run clean-up work, in the background if it takes longer than `within` seconds."""
     done = threading.Event()
 
     def finish_it() -> None:
@@ -81,7 +82,7 @@ def finish(work: Callable[[], object], within: float) -> None:
 
 
 class Inside:
-    """Within it a thread is at work in Zenoh, and the exit waits for it; not for what a daemon thread begins then."""
+    """Context of a thread inside Zenoh, for which the exit waits; a daemon thread cannot enter it during the exit."""
 
     def __enter__(self) -> None:
         _inside.add(threading.get_ident())
@@ -97,12 +98,12 @@ inside = Inside()
 
 
 def outlive(thread: threading.Thread) -> None:
-    """Have the exit wait for a thread that is inside Zenoh until its session has been closed."""
+    """Register a thread that is inside Zenoh until its session is closed: the exit waits for it."""
     _unfinished.add(thread)
 
 
 def end_if_daemon() -> None:
-    """End a daemon thread that wants a session at the exit: quietly, as Python is about to."""
+    """End the calling daemon thread silently if the interpreter exits, as Python is about to do."""
     if _ending and threading.current_thread().daemon:
         end = SystemExit()
         _last.append(end)  # its traceback holds what the thread was about to undeclare: it would be freed now
@@ -110,25 +111,31 @@ def end_if_daemon() -> None:
 
 
 def is_ending() -> bool:
-    """Tell whether the interpreter exits: threads that still wait for something are not told of it any more."""
+    """True while the interpreter exits; waiting threads are not notified of anything any more."""
     return _ending
 
 
-def bury(remains: object) -> None:
-    """Keep for good what must not even be freed in a forked child, where freeing it waits for ever."""
+def in_use(entities: list[object]) -> bool:
+    """True if a thread is inside a method of one of these entities, to which nobody else refers."""
+    (idle,) = (sys.getrefcount(each) for each in [object()])
+    return any(sys.getrefcount(each) > idle for each in entities)
+
+
+def leak(leaked: object) -> None:
+    """Leak an object on purpose: in a forked child, freeing it would be a deadlock."""
     import ctypes
 
-    ctypes.pythonapi.Py_IncRef(ctypes.py_object(remains))
+    ctypes.pythonapi.Py_IncRef(ctypes.py_object(leaked))
 
 
 def refuse_if_forked() -> None:
-    """Raise TransportError in a child of a process that has used Zenoh: its threads are gone, opening would hang."""
+    """Raise TransportError in a forked child of a process that has used Zenoh: without its threads, opening hangs."""
     if _forked:
         raise TransportError(AFTER_FORK)
 
 
 def close_all() -> None:
-    """Close what is open, at exit; what a signal has broken off is done by another call, in the time that is left."""
+    """Close everything at exit; after an interruption by a signal, another call continues in the remaining time."""
     global _ending, _deadline
     _last.extend([*all_of(_open)])
     if not _ending:
@@ -146,7 +153,7 @@ def close_all() -> None:
 
 @contextlib.contextmanager
 def _undisturbed() -> Iterator[None]:
-    """Let no signal raise an exception here: a second Ctrl-C would leave threads in Zenoh."""
+    """Replace signal handlers by empty ones: a second Ctrl-C would leave threads inside Zenoh."""
     if threading.current_thread() is not threading.main_thread():  # none comes here, as in a Python that is embedded
         yield
         return
@@ -170,7 +177,7 @@ def _wait_for_the_unfinished(deadline: float) -> None:
 
 
 def all_of(them: weakref.WeakSet[_Kept]) -> list[_Kept]:
-    """List what is in a set to which other threads may be adding."""
+    """Return a copy of a set to which other threads may be adding."""
     while True:
         with contextlib.suppress(RuntimeError):  # another thread has just added one
             return list(them)

@@ -1,4 +1,4 @@
-"""The reach of a Zenoh session: which machines its configuration lets it speak to, and which it is linked to."""
+"""Network reach of a Zenoh session: the machines that its configuration allows, and those it is linked to."""
 
 from __future__ import annotations
 
@@ -10,35 +10,35 @@ if TYPE_CHECKING:
     import zenoh
 
 SECURED = ("tls/", "quic/")
-"""How endpoints begin that certificates belong to."""
+"""Prefixes of the endpoints that use certificates."""
 
 _LOCAL_PROTOCOLS = ("unixpipe", "unixsock-stream", "vsock")
 _LOOPBACK_INTERFACES = ("lo", "lo0")
 
 
 class Reach(NamedTuple):
-    """Whom a session can meet, by its configuration."""
+    """Reachable sessions, by a configuration."""
 
     mode: str = "peer"
     connects: tuple[str, ...] = ()
-    """The endpoints that it connects to."""
+    """Endpoints to which it connects."""
     listens: tuple[str, ...] = ()
-    """The endpoints on which others may connect to it."""
+    """Endpoints on which it accepts connections."""
     multicast: str = ""
-    """The group in which it looks for others; empty if it does not."""
+    """Multicast group of its discovery; empty if it uses none."""
     interfaces: tuple[str, ...] = ()
-    """The interfaces that access control confines it to; empty if it does not."""
+    """Network interfaces to which access control confines it; empty if it does not."""
 
     @property
     def leaves_machine(self) -> bool:
-        """Whether it may speak to other machines by itself; a router that it finds may lead there in any case."""
+        """True if it may connect to other machines directly; a router may lead there in any case."""
         if self.interfaces and set(self.interfaces) <= set(_LOOPBACK_INTERFACES):
             return False
         return bool(self.multicast) or not all(map(on_this_machine, (*self.connects, *self.listens)))
 
     @property
     def secured(self) -> bool:
-        """Whether it uses TLS for some of that."""
+        """True if any of its endpoints uses TLS."""
         return any(each.startswith(SECURED) for each in (*self.connects, *self.listens))
 
     def __str__(self) -> str:
@@ -63,21 +63,32 @@ class Link(NamedTuple):
     """A connection to another session."""
 
     role: str
-    """`router`, `peer` or `client`: what the other one is."""
+    """Mode of the other session: `router`, `peer` or `client`."""
     here: str
-    """This side's address, such as ``tcp/10.0.0.1:40000``."""
+    """Local address, such as ``tcp/10.0.0.1:40000``."""
     there: str
     session: str = ""
-    """The other session's id; two links may lead to one."""
+    """Id of the other session; two links may lead to one."""
+    certificate: str = ""
+    """Name in the certificate of the other session, which is its enclave; '' where there is none."""
 
     @property
     def leaves_machine(self) -> bool:
-        """Whether the other session is on another machine: there the two addresses differ."""
+        """True if the other session is on another machine: then the two addresses differ."""
         return host_of(self.here) != host_of(self.there)
 
 
+def links_of(session: zenoh.Session) -> list[Link]:
+    """Return the connections of a session to others."""
+    roles = {str(each.zid): str(each.whatami) for each in session.info.transports()}
+    return [
+        Link(roles.get(zid := str(each.zid), "peer"), str(each.src), str(each.dst), zid, each.auth_identifier or "")
+        for each in session.info.links()
+    ]
+
+
 def reach(config: zenoh.Config) -> Reach:
-    """Read from a configuration whom a session with it can meet."""
+    """Return the reach of sessions with this configuration."""
     mode = mode_of(config)
     enabled = read(config, "scouting/multicast/enabled")
     group = json.loads(config.get_json("scouting/multicast/address")) or "224.0.0.224:7446"
@@ -96,13 +107,13 @@ def mode_of(config: zenoh.Config) -> str:
 
 
 def read(config: zenoh.Config, path: str) -> Any:
-    """Read a setting that may be one value or one for each mode."""
+    """Return a setting that may be one value or one for each mode."""
     value = json.loads(config.get_json(path))
     return value.get(mode_of(config)) if isinstance(value, dict) else value
 
 
 def on_this_machine(endpoint: str) -> bool:
-    """Return whether an endpoint or address can lead to this machine only.
+    """True if an endpoint or address can lead to this machine only.
 
     >>> on_this_machine("tcp/[::1]:7447"), on_this_machine("tcp/localhost:0"), on_this_machine("tls/0.0.0.0:0")
     (True, True, False)
@@ -144,7 +155,7 @@ def address_of(endpoint: str) -> str:
 
 
 def _interfaces(control: dict[str, Any]) -> tuple[str, ...]:
-    """Find the interfaces without which access control lets nothing through."""
+    """Return the interfaces to which access control confines all traffic."""
     if not control["enabled"] or control["default_permission"] != "deny":
         return ()
     named = [subject.get("interfaces") for subject in control["subjects"] or ()]

@@ -1,7 +1,7 @@
-"""A network between processes and machines: Eclipse Zenoh as rmw_zenoh uses it.
+"""Zenoh transport: a network between processes and machines, with Eclipse Zenoh as rmw_zenoh uses it.
 
-No Python frame runs on Zenoh's threads for data: what they call is a `functools.partial` around the sink, and the
-sink is meant to be C as well. Raw samples wait in queues until `read` turns them into bytes.
+No Python frame runs on Zenoh's threads for data: they call a `functools.partial` around the sink, and the
+sink is meant to be C as well. Raw samples wait in queues until `read` converts them to bytes.
 """
 
 from __future__ import annotations
@@ -10,42 +10,42 @@ import contextlib
 import functools
 import os
 import queue
-import sys
 import time
 import weakref
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import zenoh
 
-from robolink.exceptions import TransportError
+from robolink.exceptions import OverwrittenError, TransportError
+from robolink.networks import refusals
 from robolink.qos import DurabilityPolicy, QoSProfile, resolved
-from robolink.queues import get_within
-from robolink.transport import beside, certificates, lifetime, network
+from robolink.system import heap
+from robolink.transport import addresses, certificates, lifetime, network, port_sharing
+from robolink.transport import zenoh_calls as calls
 from robolink.transport import zenoh_declare as declare
 from robolink.transport import zenoh_handles as handles
+from robolink.transport import zenoh_reunion as reunion
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample, refuse_giant
-from robolink.transport.reach import Link, port_of
-
-QUIET = 0.03
-"""Seconds without news after which no more peers are expected."""
-
-PATIENCE = 0.5
-"""Seconds without any news after which peers that have not answered are taken for frozen."""
-
-LONGEST = 3.0
-"""Seconds in which even a busy machine's peers have told what they announce."""
+from robolink.transport.reach import Link, links_of, port_of, reach
+from robolink.transport.shared_pools import PoolLimit
+from robolink.transport.zenoh_sieve import Sieve
+from robolink.transport.zenoh_tokens import Changes, ZenohToken, ZenohWatch, settled
 
 CLOSE_WITHIN = 0.15
-"""Seconds that closing may take before it goes on in the background."""
+"""Longest `close`, in seconds; then it goes on in the background."""
 
 LINK_WITHIN = 3.0
-"""Seconds in which whoever holds the rendezvous port has to answer; it takes 2 ms, and 1 s on a very busy machine."""
+"""Timeout of the rendezvous port's holder, in seconds; it takes 2 ms, and 1 s on a very busy machine."""
 
 REUNION = network.SOUGHT_EVERY + 0.05
-"""Seconds in which those that are left of an earlier holder of the rendezvous port find the new one."""
+"""Time in which the peers of an earlier holder of the rendezvous port find the new one, in seconds."""
+
+SMALL = 4096
+"""Payload size in bytes below which a message is read with nothing but Zenoh's calls."""
 
 _ZenohSample = zenoh.Sample
+_Handle = TypeVar("_Handle", bound=handles.Declared)
 
 
 class ZenohTransport(Transport):
@@ -61,51 +61,68 @@ class ZenohTransport(Transport):
         lifetime.refuse_if_forked()
         self._holdings = handles.Holdings()
         self._ends: weakref.WeakSet[Sink] = weakref.WeakSet()
+        self._moved = reunion.State()
+        self._calls: weakref.WeakSet[calls.ZenohCall] = weakref.WeakSet()
         self._has_left = False
         with lifetime.inside:
-            self._session, self._claim, holds_port = _join(domain, network, os.environ if environ is None else environ)
+            before = time.time()
+            self._join = functools.partial(_join, domain, network, dict(os.environ if environ is None else environ))
+            self._session, self._claim, holds_port, self._moves = self._join()
             self._met_at = time.monotonic() + (REUNION if holds_port else 0.0)
+            self._pools = PoolLimit(before)
             self.session_id = str(self._session.info.zid())
             lifetime.watch_over(self)
+        if self._moves:
+            addresses.watch(self)
 
     def advertise(self, key: str, qos: QoSProfile) -> Outlet:
         """Declare a publisher. With TRANSIENT_LOCAL it keeps the last `qos.depth` samples for late joiners."""
-        publishers = self._try(key, declare.declare_publishers, key, resolved(qos))
-        return handles.ZenohOutlet(self._holdings, key, publishers)
+        made, full = self._make(key, declare.declare_publishers, key, resolved(qos)), resolved(qos)
+        keeps = self._moves and qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+        return self._settle(handles.ZenohOutlet(self._holdings, key, made, handles.Kept(full.depth) if keeps else None))
 
     def subscribe(self, key: str, qos: QoSProfile, sink: Sink) -> Handle:
         """Call `sink` for every sample published on `key`; with TRANSIENT_LOCAL what was kept comes first."""
-        gate = declare.make_gate(sink)
-        subscriber = self._try(key, declare.declare_subscriber, key, gate, resolved(qos))
         latched = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
-        topic = None if latched else self._holdings.topic(key)
-        return handles.ZenohSubscription(self._holdings, subscriber, gate, topic)
+        if latched and self._moves:  # who has moved, here or elsewhere, sends again what it keeps
+            sink = Sieve(sink)
+        gate = declare.make_gate(sink)
+        made = self._make(key, declare.declare_subscriber, key, gate, resolved(qos))
+        topic = self._holdings.topic(key)
+        return self._settle(handles.ZenohSubscription(self._holdings, made, gate, topic, sink, latched=latched))
 
     def serve(self, key: str, sink: Sink) -> Handle:
         """Call `sink` for every call on `key`; `accept` turns what it gets into a Query."""
         gate = declare.make_gate(sink)
-        return handles.Declared(self._holdings, self._try(key, declare.declare_server, key, gate), gate)
+        return self._settle(handles.Declared(self._holdings, self._make(key, declare.declare_server, key, gate), gate))
 
     def call(self, key: str, payload: bytes, attachment: bytes, sink: Sink) -> Handle:
-        """Ask whoever serves `key`. `sink` gets each reply, then None once: no more will come."""
+        """Send a request to all servers of `key`. `sink` gets each reply, then None once as the end."""
         refuse_giant(key, payload)
         gate, end = declare.make_gate(sink), declare.make_gate(sink, None)
         self._ends.add(end)
-        cancel = self._try(key, declare.call, key, payload, attachment, gate, end)
-        return handles.ZenohCall(cancel, gate, end)
+        made = self._make(key, declare.call, key, payload, attachment, gate, end)
+        call = calls.ZenohCall(made.session, made.entity, gate, end)
+        self._calls.add(call)
+        return call
 
     def announce(self, token: str) -> Handle:
-        """Show `token` to all who watch, until closed or until this process is gone."""
-        return handles.Declared(self._holdings, self._try(token, declare.declare_token, token))
+        """Declare a liveliness token, visible to all watches until it is closed or this process is gone."""
+        return self._settle(ZenohToken(self._holdings, self._make(token, declare.declare_token, token), token))
 
     def watch(self, pattern: str, on_change: Callable[[str, bool], object]) -> Handle:
         """Call `on_change(token, alive)` for each token that matches `pattern`, on a thread of its own."""
-        changes = handles.Changes(on_change)
-        subscriber = self._try(pattern, declare.declare_watch, pattern, changes)
-        return handles.ZenohWatch(self._holdings, subscriber, changes)
+
+        def on_token(token: str, alive: bool) -> object:
+            self._pools.look()  # somebody new has come, perhaps
+            return on_change(token, alive)
+
+        changes = Changes(on_token, self._holdings.tokens)
+        made = self._make(pattern, declare.declare_watch, pattern, changes)
+        return self._settle(ZenohWatch(self._holdings, made, changes))
 
     def tokens(self, pattern: str) -> list[str]:
-        """List the tokens that match `pattern`, sorted: also those of peers that this session only just found.
+        """Return the tokens that match `pattern`, sorted: also those of peers that this session only just found.
 
         A session that has just taken the rendezvous port waits for those that may still be there without one.
         """
@@ -113,36 +130,64 @@ class ZenohTransport(Transport):
         arrived: queue.SimpleQueue[Any] = queue.SimpleQueue()
         subscriber = self._try(pattern, declare.declare_look, pattern, arrived.put)
         try:
-            return sorted(_settled(arrived, functools.partial(self._try, pattern, declare.ask, pattern), self._peers))
+            return sorted(settled(arrived, functools.partial(self._try, pattern, declare.ask, pattern), self._peers))
         finally:
             declare.quietly(subscriber.undeclare)
 
     def links(self) -> list[Link]:
-        """List the connections to other sessions."""
+        """Return the connections to other sessions."""
         with lifetime.inside:
-            info = self._session.info
-            roles = {str(each.zid): str(each.whatami) for each in info.transports()}
-            found = [(str(each.zid), str(each.src), str(each.dst)) for each in info.links()]
-        return [Link(roles.get(session, "peer"), here, there, session) for session, here, there in found]
+            return links_of(self._session)
 
     def read(self, arrived: Any) -> Sample:
-        """Turn what a subscription's or a call's sink got into bytes. Raises TransportError on an error reply."""
+        """Convert an item of a subscription's or a call's sink to bytes.
+
+        Raises TransportError on an error reply, OverwrittenError for a message that its sender has overwritten.
+        """
         kind = type(arrived)
         if kind is _ZenohSample:  # the usual case first, and without calls: this is run once a message
-            attachment = arrived.attachment
-            return make_sample((arrived.payload.to_bytes(), b"" if attachment is None else attachment.to_bytes()))
+            attachment, payload = arrived.attachment, arrived.payload
+            sample = make_sample((payload.to_bytes(), b"" if attachment is None else attachment.to_bytes()))
+            shared = payload.as_shm()
+            if shared is not None:
+                if not shared.is_valid():  # asked after the copy: it may happen during it
+                    raise OverwrittenError(sample.attachment)
+                self._pools.look()
+            if len(sample[0]) >= heap.LARGE:
+                heap.keep()
+            return sample
         if kind is Sample:
             own: Sample = arrived
             return own
-        return handles.content_of_reply(arrived)
+        return calls.content_of_reply(arrived)
+
+    def opener(self, check: Callable[[bytes], object], decode: Callable[[bytes], Any]) -> Callable[[Any], Any]:
+        """Return a function that does `read`, `check` and `decode`; in one frame where the message is small."""
+        read = self.read
+
+        def opened(arrived: Any) -> Any:
+            if type(arrived) is _ZenohSample and len(raw := arrived.payload) < SMALL and raw.as_shm() is None:
+                beside = arrived.attachment
+                payload, attachment = raw.to_bytes(), b"" if beside is None else beside.to_bytes()
+            else:
+                payload, attachment = read(arrived)
+            check(attachment)
+            return decode(payload)
+
+        return opened
 
     def size(self, arrived: Any) -> int:
-        """Tell how many bytes the payload of what a subscription's sink got has, without copying them."""
+        """Return the payload size, in bytes, of an item of a subscription's sink, without copying it."""
         return len(arrived.payload)
 
+    def attachment(self, arrived: Any) -> bytes:
+        """Return the attachment of an item of a subscription's sink, without copying the payload."""
+        attachment = arrived.attachment
+        return b"" if attachment is None else attachment.to_bytes()
+
     def accept(self, arrived: Any) -> Query:
-        """Turn what a server's sink got into a Query."""
-        return handles.ZenohQuery(arrived)
+        """Convert an item of a server's sink to a Query. Raises OverwrittenError, and ends the call, as `read` does."""
+        return calls.ZenohQuery(arrived)
 
     def close(self) -> None:
         """Undeclare everything and leave the network; calls under way end. Safe to call twice."""
@@ -154,16 +199,71 @@ class ZenohTransport(Transport):
         why = f"session {self.session_id} has been closed"
         with self._holdings.lock:
             declared = self._holdings.end(why)
-        _leave(self._session, self._claim, [entity for handle in declared for entity in handle.shut(why)])
+        _leave(self._claim, self._session, [entity for handle in declared for entity in handle.shut(why)])
         self._has_left = True  # so late: a Ctrl-C that breaks into this must not keep the exit from doing it
         lifetime.forget(self)
+        addresses.forget(self)
+
+    def move(self, now: frozenset[str]) -> None:
+        """Go on from these addresses, on a background thread, if any of them is new."""
+        if self._moved.is_news(now):
+            self._mover().move(now)
+
+    def reopen(self, named: frozenset[str] = frozenset()) -> None:
+        """Go on in a new session that is found at these addresses, behind the same handles; takes some seconds."""
+        self._mover().reopen(named)
 
     def disown(self) -> None:
         """Refuse every further use in a forked child."""
         self._has_left = True
         for handle in self._holdings.end(lifetime.AFTER_FORK):  # not locked: whoever holds the lock may be gone
             handle.disown(lifetime.AFTER_FORK)
-        lifetime.bury(self._session)
+        lifetime.leak(self._session)
+
+    def _mover(self) -> reunion.Mover:
+        opens, ends = self._open_beside, self._end_calls
+        return reunion.Mover(self._moved, self._holdings, opens, self.links, ends, lambda: self._has_left)
+
+    def _open_beside(self, named: frozenset[str]) -> reunion.Opened:
+        with lifetime.inside:
+            joined = self._join(named)
+            opened = reunion.Former(joined.session, functools.partial(_leave, joined.claim))  # if the process ends now
+        former = self._session, self._claim
+
+        def take() -> reunion.Former:
+            """Use the new session from now on, unless this transport has been closed meanwhile."""
+            with self._holdings.lock:
+                if self._holdings.why_closed:
+                    return opened
+                self._session, self._claim = joined.session, joined.claim
+            lifetime.forget(opened)
+            session, claim = former
+            return reunion.Former(session, functools.partial(_leave, claim))
+
+        return reunion.Opened(joined.session, take)
+
+    def _end_calls(self) -> None:
+        for each in lifetime.all_of(self._calls):
+            if each.session is not self._session:  # its answers could not come any more
+                each.lose()
+
+    def _make(self, key: str, action: Callable[..., Any], *arguments: Any) -> handles.Made:
+        self._holdings.check()
+        session = self._session
+        try:
+            with lifetime.inside:
+                return handles.Made(session, action(session, *arguments), lambda other: action(other, *arguments))
+        except zenoh.ZError as error:
+            if session is not self._session:  # replaced meanwhile, and closed
+                return self._make(key, action, *arguments)
+            raise self._holdings.failure(key, error) from None
+
+    def _settle(self, handle: _Handle) -> _Handle:
+        """Return what has just been declared; if its session was replaced meanwhile, declared in the new one."""
+        left = handle.move_to(self._session)
+        for entity in left:
+            declare.quietly(entity.undeclare)
+        return handle
 
     def _peers(self) -> set[str]:
         with lifetime.inside:
@@ -178,130 +278,89 @@ class ZenohTransport(Transport):
             raise self._holdings.failure(key, error) from None
 
 
-def _leave(session: zenoh.Session, claim: network.PortClaim | None, entities: list[object]) -> None:
-    """Close it, but wait no longer than a moment.
+def _leave(claim: port_sharing.PortClaim | None, session: zenoh.Session, entities: list[object]) -> None:
+    """Close a session, but wait no longer than CLOSE_WITHIN.
 
     Each peer takes Zenoh some 5 ms, one that is frozen or does not shake hands 10 s.
     """
 
     def close() -> None:
-        _close(session)
+        declare.close_session(session)
         if claim:
             claim.release()
 
     lifetime.finish(close, CLOSE_WITHIN)
     # A daemon thread that is inside Zenoh when the interpreter ends aborts the process: let it come back first.
     deadline = time.monotonic() + CLOSE_WITHIN  # from now on: at the exit of Python 3.12 it has just been closed here
-    while _in_use(entities) and time.monotonic() < deadline:
+    while lifetime.in_use(entities) and time.monotonic() < deadline:
         time.sleep(0.001)
-
-
-def _close(session: Any) -> None:
-    with contextlib.suppress(zenoh.ZError, RuntimeError):  # as in `declare.quietly`, but the exit does begin it
-        session.close()
-
-
-def _in_use(entities: list[object]) -> bool:
-    """Tell whether some thread is just inside a method of one of them, which nobody else refers to."""
-    (idle,) = (sys.getrefcount(each) for each in [object()])
-    return any(sys.getrefcount(each) > idle for each in entities)
-
-
-def _settled(
-    arrived: queue.SimpleQueue[Any], ask: Callable[[Callable[[], object], float], object], peers: Callable[[], set[str]]
-) -> set[str]:
-    """Collect tokens until all peers have told theirs and no more peers turn up."""
-    changes, known = handles.Changes(lambda token, alive: None), set[str]()
-    begin = news = time.monotonic()
-
-    def left() -> float:
-        return min(news + PATIENCE, begin + LONGEST) - time.monotonic()
-
-    def collect(quiet: float) -> None:
-        """Take what comes, until the peers have answered or nothing has come for so long."""
-        nonlocal news
-        while (longest := min(left(), quiet)) > 0:
-            try:
-                sample = get_within(arrived, longest)
-            except queue.Empty:
-                return
-            if sample is None:
-                return
-            news = time.monotonic()
-            changes(sample)
-
-    was_quiet = False
-    while left() > 0:
-        before = peers()
-        if not before <= known:
-            news, known = time.monotonic(), known | before
-        # Silence alone proves nothing: a busy peer is silent too. Its answer comes after all its tokens.
-        ask(functools.partial(arrived.put, None), LONGEST)
-        collect(LONGEST)
-        if was_quiet and peers() == before:
-            break
-        collect(max(QUIET, (time.monotonic() - begin) / 2))  # what has taken long so far may have longer gaps
-        was_quiet = True
-    return changes.alive
 
 
 class _Joined(NamedTuple):
     session: zenoh.Session
-    claim: network.PortClaim | None = None
+    claim: port_sharing.PortClaim | None = None
     holds_port: bool = False
+    moves: bool = False
+    """True if others may be met at addresses that change."""
 
 
-def _join(domain: int, asked: str | None, environ: Mapping[str, str]) -> _Joined:
+def _join(domain: int, asked: str | None, environ: Mapping[str, str], named: frozenset[str] = frozenset()) -> _Joined:
     if "RUST_LOG" in environ:
         show_log: Callable[[], object] = zenoh.try_init_log_from_env
         show_log()
     port = network.FIRST_PORT + network.checked_domain(domain)
-    value = network.wanted(asked, environ).value
-    load = functools.partial(network.load, asked, domain, environ)
+    found = network.plan(asked, domain, environ)
+
+    def load(holds_port: bool = False) -> zenoh.Config:  # usually nobody looks for it at the rendezvous port
+        return addresses.named(found.config(holds_port=holds_port), named)
+
     try:
-        if network.meets_at_port(value, environ):
-            return _meet(port, lambda holds_port: zenoh.open(load(holds_port=holds_port)))
-        config = load(holds_port=False)  # nobody looks for it at the rendezvous port
+        config = load()
+        moves = reach(config).leaves_machine
+        if found.meets:
+            joined = _meet(port, lambda holds_port: zenoh.open(load(holds_port)), secured=reach(config).secured)
+            network.await_host(joined.session, found)
+            return joined._replace(moves=moves)
         if wrong := certificates.faults(config):
-            raise TransportError(f"cannot join the network '{value}': {'; '.join(wrong)}")
-        return _listen_beside(functools.partial(load, holds_port=False))
+            raise TransportError(f"cannot join the network '{found.asked.value}': {'; '.join(wrong)}")
+        return _listen_beside(load)._replace(moves=moves)
     except zenoh.ZError as error:
-        reasons = [network.reason(error), *certificates.refusals(load(holds_port=False))]
-        raise TransportError(f"cannot join the network '{value}': {'; '.join(reasons)}") from None
+        reasons = [network.reason(error), *certificates.refusals(found.config(holds_port=False))]
+        raise TransportError(f"cannot join the network '{found.asked.value}': {'; '.join(reasons)}") from None
 
 
 def _listen_beside(load: Callable[[], zenoh.Config]) -> _Joined:
-    """Listen where a configuration says, or join the process of this machine that does so already."""
+    """Listen on the configured endpoints, or connect to the process of this machine that does so already."""
     taken, refusals = list[str](), list[str]()
     for _ in range(2):  # twice, since another process may come first, or the holder leave in between
         config = load()
-        fixed = beside.fixed_listeners(config)
-        claim = network.PortClaim(port_of(fixed[0])) if fixed else None
-        taken = [each for each in fixed if (claim and not claim.granted) or beside.is_taken(each)]
-        holders = beside.step_aside(config, taken, network.OFTEN) if taken else []
+        fixed = port_sharing.fixed_listeners(config)
+        claim = port_sharing.PortClaim(port_of(fixed[0])) if fixed else None
+        taken = [each for each in fixed if (claim and not claim.granted) or port_sharing.is_taken(each)]
+        holders = port_sharing.step_aside(config, taken, network.OFTEN) if taken else []
         with contextlib.ExitStack() as undo:
             if claim:
                 undo.callback(claim.release)
             try:
                 session = zenoh.open(config)
             except zenoh.ZError:
-                if taken or not any(map(beside.is_taken, fixed)):
+                if taken or not any(map(port_sharing.is_taken, fixed)):
                     raise
                 continue
             if not taken or _linked(session):
                 undo.pop_all()
                 return _Joined(session, claim, bool(fixed) and not taken)
-            lifetime.finish(functools.partial(_close, session), CLOSE_WITHIN)
+            lifetime.finish(functools.partial(declare.close_session, session), CLOSE_WITHIN)
             refusals = certificates.refusals(config, holders)
     hint = "; ".join(refusals) or "stop it, or listen elsewhere in this process's configuration"
     where = " and ".join(taken) or "its port"
     raise TransportError(f"{where} is taken, and who listens there has not let this process in: {hint}")
 
 
-def _meet(port: int, open_session: Callable[[bool], zenoh.Session]) -> _Joined:
-    """Hold the rendezvous port, or meet whoever does."""
+def _meet(port: int, open_session: Callable[[bool], zenoh.Session], *, secured: bool) -> _Joined:
+    """Listen on the rendezvous port, or connect to its holder."""
     for _ in range(2):  # twice, since the holder may leave in between
-        claim = network.PortClaim(port)
+        claim = port_sharing.PortClaim(port)
         if claim.granted:
             try:
                 return _Joined(open_session(True), claim, True)
@@ -310,17 +369,14 @@ def _meet(port: int, open_session: Callable[[bool], zenoh.Session]) -> _Joined:
         session = open_session(False)
         if _linked(session):
             return _Joined(session, claim)
-        lifetime.finish(functools.partial(_close, session), CLOSE_WITHIN)
-    raise TransportError(
-        f"port {port} is taken by a program that does not answer as a robolink session does: "
-        "go on with it if it was suspended (Ctrl-Z; `fg`), stop it, or choose another ROS_DOMAIN_ID"
-    )
+        lifetime.finish(functools.partial(declare.close_session, session), CLOSE_WITHIN)
+    raise TransportError(refusals.of_holder(port, secured=secured))
 
 
 def _linked(session: zenoh.Session) -> bool:
     deadline = time.monotonic() + LINK_WITHIN
     while time.monotonic() < deadline:
-        if any(str(link.dst) != network.ROS_ROUTER for link in session.info.links()):
+        if any(str(link.dst)[4:] != network.ROS_ROUTER[4:] for link in session.info.links()):  # after tcp/ or tls/
             return True
         time.sleep(0.002)
     return False

@@ -1,4 +1,4 @@
-"""What is declared with Zenoh, and with which options: rmw_zenoh's where it has any."""
+"""Zenoh declarations (publishers, subscribers, queryables, liveliness tokens), with rmw_zenoh's options."""
 
 from __future__ import annotations
 
@@ -16,24 +16,26 @@ from robolink.transport import lifetime
 from robolink.transport.base import Sink
 
 MOST_BETWEEN = 1 << 16
-"""Samples of a latched topic, or news of tokens, that wait for their thread; when there are more, Zenoh waits."""
+"""Capacity of the queue of a latched topic, or of token changes; when it is full, Zenoh waits."""
 
 FOR_EVER = 1e9
-"""Seconds, 31 years: time is up to whoever waits for an answer."""
+"""Timeout of a call in Zenoh, in seconds (31 years): the caller decides how long it waits."""
 
 
 class Publishers(NamedTuple):
-    """What publishes, and what knows whether anybody listens: one object unless samples are kept."""
+    """Zenoh's publisher, and the one that knows whether anybody listens: one object unless samples are kept."""
 
     used: Any
     asked: Any
+    declare_remote: Callable[[], Any]
+    """Declares one that knows whether any other session listens."""
 
 
 def declare_publishers(session: zenoh.Session, key: str, qos: QoSProfile) -> Publishers:
-    """Declare what a resolved profile asks for; for a peer without room it waits a little, then drops.
+    """Declare the publisher of a resolved profile; for a peer with a full buffer it waits a little, then drops.
 
-    Also when it is RELIABLE and KEEP_ALL, where rmw_zenoh has Zenoh block: that stops all that this session sends to
-    that peer, and whoever sends it, for seconds, and then ends the link.
+    Also when it is RELIABLE and KEEP_ALL, where rmw_zenoh has Zenoh block: that stops everything that this session
+    sends to that peer, and its senders, for seconds, and then ends the link.
     """
     reliable = qos.reliability is ReliabilityPolicy.RELIABLE
     options: dict[str, Any] = {
@@ -41,8 +43,9 @@ def declare_publishers(session: zenoh.Session, key: str, qos: QoSProfile) -> Pub
         "reliability": zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
     }
     plain = session.declare_publisher(key, **options)
+    declare_remote = functools.partial(session.declare_publisher, key, allowed_destination=zenoh.Locality.REMOTE)
     if qos.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
-        return Publishers(plain, plain)
+        return Publishers(plain, plain, declare_remote)
     ext = zenoh.ext
     keeping = ext.declare_advanced_publisher(
         session,
@@ -52,11 +55,11 @@ def declare_publishers(session: zenoh.Session, key: str, qos: QoSProfile) -> Pub
         sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=0.5) if reliable else None,
         **options,
     )
-    return Publishers(keeping, plain)
+    return Publishers(keeping, plain, declare_remote)
 
 
 def declare_subscriber(session: zenoh.Session, key: str, gate: Sink, qos: QoSProfile) -> Any:
-    """Declare what hears other sessions, and the own one too where there is a history: that is all Zenoh's then."""
+    """Declare a subscriber to other sessions, and to this one too if there is a history, which is Zenoh's then."""
     if qos.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
         return session.declare_subscriber(key, direct(gate), allowed_origin=zenoh.Locality.REMOTE)
     ext = zenoh.ext
@@ -76,7 +79,7 @@ def declare_subscriber(session: zenoh.Session, key: str, gate: Sink, qos: QoSPro
 
 
 def _follow(channel: Any, sink: Sink, name: str) -> None:
-    """Give what arrives to the sink, on a thread of its own, until what the channel is of is gone.
+    """Pass items of a channel to the sink, on a background thread, until the channel's declaration is gone.
 
     Zenoh would start such a thread too, but nobody could wait for that one, and it aborts a process whose interpreter
     ends before it has.
@@ -100,14 +103,14 @@ def _hand_on(channel: Any, sink: Sink) -> None:
 
 
 def declare_server(session: zenoh.Session, key: str, gate: Sink) -> Any:
-    """Declare what answers calls."""
+    """Declare a queryable, which answers calls."""
     return session.declare_queryable(key, direct(gate), complete=True)
 
 
 def call(
     session: zenoh.Session, key: str, payload: bytes, attachment: bytes, gate: Sink, end: Callable[[], object]
 ) -> zenoh.CancellationToken:
-    """Ask; `end` is called after the last reply, or at once when nobody serves."""
+    """Send a query; `end` is called after the last reply, or at once when nobody serves."""
     cancel: zenoh.CancellationToken = zenoh.CancellationToken()
     session.get(
         key,
@@ -123,19 +126,22 @@ def call(
 
 
 def declare_token(session: zenoh.Session, token: str) -> Any:
-    """Show a token."""
+    """Declare a liveliness token."""
     return session.liveliness().declare_token(token)
 
 
-def declare_watch(session: zenoh.Session, pattern: str, changed: Sink) -> Any:
-    """See tokens come and go, those already there first; `changed` is called on a thread of its own."""
-    watch = _declare_tokens(session, pattern, zenoh.handlers.FifoChannel(MOST_BETWEEN))
-    _follow(watch.handler, changed, "robolink watch")
-    return watch
+def declare_watch(session: zenoh.Session, pattern: str, changed: Sink) -> tuple[Any, Sink]:
+    """Subscribe to token changes, existing tokens first; `changed` is called on a background thread.
+
+    Returns the gate that leads to it, too.
+    """
+    watch, feed = _declare_tokens(session, pattern, zenoh.handlers.FifoChannel(MOST_BETWEEN)), make_gate(changed)
+    _follow(watch.handler, feed, "robolink watch")
+    return watch, feed
 
 
 def declare_look(session: zenoh.Session, pattern: str, arrived: Sink) -> Any:
-    """See tokens as `declare_watch` does; `arrived`, which should be C, is called on Zenoh's thread."""
+    """Subscribe to token changes; `arrived`, which should be C, is called on Zenoh's thread."""
     return _declare_tokens(session, pattern, direct(arrived))
 
 
@@ -144,36 +150,50 @@ def _declare_tokens(session: zenoh.Session, pattern: str, handler: Any) -> Any:
 
 
 def ask(session: zenoh.Session, pattern: str, answered: Callable[[], object], timeout: float) -> None:
-    """Have all peers tell their tokens; `answered()` when they have, or after `timeout` seconds."""
+    """Query the tokens of all peers; `answered()` is called when they have answered, or after `timeout` seconds."""
     session.liveliness().get(pattern, direct(bool, answered), timeout=timeout)
 
 
 def direct(callback: Callable[[Any], object], drop: Callable[[], object] | None = None) -> Any:
-    """Let Zenoh's own thread call; anything but C costs five times the price of the message there."""
+    """Return a handler for Zenoh's own thread, where anything but C costs five times as much as the message."""
     return zenoh.handlers.Callback(callback, drop, indirect=False)
 
 
 def make_gate(sink: Any, *arguments: object) -> functools.partial[object]:
-    """Wrap `sink` in something in C that can be closed without a moment in between."""
+    """Wrap `sink` in a gate: a C callable that can be closed atomically."""
     # Not partial(sink): a partial of a partial is merged, and this one must not copy what the other one holds.
     return functools.partial(sink.__call__, *arguments)
 
 
+def aim_gate(gate: Any, sink: Any) -> None:
+    """Lead a gate without arguments to another sink, atomically."""
+    gate.__setstate__((sink.__call__, (), {}, None))
+
+
 def close_gate(gate: Any) -> None:
-    """Let nothing through any more: Zenoh does not wait for its callbacks when something is undeclared."""
+    """Close a gate, since Zenoh does not wait for its callbacks when something is undeclared."""
     gate.__setstate__((bool, (), {}, None))  # bool takes anything or nothing, and does nothing
 
 
 def quietly(action: Callable[[], object]) -> None:
-    """Undeclare or close what may be closed already."""
+    """Run a clean-up action, ignoring Zenoh's errors: the entity may be closed already."""
     # RuntimeError: zenoh-python's "Already borrowed", when another thread is at work on the same object, which
     # then goes as soon as that thread lets go of it.
-    with contextlib.suppress(zenoh.ZError, RuntimeError), lifetime.inside:
-        action()
+    try:  # no `suppress`, since every answer to a call comes here twice
+        with lifetime.inside:
+            action()
+    except (zenoh.ZError, RuntimeError):
+        pass
+
+
+def close_session(session: Any) -> None:
+    """Close a session, ignoring errors, as `quietly` does; but the exit does begin it."""
+    with contextlib.suppress(zenoh.ZError, RuntimeError):
+        session.close()
 
 
 def is_matching(publisher: Any) -> bool:
-    """Tell whether anybody subscribes, as far as this session knows."""
+    """True if a subscription is known to this session."""
     try:
         return bool(publisher.matching_status.matching)  # the status itself is always true
     except zenoh.ZError:  # closed

@@ -1,41 +1,51 @@
-"""What a Zenoh session hands out: publishers, subscriptions, servers, tokens, watches, calls and queries."""
+"""Handles of a Zenoh session: publishers, subscriptions and servers."""
 
 from __future__ import annotations
 
+import contextlib
+import functools
 import threading
 import time
+from collections import Counter, deque
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import zenoh
 
-from robolink.exceptions import TransportClosedError, TransportError, shown
+from robolink.exceptions import TransportClosedError, TransportError
 from robolink.logging import get_logger
+from robolink.system import heap
 from robolink.transport import lifetime
 from robolink.transport.base import Sample, Sink, refuse_giant
 from robolink.transport.network import LONGEST_WAIT, reason
-from robolink.transport.zenoh_declare import Publishers, close_gate, is_matching, quietly
+from robolink.transport.zenoh_declare import Publishers, aim_gate, close_gate, is_matching, quietly
+from robolink.transport.zenoh_sieve import Sieve
 
 LARGE = 32 * 1024
-"""From this many bytes on it is cheaper to ask whether anybody listens than to copy a payload for nobody."""
+"""Payload size in bytes from which it is cheaper to check for subscriptions first than to copy it for nobody."""
+
+MATCH_LASTS = 0.5
+"""Time in seconds for which a subscription that was found is taken to be there still: the check takes 25-50 us."""
 
 
 class Holdings:
-    """What one session has declared, until it is closed or lost in a fork."""
+    """Declarations of one session, until it is closed or lost in a fork."""
 
     def __init__(self) -> None:
         self.lock = threading.Lock()
         self.why_closed = ""
         self.handles: dict[Declared, None] = {}
+        self.tokens: Counter[str] = Counter()
+        """Tokens that are announced, and how often."""
         self._topics: dict[str, Topic] = {}
 
     def topic(self, key: str) -> Topic:
-        """Give the one Topic of this key."""
+        """Return the one Topic of this key."""
         with self.lock:
             return self._topics.setdefault(key, Topic())
 
     def end(self, why: str) -> list[Declared]:
-        """Refuse further use; gives all that is still declared."""
+        """Refuse further use; return all that is still declared."""
         self.why_closed = self.why_closed or why
         handles, self.handles = list(self.handles), {}
         return handles
@@ -47,7 +57,7 @@ class Holdings:
             raise TransportClosedError(self.why_closed)
 
     def failure(self, key: str, error: Exception) -> TransportError:
-        """Turn Zenoh's error about `key` into one line."""
+        """Return the TransportError, in one line, for Zenoh's error about `key`."""
         if self.why_closed:
             lifetime.end_if_daemon()
             return TransportClosedError(self.why_closed)
@@ -55,26 +65,62 @@ class Holdings:
 
 
 class Topic:
-    """The volatile subscriptions of one session to one key: they are served without Zenoh."""
+    """Subscriptions of one session to one key. Within the session the volatile ones are served without Zenoh."""
 
-    __slots__ = ("sinks",)
+    __slots__ = ("latched", "sinks")
 
     def __init__(self) -> None:
         self.sinks: tuple[Sink, ...] = ()
+        """Sinks of the volatile ones."""
+        self.latched: tuple[Sink, ...] = ()
+        """Sinks of those with a history: theirs is Zenoh's, and so is all that they get."""
 
 
 _NOBODY = Topic()
 
 
+class Made(NamedTuple):
+    """Declaration: the session, the entity, and a function that declares the same elsewhere."""
+
+    session: Any
+    entity: Any
+    declare: Callable[[Any], Any]
+    """Declares the same in another session."""
+
+
 class Declared:
-    """Something declared with Zenoh, until it or its session is closed."""
+    """A declaration with Zenoh, until it or its session is closed."""
 
-    __slots__ = ("_entity", "_gate", "_holdings")
+    __slots__ = ("_declare", "_entity", "_gate", "_holdings", "_session")
 
-    def __init__(self, holdings: Holdings, entity: Any, gate: Sink | None = None) -> None:
-        self._holdings, self._entity, self._gate = holdings, entity, gate
+    def __init__(self, holdings: Holdings, made: Made, gate: Sink | None = None) -> None:
+        self._holdings, self._gate = holdings, gate
+        self._session, self._entity, self._declare = made
         with holdings.lock:
             holdings.handles[self] = None
+
+    def declare_in(self, session: Any) -> Any:
+        """Declare the same in another session; `adopt` takes it."""
+        return self._declare(session)
+
+    def adopt(self, made: Any, session: Any) -> list[Any]:
+        """Go on with what `declare_in` has made in this session; return what is of no use any more."""
+        with self._holdings.lock:
+            if self not in self._holdings.handles or self._session is session:
+                return self._entities_of(made)
+            self._session = session
+            return self._replace(made)
+
+    def move_to(self, session: Any) -> list[Any]:
+        """Go on in this session, unless it is there already; return what is of no use any more."""
+        return [] if self._session is session else self.adopt(self.declare_in(session), session)
+
+    def _entities_of(self, made: Any) -> list[Any]:
+        return [made]
+
+    def _replace(self, made: Any) -> list[Any]:
+        entity, self._entity = self._entity, made
+        return [entity]
 
     def close(self) -> None:
         """Undeclare. Safe to call twice."""
@@ -85,19 +131,19 @@ class Declared:
             quietly(entity.undeclare)
 
     def shut(self, why: str) -> list[Any]:
-        """Let nothing through any more; gives what is left to undeclare."""
+        """Close the gate; return the entities to undeclare."""
         if self._gate:
             close_gate(self._gate)
         entity, self._entity = self._entity, _Gone(why)
         return [entity]
 
     def disown(self, why: str) -> None:
-        """Shut it in a forked child, where undeclaring or freeing it would wait for threads that are not there."""
-        lifetime.bury(self.shut(why))
+        """Shut it in a forked child, where undeclaring or freeing it would wait for threads that do not exist."""
+        lifetime.leak(self.shut(why))
 
 
 class _Gone:
-    """Stands where a publisher has been."""
+    """Null object in place of a closed publisher."""
 
     def __init__(self, why: str) -> None:
         self._why = why
@@ -116,43 +162,105 @@ class _Gone:
     matching = False
 
 
+class Kept:
+    """The last messages of a latched topic, for the publisher that replaces this one."""
+
+    def __init__(self, depth: int) -> None:
+        self.lock = threading.Lock()
+        self.last: deque[tuple[bytes, bytes]] = deque(maxlen=depth)
+
+
 class ZenohOutlet(Declared):
     """A publisher."""
 
-    __slots__ = ("_asked", "_has_told", "_key", "_topic")
+    __slots__ = ("_asked", "_declare_remote", "_has_told", "_kept", "_key", "_matched_until", "_remote", "_topic")
 
-    def __init__(self, holdings: Holdings, key: str, publishers: Publishers) -> None:
+    def __init__(self, holdings: Holdings, key: str, made: Made, kept: Kept | None = None) -> None:
         # First, since it may be shut from the moment on that the session has it.
+        publishers: Publishers = made.entity
         self._key, self._topic, self._asked = key, holdings.topic(key), publishers.asked
-        self._has_told = False
-        super().__init__(holdings, publishers.used)
+        self._declare_remote, self._kept = publishers.declare_remote, kept
+        self._remote: Any = None
+        self._has_told, self._matched_until = False, 0.0
+        super().__init__(holdings, made._replace(entity=publishers.used))
+
+    def adopt(self, made: Any, session: Any) -> list[Any]:
+        """Go on with these publishers; what is kept for late joiners is kept by the new one."""
+        if self._kept is None:
+            return super().adopt(made, session)
+        with self._kept.lock:
+            for payload, attachment in self._kept.last:
+                quietly(functools.partial(made.used.put, payload, attachment=attachment))
+            return super().adopt(made, session)
+
+    def _entities_of(self, made: Publishers) -> list[Any]:
+        return [made.used, made.asked]
+
+    def _replace(self, made: Publishers) -> list[Any]:
+        left = [self._entity, self._asked, self._remote]
+        self._declare_remote, self._remote, self._matched_until = made.declare_remote, None, 0.0
+        self._asked, self._entity = made.asked, made.used
+        return [each for each in left if each is not None]
 
     def put(self, payload: bytes, attachment: bytes) -> None:
         """Send to every matching subscription. Raises TransportClosedError after close, TransportError for giants."""
-        large = len(payload) >= LARGE
-        if large:
-            refuse_giant(self._key, payload)
-        sinks = self._topic.sinks
-        if sinks:
-            sample = Sample(payload, attachment)
-            for sink in sinks:
-                sink(sample)
-        if not large or self._worth_a_copy():
-            begin = time.monotonic() if large else 0.0
-            try:
-                self._entity.put(payload, attachment=attachment)
-            except zenoh.ZError as error:
-                raise self._holdings.failure(self._key, error) from None
-            if large and time.monotonic() - begin >= LONGEST_WAIT:
+        if self._kept is not None or len(payload) >= LARGE:
+            self._put_rarely(payload, attachment)
+            return
+        if self._topic.sinks:
+            self._deliver_here(payload, attachment)
+        entity = self._entity
+        try:  # not by `_send`: this is run once a message
+            entity.put(payload, attachment=attachment)
+        except zenoh.ZError as error:
+            self._send_again(entity, error, payload, attachment)
+
+    def _put_rarely(self, payload: bytes, attachment: bytes) -> None:
+        """Send a large message, or one of a latched topic."""
+        with self._kept.lock if self._kept is not None else contextlib.nullcontext():
+            if self._kept is not None:
+                self._kept.last.append((payload, attachment))
+            if len(payload) >= LARGE:
+                self._put_large(payload, attachment)
+            else:
+                self._deliver_here(payload, attachment)
+                self._send(payload, attachment)
+
+    def _send(self, payload: bytes, attachment: bytes) -> None:
+        entity = self._entity
+        try:
+            entity.put(payload, attachment=attachment)
+        except zenoh.ZError as error:
+            self._send_again(entity, error, payload, attachment)
+
+    def _send_again(self, entity: Any, error: Exception, payload: bytes, attachment: bytes) -> None:
+        if entity is self._entity:
+            raise self._holdings.failure(self._key, error) from None
+        self._send(payload, attachment)  # it was replaced meanwhile, and its session closed
+
+    def _put_large(self, payload: bytes, attachment: bytes) -> None:
+        refuse_giant(self._key, payload)
+        if len(payload) >= heap.LARGE:
+            heap.keep()
+        self._deliver_here(payload, attachment)
+        begin = time.monotonic()
+        if self._worth_a_copy(begin):
+            self._send(payload, attachment)
+            if time.monotonic() - begin >= LONGEST_WAIT:
                 self._tell_of_no_room(len(payload))
+
+    def _deliver_here(self, payload: bytes, attachment: bytes) -> None:
+        sample = Sample(payload, attachment)
+        for sink in self._topic.sinks:
+            sink(sample)
 
     @property
     def matched(self) -> bool:
-        """Whether anybody subscribes, here or elsewhere, as far as is known."""
+        """True if a subscription is known, here or elsewhere."""
         return bool(self._topic.sinks) or is_matching(self._asked)
 
     def _tell_of_no_room(self, size: int) -> None:
-        """Warn, once: Zenoh does not say that it has dropped something, and who is to get it may never get anything."""
+        """Warn once about a full buffer: Zenoh drops silently, and the receiver may never get anything."""
         if not self._has_told:
             self._has_told = True
             get_logger("robolink.transport").warning(
@@ -160,119 +268,57 @@ class ZenohOutlet(Declared):
                 " a subscriber's link is too slow for messages of this size, or it stands still (said once)"
             )
 
-    def _worth_a_copy(self) -> bool:
+    def _worth_a_copy(self, now: float) -> bool:
         keeps_for_late_joiners = self._entity is not self._asked
-        return keeps_for_late_joiners or is_matching(self._asked)
+        if keeps_for_late_joiners or now < self._matched_until:
+            return True
+        found = is_matching(self._asked) and (not self._topic.sinks or bool(self._topic.latched) or self._is_remote())
+        if found:
+            self._matched_until = now + MATCH_LASTS
+        return found
+
+    def _is_remote(self) -> bool:
+        """True if another session listens; Zenoh counts this session's own subscriptions as matching, too."""
+        if self._remote is None:
+            try:
+                with lifetime.inside:
+                    self._remote = self._declare_remote()
+            except zenoh.ZError:  # closed meanwhile, as `put` will tell
+                return True
+        return is_matching(self._remote)
 
     def shut(self, why: str) -> list[Any]:
-        """Send nothing any more; gives both publishers, the used and the asked."""
+        """Stop sending; return all publishers, the one for sending and those for matching."""
         self._topic = _NOBODY
         used = super().shut(f"the publisher of {self._key[:200]} is of no use any more: {why}")
         asked, self._asked = self._asked, _Gone(why)
-        return used if asked in used else [*used, asked]
+        remote, self._remote = self._remote, _Gone(why)
+        return [*used, *(each for each in (asked, remote) if each is not None and each not in used)]
 
 
 class ZenohSubscription(Declared):
-    """A subscription; without a topic the own session's samples come from Zenoh too."""
+    """A subscription; to a latched one, samples of its own session come from Zenoh too."""
 
-    __slots__ = ("_topic",)
+    __slots__ = ("_sink", "_topic")
 
-    def __init__(self, holdings: Holdings, subscriber: Any, gate: Sink, topic: Topic | None) -> None:
-        self._topic = topic
-        super().__init__(holdings, subscriber, gate)
-        if topic:
-            with holdings.lock:
+    def __init__(self, holdings: Holdings, made: Made, gate: Sink, topic: Topic, sink: Sink, *, latched: bool) -> None:
+        self._topic, self._sink = topic, sink
+        super().__init__(holdings, made, gate)
+        with holdings.lock:
+            if latched:
+                topic.latched = (*topic.latched, gate)
+            else:
                 topic.sinks = (*topic.sinks, gate)
+
+    def sift(self, on: bool) -> None:
+        """Deliver nothing twice from now on, or again whatever comes: two sessions may bring the same for a while."""
+        with self._holdings.lock:
+            if self in self._holdings.handles and type(self._sink) is not Sieve:  # one that is latched always does
+                aim_gate(self._gate, Sieve(self._sink) if on else self._sink)
 
     def close(self) -> None:
         """Undeclare. Safe to call twice."""
-        if self._topic:
-            with self._holdings.lock:
-                self._topic.sinks = tuple(sink for sink in self._topic.sinks if sink is not self._gate)
+        with self._holdings.lock:
+            self._topic.sinks = tuple(sink for sink in self._topic.sinks if sink is not self._gate)
+            self._topic.latched = tuple(sink for sink in self._topic.latched if sink is not self._gate)
         super().close()
-
-
-class Changes:
-    """Tells each change of a token once, although Zenoh may tell of one token as history and as news."""
-
-    def __init__(self, on_change: Callable[[str, bool], object]) -> None:
-        self._on_change: Callable[[str, bool], object] | None = on_change
-        self._telling = threading.RLock()
-        self.alive: set[str] = set()
-
-    def __call__(self, sample: zenoh.Sample) -> None:
-        """Hear of a token from Zenoh."""
-        token, alive = str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT
-        with self._telling:
-            if self._on_change and alive != (token in self.alive):
-                (self.alive.add if alive else self.alive.discard)(token)
-                if self._on_change(token, alive) is False:
-                    self.alive.discard(token)
-
-    def end(self) -> None:
-        """Tell nothing any more."""
-        # Waits for what is just being told, but not for ever: its hearer may wait for whoever closes.
-        waited = self._telling.acquire(timeout=0.1)
-        self._on_change = None
-        if waited:
-            self._telling.release()
-
-
-class ZenohWatch(Declared):
-    """A watch of tokens."""
-
-    __slots__ = ("_changes",)
-
-    def __init__(self, holdings: Holdings, subscriber: Any, changes: Changes) -> None:
-        self._changes = changes
-        super().__init__(holdings, subscriber)
-
-    def shut(self, why: str) -> list[Any]:
-        """Tell nothing any more; gives what is left to undeclare."""
-        self._changes.end()
-        return super().shut(why)
-
-
-class ZenohCall:
-    """A call under way. Giving up is final: neither replies nor the end come after it."""
-
-    def __init__(self, cancel: zenoh.CancellationToken, *gates: Sink) -> None:
-        self._cancel, self._gates = cancel, gates
-
-    def close(self) -> None:
-        """Give up. Safe to call twice."""
-        for gate in self._gates:
-            close_gate(gate)
-        quietly(self._cancel.cancel)
-
-
-class ZenohQuery:
-    """A call as its server sees it; forgetting it closes it."""
-
-    def __init__(self, raw: zenoh.Query) -> None:
-        self._raw, self._key = raw, raw.key_expr
-        self.payload, self.attachment = content(raw.payload), content(raw.attachment)
-
-    def reply(self, payload: bytes, attachment: bytes) -> None:
-        """Answer, from any thread. Nothing happens when the caller is gone. Raises TransportError for giants."""
-        refuse_giant(f"the answer to a call of {self._key}", payload)
-        quietly(lambda: self._raw.reply(self._key, payload, attachment=attachment))
-
-    def close(self) -> None:
-        """Say that nothing more will come."""
-        quietly(self._raw.drop)
-
-
-def content(raw: zenoh.ZBytes | None) -> bytes:
-    """Give the bytes, none for nothing."""
-    return b"" if raw is None else raw.to_bytes()
-
-
-def content_of_reply(reply: zenoh.Reply) -> Sample:
-    """Give what was replied; raises TransportError when that is an error."""
-    sample = reply.ok
-    if sample is not None:
-        return Sample(sample.payload.to_bytes(), content(sample.attachment))
-    error = reply.err
-    text = content(error.payload).decode(errors="replace") if error is not None else ""
-    raise TransportError(f"the server replied with an error: {shown(text, 200)}")

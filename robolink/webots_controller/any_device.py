@@ -1,66 +1,75 @@
-"""A device of which only the name is known: what it is shows in what it is asked, or in the world's topics."""
+"""Proxy of a device of which only the name is known: its kind follows from the first call, or the topics."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
-from robolink.webots_controller.motors import Motor, PositionSensor
-from robolink.webots_controller.robot_topics import plain
+from robolink.webots_controller.motors import Joints, Motor, PositionSensor
+from robolink.webots_controller.robot_topics import RobotTopics, plain
 from robolink.webots_controller.sensors import Accelerometer, DistanceSensor, Gyro, InertialUnit, Lidar, TouchSensor
 from robolink.webots_controller.topic_sensor import Sensor, nothing
-
-if TYPE_CHECKING:
-    from robolink.webots_controller.robot import Robot
 
 Known: TypeAlias = "Motor | PositionSensor | Sensor[Any]"
 
 SENSORS: tuple[type[Sensor[Any]], ...] = (Lidar, DistanceSensor, TouchSensor, InertialUnit)
-"""One for each type of message."""
+"""Sensor classes, one for each type of message."""
 
 WORDS: dict[str, type[Sensor[Any]]] = {"lidar": Lidar, "gyro": Gyro, "acc": Accelerometer, "inertial": InertialUnit}
-"""What a name begins with that says the kind."""
+"""Sensor classes by the beginning of a device's name."""
+
+
+class DeviceOwner(Joints, Protocol):
+    """The robot as `AnyDevice` needs it: its topics, its motors and its joints."""
+
+    topics: RobotTopics
+
+    def getMotor(self, name: str) -> Motor:
+        """Return a motor by its name."""
+
+    def getPositionSensor(self, name: str) -> PositionSensor:
+        """Return the position sensor of a joint."""
 
 
 class AnyDevice:
-    """A device that becomes a motor or a sensor at the first call that only one of them has."""
+    """Proxy that becomes a motor or a sensor at the first call that only one of them has."""
 
-    def __init__(self, robot: Robot, name: str) -> None:
+    def __init__(self, robot: DeviceOwner, name: str) -> None:
         self._robot, self._name, self._period = robot, name, 0
         self._device: Known | None = None
 
     def getName(self) -> str:
-        """Give the name that the device has in the world."""
+        """Return the name that the device has in the world."""
         return self._name
 
     def enable(self, samplingPeriod: int) -> None:
-        """Begin to sense, as soon as the world has such a sensor."""
+        """Enable the sensor, as soon as the world has it; `samplingPeriod` in ms, but the world decides how often."""
         self._period = int(samplingPeriod)
         if sensor := self._sensor():
             sensor.enable(self._period)
 
     def disable(self) -> None:
-        """Sense no more."""
+        """Disable the sensor."""
         self._period = 0
         if sensor := self._sensor():
             sensor.disable()
 
     def getSamplingPeriod(self) -> int:
-        """Give what it was enabled with, in ms; 0 when it is not."""
+        """Return the sampling period in ms; 0 if disabled."""
         return self._period
 
     def getValue(self) -> float:
-        """Give what a sensor of one number measures; NaN before that is known."""
+        """Return the value of a sensor of one number; NaN before the first reading."""
         sensor = self._sensor()
         return sensor.getValue() if isinstance(sensor, PositionSensor | DistanceSensor | TouchSensor) else math.nan
 
     def getValues(self) -> list[float]:
-        """Give what a sensor of three numbers measures; NaN before that is known."""
+        """Return the values of a sensor of three numbers; NaN before the first reading."""
         sensor = self._sensor()
         return sensor.getValues() if isinstance(sensor, Gyro | Accelerometer) else nothing(3)
 
     def __getattr__(self, method: str) -> Any:
-        """Be what alone has this method."""
+        """Become the only kind of device that has this method, and return the method."""
         if method.startswith("_"):
             raise AttributeError(method)
         if not hasattr(self._device, method):
@@ -72,7 +81,7 @@ class AnyDevice:
         return getattr(self._device, method)
 
     def is_there(self) -> bool:
-        """Whether the world has a sensor of this name, or its only lidar may be meant."""
+        """True if the world has a sensor of this name, or its only lidar may be meant."""
         return self._found() is not None or len(self._robot.topics.of_type(Lidar.message)) == 1
 
     def _sensor(self) -> PositionSensor | Sensor[Any] | None:
@@ -86,7 +95,7 @@ class AnyDevice:
             device.enable(self._period)  # it was asked for before the world was there
 
     def _found(self) -> PositionSensor | Sensor[Any] | None:
-        """Look for a sensor by its name: among the topics, then by what its name says, then among the joints."""
+        """Find a sensor by its name: among the topics, then by the kind in its name, then among the joints."""
         topics, name = self._robot.topics, self._name
         kind = next((each for word, each in WORDS.items() if plain(name).startswith(word)), None)
         named = next((each for each in SENSORS if topics.find(each.message, name, or_only=False)), None)

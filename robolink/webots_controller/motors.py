@@ -6,26 +6,26 @@ import math
 from typing import Protocol
 
 GAIN = 10.0
-"""1/s: what Webots' P controller multiplies the missing angle by."""
+"""Gain of Webots' P controller of positions, in 1/s."""
 
 MAX_VELOCITY = 10.0
-"""rad/s: Webots' default. No topic tells the motor's own; the world cuts what is more than that."""
+"""Webots' default speed limit, in rad/s. No topic tells the motor's own; the world cuts higher speeds."""
 
 
 class Joints(Protocol):
-    """What a motor needs of the robot: how far its joints have turned, in radians, by motor."""
+    """The robot as a motor needs it: the angles of its joints, in radians, by motor."""
 
     positions: dict[str, float]
 
     def joint_of(self, sensor: str) -> str:
-        """Give the joint that a position sensor belongs to; '' while it is not known."""
+        """Return the joint that a position sensor belongs to; '' while it is not known."""
 
     def warn(self, text: str) -> None:
-        """Say something once."""
+        """Log a warning once."""
 
 
 class Motor:
-    """A motor; what it is told is sent when the world tells its next step, as Webots sends it with a step."""
+    """A motor; its command is sent at the world's next step, as in Webots."""
 
     def __init__(self, joints: Joints, name: str) -> None:
         self._joints, self._name = joints, name
@@ -34,41 +34,41 @@ class Motor:
         self.is_told = False
 
     def getName(self) -> str:
-        """Give the name that the motor has in the world."""
+        """Return the name that the motor has in the world."""
         return self._name
 
     def setPosition(self, position: float) -> None:
-        """Turn to an angle in radians and hold it; with inf, turn at the velocity without end."""
+        """Turn to the angle `position` in radians and hold it; with inf, turn at the velocity without end."""
         if math.isnan(position):
             self._joints.warn(f"motor '{self._name}': setPosition was given NaN: ignored")
             return
         self._target, self.is_told = float(position), True
 
     def setVelocity(self, velocity: float) -> None:
-        """Set the velocity in rad/s: the greatest on the way to a position, or the one to turn at without end."""
+        """Set the velocity in rad/s: the limit on the way to a position, or the speed of turning without end."""
         if not math.isfinite(velocity):
             self._joints.warn(f"motor '{self._name}': setVelocity was given {velocity:g}: ignored")
             return
         self._velocity, self.is_told = float(velocity), True
 
     def getVelocity(self) -> float:
-        """Give the velocity that was set, in rad/s."""
+        """Return the velocity that was set, in rad/s."""
         return self._velocity
 
     def getMaxVelocity(self) -> float:
-        """Give Webots' default, 10 rad/s: the world does not tell what a motor's own is, it only keeps to it."""
+        """Return Webots' default, 10 rad/s: the world does not publish a motor's own limit, it only applies it."""
         return MAX_VELOCITY
 
     def getTargetPosition(self) -> float:
-        """Give the angle that was set, in radians; 0 as long as none was."""
+        """Return the angle that was set, in radians; 0 if none was."""
         return 0.0 if self._target is None else self._target
 
     def getPositionSensor(self) -> PositionSensor:
-        """Give the sensor of the joint that it turns."""
+        """Return the sensor of the joint that it turns."""
         return PositionSensor(self._joints, self._name)
 
     def speed(self) -> float:
-        """Give what it shall turn at now, in rad/s: Webots' rule for position and for velocity control."""
+        """Return the present target speed in rad/s, by Webots' rule for position and for velocity control."""
         if self._target is None:
             return 0.0
         if math.isinf(self._target):
@@ -85,22 +85,22 @@ class PositionSensor:
         self._joints, self._name, self._period = joints, name, 0
 
     def getName(self) -> str:
-        """Give the name that the sensor has in the world."""
+        """Return the name that the sensor has in the world."""
         return self._name
 
     def enable(self, samplingPeriod: int) -> None:
-        """Begin to sense; the world decides how often."""
+        """Enable the sensor; the world decides how often it measures, not `samplingPeriod` (ms)."""
         self._period = int(samplingPeriod)
 
     def disable(self) -> None:
-        """Sense no more."""
+        """Disable the sensor."""
         self._period = 0
 
     def getSamplingPeriod(self) -> int:
-        """Give what it was enabled with, in ms; 0 when it is not."""
+        """Return the sampling period in ms; 0 if disabled."""
         return self._period
 
     def getValue(self) -> float:
-        """Give the angle in radians; NaN as long as it is not known."""
+        """Return the angle in radians; NaN as long as it is not known."""
         joint = self._joints.joint_of(self._name) if self._period else ""
         return self._joints.positions.get(joint, math.nan)

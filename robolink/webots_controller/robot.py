@@ -1,4 +1,4 @@
-"""Webots' `Robot`: gives devices by name, tells motors when the world moves on, and steps where a program wants to."""
+"""Webots' class `Robot`: devices by name, commands to motors at each step of the world, and `step`."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from robolink.clock_type import ClockType
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.executors import Executor
 from robolink.interfaces.sensor_msgs.msg import JointState
-from robolink.names import spelled
 from robolink.node import Node
 from robolink.spinning import spin_once
+from robolink.text.names import spelled
 from robolink.webots_controller.any_device import SENSORS, AnyDevice
 from robolink.webots_controller.motors import Motor, PositionSensor
 from robolink.webots_controller.robot_topics import RobotTopics, plain, quoted
 from robolink.webots_controller.sensors import Accelerometer, DistanceSensor, Gyro, InertialUnit, Lidar, TouchSensor
 
 AGAIN = 100_000_000
-"""Nanoseconds of simulated time after which motors are told again: a world stops those that it hears nothing for."""
+"""Period of repeated commands in ns of simulated time: a world stops motors without commands."""
 
 ALONE = 5.0
-"""Seconds without a world after which that is said."""
+"""Time without a world after which a warning is logged, in seconds."""
 
 WAIT = 0.5
-"""Seconds after which a step looks whether all is over."""
+"""Period in seconds at which a step checks for the end of the context."""
 
 BASIC_STEP = 32.0
-"""ms: Webots' default."""
+"""Webots' default step, in ms."""
 
 
 class StepError(RobolinkError, RuntimeError):
@@ -60,46 +60,46 @@ class Robot:
     # Devices
 
     def getDevice(self, name: str) -> Any:
-        """Give a device by its name: what it is shows in what it is asked.
+        """Return the device called `name`; its kind follows from the first call.
 
-        Raises `NotFoundError` with the nearest name when the world is there and has none of that name.
+        Raises `NotFoundError` with the nearest name if the world is there and has none of that name.
         """
         if self._stamp and name not in self.positions and not self._is_a_sensor(name):
             raise NotFoundError("device", name, [*self.positions, *self._sensor_topics()], "this robot")
         return AnyDevice(self, name)
 
     def getMotor(self, name: str) -> Motor:
-        """Give a motor. Raises `NotFoundError` when the world is there and has none of that name."""
+        """Return the motor called `name`. Raises `NotFoundError` if the world is there and has none of that name."""
         if self._stamp and name not in self.positions:
             raise NotFoundError("motor", name, self.positions, "this robot")
         return self._motors.setdefault(name, Motor(self, name))
 
     def getPositionSensor(self, name: str) -> PositionSensor:
-        """Give the position sensor of a joint."""
+        """Return the position sensor of the joint that fits `name`."""
         return PositionSensor(self, name)
 
     def getLidar(self, name: str) -> Lidar:
-        """Give a lidar."""
+        """Return the lidar called `name`."""
         return Lidar(self.topics, name)
 
     def getDistanceSensor(self, name: str) -> DistanceSensor:
-        """Give a distance sensor."""
+        """Return the distance sensor called `name`."""
         return DistanceSensor(self.topics, name)
 
     def getTouchSensor(self, name: str) -> TouchSensor:
-        """Give a bumper."""
+        """Return the bumper called `name`."""
         return TouchSensor(self.topics, name)
 
     def getInertialUnit(self, name: str) -> InertialUnit:
-        """Give an inertial unit."""
+        """Return the inertial unit called `name`."""
         return InertialUnit(self.topics, name)
 
     def getGyro(self, name: str) -> Gyro:
-        """Give a gyro."""
+        """Return the gyro called `name`."""
         return Gyro(self.topics, name)
 
     def getAccelerometer(self, name: str) -> Accelerometer:
-        """Give an accelerometer."""
+        """Return the accelerometer called `name`."""
         return Accelerometer(self.topics, name)
 
     def _is_a_sensor(self, name: str) -> bool:
@@ -109,7 +109,7 @@ class Robot:
         return [topic for kind in SENSORS for topic in self.topics.of_type(kind.message)]
 
     def joint_of(self, sensor: str) -> str:
-        """Give the joint that a position sensor belongs to: by its name, else by most words in common; '' for none."""
+        """Return the joint of a position sensor: by its name, else by most words in common; '' for none."""
         if sensor in self.positions:
             return sensor
         words = set(map(plain, sensor.replace("_", " ").split()))
@@ -120,19 +120,19 @@ class Robot:
     # Time
 
     def getName(self) -> str:
-        """Give the robot's name, if it was told."""
+        """Return the robot's name; '' if it is not known."""
         return self._name
 
     def getTime(self) -> float:
-        """Give the seconds of simulated time since the world was heard first."""
+        """Return the simulated time since the world's first message, in seconds."""
         return (self._stamp - self._first) / 1e9
 
     def getBasicTimeStep(self) -> float:
-        """Give the ms between two states of the joints: a step shorter than that tells nothing new."""
+        """Return the period of the joint states in ms: a shorter step brings nothing new."""
         return self._step_ns / 1e6 or BASIC_STEP
 
     def step(self, duration: float = 0.0) -> int:
-        """Let the world go on for so many ms of its own time, and run callbacks meanwhile; -1 when all is over.
+        """Run callbacks until `duration` ms of the world's time have passed (0: one basic step); -1 at the end, else 0.
 
         Waits for a world that is not there yet. Raises `StepError` within a callback: where a node is spun, the
         world goes on by itself.
@@ -174,7 +174,7 @@ class Robot:
         self._tell_motors()
 
     def _tell_motors(self) -> None:
-        """Send what the motors are to do, all at once, if that has changed or is long ago."""
+        """Send the commands of all motors in one message, if they have changed or the last one is old."""
         speeds = {name: motor.speed() for name, motor in list(self._motors.items()) if motor.is_told}
         speeds = {name: speed for name, speed in speeds.items() if name in self.positions}
         passed = self._stamp - self._sent_at
@@ -183,7 +183,7 @@ class Robot:
             self._command.publish(JointState(name=list(speeds), velocity=list(speeds.values())))
 
     def halt(self) -> None:
-        """Stop all motors that have been told anything."""
+        """Stop all motors that have had a command."""
         if self._sent:
             self._command.publish(JointState(name=list(self._sent), velocity=[0.0] * len(self._sent)))
 
@@ -193,7 +193,7 @@ class Robot:
             self.warn(f"no motor is called '{name}'{nearest(name, self.positions)}; there is: {known}")
 
     def _on_alone(self) -> None:
-        """Say that no world has been heard, and what there is instead."""
+        """Warn that there is no world, and what there is instead."""
         self._alone.cancel()
         others = self.topics.elsewhere()
         known = f"there is {', '.join(others)}: the parameter 'robot' says whose is meant" if others else ""
@@ -201,7 +201,7 @@ class Robot:
         self.warn(f"nothing is heard on {self.topics.joint_states}: {hint}")
 
     def warn(self, text: str) -> None:
-        """Say something once."""
+        """Log a warning once."""
         if text not in self._told:
             self._told.add(text)
             self._node.get_logger().warning(text)

@@ -10,7 +10,7 @@ from robolink.node import Node
 
 
 def plain(name: str) -> str:
-    """Give a name without what ROS cannot spell, to compare: `LDS-01` is `lds_01` there.
+    """Return a name without characters that ROS cannot spell, to compare: `LDS-01` is `lds_01` there.
 
     >>> plain("LDS-01"), plain("lds_01")
     ('lds01', 'lds01')
@@ -27,24 +27,24 @@ class RobotTopics:
         self._base = self.joint_states.rpartition("/")[0]
 
     def of_type(self, message: type[Message]) -> list[str]:
-        """Give the names, without what all of the robot's begin with, of the topics of this type that there are."""
+        """Return the names of the robot's topics of this type, without their common prefix."""
         wanted, base = type_name(message), self._base + "/"
         found = self.node.get_topic_names_and_types()
         return [name.removeprefix(base) for name, types in found if wanted in types and name.startswith(base)]
 
     def elsewhere(self) -> list[str]:
-        """Give the topics that tell the joints of any robot."""
+        """Return the joint_states topics of all robots."""
         wanted, found = type_name(JointState), self.node.get_topic_names_and_types()
         names = [name for name, types in found if wanted in types and name.endswith("/joint_states")]
         return [name for name in names if self.node.count_publishers(name)]
 
     def find(self, message: type[Message], name: str, *, or_only: bool) -> str:
-        """Give the topic of a sensor by its name, or if `or_only` the only topic of this type; '' if there is none."""
+        """Return the topic of a sensor by its name, or if `or_only` the only one of this type; '' if there is none."""
         topics = self.of_type(message)
         found = next((each for each in topics if plain(each) == plain(name)), "")
         return found or (topics[0] if or_only and len(topics) == 1 else "")
 
 
 def quoted(names: Iterable[str]) -> str:
-    """Give names for a reader."""
+    """Return names in quotes, or 'none'."""
     return ", ".join(f"'{each}'" for each in names) or "none"

@@ -16,27 +16,27 @@ class Lidar(Sensor[LaserScan]):
     any_name = True
 
     def getRangeImage(self) -> list[float]:
-        """Give metres from left to right, inf where nothing was seen; empty before the first scan."""
+        """Return the ranges in metres from left to right, inf for no return; empty before the first scan."""
         scan = self.latest
         ranges = reversed(scan.ranges) if scan else ()
         return [math.inf if math.isinf(each) else float(each) for each in ranges]
 
     def getLayerRangeImage(self, layer: int) -> list[float]:
-        """Give the same: there is only layer 0. Raises IndexError for others."""
+        """Return the ranges of layer 0, the only one. Raises IndexError for others."""
         if layer != 0:
             raise IndexError(f"lidar '{self._name}' has no layer {layer}, only layer 0")
         return self.getRangeImage()
 
     def getNumberOfLayers(self) -> int:
-        """Give 1."""
+        """Return 1."""
         return 1
 
     def getHorizontalResolution(self) -> int:
-        """Give the number of beams; 0 before the first scan."""
+        """Return the number of beams; 0 before the first scan."""
         return len(self.latest.ranges) if self.latest else 0
 
     def getFov(self) -> float:
-        """Give the field of view in radians; NaN before the first scan."""
+        """Return the field of view in radians; NaN before the first scan."""
         scan = self.latest
         if scan is None:
             return math.nan
@@ -44,36 +44,36 @@ class Lidar(Sensor[LaserScan]):
         return float(math.tau if abs(angle - math.tau) < 1e-3 else scan.angle_max - scan.angle_min)
 
     def getMinRange(self) -> float:
-        """Give the nearest that it sees, in metres; NaN before the first scan."""
+        """Return the shortest range in metres; NaN before the first scan."""
         return float(self.latest.range_min) if self.latest else math.nan
 
     def getMaxRange(self) -> float:
-        """Give the farthest that it sees, in metres; NaN before the first scan."""
+        """Return the longest range in metres; NaN before the first scan."""
         return float(self.latest.range_max) if self.latest else math.nan
 
 
 class DistanceSensor(Sensor[Range]):
-    """A distance sensor; it tells metres, whatever its lookupTable says."""
+    """A distance sensor; it measures metres, whatever its lookupTable says."""
 
     message = Range
 
     def getValue(self) -> float:
-        """Give the metres to the nearest thing, the greatest value for nothing; NaN before the first reading."""
+        """Return the distance in metres, the greatest value for no echo; NaN before the first reading."""
         reading = self.latest
         if reading is None:
             return math.nan
         return float(min(max(reading.range, reading.min_range), reading.max_range))
 
     def getMinValue(self) -> float:
-        """Give the least that it tells, in metres; NaN before the first reading."""
+        """Return the least value in metres; NaN before the first reading."""
         return float(self.latest.min_range) if self.latest else math.nan
 
     def getMaxValue(self) -> float:
-        """Give the most that it tells, in metres; NaN before the first reading."""
+        """Return the greatest value in metres; NaN before the first reading."""
         return float(self.latest.max_range) if self.latest else math.nan
 
     def getAperture(self) -> float:
-        """Give the angle across which it sees, in radians; NaN before the first reading."""
+        """Return the angle of its field of view in radians; NaN before the first reading."""
         return float(self.latest.field_of_view) if self.latest else math.nan
 
 
@@ -83,7 +83,7 @@ class TouchSensor(Sensor[Bool]):
     message = Bool
 
     def getValue(self) -> float:
-        """Give 1 when it has been touched since the last reading, else 0; NaN before the first reading."""
+        """Return 1 if it has been touched since the last reading, else 0; NaN before the first reading."""
         return float(self.latest.data) if self.latest else math.nan
 
 
@@ -94,14 +94,14 @@ class InertialUnit(Sensor[Imu]):
     any_name = True
 
     def getRollPitchYaw(self) -> list[float]:
-        """Give three angles in radians, of which only the last is ever other than 0; NaN before the first reading."""
+        """Return three angles in radians, of which only the last may differ from 0; NaN before the first reading."""
         if self.latest is None:
             return nothing(3)
         q = self.latest.orientation
         return [0.0, 0.0, math.remainder(2.0 * math.atan2(q.z, q.w), math.tau)]
 
     def getQuaternion(self) -> list[float]:
-        """Give x, y, z, w; NaN before the first reading."""
+        """Return x, y, z, w; NaN before the first reading."""
         if self.latest is None:
             return nothing(4)
         q = self.latest.orientation
@@ -115,7 +115,7 @@ class Gyro(Sensor[Imu]):
     any_name = True
 
     def getValues(self) -> list[float]:
-        """Give the rad/s about x, y and z; NaN before the first reading."""
+        """Return the turning speeds in rad/s about x, y and z; NaN before the first reading."""
         if self.latest is None:
             return nothing(3)
         turning = self.latest.angular_velocity
@@ -129,7 +129,7 @@ class Accelerometer(Sensor[Imu]):
     any_name = True
 
     def getValues(self) -> list[float]:
-        """Give the m/s² along x, y and z; NaN before the first reading."""
+        """Return the accelerations in m/s² along x, y and z; NaN before the first reading."""
         if self.latest is None:
             return nothing(3)
         acceleration = self.latest.linear_acceleration

@@ -1,4 +1,4 @@
-"""What all of Webots' sensors have in common: a name, and that they are enabled and then read a topic."""
+"""Base classes of Webots' devices and sensors: a name, and a subscription while enabled."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ MessageT = TypeVar("MessageT", bound=Message)
 
 
 class Device:
-    """A device by its name."""
+    """Base class of devices: a name."""
 
     def __init__(self, topics: RobotTopics, name: str) -> None:
         self._topics, self._name = topics, name
 
     def getName(self) -> str:
-        """Give the name that the device has in the world."""
+        """Return the name that the device has in the world."""
         return self._name
 
 
 class Sensor(Device, Generic[MessageT]):
-    """A sensor that publishes `message`; it tells something once it is enabled and the world has sent a reading."""
+    """Base class of sensors with topics of type `message`; a value comes once enabled, with the first message."""
 
     message: type[MessageT]
     any_name = False
-    """Whether the only sensor of its kind is meant by any name: the world has not kept it."""
+    """True if any name means the only sensor of its kind, since the world does not keep the name."""
 
     def __init__(self, topics: RobotTopics, name: str) -> None:
         super().__init__(topics, name)
@@ -37,19 +37,19 @@ class Sensor(Device, Generic[MessageT]):
         self._latest: MessageT | None = None
 
     def enable(self, samplingPeriod: int) -> None:
-        """Begin to sense; the world decides how often."""
+        """Enable the sensor; the world decides how often it measures, not `samplingPeriod` (ms)."""
         self._period = int(samplingPeriod)
         self._subscribe()
 
     def disable(self) -> None:
-        """Sense no more."""
+        """Disable the sensor."""
         self._period, self._latest = 0, None
         if self._subscription is not None:
             self._topics.node.destroy_subscription(self._subscription)
             self._subscription = None
 
     def getSamplingPeriod(self) -> int:
-        """Give what it was enabled with, in ms; 0 when it is not."""
+        """Return the sampling period in ms; 0 if disabled."""
         return self._period
 
     def _subscribe(self) -> None:
@@ -64,11 +64,11 @@ class Sensor(Device, Generic[MessageT]):
 
     @property
     def latest(self) -> MessageT | None:
-        """The last reading; None as long as there is none."""
+        """The latest message; None if there is none."""
         self._subscribe()
         return self._latest
 
 
 def nothing(count: int) -> list[float]:
-    """Give what Webots tells as long as nothing was measured."""
+    """Return `count` NaN: the value of a Webots sensor before its first measurement."""
     return [math.nan] * count

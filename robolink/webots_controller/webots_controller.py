@@ -22,7 +22,7 @@ from robolink.node import Node
 from robolink.webots_controller.robot import Robot
 
 URL, NAME = "WEBOTS_CONTROLLER_URL", "WEBOTS_ROBOT_NAME"
-"""Variables by which Webots tells a controller its robot."""
+"""Environment variables in which Webots names a controller's robot."""
 
 
 class WebotsController(Node):
@@ -37,7 +37,7 @@ class WebotsController(Node):
         self.robot = Robot(self, str(self.declare_parameter("robot", robot_name(os.environ)).value))
 
     def destroy_node(self) -> None:
-        """Stop the motors, then undeclare everything."""
+        """Stop the motors, then destroy the node."""
         robot: Robot | None = getattr(self, "robot", None)  # a constructor that fails destroys its node, too
         if robot is not None:
             with contextlib.suppress(RobolinkError):  # the context may have ended
@@ -46,7 +46,7 @@ class WebotsController(Node):
 
 
 def robot_name(environ: os._Environ[str] | dict[str, str]) -> str:
-    """Give the name of the robot that Webots' variables tell, or ''.
+    """Return the name of the robot in Webots' environment variables, or ''.
 
     >>> robot_name({"WEBOTS_CONTROLLER_URL": "tcp://192.168.0.5:1234/my%20robot"})
     'my robot'

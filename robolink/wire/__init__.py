@@ -1,12 +1,16 @@
-"""How rmw_zenoh names things on the wire: keys of topics and services, tokens of the graph, attachments."""
+"""rmw_zenoh's wire format: keys of topics and services, tokens of the graph, attachments."""
 
 from robolink.wire.attachment import (
-    ATTACHMENT_BYTES,
     GID_BYTES,
     Attachment,
     attachments,
+    check_attachment,
+    fields_of,
+    gid_in,
     gid_of,
+    is_attachment,
     pack_attachment,
+    pair_opener,
     unpack_attachment,
 )
 from robolink.wire.keys import NO_HASH, DataKey, buffer_key, demangle_type, format_key, mangle_type, parse_key
@@ -25,9 +29,8 @@ from robolink.wire.tokens import (
 )
 
 __all__ = [
-    "ATTACHMENT_BYTES",
-    "CPU_BACKEND",
     "GID_BYTES",
+    "CPU_BACKEND",
     "LONGEST",
     "NO_HASH",
     "OTHER_END",
@@ -38,15 +41,20 @@ __all__ = [
     "NodeToken",
     "attachments",
     "buffer_key",
+    "check_attachment",
+    "fields_of",
     "demangle_type",
     "format_key",
     "format_qos",
     "format_token",
+    "gid_in",
     "gid_of",
     "graph_pattern",
+    "is_attachment",
     "mangle_type",
     "own_tokens",
     "pack_attachment",
+    "pair_opener",
     "parse_key",
     "parse_qos",
     "parse_token",

@@ -9,12 +9,12 @@ from robolink.exceptions import WireError
 from robolink.wire.text import LONGEST, format_number, matched, not_too_long, parse_number, quoted, remembered
 
 NO_HASH = "TypeHashNotSupported"
-"""What Humble says in place of a type hash."""
+"""Placeholder that Humble sends in place of a type hash."""
 
 _BUFFERS = "/_buf_cpu"
 
 CHUNK = r"[A-Za-z0-9_.~-]+"
-"""A part of a name between two slashes, as a pattern."""
+"""Regular expression of the part of a name between two slashes."""
 
 _TOPIC = re.compile(rf"(?:/{CHUNK})+")
 _TYPE = re.compile(r"[A-Za-z]\w*(?:/[A-Za-z]\w*)+", re.ASCII)
@@ -23,19 +23,19 @@ _HASH = re.compile(rf"RIHS\d\d_[0-9a-f]{{64}}|{NO_HASH}", re.ASCII)
 
 
 class DataKey(NamedTuple):
-    """Where samples of a topic, or calls of a service, are sent."""
+    """Fields of the key expression to which samples of a topic, or calls of a service, are sent."""
 
     domain: int
     name: str
-    """Fully qualified, with its leading slash."""
+    """Fully qualified name, with its leading slash."""
     type_name: str
-    """As in ROS 2: `std_msgs/msg/String`; a service's own type, not its request's."""
+    """Type as in ROS 2: `std_msgs/msg/String`; a service's own type, not its request's."""
     type_hash: str
 
 
 @remembered
 def mangle_type(type_name: str) -> str:
-    """Spell a ROS type as DDS does; raises WireError for what is no type name.
+    """Return the DDS spelling of a ROS type; raises WireError for an invalid type name.
 
     >>> mangle_type("std_msgs/msg/String")
     'std_msgs::msg::dds_::String_'
@@ -46,7 +46,7 @@ def mangle_type(type_name: str) -> str:
 
 @remembered
 def demangle_type(dds_name: str) -> str:
-    """Undo `mangle_type`; raises WireError for what it cannot have made."""
+    """Return the ROS type of a DDS spelling (`mangle_type`); raises WireError for anything else."""
     match = _DDS_TYPE.fullmatch(dds_name) if len(dds_name) <= LONGEST else None
     if match is None:
         raise WireError(f"expected a type such as std_msgs::msg::dds_::String_, got {quoted(dds_name)}")
@@ -54,19 +54,19 @@ def demangle_type(dds_name: str) -> str:
 
 
 def format_key(key: DataKey) -> str:
-    """The key expression of a topic or service; raises WireError for a part that it cannot carry."""
+    """Return the key expression of a topic or service; raises WireError for an invalid field."""
     name = checked_topic(key.name)
     text = f"{format_number(key.domain)}{name}/{mangle_type(key.type_name)}/{checked_hash(key.type_hash)}"
     return not_too_long(text, "a key")
 
 
 def buffer_key(key: str) -> str:
-    """Where Lyrical's publishers send what holds a `uint8[]` while all subscriptions announce CPU_BACKEND."""
+    """Return the key of Lyrical's publishers for types with a `uint8[]`, if all subscriptions announce CPU_BACKEND."""
     return key + _BUFFERS
 
 
 def parse_key(text: str) -> DataKey:
-    """Read a key expression; raises WireError for what `format_key` cannot have made, nor `buffer_key` of that."""
+    """Parse a key of `format_key` or `buffer_key`; raises WireError for any other text."""
     fields = not_too_long(text, "a key").removesuffix(_BUFFERS).split("/")
     if len(fields) < 4:
         raise WireError(f"a key is DOMAIN/NAME/TYPE/HASH, got {quoted(text)}")
@@ -80,11 +80,11 @@ def parse_key(text: str) -> DataKey:
 
 
 def checked_topic(name: str) -> str:
-    """The full name of a topic or service itself; raises WireError for anything else."""
+    """Return `name` if it is the full name of a topic or service; raises WireError if not."""
     return matched(_TOPIC, name, "a full topic or service name")
 
 
 @remembered
 def checked_hash(text: str) -> str:
-    """A type hash, or NO_HASH, itself; raises WireError for anything else."""
+    """Return `text` if it is a type hash or NO_HASH; raises WireError if not."""
     return matched(_HASH, text, "a type hash")

@@ -1,4 +1,4 @@
-"""QoS profiles as tokens carry them."""
+"""Encoding of QoS profiles in liveliness tokens."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _PolicyT = TypeVar("_PolicyT", bound=IntEnum)
 
 
 def format_qos(qos: QoSProfile) -> str:
-    """A profile as tokens carry it, what equals rmw_zenoh's defaults left empty.
+    """Encode a profile for a token; values that equal rmw_zenoh's defaults are left empty.
 
     >>> format_qos(QoSProfile(depth=10))
     '::,10:,:,:,,'
@@ -50,7 +50,7 @@ def _formatted_qos(qos: QoSProfile) -> str:
 
 
 def parse_qos(text: str) -> QoSProfile:
-    """Read the last field of an endpoint's token; raises WireError for anything else."""
+    """Parse the QoS field of an endpoint's token; raises WireError for anything else."""
     fields = [field.split(",") for field in text.split(":")] if len(text) <= LONGEST else []
     if [len(field) for field in fields] != [1, 1, 2, 2, 2, 3]:
         raise WireError(f"a QoS field looks like ::,10:,:,:,,, got {quoted(text)}")
@@ -72,10 +72,10 @@ _DEFAULTS = resolved(qos_profile_system_default)
 # A system has thousands of tokens and a handful of profiles, and reading those takes two thirds of the time.
 MOST_PROFILES = 256
 shared_qos = functools.lru_cache(maxsize=MOST_PROFILES)(parse_qos)
-"""`parse_qos`, which gives the same profile to all who read the same text."""
+"""`parse_qos` with an LRU cache: the same text gives the same, shared profile."""
 
 _QOS_TEXTS: dict[tuple[Any, ...], str] = {}
-"""Profiles, by their values, as tokens carry them: formatting one takes longer than all else of a token."""
+"""Cache of encoded profiles, by their values: encoding one takes longer than the rest of a token."""
 
 
 def _unless(value: int, usual: int) -> str:

@@ -1,4 +1,4 @@
-"""Text of keys and tokens: its longest length, numbers, and what does not match a pattern."""
+"""Validation of the text of keys and tokens: length limit, numbers, patterns."""
 
 from __future__ import annotations
 
@@ -8,33 +8,33 @@ import re
 from robolink.exceptions import WireError
 
 LONGEST = 4096
-"""Keys and tokens with more characters are refused unread; ROS 2's own names end at 255."""
+"""Longest key or token, in characters; longer ones are refused unread. ROS 2's own names end at 255."""
 
 remembered = functools.lru_cache(maxsize=1024)
-"""For parts of tokens: each endpoint of a node repeats the node's name, and each node the same types."""
+"""LRU cache for parts of tokens: each endpoint of a node repeats the node's name, and each node the same types."""
 
 _NUMBER = re.compile(r"0|[1-9][0-9]{0,18}")
 
 
 def format_number(value: int) -> str:
-    """Spell a domain or entity number; raises WireError for a negative or giant one."""
+    """Format a domain or entity number; raises WireError for a negative or giant one."""
     return matched(_NUMBER, str(value), "a domain or entity number")
 
 
 def parse_number(text: str) -> int:
-    """Read a number; raises WireError for anything else."""
+    """Parse a number; raises WireError for anything else."""
     return int(matched(_NUMBER, text, "a number"))
 
 
 def matched(pattern: re.Pattern[str], text: str, what: str) -> str:
-    """The text itself if all of it matches; raises WireError, which says what was expected, if not."""
+    """Return the text if all of it matches; raises WireError with `what` was expected if not."""
     if pattern.fullmatch(not_too_long(text, what)) is None:
         raise WireError(f"expected {what}, got {quoted(text)}")
     return text
 
 
 def not_too_long(text: str, what: str) -> str:
-    """The text itself if it has at most LONGEST characters; raises WireError if not."""
+    """Return the text if it has at most LONGEST characters; raises WireError if not."""
     if len(text) > LONGEST:
         raise WireError(f"{what} has at most {LONGEST} characters, got {len(text)}: {quoted(text)}")
     return text

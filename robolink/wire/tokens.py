@@ -1,4 +1,4 @@
-"""Tokens of the ROS graph: what nodes, and what they own, announce about themselves."""
+"""Liveliness tokens of the ROS graph, by which nodes and their endpoints announce themselves."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from enum import Enum
 from typing import NamedTuple
 
 from robolink.exceptions import WireError
-from robolink.names import join
 from robolink.qos import QoSProfile
+from robolink.text.names import join
 from robolink.wire.keys import CHUNK, NO_HASH, checked_hash, checked_topic, demangle_type, mangle_type
 from robolink.wire.profiles import format_qos, shared_qos
 from robolink.wire.text import format_number, matched, not_too_long, parse_number, quoted, remembered
@@ -24,11 +24,11 @@ _NODE, _NODE_FIELDS, _ENDPOINT_FIELDS = "NN", 9, 13
 
 _BACKENDS = "backends:"
 CPU_BACKEND = f"{_BACKENDS}cpu:"
-"""What Lyrical adds to the token of an end whose type holds a `uint8[]`: where the bytes may lie, here main memory."""
+"""Field that Lyrical adds to the token of an endpoint with a `uint8[]`: its memory backend, here main memory."""
 
 
 class EndpointKind(Enum):
-    """The kinds of ends that a node may own, spelled as in tokens."""
+    """Kinds of endpoints of a node, with their spelling in tokens."""
 
     PUBLISHER = "MP"
     SUBSCRIPTION = "MS"
@@ -42,7 +42,7 @@ OTHER_END = {
     EndpointKind.SERVICE: EndpointKind.CLIENT,
     EndpointKind.CLIENT: EndpointKind.SERVICE,
 }
-"""Whom each kind talks to."""
+"""Kind of the remote endpoint of each kind."""
 
 
 class NodeToken(NamedTuple):
@@ -51,16 +51,16 @@ class NodeToken(NamedTuple):
     domain: int
     session: str
     node_id: str
-    """Unique in its session: a number for rmw_zenoh, for others any text."""
+    """Id that is unique in its session: a number for rmw_zenoh, for others any text."""
     enclave: str
     namespace: str
     node_name: str
     more: str = ""
-    """The fields that come after, of peers that are newer than this."""
+    """Further fields, of newer peers; "" if there are none."""
 
     @property
     def full_node_name(self) -> str:
-        """Namespace and name."""
+        """Full name: namespace and name."""
         return join(self.namespace, self.node_name)
 
 
@@ -71,7 +71,7 @@ class EndpointToken(NamedTuple):
     session: str
     node_id: str
     endpoint_id: str
-    """Unique in its session, as the node's."""
+    """Id that is unique in its session, as the node's."""
     kind: EndpointKind
     enclave: str
     namespace: str
@@ -82,36 +82,36 @@ class EndpointToken(NamedTuple):
     type_hash: str
     qos: QoSProfile
     more: str = ""
-    """The fields that come after, such as CPU_BACKEND; "" if there are none."""
+    """Further fields, such as CPU_BACKEND; "" if there are none."""
 
     @property
     def full_node_name(self) -> str:
-        """Namespace and name of the node that owns it."""
+        """Full name of the node that owns it: namespace and name."""
         return join(self.namespace, self.node_name)
 
     @property
     def names_backends(self) -> bool:
-        """Whether it says where the bytes of its `uint8[]` may lie, as Lyrical's ends of such types do."""
+        """True if it names memory backends for its `uint8[]`, as Lyrical's endpoints of such types do."""
         return self.more.startswith(_BACKENDS)
 
     def understands(self, other: EndpointToken) -> bool:
-        """Return whether both mean the same type: by name and hash, or by name where one is a Humble peer's."""
+        """True if both have the same type: by name and hash, or by name alone where one is a Humble peer's."""
         same_hash = self.type_hash == other.type_hash or NO_HASH in (self.type_hash, other.type_hash)
         return same_hash and self.type_name == other.type_name
 
 
 def graph_pattern(domain: int | None = None) -> str:
-    """The key expression that all tokens of a domain match; without one, those of all domains."""
+    """Return the key expression that all tokens of a domain match; without one, those of all domains."""
     return f"{_GRAPH}/**" if domain is None else f"{_GRAPH}/{format_number(domain)}/**"
 
 
 def own_tokens(domain: int, session: str) -> str:
-    """How all tokens of a session on a domain begin."""
+    """Return the prefix of all tokens of a session on a domain."""
     return f"{_GRAPH}/{format_number(domain)}/{session}/"
 
 
 def format_token(token: NodeToken | EndpointToken) -> str:
-    """The token as it is announced; raises WireError for a part that it cannot carry."""
+    """Return the text of a token; raises WireError for an invalid field."""
     endpoint = token if isinstance(token, EndpointToken) else None
     fields = [
         _GRAPH,
@@ -131,10 +131,9 @@ def format_token(token: NodeToken | EndpointToken) -> str:
 
 
 def parse_token(text: str) -> NodeToken | EndpointToken:
-    """Read a token; raises WireError for what no peer of rmw_zenoh announces.
+    """Parse a token; raises WireError for any text that no peer of rmw_zenoh announces.
 
-    What comes after the fields that are known is kept, unread. Tokens share their profiles: copy one before you
-    change it.
+    Fields behind the known ones are kept, unread. Tokens share their profiles: copy one before you change it.
     """
     fields = not_too_long(text, "a token").split("/")
     is_node = fields[5:6] == [_NODE]

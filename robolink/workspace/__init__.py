@@ -1,4 +1,4 @@
-"""The workspace: a folder of nodes, systems and types, found (`find`) and loaded (`load`) by name."""
+"""The workspace: a folder of nodes, systems and types, which are found (`find`) and loaded (`load`) by name."""
 
 from robolink.workspace.find import (
     VARIABLE,

@@ -1,4 +1,4 @@
-"""Find nodes, launch files, worlds and packages by name.
+"""Look-up of nodes, launch files, worlds and packages by name.
 
 A workspace is a folder with two of `nodes/`, `configs/` and `interfaces/`, or a ROS 2 one: a folder whose `src/` holds
 packages, or, where there is neither, a lone package. A name is looked up (1) as a path, (2) in the nearest workspace:
@@ -20,21 +20,28 @@ from robolink.workspace.source import Folder, NodeSource, canonical
 from robolink.workspace.trust import is_trusted
 
 VARIABLE = "ROBOLINK_WORKSPACE"
+"""Environment variable with the folder of the user's workspace."""
 ENTRY_POINTS = "robolink.nodes"
+"""Group of the entry points of installed nodes."""
 YAML = (".yaml", ".yml")
 WORLDS = (*YAML, ".wbt")
 ROS_NODES = {
     ("teleop_twist_keyboard", "teleop_twist_keyboard"): "teleop",
     ("tf2_ros", "static_transform_publisher"): "static_transform_publisher",
 }
-"""Executables of ROS 2's own packages, and the node of robolink's that does the same."""
+"""Built-in nodes that do the same as executables of ROS 2's own packages."""
 PARTS = ("nodes", "configs", "interfaces")
 
 
 def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
-    """Find a node by name, `FILE`, `FILE:function` or `FILE:Class`; the path found is absolute.
+    """Return the source of a node; the path in it is absolute.
 
-    Raises `NotFoundError` with the nearest name.
+    Args:
+        name: Name of the node, `FILE`, `FILE:function` or `FILE:Class`.
+        workspace: Folder that serves as the user's workspace; None looks for it.
+
+    Raises:
+        NotFoundError: with the nearest name.
     """
     file, attribute = _split(name)
     path = _as_path(file, workspace, (".py",))
@@ -48,20 +55,28 @@ def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
 
 
 def find_ros_node(package: str, name: str) -> NodeSource | None:
-    """Give the built-in node that stands for an executable of ROS 2's own; None where there is none."""
+    """Return the built-in node that does the same as the executable `name` of ROS 2's `package`; None if none does."""
     known = ROS_NODES.get((canonical(package), canonical(name)))
     return None if known is None else NodeSource(known, built_in_workspace() / f"nodes/{known}.py")
 
 
 def find_package(name: str, *, workspace: Folder = None) -> Path | None:
-    """Give the folder of a package; None when there is none of that name."""
+    """Return the folder of a package; None if there is none of that name.
+
+    Args:
+        name: Name of the package.
+        workspace: Folder that serves as the user's workspace; None looks for it.
+    """
     known = list_packages(workspace=workspace)
     asked = canonical(name)
     return known.get(name) or next((known[each] for each in known if canonical(each) == asked), None)
 
 
 def list_packages(*, workspace: Folder = None) -> dict[str, Path]:
-    """Give the packages that a name finds, each with its folder (see `robolink.workspace.packages`)."""
+    """Return all packages by name, each with its folder (see `robolink.workspace.packages`).
+
+    `workspace` is a folder that serves as the user's workspace; None looks for it.
+    """
     *own, built_in = _workspaces(workspace)
     found: dict[str, Path] = {}
     for folder in own:
@@ -72,7 +87,10 @@ def list_packages(*, workspace: Folder = None) -> dict[str, Path]:
 
 
 def list_executables(*, workspace: Folder = None) -> dict[str, list[NodeSource]]:
-    """Give what can be run in the packages of the user's workspace: package to what it names, else all it has."""
+    """Return the executables in the packages of the user's workspace: those that a package names, else all it has.
+
+    `workspace` is a folder that serves as the user's workspace; None looks for it.
+    """
     built_in = built_in_workspace()
     found = {}
     for package, folder in list_packages(workspace=workspace).items():
@@ -83,44 +101,80 @@ def list_executables(*, workspace: Folder = None) -> dict[str, list[NodeSource]]
 
 
 def find_launch(name: str, *, workspace: Folder = None) -> Path:
-    """Find a launch file by name or path. Raises `NotFoundError` with the nearest name."""
+    """Return the path of a launch file.
+
+    Args:
+        name: Name or path of the file.
+        workspace: Folder that serves as the user's workspace; None looks for it.
+
+    Raises:
+        NotFoundError: with the nearest name.
+    """
     return _find_file("launch file", name, "configs", workspace, YAML)
 
 
 def find_world(name: str, *, workspace: Folder = None) -> Path:
-    """Find a world file, ours or Webots', by name or path. Raises `NotFoundError` with the nearest name."""
+    """Return the path of a world file, ours or Webots'.
+
+    Args:
+        name: Name or path of the file.
+        workspace: Folder that serves as the user's workspace; None looks for it.
+
+    Raises:
+        NotFoundError: with the nearest name.
+    """
     return _find_file("world", name, "configs/worlds", workspace, WORLDS)
 
 
 def find_faults(name: str, *, workspace: Folder = None) -> Path:
-    """Find a faults file by name or path. Raises `NotFoundError` with the nearest name."""
+    """Return the path of a faults file.
+
+    Args:
+        name: Name or path of the file.
+        workspace: Folder that serves as the user's workspace; None looks for it.
+
+    Raises:
+        NotFoundError: with the nearest name.
+    """
     return _find_file("faults file", name, "configs/faults", workspace, YAML)
 
 
 def list_nodes(*, workspace: Folder = None) -> list[NodeSource]:
-    """Give every node that a name finds, by name; shadowed ones are left out."""
+    """Return the sources of all nodes, by name; shadowed ones are left out.
+
+    `workspace` is a folder that serves as the user's workspace; None looks for it.
+    """
     return sorted(_unshadowed(_node_sources(workspace)), key=lambda each: each.name)
 
 
 def list_launches(*, workspace: Folder = None) -> list[Path]:
-    """Give every launch file that a name finds, by name."""
+    """Return the paths of all launch files, by name.
+
+    `workspace` is a folder that serves as the user's workspace; None looks for it.
+    """
     return _list_files("configs", workspace, YAML)
 
 
 def list_worlds(*, workspace: Folder = None) -> list[Path]:
-    """Give every world file that a name finds, by name."""
+    """Return the paths of all world files, by name.
+
+    `workspace` is a folder that serves as the user's workspace; None looks for it.
+    """
     return _list_files("configs/worlds", workspace, WORLDS)
 
 
 def list_faults(*, workspace: Folder = None) -> list[Path]:
-    """Give every faults file that a name finds, by name."""
+    """Return the paths of all faults files, by name.
+
+    `workspace` is a folder that serves as the user's workspace; None looks for it.
+    """
     return _list_files("configs/faults", workspace, YAML)
 
 
 def user_workspace(workspace: Folder = None) -> Path | None:
-    """Give the user's workspace: the one asked for, the one that the environment names, or the nearest.
+    """Return the user's workspace: `workspace` if given, else that of ROBOLINK_WORKSPACE, else the nearest; or None.
 
-    Raises `NotFoundError` when one is named that is no folder.
+    Raises `NotFoundError` if one is named that is no folder.
     """
     asked = workspace or os.environ.get(VARIABLE)
     if not asked:
@@ -144,7 +198,7 @@ def workspace_of(path: Path) -> Path | None:
 
 
 def built_in_workspace() -> Path:
-    """Give the workspace that comes with robolink: inside the wheel, or the repository."""
+    """Return the workspace that comes with robolink: inside the wheel, or the repository."""
     package = Path(__file__).resolve().parent.parent
     shared = package / "share"
     return shared if shared.is_dir() else package.parent
@@ -156,14 +210,14 @@ def _is_workspace(folder: Path) -> bool:
 
 
 def _workspaces(workspace: Folder) -> list[Path]:
-    """Give the workspaces in the order in which they are searched; the built-in one comes last."""
+    """Return the workspaces in the order in which they are searched; the built-in one comes last."""
     own = user_workspace(workspace)
     built_in = built_in_workspace()
     return [built_in] if own is None or own == built_in else [own, built_in]
 
 
 def _split(name: str) -> tuple[str, str]:
-    """Part `FILE:function`; the colon of `C:\\nodes\\a.py` parts nothing."""
+    r"""Split `FILE:function`; the colon of `C:\nodes\a.py` separates nothing."""
     file, colon, attribute = name.rpartition(":")
     if colon and file and attribute.isidentifier() and not Path(name).exists():
         return file, attribute
@@ -171,7 +225,7 @@ def _split(name: str) -> tuple[str, str]:
 
 
 def _as_path(name: str, workspace: Folder, suffixes: tuple[str, ...]) -> Path | None:
-    """Give the file that a name is the path of, from here or from the user's workspace; None for a mere name."""
+    """Return the file of a path, from here or from the user's workspace; None for a mere name."""
     path = Path(name).expanduser()
     is_path = len(path.parts) > 1 or path.suffix in suffixes
     if not is_path:
@@ -190,7 +244,7 @@ def _files_beside(path: Path) -> Iterator[str]:
 
 
 def _node_sources(workspace: Folder) -> Iterator[NodeSource]:
-    """Yield what there is in the order of the lookup."""
+    """Yield all nodes in the order of the look-up."""
     *own, built_in = _workspaces(workspace)
     for folder in own:
         yield from _nodes_in(folder)

@@ -1,4 +1,4 @@
-"""The types of a workspace: the `.msg`, `.srv` and `.action` files in `interfaces/PACKAGE/{msg,srv,action}/`.
+"""Interface types of a workspace: the `.msg`, `.srv` and `.action` files in `interfaces/PACKAGE/{msg,srv,action}/`.
 
 Those of the packages in its `src/` belong to them. They are known by name (`robolink.interfaces.find`) and importable,
 `from my_msgs.msg import WheelSpeeds`, in every node that `robolink run` or `robolink launch` starts, and anywhere after
@@ -17,15 +17,16 @@ from typing import Any
 
 from robolink import interfaces
 from robolink.exceptions import DefinitionError, MessageError, NotFoundError
-from robolink.plainfile import read_plain
+from robolink.system.plainfile import read_plain
 from robolink.workspace.find import built_in_workspace, user_workspace
 from robolink.workspace.modules import FINDER, Fill
 from robolink.workspace.packages import source_packages
 from robolink.workspace.source import Folder
 
 INTERFACES = "interfaces"
+"""Name of the folder of interface packages in a workspace."""
 DEEPEST = 48
-"""Messages within messages; each is read while the one before is."""
+"""Upper bound of messages within messages; each is read while the one before is."""
 
 
 class InterfaceImportError(MessageError, ImportError):
@@ -33,10 +34,10 @@ class InterfaceImportError(MessageError, ImportError):
 
 
 class WorkspaceTypes:
-    """The types that workspaces define: those that were added, the latest first, the user's, the built-in one.
+    """Registry of the types of workspaces: those that were added, the latest first, the user's, the built-in one.
 
-    The user's is looked for anew each time, as `robolink.workspace` does: it is what the environment names, or the
-    nearest. A question costs the listing of a few folders; a file is read when its type is first asked for, once.
+    The user's is looked for anew each time, as `robolink.workspace` does: it is that of the environment, or the
+    nearest. A look-up costs the listing of a few folders; a file is read when its type is first asked for, once.
     """
 
     def __init__(self) -> None:
@@ -46,12 +47,12 @@ class WorkspaceTypes:
         self._lock = threading.RLock()
 
     def add(self, workspace: Path) -> None:
-        """Look into this workspace before all others."""
+        """Search this workspace before all others."""
         self._added = [workspace, *(each for each in self._added if each != workspace)]
 
     @contextmanager
     def forgetting(self) -> Iterator[None]:
-        """Forget, at the end of a `with`, which workspaces were added in it."""
+        """Remove, at the end of a `with`, the workspaces that were added in it."""
         before = self._added
         try:
             yield
@@ -59,7 +60,7 @@ class WorkspaceTypes:
             self._added = before
 
     def names(self, kind: str) -> dict[str, list[str]]:
-        """Give the types of a kind: package to the names within it."""
+        """Return the types of a kind: package to the names within it."""
         found: dict[str, list[str]] = {}
         for workspace in self._workspaces():
             packages = [(name, workspace / INTERFACES / name) for name in _listed(workspace / INTERFACES)]
@@ -68,8 +69,8 @@ class WorkspaceTypes:
                 found.setdefault(package, []).extend(shorts)
         return {package: shorts for package, shorts in found.items() if shorts}
 
-    def places(self, package: str, kind: str = "") -> list[Path]:
-        """Give the folders of a package, or of its types of a kind."""
+    def folders(self, package: str, kind: str = "") -> list[Path]:
+        """Return the folders of a package, or of its types of a kind."""
         found = []
         for workspace in self._workspaces():
             if package in _listed(workspace / INTERFACES):
@@ -80,20 +81,20 @@ class WorkspaceTypes:
         return [each / kind for each in found if not kind or kind in _listed(each)]
 
     def _workspaces(self) -> list[Path]:
-        """Give the workspaces in the order in which they are searched."""
+        """Return the workspaces in the order in which they are searched."""
         user = user_workspace()
         return list(dict.fromkeys([*self._added, *([user] if user is not None else []), built_in_workspace()]))
 
     def get(self, package: str, kind: str, short: str) -> type[Any] | None:
-        """Give the class of a type, None when no workspace defines it. Raises DefinitionError."""
+        """Return the class of a type, None if no workspace defines it. Raises DefinitionError."""
         file = f"{short}.{kind}"
-        for folder in self.places(package, kind):
+        for folder in self.folders(package, kind):
             if file in _listed(folder, f".{kind}"):
                 return self._class_of(folder / file, f"{package}/{kind}/{short}")
         return None
 
     def built_in(self, package: str, kind: str, short: str) -> type[Any]:
-        """Give the class of a type of the built-in workspace, whatever others define by its name.
+        """Return the class of a type of the built-in workspace, whatever others define by its name.
 
         Raises DefinitionError.
         """
@@ -158,7 +159,7 @@ def use_interfaces(workspace: Folder = None) -> None:
     >>> from my_msgs.msg import WheelSpeeds  # interfaces/my_msgs/msg/WheelSpeeds.msg
 
     `workspace` is a folder that is searched first; then the user's workspace, that of ROBOLINK_WORKSPACE or the
-    nearest, and the built-in one. Raises NotFoundError when one is named that is no folder.
+    nearest, and the built-in one. Raises NotFoundError if one is named that is no folder.
     """
     if workspace is not None:
         found = user_workspace(workspace)
@@ -169,19 +170,19 @@ def use_interfaces(workspace: Folder = None) -> None:
 
 
 def _interface_module(fullname: str) -> Fill | None:
-    """Know `my_msgs` and `my_msgs.msg`, where a workspace has that folder."""
+    """Return the function that fills `my_msgs` or `my_msgs.msg`, if a workspace has that folder."""
     package, _, kind = fullname.partition(".")
     if kind and kind not in interfaces.KINDS:
         return None
     try:
-        places = WORKSPACE_TYPES.places(package, kind)
+        places = WORKSPACE_TYPES.folders(package, kind)
     except (NotFoundError, OSError):  # a workspace or working directory that is gone: other imports go on
         return None
     return functools.partial(_fill, package, kind, places[0]) if places else None
 
 
 def _fill(package: str, kind: str, place: Path, module: ModuleType) -> None:
-    """Give a module its place, for errors, and the types of its kind, each made when it is first used."""
+    """Set a module's place, for errors, and the types of its kind, each made when it is first used."""
     module.__file__ = str(place)
     if not kind:
         return

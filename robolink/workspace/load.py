@@ -1,4 +1,4 @@
-"""Load what a node file holds: a Node class, a function such as `main()`, or a script to run."""
+"""Loader of node files: a Node class, a function such as `main()`, or a script to run."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
-from robolink.plainfile import LONGEST_SOURCE, read_plain
+from robolink.system.plainfile import LONGEST_SOURCE, read_plain
 from robolink.workspace.find import workspace_of
 from robolink.workspace.interfaces import use_interfaces
 from robolink.workspace.packages import import_roots, source_packages
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 
 RUNNING = frozenset(["init", "spin", "spin_once", "spin_until_future_complete", "create_node"])
-"""What is called by a file that runs nodes as it is read."""
+"""Names of the functions that a file calls if it runs nodes while it is read."""
 
 NODE_BASES = ("Node", "ScanController")
-"""How the names of classes end that nodes extend: Node, LifecycleNode, and what the library makes of them."""
+"""Suffixes of the names of base classes of nodes: Node, LifecycleNode, and those that the library derives from them."""
 
 
 class NodeLoadError(RobolinkError, ImportError):
@@ -38,13 +38,20 @@ class NodeLoadError(RobolinkError, ImportError):
 
 
 def load_node(source: NodeSource, *, script: ScriptMaker | None = None) -> Runnable:
-    """Give what runs a node: a subclass of `Node` to construct and spin, or something to call.
+    """Return what runs a node: a subclass of `Node` to construct and spin, or a function to call.
 
-    What a file holds is decided in this order: the attribute asked for; a script, with a `__main__` guard or with
+    The content of a file is decided in this order: the attribute asked for; a script, with a `__main__` guard or with
     statements that run a node as the file is read, which is run as Python runs it; a function `main`; its only Node
-    class; a script without any of these, which is run too. `script` may give something else that runs a script, of
-    its source, and of what is to be called first so that its imports are found. Raises `NodeLoadError`,
-    `NotFoundError` for an attribute, and whatever the file itself raises.
+    class; a script without any of these, which is run too.
+
+    Args:
+        source: Source of the node, as `find_node` returns it.
+        script: Factory of the function that runs a script, from its source and a function that must be called first so
+            that the script's imports are found; by default it is run as Python does.
+
+    Raises:
+        NodeLoadError: if the file has no node, or several, or is no Python.
+        NotFoundError: if it lacks the attribute. Whatever the file itself raises is raised as it is.
     """
     if source.path is None:
         assert source.entry_point is not None
@@ -65,7 +72,7 @@ def load_node(source: NodeSource, *, script: ScriptMaker | None = None) -> Runna
 
 
 def own_process_needed(source: NodeSource) -> str:
-    """Say why a node cannot share a process with others, without running its file; '' where nothing shows.
+    """Return why the node of `source` cannot share a process, without running its file; '' if nothing shows.
 
     Only a Node class can: a `main()` or a script makes and spins its nodes itself. Raises `NodeLoadError`.
     """
@@ -85,7 +92,7 @@ def own_process_needed(source: NodeSource) -> str:
 
 
 def load_module(path: Path) -> ModuleType:
-    """Load a Python file as a module of its own, named by its whole path; a second time, give the same.
+    """Load the Python file at `path` as a module, named by its whole path; return the same one the second time.
 
     Its folder is appended to `sys.path`, so that it finds its neighbours, and the types of its workspace can be
     imported. Raises `NodeLoadError` for a file that is no Python, and whatever the file itself raises.
@@ -110,7 +117,7 @@ def load_module(path: Path) -> ModuleType:
 
 
 def _loaded(source: NodeSource) -> ModuleType:
-    """Give the module of a node: one of a package by its name, any other file by its path."""
+    """Return the module of a node: one of a package by its name, any other file by its path."""
     assert source.path is not None
     if not source.module or source.root is None:
         return load_module(source.path)
@@ -134,20 +141,20 @@ def _parse(path: Path) -> ast.Module:
 
 
 def _is_script(tree: ast.Module) -> bool:
-    """Whether a file is run as Python runs it, not asked for what it defines."""
+    """True if a file is run as Python runs it, not asked for what it defines."""
     is_plain = not _defines(tree, "ClassDef") and not _defines(tree, "FunctionDef", "main")
     return _has_guard(tree) or _acts(tree) or is_plain
 
 
 def _has_guard(tree: ast.Module) -> bool:
-    """Whether there is an `if __name__ == "__main__":`."""
+    """True if there is an `if __name__ == "__main__":`."""
     import ast
 
     return any(isinstance(each, ast.If) and "__main__" in ast.unparse(each.test) for each in tree.body)
 
 
 def _acts(tree: ast.Module) -> bool:
-    """Whether statements outside of functions and classes make or spin nodes, or call a function of the file."""
+    """True if statements outside of functions and classes make or spin nodes, or call a function of the file."""
     import ast
 
     own = {each.name for each in tree.body if isinstance(each, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef))}
@@ -165,7 +172,7 @@ def _defines(tree: ast.Module, kind: str, name: str | None = None) -> bool:
 
 
 def _node_classes(tree: ast.Module) -> list[str]:
-    """Name the classes of a file that are nodes by their bases, without those that others of them extend."""
+    """Return the classes of a file that are nodes by their bases, without those that others of them extend."""
     import ast
 
     found: dict[str, set[str]] = {}
@@ -179,12 +186,12 @@ def _node_classes(tree: ast.Module) -> list[str]:
 
 
 def _last_name(named: ast.expr) -> str:
-    """Give what a base or a function is called: `rclpy.node.Node` is `Node`."""
+    """Return the last name of a base or a function: `rclpy.node.Node` is `Node`."""
     return str(getattr(named, "id", getattr(named, "attr", "")))
 
 
 def _script(source: NodeSource, path: Path) -> Callable[[], Any]:
-    """Give a function that runs a file as `python FILE` does, one of a package as `python -m MODULE`."""
+    """Return a function that runs a file as `python FILE` does, one of a package as `python -m MODULE`."""
 
     def run() -> None:
         import runpy
@@ -204,7 +211,7 @@ def _reach_all(source: NodeSource) -> None:
 
 
 def _reach(folder: Path, root: Path | None = None) -> None:
-    """Let what a file in this folder imports be found: its neighbours, its package, and its workspace's.
+    """Make the imports of a file in this folder possible: its neighbours, its package, and its workspace's.
 
     The `root` of a package goes first, so that these files are found and not what was once installed of them.
     """
@@ -219,7 +226,7 @@ def _reach(folder: Path, root: Path | None = None) -> None:
 
 
 def _above_package(folder: Path) -> Path:
-    """Give the folder from which the modules in `folder` are imported with the names of their packages."""
+    """Return the folder from which the modules in `folder` are imported with the names of their packages."""
     while (folder / "__init__.py").is_file() and folder != folder.parent:
         folder = folder.parent
     return folder
@@ -243,7 +250,7 @@ def _checked(found: Any, spec: str) -> Runnable:
 
 
 def _only_node(module: ModuleType, path: Path) -> Runnable:
-    """Give the only Node class that a module itself defines (one that others of them extend does not count)."""
+    """Return the only Node class that a module itself defines (one that others of them extend does not count)."""
     own = [each for each in vars(module).values() if _is_node(each) and each.__module__ == module.__name__]
     last = [each for each in own if not any(other is not each and issubclass(other, each) for other in own)]
     if not last:

@@ -1,4 +1,4 @@
-"""Modules that are no files: a finder for `import`, with functions that know names and say how each is made."""
+"""Import finder for modules that are no files, with functions that know names and how each module is made."""
 
 from __future__ import annotations
 
@@ -9,19 +9,18 @@ from types import ModuleType
 from typing import TypeAlias
 
 Fill: TypeAlias = Callable[[ModuleType], None]
-"""Gives a new, empty module what is in it; or puts another module in its place in `sys.modules`."""
+"""Function that fills a new, empty module; or puts another module in its place in `sys.modules`."""
 Maker: TypeAlias = Callable[[str], "Fill | None"]
-"""Gives what fills the module of a full name, ``my_msgs.msg``; None for a name that it does not know."""
+"""Function that returns the Fill of a module's full name, ``my_msgs.msg``; None for a name that it does not know."""
 
 
 class ModuleFinder:
-    """Finds what its makers know, the first that knows a name, for `sys.meta_path`; it stands first there.
+    """Finder on `sys.meta_path`, in front, of the modules that its makers know; the first that knows a name makes it.
 
-    An installed module or package of the same name is found instead, unless `hides` says of the name that it is not
-    to be. That is decided for each module by itself: where a package `my_robot` is installed that has no
-    `my_robot.msg`, a maker's `my_robot.msg` is found in it. Only a folder that Python takes for a package though it
-    has no `__init__.py` stands back, since otherwise a mere folder of interface files named `my_msgs` in the working
-    directory would be an empty package.
+    An installed module or package of the same name is found instead, unless `hides(name)` is true. That is decided for
+    each module by itself: where a package `my_robot` is installed that has no `my_robot.msg`, a maker's `my_robot.msg`
+    is found in it. Only a folder that Python takes for a package though it has no `__init__.py` stands back, since
+    otherwise a mere folder of interface files named `my_msgs` in the working directory would be an empty package.
     """
 
     def __init__(self) -> None:
@@ -29,7 +28,7 @@ class ModuleFinder:
         self.hides: Callable[[str], bool] = lambda _: False
 
     def add(self, maker: Maker, *, first: bool = False) -> None:
-        """Ask this maker too, before or after those that are there; have Python ask this finder first."""
+        """Add a maker, before or after those that are there; make Python ask this finder first."""
         if maker not in self.makers:
             self.makers.insert(0 if first else len(self.makers), maker)
         if self not in sys.meta_path:
@@ -38,7 +37,7 @@ class ModuleFinder:
     def find_spec(
         self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Give what Python needs to make a module, None for a name of others."""
+        """Return the spec from which Python makes a module, None for a name of others."""
         fill = next(filter(None, (maker(fullname) for maker in self.makers)), None)
         if fill is None:
             return None
@@ -53,7 +52,7 @@ class ModuleFinder:
     def real(
         self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Give what is found without this finder; a folder without `__init__.py` has no loader."""
+        """Return the spec that is found without this finder; that of a folder without `__init__.py` has no loader."""
         for finder in sys.meta_path:
             if finder is not self and hasattr(finder, "find_spec"):
                 spec = finder.find_spec(fullname, path, target)
@@ -63,7 +62,7 @@ class ModuleFinder:
 
 
 class Filling:
-    """Makes a module with a function that fills it. A loader without importlib.abc, which takes 2 ms to import."""
+    """Loader that makes a module by a function that fills it. Without importlib.abc, which takes 2 ms to import."""
 
     def __init__(self, fill: Fill) -> None:
         self.fill = fill

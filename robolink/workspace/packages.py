@@ -1,4 +1,4 @@
-"""Packages and what can be run in them, as `ros2 run PACKAGE EXECUTABLE` names them, without a build.
+"""Packages and their executables, as `ros2 run PACKAGE EXECUTABLE` names them, without a build.
 
 A package is one of these, in the order in which a name is looked for:
 
@@ -21,21 +21,23 @@ from pathlib import Path
 from robolink.workspace.source import NodeSource, canonical
 
 BUILT_IN = "robolink"
+"""Name of the package that comes with robolink."""
 DEEPEST = 8
-"""Folders between `src/` and a package's own, at most."""
+"""Upper bound of the folders between `src/` and a package's own."""
 MOST = 2000
-"""Folders that are looked into: a `src/` that has more is no workspace's."""
+"""Upper bound of the folders that are searched: a `src/` that has more is no workspace's."""
 IGNORE = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
+"""Names of the marker files of folders that are no packages."""
 _NO_PACKAGES = ("build", "install", "log", "node_modules", "__pycache__")
 
 _known: dict[Path, tuple[dict[Path, int], dict[str, Path]]] = {}
-"""By workspace: what was looked into, with the time of its last change, and the packages found."""
+"""Cache by workspace: the folders searched, with the time of their last change, and the packages found."""
 
 
 def source_packages(top: Path) -> dict[str, Path]:
-    """Give the packages in a workspace's `src/`, else `top` itself where it is one: name to folder.
+    """Return the packages in a workspace's `src/`, else `top` itself where it is one: name to folder.
 
-    The folders are looked through again only when one of them, or a package.xml, has changed.
+    The folders are searched again only when one of them, or a package.xml, has changed.
     """
     seen, found = _known.get(top, ({}, {}))
     if not seen or any(_changed(path) != at for path, at in seen.items()):
@@ -49,7 +51,7 @@ def source_packages(top: Path) -> dict[str, Path]:
 
 
 def _changed(path: Path) -> int:
-    """When a file or folder was last changed; 0 where there is none."""
+    """Return when a file or folder was last changed, in ns; 0 where there is none."""
     try:
         return path.stat().st_mtime_ns
     except OSError:
@@ -57,14 +59,14 @@ def _changed(path: Path) -> int:
 
 
 def is_ros_workspace(folder: Path) -> bool:
-    """Whether a folder's `src/` holds a ROS 2 package; a `setup.py` alone is any Python project's."""
+    """True if a folder's `src/` holds a ROS 2 package; a `setup.py` alone is any Python project's."""
     if not (folder / "src").is_dir():
         return False
     return any((each / "package.xml").is_file() for each in source_packages(folder).values() if each != folder)
 
 
 def unmarked_package(name: str, top: Path) -> Path | None:
-    """Return the folder that would be a package of this name but for its package.xml: `top`, or in it or its `src/`."""
+    """Return the folder that would be the package `name` but for its package.xml: `top`, or in it or its `src/`."""
     with contextlib.suppress(OSError):  # the working directory has been deleted, or may not be read
         for each in (top / "src" / name, top / name, top.resolve()):
             if canonical(each.name) == canonical(name) and each.is_dir() and not _is_marked(each):
@@ -77,7 +79,7 @@ def _is_marked(folder: Path) -> bool:
 
 
 def executables(folder: Path) -> dict[str, NodeSource]:
-    """Give what can be run in a package: name to where it is."""
+    """Return the executables of the package in `folder`: name to source."""
     from robolink.workspace.setup_files import console_scripts, installed_scripts  # late: most runs read no setup.py
 
     found = {path.stem: NodeSource(path.stem, path) for path in _public(folder / "nodes")}
@@ -94,27 +96,27 @@ def executables(folder: Path) -> dict[str, NodeSource]:
 
 
 def executable(folder: Path, name: str) -> NodeSource | None:
-    """Give the executable of a package, None when it has none of that name."""
+    """Return the executable `name` of the package in `folder`, None if it has none."""
     known = executables(folder)
     asked = canonical(name)
     return known.get(name) or next((known[each] for each in known if canonical(each) == asked), None)
 
 
 def named_executables(folder: Path) -> list[NodeSource]:
-    """Give the executables that a package names and those in its `nodes/`; where there are none, all that it has."""
+    """Return the executables that the package in `folder` names and those in its `nodes/`; without any, all it has."""
     known = sorted(executables(folder).values(), key=lambda each: each.name)
     return [each for each in known if each.attribute or not each.module] or known
 
 
 def import_roots(folder: Path) -> list[Path]:
-    """Give the folders that must be on `sys.path` for a package's modules to be imported by their names."""
+    """Return the folders that must be on `sys.path` for a package's modules to be imported by their names."""
     return list(dict.fromkeys(each.parent for each in _module_folders(folder)))
 
 
 def _packages_below(top: Path, seen: dict[Path, int]) -> Iterator[Path]:
     """Yield the packages in a folder, the nearest first, then by name; there are none within a package.
 
-    `seen` gets what a change of would change the answer, and when it last changed.
+    `seen` gets the paths whose change would change the answer, and when each last changed.
     """
     level, left = [top], MOST
     seen[top] = _changed(top)
@@ -154,7 +156,7 @@ def _name_of(folder: Path) -> str:
 
 
 def _module_folders(folder: Path) -> list[Path]:
-    """Give the folder of a package's modules: it has the package's name, and stands in the package or in its src/."""
+    """Return the folder of a package's modules: it has the package's name, and stands in the package or in its src/."""
     names = {canonical(_name_of(folder)), canonical(folder.name)}
     inside = [each for each in (*_folders_in(folder), *_folders_in(folder / "src")) if canonical(each.name) in names]
     return [each for each in inside if (each / "__init__.py").is_file() or any(_public(each))]
@@ -165,7 +167,7 @@ def _public(folder: Path) -> list[Path]:
 
 
 def _file_of(folder: Path, module: str) -> tuple[Path, Path]:
-    """Give the root and the file of a module, whether or not it is there."""
+    """Return the root and the file of a module, which need not exist."""
     part = Path(*module.split("."))
     for root in (folder, folder / "src"):
         for file in (root / part.with_suffix(".py"), root / part / "__init__.py"):

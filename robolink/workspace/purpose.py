@@ -1,14 +1,14 @@
-"""The purpose of a launch file or a world, as its own first words tell it: for lists of what there is."""
+"""Purpose of a launch file or a world, from its own first words: for lists of what there is."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
 
-from robolink.terminal import fit
+from robolink.system.terminal import fit
 
 _HEAD = 4096
-"""Bytes in which a file tells its purpose, if it does."""
+"""Bytes at a file's beginning that are searched."""
 _LONGEST = 100
 _DESCRIPTION = re.compile(r"^description: +(?![>|&*!])['\"]?(.+?)['\"]?\s*$", re.MULTILINE)
 _COMMENT = re.compile(r"\A(?:(?:#[ \t]*yaml-language-server:.*|---.*|%.*|[ \t]*)\n)*((?:#[ \t]?\S.*(?:\n|\Z))+)")
@@ -16,7 +16,7 @@ _FIRST_SENTENCE = re.compile(r".+?(?=[.;:]*(?:[.;]\s|\Z))", re.DOTALL)
 
 
 def purpose_of(path: Path) -> str:
-    """Return what a YAML file says of itself: its `description`, else its first comment's first sentence; '' if none.
+    """Return the purpose of the YAML file at `path`: its `description`, else its first comment's first sentence; or ''.
 
     It is one line, fit for a terminal. A file that cannot be read has none, nor has a world of Webots.
     """

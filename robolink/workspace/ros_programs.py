@@ -1,4 +1,4 @@
-"""Programs of ROS 2's own packages that robolink has not, each with what does the same here."""
+"""Advice for programs of ROS 2's own packages that robolink lacks: what does the same here."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ PROGRAMS = {
     ("tf2_tools", "view_frames"): "here it is 'robolink tf tree'",
     ("rmw_zenoh_cpp", "rmw_zenohd"): "robolink needs no router, and meets one that runs (docs/ros2.md)",
 }
+"""Advice by package and program."""
 PACKAGES = {
     "rviz2": f"{_DRAW}; {_ANYWHERE}",
     "rqt_graph": f"'robolink launch FILE --graph' draws nodes and topics; {_ANYWHERE}",
@@ -37,11 +38,11 @@ PACKAGES = {
     "nav2_bringup": "'robolink launch goto' drives to the goals of Nav2's action",
     "slam_toolbox": f"nothing here makes maps; {_ANYWHERE}",
 }
-"""By package, what serves in place of any program of it."""
+"""Advice by package, for any program of it."""
 
 
 class RosProgramError(NotFoundError):
-    """A program of ROS 2 was asked for that robolink has not; the text says what does the same."""
+    """A program of ROS 2 was asked for that robolink lacks; the text has what does the same."""
 
     def __init__(self, package: str, program: str, advice: str) -> None:
         self.kind, self.name = "package", package
@@ -49,7 +50,7 @@ class RosProgramError(NotFoundError):
 
 
 def ros_program_error(package: str, program: str = "") -> RosProgramError | None:
-    """Make the error for a program of one of ROS 2's own packages; None for a package that is not known."""
+    """Return the error for the program `program` of ROS 2's own `package`; None for a package that is not known."""
     known = canonical(package)
     advice = PROGRAMS.get((known, canonical(program))) or PACKAGES.get(known)
     return None if advice is None else RosProgramError(package, program, advice)

@@ -1,4 +1,4 @@
-"""What the files of a package say of it: its name, and its programs. Everything is read, nothing is run."""
+"""Parser of a package's own files for its name and its programs. Everything is read, nothing is run."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, TypeGuard
 
-from robolink.plainfile import read_plain
+from robolink.system.plainfile import read_plain
 
 LONGEST = 200_000
-"""Bytes of a file that is read: Python's parser makes 600 bytes of memory of each byte of a setup.py."""
+"""Largest file that is read, in bytes: Python's parser makes 600 bytes of memory of each byte of a setup.py."""
 MOST_SCRIPTS = 1000
-"""Programs of a package."""
+"""Upper bound of a package's programs."""
 DEEPEST = 20
-"""Expressions within expressions, and names that stand for names."""
+"""Upper bound of expressions within expressions, and of names that stand for names."""
 MOST_VALUES = 100_000
-"""Values, and letters put together, of a setup.py: a few lines of names of lists of names would fill the memory."""
+"""Upper bound of the values and letters of a setup.py: a few lines of names of lists of names would fill the memory."""
 
 _NAME = re.compile(r"<name>\s*([A-Za-z0-9][\w-]*)\s*</name>")
 _ENTRY = re.compile(r"\s*([\w.-]+)\s*=\s*([A-Za-z_][\w.]*)\s*(?::\s*([A-Za-z_][\w.]*)\s*)?(?:\[[^\]]*\]\s*)?")
@@ -30,13 +30,13 @@ _CMAKE_TO_LIB = re.compile(r"\bDESTINATION\s+\"?lib/", re.IGNORECASE)
 
 
 def package_name(folder: Path) -> str:
-    """Give the name in a folder's package.xml; '' where there is none."""
+    """Return the name in a folder's package.xml; '' if there is none."""
     found = _NAME.search(_read(folder / "package.xml"))
     return found[1] if found else ""
 
 
 def console_scripts(folder: Path) -> dict[str, tuple[str, str]]:
-    """Give the programs that a Python package names: name to module and function (``main`` where it names none)."""
+    """Return the programs that a Python package names: name to module and function (``main`` if it names none)."""
     lines = [
         *itertools.islice(_setup_py(_read(folder / "setup.py")), MOST_SCRIPTS),
         *_setup_cfg(_read(folder / "setup.cfg")),
@@ -47,7 +47,7 @@ def console_scripts(folder: Path) -> dict[str, tuple[str, str]]:
 
 
 def installed_scripts(folder: Path) -> dict[str, Path]:
-    """Give the Python files that a CMakeLists.txt installs as programs: name, with its suffix, to file."""
+    """Return the Python files that a CMakeLists.txt installs as programs: name, with its suffix, to file."""
     text = re.sub(r"#.*", "", _read(folder / "CMakeLists.txt"))
     listed = (_CMAKE_TO_LIB.split(each, maxsplit=1) for each in _CMAKE_PROGRAMS.findall(text))
     names = (name.strip('"') for parts in listed if len(parts) > 1 for name in parts[0].split())
@@ -92,9 +92,9 @@ def _scripts_in(entry_points: Any) -> Iterator[str]:
 
 
 class _Values:
-    """Values of expressions that consist of literals and of names, `known`: None for what only running would tell.
+    """Evaluator of expressions that consist of literals and of names, `known`: None for what only running would tell.
 
-    What is more than MOST_VALUES in all is None, too.
+    More than MOST_VALUES in all is None, too.
     """
 
     def __init__(self, known: Mapping[str, ast.expr]) -> None:
@@ -102,7 +102,7 @@ class _Values:
         self._left = MOST_VALUES
 
     def of(self, node: ast.expr, depth: int = 0) -> Any:
-        """Return what an expression stands for."""
+        """Return the value of an expression."""
         self._left -= 1
         return None if depth > DEEPEST or self._left < 0 else self._read(node, depth + 1)
 

@@ -1,4 +1,4 @@
-"""Where a node comes from: a file, a module of a package, or an installed distribution."""
+"""Source of a node: a file, a module of a package, or an installed distribution."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Folder: TypeAlias = "str | os.PathLike[str] | None"
 
 @dataclass(frozen=True)
 class NodeSource:
-    """Where a node comes from: a file and what in it (`attribute`, or '' for what it holds), or an entry point.
+    """Source of a node, `name`: the file `path` and its `attribute` ('' for the only node), or an `entry_point`.
 
     A file of a package is imported as `module`, with `root` on `sys.path`, so that it can import its neighbours.
     """
@@ -29,12 +29,12 @@ class NodeSource:
 
     @property
     def spec(self) -> str:
-        """What finds this again from anywhere: `PATH`, `PATH:attribute` or a name."""
+        """Text that finds this again from anywhere: `PATH`, `PATH:attribute` or a name."""
         if self.path is None:
             return self.name
         return f"{self.path}:{self.attribute}" if self.attribute else str(self.path)
 
 
 def canonical(name: str) -> str:
-    """Spell a name so that equal ones are equal: `_` and `-` are the same."""
+    """Return `name` with `-` as `_`, since the two are the same in names."""
     return name.replace("-", "_")

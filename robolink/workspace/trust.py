@@ -13,13 +13,14 @@ import sys
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
-from robolink.exceptions import shown
+from robolink.system.terminal import shown
 
 SAFE = "ROBOLINK_SAFE_WORKSPACES"
-"""Names folders that are taken whoever owns them, parted as in PATH; `*` stands for all."""
+"""Environment variable with folders that are used whoever owns them, separated as in PATH; `*` means all."""
 REFUSED = "ROBOLINK_REFUSED_WORKSPACE"
-"""Names the folder that was told of, so that no process started from here tells it again."""
+"""Environment variable with the folder of the last warning, so that no process started from here repeats it."""
 PARTS = ("", "nodes", "configs", "interfaces", "src")
+"""Folders of a workspace whose owners are checked."""
 _LONGEST = 300
 
 
@@ -100,7 +101,7 @@ def _trusted_ids() -> set[int]:
 
 
 def _has_windows_modes(folder: Path) -> bool:
-    """Return whether this is a drive of Windows within WSL, which shows all as writable by everybody."""
+    """True if this is a drive of Windows within WSL, which shows all as writable by everybody."""
     is_drive = folder.parts[1:2] == ("mnt",) and len(folder.parts) > 2 and len(folder.parts[2]) == 1
     return is_drive and "microsoft" in platform.release().lower()
 

@@ -12,7 +12,7 @@ from robolink import Context, Node
 from robolink.action import ActionClient, ActionServer
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.example_interfaces.action import Fibonacci
-from tests.goals import PATIENCE, Waiting, fibonacci
+from tests.support.goals import PATIENCE, Waiting, fibonacci
 
 
 @pytest.fixture

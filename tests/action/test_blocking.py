@@ -18,8 +18,8 @@ from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.interfaces.action_msgs.msg import GoalStatus
 from robolink.interfaces.action_msgs.srv import CancelGoal
 from robolink.interfaces.example_interfaces.action import Fibonacci
-from tests.goals import CANCELED, PATIENCE, SUCCEEDED, Waiting, accept, accepted, fibonacci
-from tests.spins import done, spin_for, spin_until
+from tests.support.goals import CANCELED, PATIENCE, SUCCEEDED, Waiting, accept, accepted, fibonacci
+from tests.support.spins import done, spin_for, spin_until
 
 # --- Callbacks that block -------------------------------------------------------------------------------------------
 

@@ -11,8 +11,8 @@ from robolink.action.server import GoalEvent, ServerGoalHandle
 from robolink.callback_groups import MutuallyExclusiveCallbackGroup
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.example_interfaces.action import Fibonacci
-from tests.goals import SUCCEEDED, accepted, fibonacci
-from tests.spins import done, spin_for
+from tests.support.goals import SUCCEEDED, accepted, fibonacci
+from tests.support.spins import done, spin_for
 
 
 def test_an_action_is_none_of_the_nodes_services_and_topics(node: Node, client: ActionClient) -> None:

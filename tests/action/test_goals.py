@@ -15,8 +15,8 @@ from robolink.impl.log_output import Record
 from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatus
 from robolink.interfaces.action_msgs.srv import CancelGoal
 from robolink.interfaces.example_interfaces.action import Fibonacci
-from tests.goals import ABORTED, CANCELED, SUCCEEDED, Waiting, accept, accepted, numbered
-from tests.spins import done, spin_for
+from tests.support.goals import ABORTED, CANCELED, SUCCEEDED, Waiting, accept, accepted, numbered
+from tests.support.spins import done, spin_for
 
 # --- The ways that a goal can go ------------------------------------------------------------------------------------
 

@@ -18,8 +18,8 @@ from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatus, GoalStatus
 from robolink.interfaces.example_interfaces.action import Fibonacci
 from robolink.interfaces.unique_identifier_msgs.msg import UUID
 from robolink.qos import qos_profile_action_status_default
-from tests.goals import ABORTED, SUCCEEDED, Waiting, accepted, fibonacci, numbered
-from tests.spins import done, spin_for, spin_until
+from tests.support.goals import ABORTED, SUCCEEDED, Waiting, accepted, fibonacci, numbered
+from tests.support.spins import done, spin_for, spin_until
 
 # --- What is kept, and what the status topic says -------------------------------------------------------------------
 

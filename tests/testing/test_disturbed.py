@@ -11,7 +11,7 @@ from robolink import logging
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.interfaces.std_srvs.srv import SetBool
 from robolink.testing import ExpectationError, System
-from tests.counting import Counter, Doubler
+from tests.support.counting import Counter, Doubler
 
 
 def counted(tested: System, seconds: float) -> tuple[list[int], list[float]]:

@@ -12,7 +12,7 @@ from robolink import Node, logging
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.testing import ExpectationError, NodeFailure, System
-from tests.counting import Counter, Doubler, told
+from tests.support.counting import Counter, Doubler, told
 
 
 def test_a_failure_shows_what_came_on_the_topics_concerned_and_how_to_replay_it() -> None:

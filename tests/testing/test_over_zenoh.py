@@ -15,8 +15,8 @@ from robolink.exceptions import NotFoundError
 from robolink.testing import ExpectationError, NodeFailure, System
 from robolink.testing.expectations import OnlyInMemoryError
 from robolink.transport.free_domain import free_domain
-from tests.commands import MARK
-from tests.nodefiles import load_node_file
+from tests.support.commands import MARK
+from tests.support.nodefiles import load_node_file
 
 pytest_plugins = ["pytester"]
 pytestmark = pytest.mark.processes

@@ -13,41 +13,11 @@ import pytest
 import robolink.testing.one_process  # noqa: F401
 import robolink.testing.processes  # noqa: F401
 import robolink.testing.system  # noqa: F401
+from tests.support.plugged import run
 
 pytest_plugins = ["pytester"]
 
 HEAVY = ("zenoh", "numpy", "yaml", "msgspec", "robolink.node", "robolink.context", "robolink.testing.system")
-
-NODE = """
-from robolink import Node
-from robolink.interfaces.std_msgs.msg import Int32
-
-
-class Counter(Node):
-    def __init__(self):
-        super().__init__("counter")
-        self.count = 0
-        self.publisher = self.create_publisher(Int32, "count", 10)
-        self.create_timer(0.1, self.on_timer)
-
-    def on_timer(self):
-        self.count += 1
-        self.publisher.publish(Int32(data=self.count))
-"""
-
-
-@pytest.fixture
-def project(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> pytest.Pytester:
-    """A project of somebody's own, with a node."""
-    monkeypatch.delenv("PYTHONHASHSEED", raising=False)
-    pytester.makepyfile(counter=NODE)
-    pytester.syspathinsert()
-    return pytester
-
-
-def run(project: pytest.Pytester, text: str, *options: str) -> pytest.RunResult:
-    project.makepyfile(test_it="from counter import Counter\n" + text)
-    return project.runpytest_inprocess("-p", "no:cacheprovider", "-p", "no:xdist", *options)
 
 
 def test_a_test_has_a_system_a_node_and_a_clock(project: pytest.Pytester) -> None:
@@ -108,6 +78,7 @@ def test_the_seed_is_the_tests_own_and_the_same_each_time_or_the_one_asked_for(p
     result.stderr.fnmatch_lines(["*--robolink-seed: invalid whole number up to 4294967295, or 'random' value: 'often'"])
 
 
+@pytest.mark.processes
 def test_a_replay_tells_the_seed_of_hashes_too(project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONHASHSEED", "5")
     told = "robolink: the order of sets of texts is chance; PYTHONHASHSEED=0 makes it the same"
@@ -289,10 +260,10 @@ def test_starts(system):
 """
     result = run(project, text)
     result.assert_outcomes(failed=3)
-    result.stdout.no_fnmatch_line("*robolink?oneprocess?*.py:*: in *")
+    result.stdout.no_fnmatch_line("*robolink?host?*.py:*: in *")
     result.stdout.no_fnmatch_line("*robolink?testing?*.py:*: in *")
     result = run(project, text, "--full-trace")
-    result.stdout.fnmatch_lines(["*robolink?oneprocess?*.py:*"])
+    result.stdout.fnmatch_lines(["*robolink?host?*.py:*"])
 
 
 def test_fixtures_of_a_projects_own_go_first(project: pytest.Pytester) -> None:
@@ -311,6 +282,7 @@ def node():
     result.assert_outcomes(passed=1)
 
 
+@pytest.mark.processes
 def test_a_test_that_is_interrupted_leaves_nothing(project: pytest.Pytester) -> None:
     text = """
 import pathlib
@@ -331,85 +303,8 @@ def test_it(system):
     assert (project.path / "goodbye").exists()
 
 
+@pytest.mark.processes
 def test_nothing_heavy_is_imported_for_those_who_do_not_ask() -> None:
     code = f"import sys, robolink.testing.plugin; print([name for name in {HEAVY} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
     assert done.stdout.strip() == "[]"
-
-
-# Over Zenoh
-
-
-@pytest.mark.processes
-def test_the_same_test_runs_against_processes(project: pytest.Pytester) -> None:
-    text = """
-def test_counts(system):
-    node = system.start(Counter, name="teller", namespace="ada", remappings={"count": "/number"})
-    assert node.get_fully_qualified_name() == "/ada/teller"
-    first = system.expect("number").data
-    assert system.expect("number", lambda number: number.data > first + 3)
-    assert (system.publishers("number"), system.nodes) == (["/ada/teller"], ["/ada/teller"])
-    system.crash(node)
-    assert system.nodes == []
-    system.restart(node)
-    assert system.expect("number").data < 9
-    assert system.parameter("ada/teller", "use_sim_time") is False
-
-def test_faults(system):
-    system.faults.lose("number", 0.5)
-
-def test_virtual_time(virtual_time):
-    virtual_time.run(3600)
-"""
-    run(project, text).assert_outcomes(passed=3)
-    result = run(project, text, "--robolink-transport=zenoh", "-rs")
-    result.assert_outcomes(passed=1, skipped=2)
-    result.stdout.fnmatch_lines(["SKIPPED *test_it.py:*MessageFault: faults strike in memory alone; run this with*"])
-    result.stdout.fnmatch_lines(["SKIPPED *test_it.py:*: real processes have no virtual time*"])
-
-
-@pytest.mark.processes
-def test_processes_that_fail_are_told_and_none_is_left(project: pytest.Pytester) -> None:
-    text = """
-import os
-
-class Fragile(Counter):
-    def on_timer(self):
-        super().on_timer()
-        if self.count == 5:
-            raise ValueError("broken")
-
-class Broken(Counter):
-    def __init__(self):
-        raise ValueError("no such thing")
-
-def test_breaks(system):
-    system.start(Fragile)
-    system.run(20.0)
-
-def test_never_begins(system):
-    system.start(Broken)
-
-def test_waits_in_vain(system):
-    system.start(Counter)
-    system.expect("count", lambda count: count.data < 0, within=0.5)
-"""
-    result = run(project, text, "--robolink-transport=zenoh", "--robolink-seed=3")
-    result.assert_outcomes(failed=3)
-    result.stdout.fnmatch_lines(
-        [
-            "*NodeFailure: counter failed at * s: ended with exit code 1: ValueError: broken",
-            "*replay: pytest 'test_it.py::test_breaks' --robolink-seed 3 --robolink-transport zenoh",
-            "*NodeFailure: *failed at its start: ended with exit code 1: ValueError: no such thing",
-            "*messages on /count fulfilled the condition within 0.5 s*",
-            "*/count  /counter  data=*",
-        ]
-    )
-
-
-def test_whoever_cannot_import_rclpys_names_is_told_how(pytester: pytest.Pytester) -> None:
-    pytester.makepyfile(test_a="from std_msgs.msg import String", test_b="import rclpy", test_c="import nowhere")
-    result = pytester.runpytest_subprocess("-p", "no:cacheprovider", "-p", "no:xdist")
-    advice = "`import robolink.compat` first, here or in conftest.py, and std_msgs is robolink's"
-    assert advice in result.stdout.str()
-    assert result.stdout.str().count("import robolink.compat") == 2

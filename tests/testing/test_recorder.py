@@ -17,14 +17,14 @@ from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.message.one_line import WIDTH, short
-from robolink.names import near
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.serialization import deserialize_message
 from robolink.testing.expectations import Ends, no_such, nothing_came, seconds
 from robolink.testing.recorder import KEPT, Recorder
-from robolink.testing.timeline import Moment, messages_of, table
+from robolink.testing.timeline import Event, messages_of, table
+from robolink.text.names import near
 from robolink.transport.memory import Bus, MemoryTransport
-from tests.filled import filled
+from tests.support.filled import filled
 
 LATCHED = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -157,7 +157,7 @@ def test_nonsense_on_the_wire_is_told_as_such(network: tuple[Context, Recorder])
 
 
 def test_a_table_is_in_order_of_time_and_counts_from_the_beginning() -> None:
-    moments = [Moment(3_500_000_000, "/scan", "/world", "ranges=[1]"), Moment(1_000_000_000, "WARN", "goto", "late")]
+    moments = [Event(3_500_000_000, "/scan", "/world", "ranges=[1]"), Event(1_000_000_000, "WARN", "goto", "late")]
     assert table(moments, 500_000_000).splitlines() == [
         "  0.500 s  WARN   goto    late",
         "  3.000 s  /scan  /world  ranges=[1]",

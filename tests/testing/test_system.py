@@ -19,7 +19,7 @@ from robolink.interfaces.std_msgs.msg import Int32
 from robolink.interfaces.std_srvs.srv import SetBool, Trigger
 from robolink.message import int32
 from robolink.testing import ExpectationError, System
-from tests.counting import Counter, Doubler, told
+from tests.support.counting import LATCHED, Counter, Doubler, told
 
 # Messages
 
@@ -116,6 +116,30 @@ def test_what_is_kept_for_late_ones_counts_too(tested: System) -> None:
     tested.run(5.0)
     assert tested.expect("state", within=0.0).data == "ready"
     assert [each.data for each in tested.messages("state")] == ["ready"]
+
+
+class Announcer(Node):
+    """Publishes each change as its state, which is kept for late subscriptions."""
+
+    def __init__(self) -> None:
+        super().__init__("announcer")
+        self.publisher = self.create_publisher(Int32, "state", LATCHED)
+        self.create_subscription(Int32, "change", self.on_change, 10)
+
+    def on_change(self, change: Int32) -> None:
+        self.publisher.publish(change)
+        self.get_logger().info(f"changed to {change.data}")
+
+
+def test_a_message_that_is_kept_for_late_ones_is_looked_at_once(tested: System) -> None:
+    tested.start(Announcer)
+    for number in (1, 1, 2):
+        tested.publish("change", Int32(data=number))
+    tested.expect_log("changed to 2")
+    looked_at = list[int]()
+    with pytest.raises(ExpectationError, match="none of the 3 messages"):
+        tested.expect("state", lambda state: looked_at.append(state.data), within=0.0)
+    assert looked_at == [1, 1, 2]
 
 
 def test_a_topic_may_come_later_than_the_wish_to_hear_it(tested: System) -> None:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robolink.cli import complete
 from robolink.cli.action import names
+from robolink.cli.shared import complete
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -31,8 +31,8 @@ def _noun() -> None:
 @app.command("list")
 def list_actions(show_types: ShowTypes = False, count: Count = False, as_json: AsJson = False) -> None:
     """List the actions that are served or that have a client."""
-    from robolink.cli.names import show_names
-    from robolink.cli.session import looking
+    from robolink.cli.shared.names import show_names
+    from robolink.cli.shared.session import looking
 
     with looking() as context:
         actions = _types(context)
@@ -42,10 +42,11 @@ def list_actions(show_types: ShowTypes = False, count: Count = False, as_json: A
 @app.command("type")
 def show_type(action: Action, as_json: AsJson = False) -> None:
     """Show the type of an action."""
-    from robolink.cli.announced import absolute
-    from robolink.cli.names import show_types
-    from robolink.cli.session import looking
-    from robolink.exceptions import NotFoundError, shown
+    from robolink.cli.shared.announced import absolute
+    from robolink.cli.shared.names import show_types
+    from robolink.cli.shared.session import looking
+    from robolink.exceptions import NotFoundError
+    from robolink.system.terminal import shown
 
     name = absolute(action)
     with looking() as context:
@@ -69,8 +70,8 @@ def find(
     as_json: AsJson = False,
 ) -> None:
     """List the actions of a type."""
-    from robolink.cli.names import show_of_type
-    from robolink.cli.session import looking
+    from robolink.cli.shared.names import show_of_type
+    from robolink.cli.shared.session import looking
 
     with looking() as context:
         actions = _types(context)
@@ -115,7 +116,7 @@ def send_goal(
 ) -> int:
     """Send a goal and show what comes of it. Ctrl-C cancels the goal. Exits with 1 unless it succeeds."""
     from robolink.cli.action import goal
-    from robolink.cli.asked import is_type, read_stdin
+    from robolink.cli.shared.requests import is_type, read_stdin
 
     if values is None and not is_type(type_):  # ACTION VALUES: the type was left out
         type_, values = "", type_
@@ -128,10 +129,10 @@ def send_goal(
 
 
 def _types(context: Context) -> dict[str, list[str]]:
-    """Give every action with its types, sorted."""
+    """Return the types of every action, by name, sorted."""
     from robolink.action.graph import actions
-    from robolink.cli.announced import endpoints
-    from robolink.graph import names_and_types
+    from robolink.cli.shared.announced import endpoints
+    from robolink.graph.graph import names_and_types
     from robolink.wire import EndpointKind
 
     ends = endpoints(context)

@@ -1,4 +1,4 @@
-"""What `robolink action send_goal` does: it sends a goal, shows what comes of it, and cancels it at Ctrl-C."""
+"""Sending of a goal for `robolink action send_goal`: shows feedback and result, and cancels it at Ctrl-C."""
 
 from __future__ import annotations
 
@@ -12,14 +12,15 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.action.graph import FEEDBACK, GET_RESULT, GOAL_TYPE, SEND_GOAL, part_name
-from robolink.cli import show
-from robolink.cli.asked import Asked, message_of
-from robolink.cli.elsewhere import domains_with, hint
-from robolink.cli.output import say, tell
-from robolink.cli.session import node_of
+from robolink.cli.shared import show
+from robolink.cli.shared.other_domains import domains_with, hint
+from robolink.cli.shared.output import say, tell
+from robolink.cli.shared.requests import GivenRequest, message_of
+from robolink.cli.shared.session import node_of
 from robolink.context import Context
-from robolink.exceptions import NotFoundError, RobolinkError, nearest, shown
+from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.interfaces import find, is_named
+from robolink.system.terminal import shown
 from robolink.wire import EndpointKind
 
 if TYPE_CHECKING:
@@ -30,35 +31,35 @@ if TYPE_CHECKING:
     from robolink.node import Node
 
 PATIENCE = 1.0
-"""Seconds without a server after which the reason is given."""
+"""Wait for a server until the reason is printed, in seconds."""
 
 CANCELED_WITHIN = 2.0
-"""Seconds that a server has to answer that it cancels the goal."""
+"""Timeout of the answer to a cancellation, in seconds."""
 
 _SLICE = 0.25
-"""Seconds of one wait: on Windows Ctrl-C does not end a wait that is longer."""
+"""Longest single wait, in seconds: on Windows Ctrl-C does not end a wait."""
 
 REASONS = {0: "no reason given", 1: "the server goes on", 2: "the server does not know it", 3: "it has ended already"}
-"""What the return codes of action_msgs/srv/CancelGoal mean."""
+"""Meaning of the return codes of action_msgs/srv/CancelGoal."""
 
 WHOLE = show.Style(longest=None)
 
 
 class GoalError(RobolinkError, RuntimeError):
-    """A goal that cannot be sent, or that nobody answered."""
+    """A goal cannot be sent, or was not answered."""
 
 
 class Manner(NamedTuple):
-    """How a goal is sent, and what is shown of it."""
+    """Options of `send_goal`: how a goal is sent, and what is shown of it."""
 
     feedback: bool = False
     timeout: float = 5.0
-    """Seconds until a server has to have accepted or rejected it, the wait for the server included."""
+    """Timeout until the goal is accepted or rejected, in seconds, with the wait for the server."""
     json: bool = False
     node_name: str = ""
 
     def say(self, text: str, **plain: Any) -> None:
-        """Show text to people, or values to programs: either may be nothing."""
+        """Print `text`, or with --json the values; either may be empty, and is not printed then."""
         if not self.json:
             say(text)
         elif plain:
@@ -66,9 +67,9 @@ class Manner(NamedTuple):
 
 
 def run(action: str, type_: str, values: str, manner: Manner) -> int:
-    """Send a goal and wait for its end; 0 if it succeeded, else 1. Ctrl-C has it cancelled.
+    """Send a goal and wait for its end; return 0 if it succeeded, else 1. Ctrl-C cancels the goal.
 
-    Raises GoalError when nobody answers in time, ServiceError when the server goes away, NotFoundError for an unknown
+    Raises GoalError if there is no answer in time, ServiceError if the server goes away, NotFoundError for an unknown
     type, DocumentError or EncodeError for a wrong goal.
     """
     with _interruptible() as context:
@@ -76,20 +77,20 @@ def run(action: str, type_: str, values: str, manner: Manner) -> int:
         from robolink.executors import SingleThreadedExecutor
 
         node = node_of(context, manner.node_name)
-        asked = Asked(node.resolve_topic_name(action), type_, values)
+        given = GivenRequest(node.resolve_topic_name(action), type_, values)
         deadline = time.monotonic() + manner.timeout
-        chosen = _wait_for_type(context, asked, manner, deadline)
+        chosen = _wait_for_type(context, given, manner, deadline)
         goal = message_of(chosen.Goal, values)
-        client = ActionClient(node, chosen, asked.name)
+        client = ActionClient(node, chosen, given.name)
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(node)
-        _wait_until(client.server_is_ready, node, deadline, f"{asked.name} has no complete server")
-        return _Sending(client, executor, manner).run(goal, asked.name, deadline)
+        _wait_until(client.server_is_ready, node, deadline, f"{given.name} has no complete server")
+        return _Sending(client, executor, manner).run(goal, given.name, deadline)
 
 
 @contextlib.contextmanager
 def _interruptible() -> Iterator[Context]:
-    """A context that Ctrl-C and SIGTERM do not end, though they break into the block: a goal is cancelled first."""
+    """Open a context that outlives Ctrl-C and SIGTERM, which interrupt only the block: a goal is cancelled first."""
     numbers = [signal.SIGINT, signal.SIGTERM]
     if sys.platform == "win32":
         numbers.append(signal.SIGBREAK)
@@ -105,51 +106,51 @@ def _interruptible() -> Iterator[Context]:
             signal.signal(number, handler if handler is not None else signal.SIG_DFL)
 
 
-def _wait_for_type(context: Context, asked: Asked, manner: Manner, deadline: float) -> type[Action]:
-    """Wait until the action is served, with the type that is named, if one is; give its class."""
-    from robolink.cli.types import action_type
+def _wait_for_type(context: Context, given: GivenRequest, manner: Manner, deadline: float) -> type[Action]:
+    """Wait until the action is served, with the type that is named, if one is; return its class."""
+    from robolink.cli.shared.types import action_type
 
-    if not _served(context, asked):
-        _check_early(asked)
+    if not _served(context, given):
+        _check_early(given)
     manner.say("Waiting for an action server to become available...")
     patience = time.monotonic() + PATIENCE
-    while not context.graph.wait_for(lambda: _served(context, asked), _SLICE):
+    while not context.graph.wait_for(lambda: _served(context, given), _SLICE):
         now = time.monotonic()
         if now >= deadline:
-            raise GoalError(f"gave up after {manner.timeout:g} s: {_why_absent(context, asked)}")
+            raise GoalError(f"gave up after {manner.timeout:g} s: {_why_absent(context, given)}")
         if now >= patience:
             patience = float("inf")
-            tell(f"waiting: {_why_absent(context, asked)}")
-    return action_type(context, asked.name, asked.type_)
+            tell(f"waiting: {_why_absent(context, given)}")
+    return action_type(context, given.name, given.type_)
 
 
-def _check_early(asked: Asked) -> None:
-    """Find what is wrong with the goal before anybody waits for the server, where its type is installed."""
-    if asked.type_:
+def _check_early(given: GivenRequest) -> None:
+    """Check the goal before the wait for the server, if its type is installed."""
+    if given.type_:
         with contextlib.suppress(NotFoundError):  # the server may know it
-            message_of(find(asked.type_, "action").Goal, asked.values)
+            message_of(find(given.type_, "action").Goal, given.values)
 
 
-def _served(context: Context, asked: Asked) -> bool:
+def _served(context: Context, given: GivenRequest) -> bool:
     others = ((EndpointKind.SERVICE, GET_RESULT), (EndpointKind.PUBLISHER, FEEDBACK))
-    if not all(context.graph.endpoints(kind, name=part_name(asked.name, part)) for kind, part in others):
+    if not all(context.graph.endpoints(kind, name=part_name(given.name, part)) for kind, part in others):
         return False
-    servers = context.graph.endpoints(EndpointKind.SERVICE, name=part_name(asked.name, SEND_GOAL))
+    servers = context.graph.endpoints(EndpointKind.SERVICE, name=part_name(given.name, SEND_GOAL))
     types = (each.type_name.removesuffix(GOAL_TYPE) for each in servers)
-    return any(not asked.type_ or is_named(each, asked.type_) for each in types)
+    return any(not given.type_ or is_named(each, given.type_) for each in types)
 
 
-def _why_absent(context: Context, asked: Asked) -> str:
-    """Say why there is no such server."""
+def _why_absent(context: Context, given: GivenRequest) -> str:
+    """Return the reason why there is no such server."""
     mark = part_name("", SEND_GOAL)
     served = [each for each in context.graph.endpoints(EndpointKind.SERVICE) if each.name.endswith(mark)]
     names = {each.name.removesuffix(mark) for each in served}
-    types = sorted({each.type_name.removesuffix(GOAL_TYPE) for each in served if each.name == asked.name + mark})
+    types = sorted({each.type_name.removesuffix(GOAL_TYPE) for each in served if each.name == given.name + mark})
     if types:
-        return f"{asked.name} is served as {' and '.join(types)}, not as {shown(asked.type_)}"
-    elsewhere = hint(domains_with(context, asked.name + mark, EndpointKind.SERVICE))
-    near = "" if elsewhere else nearest(asked.name, sorted(names))
-    return f"nobody serves the action {asked.name} on domain {context.get_domain_id()}{elsewhere}{near}"
+        return f"{given.name} is served as {' and '.join(types)}, not as {shown(given.type_)}"
+    elsewhere = hint(domains_with(context, given.name + mark, EndpointKind.SERVICE))
+    near = "" if elsewhere else nearest(given.name, sorted(names))
+    return f"nobody serves the action {given.name} on domain {context.get_domain_id()}{elsewhere}{near}"
 
 
 def _wait_until(condition: Callable[[], bool], node: Node, deadline: float, problem: str) -> None:
@@ -159,13 +160,13 @@ def _wait_until(condition: Callable[[], bool], node: Node, deadline: float, prob
 
 
 class _Sending:
-    """One goal, on its way."""
+    """A goal that has been sent, with its feedback and result."""
 
     def __init__(self, client: ActionClient, executor: Executor, manner: Manner) -> None:
         self._client, self._executor, self._manner = client, executor, manner
 
     def run(self, goal: Any, name: str, deadline: float) -> int:
-        """Send it and show what comes of it; give the exit code."""
+        """Send the goal, show feedback and result, and return the exit code."""
         from robolink.interfaces.unique_identifier_msgs.msg import UUID
 
         goal_id = UUID(uuid=list(uuid.uuid4().bytes))
@@ -204,7 +205,7 @@ class _Sending:
         self._manner.say(f"Feedback:\n    {show.as_yaml(feedback, WHOLE)}\n", feedback=feedback)
 
     def _cancel(self, goal_id: UUID) -> None:
-        """Have the goal cancelled, whether or not it is known yet that it was accepted."""
+        """Cancel the goal, even if the answer is not known yet that it was accepted."""
         with contextlib.suppress(BrokenPipeError):
             self._manner.say("Canceling goal...")
         problem = self._why_not_canceled(goal_id)

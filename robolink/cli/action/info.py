@@ -1,24 +1,24 @@
-"""What `robolink action info` shows: which nodes serve an action, and which are its clients."""
+"""Output of `robolink action info`: the servers of an action, and its clients."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robolink.cli.announced import absolute, endpoints
-from robolink.cli.node import sections_of
-from robolink.cli.output import say, say_json
-from robolink.cli.session import looking
-from robolink.exceptions import NotFoundError, shown
+from robolink.cli.shared.announced import absolute, endpoints, sections_of
+from robolink.cli.shared.output import say, say_json
+from robolink.cli.shared.session import looking
+from robolink.exceptions import NotFoundError
+from robolink.system.terminal import shown
 
 if TYPE_CHECKING:
     from robolink.wire import EndpointToken
 
 TITLES = {"Action clients": "Action Clients", "Action servers": "Action Servers"}
-"""What is printed, and the section of `node info` that it comes from."""
+"""Printed titles, each with the section of `node info` that it is made from."""
 
 
 def show(action: str, *, types: bool, count: bool, as_json: bool) -> None:
-    """Show it. Raises NotFoundError for an action that nobody serves and that has no clients."""
+    """Show the servers and clients. Raises NotFoundError for an action that has neither."""
     name = absolute(action)
     with looking() as context:
         nodes = _nodes(endpoints(context))
@@ -39,7 +39,7 @@ def show(action: str, *, types: bool, count: bool, as_json: bool) -> None:
 
 
 def _nodes(ends: list[EndpointToken]) -> dict[str, dict[str, dict[str, list[str]]]]:
-    """Give, for each node, the actions that it is a client of and that it serves, each with its types."""
+    """Return, for each node, the actions that it is a client of and that it serves, each with its types."""
     of_node: dict[str, list[EndpointToken]] = {}
     for each in ends:
         of_node.setdefault(each.full_node_name, []).append(each)

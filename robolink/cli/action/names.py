@@ -1,4 +1,4 @@
-"""What the shell completes behind `robolink action`: the names and types of the actions that are served."""
+"""Shell completion for `robolink action`: the names and types of the actions that are served."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from robolink.cli import complete
+from robolink.cli.shared import complete
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -15,7 +15,7 @@ Context = typer.Context
 
 
 def action_names(incomplete: str) -> list[str]:
-    """Give the names of the actions that are served."""
+    """Return the names of the actions that are served."""
     names = {name for name, _ in _served()}
     if incomplete and not incomplete.startswith("/"):
         names = {each.removeprefix("/") for each in names}
@@ -23,7 +23,7 @@ def action_names(incomplete: str) -> list[str]:
 
 
 def type_of_action(ctx: Context, incomplete: str) -> list[str]:
-    """Give the types that the action on the command line has; all types of actions if it has none."""
+    """Return the types of the action on the command line; all action types if it has none."""
     wanted = "/" + str(ctx.params.get("action") or "").lstrip("/")
     types = {type_ for name, type_ in _served() if name == wanted}
     return complete.offered(types, incomplete) or complete.action_types(incomplete)

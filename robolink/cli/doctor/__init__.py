@@ -28,10 +28,10 @@ def doctor(
 ) -> None:
     """Check the settings, the network and the running system; exit code 1 if something is wrong."""
     from robolink.cli.doctor.checks import CHECKS
-    from robolink.cli.doctor.facts import gather
+    from robolink.cli.doctor.gathering import gather
     from robolink.cli.doctor.graph_checks import GRAPH_CHECKS
     from robolink.cli.doctor.report import sections
-    from robolink.cli.output import say
+    from robolink.cli.shared.output import say
 
     facts = gather()
     # Where the system could not be looked at, one check says so, and the others have nothing to say.
@@ -62,7 +62,7 @@ def _lines(verdicts: list[tuple[Check, Verdict]], failed: list[str]) -> list[str
 
 
 def _passed(levels: list[str]) -> str:
-    """Count in words what has passed and what has not."""
+    """Return in words how many checks have passed, and how many not."""
     from robolink.cli.doctor.verdict import OK, UNKNOWN, WARNING, count
 
     if levels.count(OK) == len(levels):

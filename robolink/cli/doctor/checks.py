@@ -1,37 +1,37 @@
-"""What `robolink doctor` checks of this machine and its network: small functions of the facts."""
+"""Checks of this machine and its network for `robolink doctor`: pure functions of the facts."""
 
 from __future__ import annotations
 
 import re
 
 from robolink.cli.doctor.facts import ClockOffset, Facts
-from robolink.cli.doctor.probes import REFUSES, ROUTER, SILENT, Port
 from robolink.cli.doctor.verdict import Check, Verdict, count, listed
+from robolink.networks.port_probe import REFUSES, ROUTER, SILENT, Port
 from robolink.transport.reach import on_this_machine
+from robolink.transport.shared_memory import VARIABLE, decide
 from robolink.wire import NodeToken
 
 OLDEST_PYTHON = (3, 10)
 OLDEST_ZENOH = (1, 10)
 
-LITTLE_SPACE = 48 * 2**20
-"""Bytes of /dev/shm: each session wants 18 MB."""
-
 LATE, WRONG = 0.1, 1.0
-"""Seconds between two clocks that disturb transforms, and that make them impossible."""
+"""Offsets of two clocks, in seconds, from which transforms are disturbed and impossible."""
 
 _NO_EFFECT = {
     "ROS_LOCALHOST_ONLY": "say ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST, which is the default here",
-    "ROS_STATIC_PEERS": "say ROBOLINK_NETWORK=tcp/HOST:7447 to meet another machine through its router",
-    "ROS_DISCOVERY_SERVER": "it is DDS's; say ROBOLINK_NETWORK=tcp/HOST:7447 to meet another machine",
+    "ROS_STATIC_PEERS": "say ROBOLINK_NETWORK=HOST to meet another machine",
+    "ROS_DISCOVERY_SERVER": "it is DDS's; say ROBOLINK_NETWORK=HOST to meet another machine",
 }
 _NOTED = (
-    *("ROBOLINK_NETWORK", "ROBOLINK_TRANSPORT", "ROBOLINK_ROS_DISTRO", "ZENOH_SESSION_CONFIG_URI"),
-    *("ZENOH_CONFIG_OVERRIDE", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ZENOH_RUNTIME", "RUST_LOG"),
+    *("ROBOLINK_NETWORK", "ROBOLINK_TRANSPORT", "ROBOLINK_ROS_DISTRO", "ROBOLINK_SHARED_MEMORY"),
+    "ROBOLINK_LIMITS",
+    *("ZENOH_SESSION_CONFIG_URI", "ZENOH_CONFIG_OVERRIDE", "ROS_AUTOMATIC_DISCOVERY_RANGE"),
+    *("ZENOH_RUNTIME", "RUST_LOG"),
 )
 
 
 def versions(facts: Facts) -> Verdict:
-    """Python and what robolink stands on are new enough."""
+    """Check that Python and robolink's dependencies are there and new enough."""
     missing = [name for name, found in facts.versions.items() if not found and name != "robolink"]  # its source may run
     errors = [f"{each} is not installed: pip install {each}" for each in missing]
     if facts.python < OLDEST_PYTHON:
@@ -58,7 +58,7 @@ def _numbers(version: str) -> tuple[int, ...]:
 
 
 def settings(facts: Facts) -> Verdict:
-    """The environment asks for something that can be, and nothing in it is without effect."""
+    """Check that the environment's settings are valid, and that none is without effect."""
     environ, wanted = facts.environ, facts.settings
     without_effect = [each for each in _NO_EFFECT if environ.get(each, "0") not in ("", "0")]
     warnings = [f"{each}={environ[each][:80]} has no effect: {_NO_EFFECT[each]}" for each in without_effect]
@@ -78,7 +78,7 @@ def settings(facts: Facts) -> Verdict:
 
 
 def loopback(facts: Facts) -> Verdict:
-    """The machine reaches itself: that is where nodes meet."""
+    """Check that the machine can connect to itself: that is where nodes meet."""
     if facts.loopback:
         return Verdict("this machine can connect to itself")
     hint = ": try 'ip link set lo up'" if facts.platform == "linux" else ""
@@ -86,7 +86,7 @@ def loopback(facts: Facts) -> Verdict:
 
 
 def reach(facts: Facts) -> Verdict:
-    """A session whose settings lead to other machines is linked to somebody there."""
+    """Check that a session whose settings lead to other machines has a link there."""
     settings, seen, whom = facts.settings, facts.seen, facts.reach
     if settings.transport != "zenoh":
         return Verdict("not used with these settings")
@@ -107,20 +107,20 @@ def reach(facts: Facts) -> Verdict:
 
 
 def certificates(facts: Facts) -> Verdict:
-    """Certificates, where the settings name some, are sound, and those who are connected to accept them."""
+    """Check that the certificates of the settings, if there are any, are valid and accepted by the other side."""
     if not facts.reach.secured:
         return Verdict("none are used with these settings")
     return Verdict("sound, and nobody refuses them", facts.certificate_errors, facts.certificate_warnings)
 
 
 def _nobody(facts: Facts) -> str:
-    """Word the warning that other machines are asked for and none answers, with what to do."""
+    """Return the warning that no other machine answers, with what to do."""
     settings, whom = facts.settings, facts.reach
     answers = f"network {settings.network[:120]}: no other machine has answered ({whom})"
     if whom.multicast:
         return (
             f"{answers}: start a node there with --network {settings.network[:120]}; if one runs there, multicast does "
-            f"not pass between you (Wi-Fi, a VPN, another subnet): here, say --network tcp/HOST:{settings.port}"
+            f"not pass between you (Wi-Fi, a VPN, another subnet): here, say --network HOST, that machine's name"
         )
     if all(map(on_this_machine, whom.connects)):
         return f"{answers}: connect to one of this machine's addresses there, and let the port through its firewall"
@@ -128,7 +128,7 @@ def _nobody(facts: Facts) -> str:
 
 
 def rendezvous(facts: Facts) -> Verdict:
-    """The port where nodes meet is free, or one of them has it."""
+    """Check that the rendezvous port is free, or held by a node."""
     wanted = facts.settings
     if wanted.transport != "zenoh" or not wanted.meets:
         return Verdict("not used with these settings")
@@ -142,7 +142,7 @@ def rendezvous(facts: Facts) -> Verdict:
 
 
 def router(facts: Facts) -> Verdict:
-    """A router of ROS 2, if there is one, answers; so does the one that is asked for."""
+    """Check that a ROS 2 router, if there is one, answers, and so does the one that the settings name."""
     asked, far, port = facts.settings.network, facts.far_router, facts.ports.get(facts.router_port)
     where = f"port {facts.router_port}, the ROS 2 router's,"
     errors, warnings = [], []
@@ -163,14 +163,15 @@ def router(facts: Facts) -> Verdict:
 
 
 def _ways_in(facts: Facts) -> list[str]:
-    """List the ways by which a router lets others hear nodes that are to stay among themselves."""
+    """Return warnings of the ways by which a router lets others hear nodes of this machine."""
     router = f"the router on port {facts.router_port}"
     found = []
     if facts.router_open_at:
         own = f'listen/endpoints=["tcp/127.0.0.1:{facts.router_port}"]'
         found.append(
             f"{router} also listens at {listed(facts.router_open_at)}: through it other machines hear and command your "
-            f"nodes; start it with ZENOH_CONFIG_OVERRIDE='{own}' to keep it on this one"
+            f"nodes; start it with ZENOH_CONFIG_OVERRIDE='{own}' to keep it on this one "
+            "(robolink's router: without --listen)"
         )
     if facts.router_owner:
         found.append(f"{router} is another user's, {facts.router_owner}: it hears and may command your nodes")
@@ -184,7 +185,7 @@ def _whose(facts: Facts, port: Port) -> str:
 
 
 def _stranger(facts: Facts, port: Port) -> str:
-    """Name what is on a port where something else is expected."""
+    """Return a description of what holds a port that should be another's."""
     if port.speaks_zenoh:
         return f"{_whose(facts, port)}, which is no router"
     says = {REFUSES: "speaks Zenoh but refuses", SILENT: "accepts connections and says nothing, or is frozen"}
@@ -192,7 +193,7 @@ def _stranger(facts: Facts, port: Port) -> str:
 
 
 def domains(facts: Facts) -> Verdict:
-    """The nodes are on the domain that one looks at."""
+    """Check that there are nodes on the domain of the settings, or else none on others."""
     own = sum(isinstance(each, NodeToken) for each in facts.seen.tokens)
     others = [
         f"domain {number} has {count(nodes, 'node') if nodes is not None else 'somebody'}"
@@ -208,20 +209,18 @@ def domains(facts: Facts) -> Verdict:
 
 
 def memory(facts: Facts) -> Verdict:
-    """There is room for the messages that are handed over in shared memory."""
-    if not facts.settings.shared_memory:
-        return Verdict("shared memory is off in the settings")
-    space = facts.shared_memory
-    if space is None:
-        return Verdict("shared memory is on; its size is not known on this system")
-    shown = f"{space.free // 2**20} of {space.total // 2**20} MB of /dev/shm are free"
-    if space.free < LITTLE_SPACE:
-        return Verdict("", (), (f"{shown}: large messages get slow (in a container, give it --shm-size=256m)",))
-    return Verdict(f"shared memory is on, {shown}")
+    """Check whether shared memory is on, and safe."""
+    found = facts.memory
+    remedy = f" ({found.remedy})" if found.remedy else ""
+    if found.on and not decide(facts.machine).on:
+        lost = "large messages may be lost, and other programs killed"
+        return Verdict("", (), (f"shared memory is on, {found.reason}: {lost}{remedy}; {VARIABLE}=auto is safe",))
+    slower = "" if found.on else "; messages of megabytes take two to three times as long"
+    return Verdict(f"shared memory is {'on' if found.on else 'off'}: {found.reason}{slower}{remedy}")
 
 
 def clocks(facts: Facts) -> Verdict:
-    """The clocks of the other processes agree with this one's."""
+    """Check that the clocks of the other processes agree with this one's."""
     found = facts.seen.clocks
     if not found:
         return Verdict("not measured: no node that tells the time", unknown=True)

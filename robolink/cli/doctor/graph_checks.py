@@ -1,4 +1,4 @@
-"""What `robolink doctor` checks of a running system: who does not meet whom, and why. Small functions of the facts."""
+"""Checks of a running system for `robolink doctor`: endpoints that cannot meet. Pure functions of the facts."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ PUBLISHER, SUBSCRIPTION = EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION
 SERVICE, CLIENT = EndpointKind.SERVICE, EndpointKind.CLIENT
 
 Variant = tuple[str, str]
-"""A type's name and hash."""
+"""Name and hash of a type."""
 
 SILENT_TOPICS = ("/parameter_events", "/rosout", "/clock", "/tf_static")
-"""What nodes subscribe to whether or not anybody publishes. /clock has a check of its own."""
+"""Topics that nodes subscribe to even without a publisher. /clock has a check of its own."""
 
 COMMANDS = ("_robolink_", "_ros2cli")
-"""How the names of nodes begin through which commands speak: they come and go, and nobody waits for them."""
+"""Prefixes of the names of commands' own nodes: they come and go, and nothing depends on them."""
 
 SEND_GOAL = "/_action/send_goal"
-"""The part of an action that stands for the whole."""
+"""Suffix of the service that stands for a whole action."""
 
 
 def announcements(facts: Facts) -> Verdict:
-    """What is announced can be read."""
+    """Check that all announcements can be parsed."""
     if facts.seen.error:
         return Verdict("", (f"the system could not be looked at: {facts.seen.error}",))
     warnings = tuple(f"cannot be read, so it is not seen: {text[:120]!a}" for text in facts.seen.malformed)
@@ -40,7 +40,7 @@ def announcements(facts: Facts) -> Verdict:
 
 
 def nodes(facts: Facts) -> Verdict:
-    """Each node has a name of its own."""
+    """Check that each node has a name of its own."""
     tokens = facts.seen.tokens
     busy = collections.Counter((each.session, each.node_id) for each in _endpoints(tokens))
     homes: dict[str, list[NodeToken]] = {}
@@ -58,12 +58,12 @@ def nodes(facts: Facts) -> Verdict:
 
 
 def topic_types(facts: Facts) -> Verdict:
-    """Publishers and subscriptions of a topic agree in its type: with two types they never meet."""
+    """Check that publishers and subscriptions of a topic agree in its type: with two types they never meet."""
     return _types(facts, "topic", {PUBLISHER: "publishes", SUBSCRIPTION: "subscribes to"})
 
 
 def service_types(facts: Facts) -> Verdict:
-    """Clients and servers of a service agree in its type."""
+    """Check that clients and servers of a service agree in its type."""
     return _types(facts, "service", {SERVICE: "serves", CLIENT: "calls"})
 
 
@@ -91,7 +91,7 @@ def _only(owners: dict[Variant, list[str]], variants: set[Variant]) -> dict[Vari
 
 
 def _told(sides: dict[str, dict[Variant, list[str]]]) -> str:
-    """Say who uses which type; with its hash where the name alone does not tell them apart."""
+    """Return in words who uses which type; with its hash if the name alone does not tell them apart."""
     same_name = len({type_name for owners in sides.values() for type_name, _ in owners}) == 1
     return ", ".join(
         f"{listed(names)} {verb} {type_name}" + (f" of hash {type_hash[:15]}..." if same_name else "")
@@ -101,7 +101,7 @@ def _told(sides: dict[str, dict[Variant, list[str]]]) -> str:
 
 
 def topics(facts: Facts) -> Verdict:
-    """Whoever subscribes has somebody to hear."""
+    """Check that subscriptions have a publisher."""
     ends = _by_name(each for each in _endpoints(facts.seen.tokens) if each.kind in (PUBLISHER, SUBSCRIPTION))
     published = [name for name, found in ends.items() if any(each.kind is PUBLISHER for each in found)]
     warnings = []
@@ -114,7 +114,7 @@ def topics(facts: Facts) -> Verdict:
 
 
 def services(facts: Facts) -> Verdict:
-    """Whoever calls has a server, and one only."""
+    """Check that clients have a server, and one only."""
     tokens = facts.seen.tokens
     ends = _by_name(each for each in _endpoints(tokens) if each.kind in (SERVICE, CLIENT))
     served = [name for name, found in ends.items() if any(each.kind is SERVICE for each in found)]
@@ -132,7 +132,7 @@ def services(facts: Facts) -> Verdict:
 
 
 def clock(facts: Facts) -> Verdict:
-    """Simulated time comes from one source, where somebody runs on it."""
+    """Check that simulated time, if it is used, comes from one source."""
     ends = [each for each in _endpoints(facts.seen.tokens) if each.name == "/clock"]
     sources = [each.full_node_name for each in ends if each.kind is PUBLISHER]
     users = [each.full_node_name for each in ends if each.kind is SUBSCRIPTION and not _is_command(each)]
@@ -144,7 +144,7 @@ def clock(facts: Facts) -> Verdict:
 
 
 def qos(facts: Facts) -> Verdict:
-    """Who subscribes to what was kept gets it: of a volatile publisher nothing is kept."""
+    """Check that no transient-local subscription has a volatile publisher, which keeps nothing for it."""
     ends = _by_name(each for each in _endpoints(facts.seen.tokens) if each.kind in (PUBLISHER, SUBSCRIPTION))
     warnings = []
     for name, found in ends.items():
@@ -160,7 +160,7 @@ def qos(facts: Facts) -> Verdict:
 
 
 def distributions(facts: Facts) -> Verdict:
-    """All nodes speak of types in the same way: Humble's have no hashes."""
+    """Check that all nodes announce type hashes, or none: Humble's have no hashes."""
     ends = [each for each in _endpoints(facts.seen.tokens) if not _is_command(each)]
     humble = {each.full_node_name for each in ends if each.type_hash == NO_HASH}
     others = {each.full_node_name for each in ends} - humble
@@ -187,7 +187,7 @@ def _by_name(ends: Iterable[EndpointToken]) -> dict[str, list[EndpointToken]]:
 
 
 def _alike(ends: dict[str, list[EndpointToken]], name: str, kind: EndpointKind) -> list[str]:
-    """Give the names where somebody offers what is wanted of a name, by its types."""
+    """Return the names with endpoints of this kind that have one of the types of `name`: what was perhaps meant."""
     types = {each.type_name for each in ends[name]}
     return [other for other, found in ends.items() for each in found if each.kind is kind and each.type_name in types]
 

@@ -1,4 +1,4 @@
-"""A look at a running system from outside: what is announced, and what its clocks say."""
+"""Look at a running system from outside: lists what is announced, and measures the offsets of its clocks."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from robolink.cli.doctor.facts import ClockOffset, Seen
 from robolink.exceptions import RobolinkError, WireError
-from robolink.queues import get_within
+from robolink.system.queues import get_within
 from robolink.transport import connect
 from robolink.wire import (
     DataKey,
@@ -30,20 +30,20 @@ if TYPE_CHECKING:
     from robolink.transport.base import Transport
 
 LIST_WITHIN = 0.6
-"""Seconds that two listings of what is announced have to agree."""
+"""Timeout until two listings of what is announced agree, in seconds."""
 
 CLOCKS_WITHIN = 0.25
-"""Seconds that nodes have to say what time it is."""
+"""Timeout of the answers with the time, in seconds."""
 
 MOST_CLOCKS = 16
-"""So many processes are asked."""
+"""Upper bound of the processes whose clocks are measured."""
 
 _QUESTIONS = ("rcl_interfaces/srv/GetParameters", "type_description_interfaces/srv/GetTypeDescription")
 """Services that nearly every node has and that change nothing; asked for nothing, they answer at once."""
 
 
 def look(url: str, domain: int) -> Seen:
-    """Join, list what is announced, ask for the time, leave. What goes wrong is told in `error`."""
+    """Join the network, list what is announced, measure the clocks, and leave; failures are in `error`."""
     try:
         transport = connect(url, domain)
     except RobolinkError as error:
@@ -57,7 +57,7 @@ def look(url: str, domain: int) -> Seen:
 
 
 def count_nodes(domain: int) -> int | None:
-    """Count the nodes of a domain; None if it cannot be joined."""
+    """Return the number of nodes of a domain; None if it cannot be joined."""
     try:
         transport = connect("zenoh://", domain)
     except RobolinkError:
@@ -89,7 +89,7 @@ def _seen(transport: Transport, domain: int) -> Seen:
 
 
 def _listed(transport: Transport) -> list[str]:
-    """List what is announced, until two listings agree: on a busy machine the first may be incomplete."""
+    """Return what is announced, once two listings agree: on a busy machine the first may be incomplete."""
     deadline = time.monotonic() + LIST_WITHIN
     found = transport.tokens(graph_pattern())
     while time.monotonic() < deadline:
@@ -120,7 +120,7 @@ def _clocks(transport: Transport, tokens: list[NodeToken | EndpointToken]) -> tu
 
 
 def one_server_of_each(tokens: Sequence[NodeToken | EndpointToken]) -> list[EndpointToken]:
-    """Choose a service of each session that can be asked for nothing."""
+    """Return one service of each session that can be called without any effect."""
     chosen: dict[str, EndpointToken] = {}
     for question in reversed(_QUESTIONS):
         for token in tokens:
@@ -139,7 +139,7 @@ def _nothing_asked(type_name: str) -> bytes:
 def _answered(
     transport: Transport, answers: queue.SimpleQueue[tuple[EndpointToken, int, int, Any]], calls: int
 ) -> tuple[ClockOffset, ...]:
-    """Collect until each call has ended, or time is up."""
+    """Collect answers until each call has ended, or the timeout."""
     found: list[ClockOffset] = []
     deadline = time.monotonic() + CLOCKS_WITHIN
     while calls and (left := deadline - time.monotonic()) > 0:

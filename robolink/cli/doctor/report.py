@@ -1,4 +1,4 @@
-"""What `robolink doctor --report` prints: everything that was found, in the sections of ros2's."""
+"""Report of `robolink doctor --report`: all facts, in the sections of ros2 doctor's."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ _NARROWEST = 8
 
 
 class Section(NamedTuple):
-    """A heading and what stands below it."""
+    """Section of the report: a heading, and rows of two columns."""
 
     name: str
     module: str
-    """Whose failed checks it belongs to."""
+    """Module of the checks that it belongs to, in ros2 doctor's words."""
     items: list[tuple[str, str]]
 
     def lines(self) -> Iterator[str]:
-        """Give it as ros2 doctor prints it: in two columns."""
+        """Yield its lines as ros2 doctor prints them: in two columns."""
         width = max([len(name) for name, _ in self.items], default=0)
         width = width + 4 if width >= _NARROWEST else _NARROWEST
         yield f"\n   {self.name}"
@@ -33,7 +33,7 @@ class Section(NamedTuple):
 
 
 def sections(facts: Facts) -> list[Section]:
-    """Give everything that is known."""
+    """Return all sections of the report."""
     return [
         Section("NETWORK CONFIGURATION", "network", _network(facts)),
         Section("DOMAINS", "network", _domains(facts)),
@@ -60,7 +60,7 @@ def _network(facts: Facts) -> list[tuple[str, str]]:
         ("rendezvous port", f"{settings.port} ({_on(facts, settings.port)})" if settings.meets else "not used"),
         ("ROS 2 router's port", f"{facts.router_port} ({_on(facts, facts.router_port)})"),
         ("loopback", "works" if facts.loopback else "does not work"),
-        ("shared memory", "on" if settings.shared_memory else "off"),
+        ("shared memory", f"{'on' if facts.memory.on else 'off'}: {facts.memory.reason}"),
         ("firewall", "not looked at"),
         *(("error", each) for each in settings.errors),
     ]
@@ -84,7 +84,9 @@ def _domains(facts: Facts) -> list[tuple[str, str]]:
 
 
 def _platform(facts: Facts) -> list[tuple[str, str]]:
-    space = facts.shared_memory
+    machine = facts.machine
+    lockable = "any" if machine.lockable is None else f"{machine.lockable // 2**20} MB"
+    space = f"{machine.free // 2**20} of {machine.total // 2**20} MB free" if machine.total else "none"
     mac = [("mac OS version", platform.mac_ver()[0])] if facts.platform == "darwin" else []
     return [
         ("system", platform.system()),
@@ -93,7 +95,8 @@ def _platform(facts: Facts) -> list[tuple[str, str]]:
         ("release", platform.release()),
         ("processor", platform.processor() or platform.machine()),
         ("python", f"{platform.python_version()} ({platform.python_implementation()})"),
-        ("/dev/shm", f"{space.free // 2**20} of {space.total // 2**20} MB free" if space else "none"),
+        ("/dev/shm", space),
+        ("lockable memory", lockable),
         *((f"clock of {each.node}", f"{each.seconds:+.6f} s, +-{each.uncertainty:.6f}") for each in facts.seen.clocks),
     ]
 
@@ -154,7 +157,7 @@ def _pairs(facts: Facts) -> list[tuple[str, str]]:
 
 
 def _status(giving: EndpointToken, taking: EndpointToken) -> str:
-    """Over Zenoh nothing is refused, but what was not kept cannot be had."""
+    """Return "OK", or a warning: Zenoh refuses no QoS, but a volatile publisher has kept nothing for late joiners."""
     if taking.qos.durability < giving.qos.durability:
         return "WARNING: transient local subscription of a volatile publisher: nothing that was published before comes"
     return "OK"

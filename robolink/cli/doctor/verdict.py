@@ -1,4 +1,4 @@
-"""What a check of `robolink doctor` finds."""
+"""Verdict: the result of one check of `robolink doctor`."""
 
 from __future__ import annotations
 
@@ -6,26 +6,26 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from robolink.cli.doctor.facts import Facts
-from robolink.exceptions import shown
+from robolink.system.terminal import shown
 
 OK, WARNING, ERROR, UNKNOWN = "ok", "warning", "error", "unknown"
 
 MOST_SHOWN = 8
-"""So many findings of a check are listed, and counted from there on."""
+"""Upper bound of the findings of a check that are listed; the rest is counted."""
 
 LONGEST = 400
-"""Characters of a finding: names on the network can be as long as somebody likes."""
+"""Upper bound of a finding's length, in characters: names on the network can be of any length."""
 
 
 class Verdict(NamedTuple):
-    """A check's outcome."""
+    """Outcome of a check."""
 
     summary: str
-    """What there is, where nothing is wrong."""
+    """Summary that is shown if nothing is wrong."""
     errors: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     unknown: bool = False
-    """Whether it could not be found out."""
+    """True if the check could not be made."""
 
     @property
     def level(self) -> str:
@@ -34,23 +34,23 @@ class Verdict(NamedTuple):
 
     @property
     def findings(self) -> list[str]:
-        """What is wrong, the worst first, shortened where there is a lot of it."""
+        """Errors and warnings, the worst first, shortened if there are many."""
         found = [shown(each, LONGEST) for each in (*self.errors, *self.warnings)]
         rest = len(found) - MOST_SHOWN
         return [*found[:MOST_SHOWN], f"and {rest} more"] if rest > 0 else found
 
 
 class Check(NamedTuple):
-    """Something that is looked at."""
+    """A check: its name, and the function that decides it from the facts."""
 
     name: str
     module: str
-    """What is blamed in `Failed modules:`, in ros2 doctor's words."""
+    """Name in the line `Failed modules:`, in ros2 doctor's words."""
     decide: Callable[[Facts], Verdict]
 
 
 def count(number: int, noun: str) -> str:
-    """Give ``1 node`` or ``3 nodes``.
+    """Return ``1 node`` or ``3 nodes``.
 
     >>> count(2, "node")
     '2 nodes'
@@ -59,7 +59,7 @@ def count(number: int, noun: str) -> str:
 
 
 def listed(names: Iterable[str], most: int = 4) -> str:
-    """Give names as text, sorted, each once: not more than `most`.
+    """Return names as text, sorted, each once, and `most` of them at most.
 
     >>> listed(["/b", "/a"])
     '/a and /b'

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from robolink.cli import complete
+from robolink.cli.shared import complete
 
 app = typer.Typer(no_args_is_help=True, help="See the types of messages, services and actions.")
 
@@ -32,7 +32,7 @@ def list_interfaces(
     only_msgs: OnlyMsgs = False, only_srvs: OnlySrvs = False, only_actions: OnlyActions = False, as_json: AsJson = False
 ) -> None:
     """List all types that are installed here or lie in the workspace."""
-    from robolink.cli.output import say, say_json
+    from robolink.cli.shared.output import say, say_json
 
     found = {kind: _names(kind) for kind in _kinds(only_msgs, only_srvs, only_actions)}
     if as_json:
@@ -47,7 +47,7 @@ def packages(
     only_msgs: OnlyMsgs = False, only_srvs: OnlySrvs = False, only_actions: OnlyActions = False, as_json: AsJson = False
 ) -> None:
     """List the packages that have types."""
-    from robolink.cli.output import say, say_json
+    from robolink.cli.shared.output import say, say_json
 
     names = [name for kind in _kinds(only_msgs, only_srvs, only_actions) for name in _names(kind)]
     found = sorted({name.partition("/")[0] for name in names})
@@ -71,7 +71,7 @@ def package(
     as_json: AsJson = False,
 ) -> None:
     """List the types of a package."""
-    from robolink.cli.output import say, say_json
+    from robolink.cli.shared.output import say, say_json
     from robolink.exceptions import NotFoundError
 
     known = [each for kind in HEADINGS for each in _names(kind)]
@@ -101,8 +101,8 @@ def show_interface(
 ) -> None:
     """Show what a type is made of."""
     from robolink.cli.interface.show import as_data, lines, type_named
-    from robolink.cli.output import say
-    from robolink.cli.show import as_json as json_text
+    from robolink.cli.shared.output import say
+    from robolink.cli.shared.show import as_json as json_text
 
     if all_comments and no_comments:
         raise typer.BadParameter("--all-comments and --no-comments exclude each other")
@@ -119,21 +119,21 @@ def proto(
 ) -> None:
     """Show a message, request or goal with its defaults, in YAML that topic pub and service call take."""
     from robolink.cli.interface.show import prototype, type_named
-    from robolink.cli.output import say
+    from robolink.cli.shared.output import say
 
     text = prototype(type_named(type_))
     say(f"{text}\n" if no_quotes else f'"{_escaped(text)}\n"')
 
 
 def _escaped(text: str) -> str:
-    """Mask what a shell would take for its own within the quotes."""
+    """Escape the characters that a shell would interpret within double quotes."""
     import re
 
     return re.sub(r'([\\"$`])', r"\\\1", text)
 
 
 def _kinds(*only: bool) -> list[str]:
-    """Give the kinds that are asked for; all, if none is."""
+    """Return the kinds that are selected; all, if none is."""
     return [kind for kind, wanted in zip(HEADINGS, only, strict=True) if wanted] or list(HEADINGS)
 
 

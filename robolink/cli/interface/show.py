@@ -1,4 +1,4 @@
-"""How `robolink interface` finds a type, and shows it: as text, as a prototype in YAML, as data."""
+"""Look-up and output of types for `robolink interface`: as text, as a prototype in YAML, as data."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli.show import Style, as_yaml, plain
+from robolink.cli.shared.show import Style, as_yaml, plain
 from robolink.exceptions import MessageError, NotFoundError, TransportError
 from robolink.interfaces import KINDS, find, find_announced, is_named, names
 from robolink.message import Message, to_builtins, type_hash
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from robolink.wire import EndpointToken
 
 LONGEST = 255
-"""Characters of a type's name: ROS 2's limit for all names."""
+"""Upper bound of a type's name, in characters: ROS 2's limit for all names."""
 
 
 def type_named(name: str) -> type[Any]:
-    """Give the class of a message, service or action type; of one that is not installed, ask the nodes that use it.
+    """Return the class of a message, service or action type; one that is not installed is asked of nodes that use it.
 
     ``Twist``, ``geometry_msgs/Twist`` and ``geometry_msgs/msg/Twist`` mean the same. Raises NotFoundError with the
     nearest name, and MessageError for what is no type name or means several types.
@@ -70,8 +70,8 @@ def _shorts(known: list[str], package: str) -> set[str]:
 
 
 def _from_graph(name: str) -> type[Any] | None:
-    """Find out what a type is that a running node uses; None if none does, or no network can be joined."""
-    from robolink.cli.session import opened
+    """Return a type's class from a running node that uses it; None if none does, or no network can be joined."""
+    from robolink.cli.shared.session import opened
     from robolink.type_lookup import type_of
     from robolink.wire import EndpointKind
 
@@ -87,8 +87,8 @@ def _from_graph(name: str) -> type[Any] | None:
 
 
 def _action_from_graph(context: Context, name: str, ends: list[EndpointToken]) -> type[Any] | None:
-    """Put an action together from its services and topic."""
-    from robolink.message.making import action_class
+    """Return an action's class, made of the types of its services and topic."""
+    from robolink.message.class_factory import action_class
     from robolink.type_lookup import type_of
 
     parts, type_name = {}, ""
@@ -111,11 +111,11 @@ _ACTION = {
     "_GetResult": ("Response", "result"),
     "_FeedbackMessage": ("", "feedback"),
 }
-"""Where the parts of an action are: how its service or topic ends, which of its messages, and which field there."""
+"""Parts of an action: the suffix of the service or topic that has it, the message there, and the field."""
 
 
 def parts_of(cls: type[Any]) -> dict[str, type[Message]]:
-    """Give the messages that a type's text is about, by name: of a message type only itself, named nothing."""
+    """Return the messages that a type's text describes, by name; of a message type only itself, under an empty name."""
     if hasattr(cls, "__ros_fields__"):
         return {"": cls}
     kind = "action" if hasattr(cls, "Goal") else "srv"
@@ -139,7 +139,7 @@ def lines(cls: type[Any], *, comments: bool, nested_comments: bool, depth: int =
 
 
 def _without_comment(line: str) -> str:
-    """Cut the comment off a line; a ``#`` within a quoted value is none."""
+    """Return a line without its comment; a ``#`` within a quoted value begins none."""
     stripped = line.strip()
     found = ELEMENT_LINE.match(stripped)
     if stripped.startswith("#") or found is None:
@@ -151,13 +151,13 @@ def _without_comment(line: str) -> str:
 
 
 def prototype(cls: type[Any]) -> str:
-    """Give YAML of a new message, request or goal."""
+    """Return the YAML of a message, request or goal with its defaults."""
     first = next(iter(parts_of(cls).values()))
     return as_yaml(first(), Style(longest=None))
 
 
 def as_data(cls: type[Any]) -> dict[str, Any]:
-    """Give all there is to know of a type, as a program reads it."""
+    """Return all properties of a type, as data for JSON."""
     nested = {each.__ros_type__: each for part in _all_parts(cls).values() for each in _reached(part)}
     return {
         **_described(cls),
@@ -177,7 +177,7 @@ def _described(cls: type[Any]) -> dict[str, Any]:
 
 
 def _all_parts(cls: type[Any]) -> dict[str, type[Message]]:
-    """Give the messages of a type by name, those too of which its text says nothing."""
+    """Return the messages of a type by name, also those that its text does not describe."""
     more: dict[str, type[Message]] = {}
     if hasattr(cls, "Goal"):
         more = {"feedback_message": cls.Impl.FeedbackMessage}
@@ -206,7 +206,7 @@ def _message(cls: type[Message]) -> dict[str, Any]:
 
 
 def _type(kind: FieldType) -> dict[str, Any]:
-    """Say the type as a .msg file does, and its parts: an array's size, a sequence's and a string's bounds."""
+    """Return a field's type as a .msg file writes it, and its parts: an array's size, bounds of sequence and string."""
     data: dict[str, Any] = {"type": str(kind), "base": kind.base, "shape": kind.shape}
     if kind.size:
         data["size"] = kind.size
@@ -216,7 +216,7 @@ def _type(kind: FieldType) -> dict[str, Any]:
 
 
 def _reached(cls: type[Message]) -> Iterator[type[Message]]:
-    """Yield the message types that a message is made of, all the way down."""
+    """Yield the message types that a message is made of, recursively."""
     for kind in cls.__ros_fields__.values():
         if kind.message is not None:
             yield kind.message

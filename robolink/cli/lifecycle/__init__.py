@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from robolink.cli import complete
-from robolink.terminal import fit
+from robolink.cli.shared import complete
+from robolink.system.terminal import fit
 
 app = typer.Typer(no_args_is_help=True, help="See in which states managed nodes are, and move them on.")
 
@@ -32,8 +32,8 @@ def list_nodes(
 ) -> None:
     """List the managed nodes."""
     from robolink.cli.lifecycle import ask
-    from robolink.cli.output import say, say_json
-    from robolink.cli.session import looking
+    from robolink.cli.shared.output import say, say_json
+    from robolink.cli.shared.session import looking
 
     with looking() as context:
         names = ask.managed(context, hidden=show_all)
@@ -53,8 +53,8 @@ def get(
 ) -> None:
     """Show the state of a managed node, or of all of them."""
     from robolink.cli.lifecycle import ask
-    from robolink.cli.output import say, say_json, tell
-    from robolink.cli.session import looking
+    from robolink.cli.shared.output import say, say_json, tell
+    from robolink.cli.shared.session import looking
 
     with looking() as context:
         names = [ask.known(context, node)] if node else ask.managed(context, hidden=hidden)
@@ -81,8 +81,8 @@ def list_transitions(
 ) -> None:
     """List the transitions that a managed node can make now."""
     from robolink.cli.lifecycle import ask
-    from robolink.cli.output import say, say_json
-    from robolink.cli.session import looking
+    from robolink.cli.shared.output import say, say_json
+    from robolink.cli.shared.session import looking
 
     with looking() as context:
         found = ask.transitions(context, ask.known(context, node), every=show_all)
@@ -108,10 +108,10 @@ def set_state(
     ],
     hidden: Hidden = False,
 ) -> None:
-    """Have a managed node make a transition."""
+    """Make a managed node change its state, by the name or number of a transition."""
     from robolink.cli.lifecycle import ask
-    from robolink.cli.output import say
-    from robolink.cli.session import looking
+    from robolink.cli.shared.output import say
+    from robolink.cli.shared.session import looking
 
     with looking() as context:
         ask.make_transition(context, ask.known(context, node), transition)

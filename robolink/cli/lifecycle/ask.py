@@ -1,4 +1,4 @@
-"""Asks the services of managed nodes for the commands."""
+"""Client of managed nodes' services, for the commands of `robolink lifecycle`."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ import time
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli.announced import absolute, is_hidden
-from robolink.cli.elsewhere import no_such_node
-from robolink.cli.session import node_of
-from robolink.exceptions import RobolinkError, ServiceError, shown
+from robolink.cli.shared.announced import absolute, is_hidden
+from robolink.cli.shared.other_domains import no_such_node
+from robolink.cli.shared.session import node_of
+from robolink.exceptions import RobolinkError, ServiceError
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.lifecycle_msgs.srv import ChangeState, GetAvailableTransitions, GetState
+from robolink.system.terminal import shown
 from robolink.wire import EndpointKind
 
 if TYPE_CHECKING:
@@ -19,13 +20,13 @@ if TYPE_CHECKING:
     from robolink.interfaces.lifecycle_msgs.msg import State, TransitionDescription
 
 ANSWER_WITHIN = 5.0
-"""Seconds that a node has to say something of itself."""
+"""Timeout of a node's answer about its state, in seconds."""
 
 CHANGE_WITHIN = 60.0
-"""Seconds that a transition may take: its callback may open a device, or load a map."""
+"""Timeout of a transition, in seconds: its callback may open a device, or load a map."""
 
 STATE = "/get_state"
-"""What follows a managed node's name in that of the service by which it is known."""
+"""Suffix of the service by which a managed node is recognized."""
 
 
 class LifecycleCommandError(RobolinkError, RuntimeError):
@@ -33,7 +34,7 @@ class LifecycleCommandError(RobolinkError, RuntimeError):
 
 
 def managed(context: Context, *, hidden: bool) -> list[str]:
-    """Give the full names of the managed nodes, sorted; those that begin with _ only if `hidden`."""
+    """Return the full names of the managed nodes, sorted; those that begin with _ only if `hidden`."""
     served = context.graph.endpoints(EndpointKind.SERVICE)
     names = {
         each.name.removesuffix(STATE)
@@ -45,7 +46,7 @@ def managed(context: Context, *, hidden: bool) -> list[str]:
 
 
 def known(context: Context, node: str) -> str:
-    """Give the full name of a managed node. Raises LifecycleCommandError when there is none of this name."""
+    """Return the full name of a managed node. Raises LifecycleCommandError if there is none of this name."""
     name, names = absolute(node), managed(context, hidden=True)
     if name in names:
         return name
@@ -55,7 +56,7 @@ def known(context: Context, node: str) -> str:
 
 
 def states(context: Context, names: Iterable[str]) -> tuple[dict[str, State], list[RobolinkError]]:
-    """Give the states of nodes, and the errors of those that do not say."""
+    """Return the states of nodes, and the errors of those that did not answer."""
     answers = _ask(context, GetState, {f"{name}{STATE}": GetState.Request() for name in names})
     found = {
         name.removesuffix(STATE): answer.current_state
@@ -66,14 +67,14 @@ def states(context: Context, names: Iterable[str]) -> tuple[dict[str, State], li
 
 
 def transitions(context: Context, node: str, *, every: bool = False) -> list[TransitionDescription]:
-    """Give the transitions that a node can make now, or all that it has."""
+    """Return the transitions that a node can make now, or with `every` all that it has."""
     service = "get_transition_graph" if every else "get_available_transitions"
     request = GetAvailableTransitions.Request()
     return list(_ask_one(context, GetAvailableTransitions, f"{node}/{service}", request).available_transitions)
 
 
 def make_transition(context: Context, node: str, wanted: str) -> None:
-    """Have a node make a transition, by its name or number. Raises LifecycleCommandError unless that succeeds."""
+    """Trigger a transition of a node, by its name or number. Raises LifecycleCommandError unless that succeeds."""
     there = [each.transition for each in transitions(context, node)]
     chosen = [each for each in there if each.label == wanted] or [each for each in there if str(each.id) == wanted]
     if not chosen:
@@ -87,7 +88,7 @@ def make_transition(context: Context, node: str, wanted: str) -> None:
 
 
 def as_data(each: TransitionDescription) -> dict[str, Any]:
-    """Give a transition as plain data."""
+    """Return a transition as plain data."""
     return {
         "id": each.transition.id,
         "label": each.transition.label,
@@ -106,7 +107,7 @@ def _ask_one(context: Context, srv_type: type[Any], service: str, request: Any, 
 def _ask(
     context: Context, srv_type: type[Any], requests: dict[str, Any], within: float = ANSWER_WITHIN
 ) -> dict[str, Any]:
-    """Call services, all at once; give the response of each, or the error."""
+    """Call services, all at once, and return the response of each, or its error."""
     deadline = time.monotonic() + within
     with SingleThreadedExecutor(context=context) as executor:
         asker = node_of(context)

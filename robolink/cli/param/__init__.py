@@ -7,8 +7,8 @@ from typing import Annotated, Any
 import typer
 import typer.core
 
-from robolink.cli import complete
-from robolink.cli.options import seconds
+from robolink.cli.shared import complete
+from robolink.cli.shared.options import seconds
 
 app = typer.Typer(no_args_is_help=True, help="See and change the parameters of running nodes.")
 
@@ -36,7 +36,7 @@ class ListCommand(typer.core.TyperCommand):
     """A command that takes several words behind `--param-prefixes`, as ros2 does."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Give each of these words the flag of its own that typer wants."""
+        """Parse the arguments, each of these words with a flag of its own, as typer wants it."""
         rest: list[str] = super().parse_args(ctx, each_with_its_flag(args))
         return rest
 

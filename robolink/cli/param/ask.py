@@ -1,4 +1,4 @@
-"""Asks the parameter services of one node for the commands."""
+"""Client of one node's parameter services, for the commands of `robolink param`."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli.announced import absolute
-from robolink.cli.elsewhere import no_such_node
-from robolink.cli.session import looking, node_of
-from robolink.exceptions import ExternalShutdownException, NotFoundError, RobolinkError, shown
+from robolink.cli.shared.announced import absolute
+from robolink.cli.shared.other_domains import no_such_node
+from robolink.cli.shared.session import looking, node_of
+from robolink.exceptions import ExternalShutdownException, NotFoundError, RobolinkError
 from robolink.interfaces.rcl_interfaces import srv
 from robolink.interfaces.rcl_interfaces.msg import (
     Parameter,
@@ -17,6 +17,7 @@ from robolink.interfaces.rcl_interfaces.msg import (
     ParameterValue,
     SetParametersResult,
 )
+from robolink.system.terminal import shown
 from robolink.wire import EndpointKind
 
 if TYPE_CHECKING:
@@ -24,27 +25,27 @@ if TYPE_CHECKING:
     from robolink.node import Node
 
 ANSWER_WITHIN = 5.0
-"""Seconds that a node has for an answer: it may be busy with a callback."""
+"""Timeout of a node's answer, in seconds: it may be busy with a callback."""
 
 
 class ParameterCommandError(RobolinkError, RuntimeError):
-    """A node's parameters cannot be asked for: it does not serve them, or does not answer."""
+    """A node's parameters are not available: it does not serve them, or does not answer."""
 
 
-class Asked:
-    """A node whose parameters are asked for."""
+class ParameterClient:
+    """Client of the parameter services of one node."""
 
     def __init__(self, asker: Node, name: str) -> None:
         self.name = name
         self._asker = asker
 
     def names(self, prefixes: Sequence[str] = ()) -> list[str]:
-        """Give the names of its parameters, sorted; of those below the prefixes, if there are any."""
+        """Return the names of its parameters, sorted; only those below `prefixes`, if there are any."""
         request = srv.ListParameters.Request(prefixes=list(prefixes))
         return sorted(self._call(srv.ListParameters, "list_parameters", request).result.names)
 
     def values(self, names: Sequence[str]) -> list[ParameterValue]:
-        """Give the values. Raises NotFoundError for an unknown one, ParameterCommandError for one without value."""
+        """Return the values. Raises NotFoundError if one is unknown, ParameterCommandError if one has no value."""
         found = list(self._call(srv.GetParameters, "get_parameters", srv.GetParameters.Request(names=names)).values)
         if len(found) == len(names):
             return found
@@ -52,7 +53,7 @@ class Asked:
         raise ParameterCommandError(f"{_listed(names)} of {self.name}: Parameter not set")
 
     def settled_values(self, names: Sequence[str]) -> dict[str, ParameterValue]:
-        """Give the values of those parameters that have one; the type of the others is set, but no value yet."""
+        """Return the values of those parameters that have one; the others are declared with a type, but no value."""
         try:
             return dict(zip(names, self.values(names), strict=True))
         except ParameterCommandError:
@@ -62,7 +63,7 @@ class Asked:
         return {**self.settled_values(names[:half]), **self.settled_values(names[half:])}
 
     def descriptors(self, names: Sequence[str]) -> list[ParameterDescriptor]:
-        """Give the descriptors. Raises NotFoundError for an unknown parameter."""
+        """Return the descriptors. Raises NotFoundError for an unknown parameter."""
         request = srv.DescribeParameters.Request(names=names)
         found = list(self._call(srv.DescribeParameters, "describe_parameters", request).descriptors)
         if len(found) != len(names):
@@ -71,7 +72,7 @@ class Asked:
         return found
 
     def set(self, parameters: Sequence[Parameter]) -> list[SetParametersResult]:
-        """Set parameters one by one; give a result for each."""
+        """Set parameters one by one, and return a result for each."""
         request = srv.SetParameters.Request(parameters=parameters)
         results = list(self._call(srv.SetParameters, "set_parameters", request).results)
         if len(results) == 1 < len(parameters) and results[0].reason:
@@ -103,20 +104,20 @@ class Asked:
 
 
 @contextmanager
-def asking(node: str, timeout: float) -> Iterator[Asked]:
-    """Ask a node, by its full name or without its slash; wait `timeout` seconds for it to be there.
+def asking(node: str, timeout: float) -> Iterator[ParameterClient]:
+    """Open a client of a node, by its full name or without its slash; wait `timeout` seconds for the node.
 
-    Raises NotFoundError when it is not, ParameterCommandError when it does not serve its parameters.
+    Raises NotFoundError if it is not there, ParameterCommandError if it does not serve its parameters.
     """
     with looking() as context:
         name = absolute(node)
         if not serves(context, name, timeout):
             raise _absent(context, name)
-        yield Asked(node_of(context), name)
+        yield ParameterClient(node_of(context), name)
 
 
 def serves(context: Context, name: str, timeout: float = 0.0) -> bool:
-    """Whether a node serves its parameters within `timeout` seconds."""
+    """Wait up to `timeout` seconds for a node's parameter services; return True if they are there."""
 
     def is_there() -> bool:
         return context.graph.count(EndpointKind.SERVICE, f"{name}/set_parameters") > 0

@@ -1,4 +1,4 @@
-"""Completes the names of a node's parameters, by asking it."""
+"""Shell completion of the names of a node's parameters, from the node itself."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import queue
 import threading
 from typing import Any
 
-from robolink.cli.complete import WITHIN, offered
+from robolink.cli.shared.complete import WITHIN, offered
 
 
 def of_node(ctx: Any, incomplete: str) -> list[str]:
-    """Give the parameters of the node that stands on the command line, as far as it answers in time."""
+    """Return the parameters of the node on the command line; nothing if it does not answer in time."""
     names: queue.SimpleQueue[list[str]] = queue.SimpleQueue()
     node = str(ctx.params.get("node") or "")
     # In the background, since neither the network nor the node need answer.
@@ -22,9 +22,9 @@ def of_node(ctx: Any, incomplete: str) -> list[str]:
 
 
 def _ask(node: str, names: queue.SimpleQueue[list[str]]) -> None:
-    from robolink.cli.announced import absolute
-    from robolink.cli.param.ask import Asked, serves
-    from robolink.cli.session import node_of
+    from robolink.cli.param.ask import ParameterClient, serves
+    from robolink.cli.shared.announced import absolute
+    from robolink.cli.shared.session import node_of
     from robolink.context import Context
 
     context = Context()
@@ -32,7 +32,7 @@ def _ask(node: str, names: queue.SimpleQueue[list[str]]) -> None:
         context.init(args=[])
         name = absolute(node)
         if serves(context, name):
-            names.put(Asked(node_of(context), name).names())
+            names.put(ParameterClient(node_of(context), name).names())
     except Exception:  # noqa: BLE001, S110 - there is nothing to offer, and nobody to tell
         pass
     finally:

@@ -1,4 +1,4 @@
-"""What `robolink param` list, get, describe and dump do."""
+"""Reading verbs of `robolink param`: list, get, describe and dump."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import typer
 
-from robolink.cli import show
-from robolink.cli.announced import is_hidden
-from robolink.cli.output import say, tell
-from robolink.cli.param.ask import Asked, asking, serves
+from robolink.cli.param.ask import ParameterClient, asking, serves
 from robolink.cli.param.values import Type, as_file, in_json, label, plain, type_name
-from robolink.cli.session import looking, node_of
+from robolink.cli.shared import show
+from robolink.cli.shared.announced import is_hidden
+from robolink.cli.shared.output import say, tell
+from robolink.cli.shared.session import looking, node_of
 from robolink.exceptions import RobolinkError
 from robolink.parameter import parameter_value_to_python
-from robolink.terminal import fit
+from robolink.system.terminal import fit
 
 if TYPE_CHECKING:
     from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor
 
 
 class Wanted(NamedTuple):
-    """Which parameters are listed, of which nodes, and whether with their types."""
+    """Options of `param list`: which parameters of which nodes, and if with their types."""
 
     prefixes: tuple[str, ...] = ()
     pattern: re.Pattern[str] | None = None
@@ -32,11 +32,11 @@ class Wanted(NamedTuple):
 
 
 Found = dict[str, str]
-"""Names of parameters, each with its type if that is wanted."""
+"""Names of parameters, each with its type, which is empty unless it is wanted."""
 
 
 def compiled(pattern: str) -> re.Pattern[str] | None:
-    """Compile what `--filter` says; wrong usage where that is no regular expression."""
+    """Compile the regular expression of `--filter`; end with a usage error if it is none."""
     try:
         return re.compile(pattern) if pattern else None
     except re.error as error:
@@ -46,8 +46,8 @@ def compiled(pattern: str) -> re.Pattern[str] | None:
 def show_list(node: str, wanted: Wanted, *, as_json: bool) -> None:
     """List the parameters of one node, or of all that serve them."""
     if node:
-        with asking(node, 0.0) as asked:
-            found = {asked.name: _listed(asked, wanted)}
+        with asking(node, 0.0) as client:
+            found = {client.name: _listed(client, wanted)}
     else:
         found = _of_all(wanted)
     if as_json:
@@ -62,7 +62,7 @@ def show_list(node: str, wanted: Wanted, *, as_json: bool) -> None:
 
 
 def _of_all(wanted: Wanted) -> dict[str, Found]:
-    """Ask all nodes at once. One that cannot be asked is told of, and the others are listed."""
+    """Return the parameters of all nodes, asked at once. Those that do not answer are noted on standard error."""
     from concurrent.futures import ThreadPoolExecutor
 
     with looking() as context:
@@ -70,7 +70,7 @@ def _of_all(wanted: Wanted) -> dict[str, Found]:
         names = [name for name in names if serves(context, name) and (wanted.hidden_nodes or not is_hidden(name))]
         asker = node_of(context)
         with ThreadPoolExecutor(max_workers=max(1, min(32, len(names)))) as pool:
-            futures = {name: pool.submit(_listed, Asked(asker, name), wanted) for name in names}
+            futures = {name: pool.submit(_listed, ParameterClient(asker, name), wanted) for name in names}
         found = {}
         for name, future in futures.items():
             try:
@@ -80,18 +80,18 @@ def _of_all(wanted: Wanted) -> dict[str, Found]:
     return found
 
 
-def _listed(asked: Asked, wanted: Wanted) -> Found:
-    names = [each for each in asked.names(wanted.prefixes) if wanted.pattern is None or wanted.pattern.match(each)]
+def _listed(client: ParameterClient, wanted: Wanted) -> Found:
+    names = [each for each in client.names(wanted.prefixes) if wanted.pattern is None or wanted.pattern.match(each)]
     if not wanted.types or not names:
         return dict.fromkeys(names, "")
-    descriptors = asked.descriptors(names)
+    descriptors = client.descriptors(names)
     return {name: type_name(each.type) for name, each in zip(names, descriptors, strict=True)}
 
 
 def show_value(node: str, parameter: str, timeout: float, *, hide_type: bool, as_json: bool) -> None:
-    """Show one value. Raises NotFoundError when there is no such parameter."""
-    with asking(node, timeout) as asked:
-        value = asked.values([parameter])[0]
+    """Show one value. Raises NotFoundError if there is no such parameter."""
+    with asking(node, timeout) as client:
+        value = client.values([parameter])[0]
     if as_json:
         say(show.as_json({"name": parameter, "type": type_name(value.type), "value": plain(value)}))
     elif value.type == Type.NOT_SET:
@@ -102,9 +102,9 @@ def show_value(node: str, parameter: str, timeout: float, *, hide_type: bool, as
 
 
 def show_descriptors(node: str, parameters: Sequence[str], timeout: float, *, as_json: bool) -> None:
-    """Show what parameters are for. Raises NotFoundError when there is one that the node has not."""
-    with asking(node, timeout) as asked:
-        descriptors = asked.descriptors(parameters)
+    """Show the descriptors of parameters. Raises NotFoundError for one that the node lacks."""
+    with asking(node, timeout) as client:
+        descriptors = client.descriptors(parameters)
     if as_json:
         say(show.as_json([_described(each) for each in descriptors]))
         return
@@ -113,7 +113,7 @@ def show_descriptors(node: str, parameters: Sequence[str], timeout: float, *, as
 
 
 def _described(descriptor: ParameterDescriptor) -> dict[str, Any]:
-    """Give a descriptor with ros2's name of the type, and one range, whichever it is."""
+    """Return a descriptor as data, with ros2's name of the type, and its range, of whichever kind."""
     found = show.plain(descriptor)
     limits = found.pop("floating_point_range") + found.pop("integer_range")
     return {**found, "type": type_name(descriptor.type), "range": limits[0] if limits else None}
@@ -137,9 +137,9 @@ def _lines(descriptor: ParameterDescriptor) -> list[str]:
 
 def dump(node: str, timeout: float, *, as_json: bool) -> None:
     """Write the values of all parameters that have one. A parameter file cannot hold arrays of bytes."""
-    with asking(node, timeout) as asked:
-        names = asked.names()
-        values = asked.settled_values(names) if names else {}
+    with asking(node, timeout) as client:
+        names = client.names()
+        values = client.settled_values(names) if names else {}
     values = {name: each for name, each in values.items() if each.type != Type.NOT_SET}
     if as_json:
         say(show.as_json(in_json(values.items())))
@@ -147,4 +147,4 @@ def dump(node: str, timeout: float, *, as_json: bool) -> None:
     for name in [name for name, each in values.items() if each.type == Type.BYTE_ARRAY]:
         tell(f"robolink: left out '{name}': a parameter file cannot hold a byte array")
         del values[name]
-    say(as_file(asked.name, in_json(values.items())))
+    say(as_file(client.name, in_json(values.items())))

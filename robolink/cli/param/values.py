@@ -1,4 +1,4 @@
-"""Values of parameters as the commands show and read them."""
+"""Conversion of parameter values: from text that was typed, and to text, JSON and parameter files."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import functools
 from collections.abc import Iterable
 from typing import Any
 
+from robolink.arguments.parameter_file import PARAMETERS_KEY, parse_parameter_value, parse_scalar
 from robolink.exceptions import DocumentError
 from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor, ParameterValue
 from robolink.parameter import (
@@ -13,8 +14,7 @@ from robolink.parameter import (
     Parameter,
     parameter_value_to_python,
 )
-from robolink.parameter_file import PARAMETERS_KEY, parse_parameter_value, parse_scalar
-from robolink.terminal import fit, is_fit
+from robolink.system.terminal import fit, is_fit
 
 Type = Parameter.Type
 
@@ -34,12 +34,12 @@ NAMES = {
 
 
 def type_name(number: int) -> str:
-    """Give ros2's name of a type; a number that is none of them as it is."""
+    """Return ros2's name of a type; an unknown number as it is."""
     return NAMES[Type(number)] if number in NAMES else f"unknown ({number})"
 
 
 def label(number: int) -> str:
-    """Give what stands before a value: ``Double value is:``.
+    """Return the label before a value: ``Double value is:``.
 
     >>> label(Type.STRING_ARRAY)
     'String values are:'
@@ -50,13 +50,13 @@ def label(number: int) -> str:
 
 
 def plain(value: ParameterValue) -> Any:
-    """Give a value as JSON and YAML have it; bytes as numbers."""
+    """Return a value as JSON and YAML have it; bytes as numbers."""
     found = parameter_value_to_python(value)
     return [each[0] for each in found] if value.type == Type.BYTE_ARRAY else found
 
 
 def read(text: str, descriptor: ParameterDescriptor | None) -> ParameterValue:
-    """Read a value that was typed, for a parameter of this descriptor if that is known.
+    """Return the value of a text that was typed, for a parameter of this descriptor if that is known.
 
     A text that is no single value of YAML is a string. Where the parameter's type is fixed, the value takes it if it
     can: 1 is a double then, and 123 a string.
@@ -70,7 +70,7 @@ def read(text: str, descriptor: ParameterDescriptor | None) -> ParameterValue:
 
 
 def fitting(value: Any, descriptor: ParameterDescriptor | None) -> ParameterValue:
-    """Give a plain value the type that the descriptor fixes, where it can have it; else its own."""
+    """Return a plain value with the type that the descriptor fixes, if it can have it; else with its own."""
     type_ = Type.from_parameter_value(value)
     if descriptor is not None and not descriptor.dynamic_typing:
         wanted = descriptor.type
@@ -86,7 +86,7 @@ def fitting(value: Any, descriptor: ParameterDescriptor | None) -> ParameterValu
 
 
 def as_file(node: str, values: dict[str, Any]) -> str:
-    """Write plain values as a parameter file that gives them back; the dots of names become levels."""
+    """Return plain values as the text of a parameter file; the dots of names become levels."""
     import yaml
 
     document = {node: {PARAMETERS_KEY: nested(values)}}
@@ -95,7 +95,7 @@ def as_file(node: str, values: dict[str, Any]) -> str:
 
 
 def nested(values: dict[str, Any]) -> dict[str, Any]:
-    """Put ``a.b`` below ``a``, unless that is a parameter itself, or a name has a part that is empty."""
+    """Return ``a.b`` below ``a``, unless that is a parameter itself, or a name has a part that is empty."""
     tree: dict[str, Any] = {}
     for name, value in values.items():
         parts = name.split(PARAMETER_SEPARATOR_STRING)
@@ -115,10 +115,10 @@ def _dumper() -> Any:
     import yaml
 
     class Dumper(yaml.SafeDumper):
-        """Quotes what ROS 2 would read as something else than text, such as ``1e3``; YAML itself would not."""
+        """YAML writer that also quotes texts which only ROS 2 would read as something else, such as ``1e3``."""
 
         def ignore_aliases(self, data: Any) -> bool:
-            """Write what is met twice twice: ROS 2 knows no aliases."""
+            """Return True: a value that occurs twice is written twice, since ROS 2 knows no aliases."""
             return True
 
     def text_node(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
@@ -131,5 +131,5 @@ def _dumper() -> Any:
 
 
 def in_json(values: Iterable[tuple[str, ParameterValue]]) -> dict[str, Any]:
-    """Give values by name, as `plain` has them."""
+    """Return values by name, as `plain` has them."""
     return {name: plain(value) for name, value in values}

@@ -1,14 +1,15 @@
-"""What `robolink param` set, load and delete do."""
+"""Writing verbs of `robolink param`: set, load and delete."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli import complain, show
-from robolink.cli.output import say
-from robolink.cli.param.ask import Asked, asking
+from robolink.arguments.parameter_file import ParameterFileError, read_parameter_file
+from robolink.cli.param.ask import ParameterClient, asking
 from robolink.cli.param.values import fitting, plain, read
+from robolink.cli.shared import show
+from robolink.cli.shared.output import complain, say
 from robolink.exceptions import NotFoundError
 from robolink.interfaces.rcl_interfaces.msg import (
     Parameter,
@@ -16,38 +17,37 @@ from robolink.interfaces.rcl_interfaces.msg import (
     ParameterValue,
     SetParametersResult,
 )
-from robolink.parameter_file import ParameterFileError, read_parameter_file
 
 if TYPE_CHECKING:
-    from robolink.parameter_overrides import Override, Value
+    from robolink.arguments.overrides import Override, Value
 
 UNCHANGED = "it is read-only and has this value already"
 
 
 def set_one(node: str, parameter: str, text: str, timeout: float, *, as_json: bool) -> int:
-    """Set a parameter; give the exit code. The text is read as the type that the parameter has."""
-    with asking(node, timeout) as asked:
-        value = read(text, _descriptor(asked, parameter))
-        result = asked.set([Parameter(name=parameter, value=value)])[0]
+    """Set a parameter, and return the exit code. The text is read as the type that the parameter has."""
+    with asking(node, timeout) as client:
+        value = read(text, _descriptor(client, parameter))
+        result = client.set([Parameter(name=parameter, value=value)])[0]
     return _tell(result, as_json, "Set parameter successful", "Setting parameter failed")
 
 
 def delete(node: str, parameter: str, timeout: float, *, as_json: bool) -> int:
-    """Undeclare a parameter; give the exit code."""
-    with asking(node, timeout) as asked:
-        result = asked.set([Parameter(name=parameter, value=ParameterValue())])[0]
+    """Undeclare a parameter, and return the exit code."""
+    with asking(node, timeout) as client:
+        result = client.set([Parameter(name=parameter, value=ParameterValue())])[0]
     return _tell(result, as_json, "Deleted parameter successfully", "Deleting parameter failed")
 
 
 def load(node: str, file: str, timeout: float, *, use_wildcard: bool, as_json: bool) -> int:
-    """Set what a file has for a node; give the exit code, 1 if any was refused.
+    """Set the parameters that a file has for a node, and return the exit code: 1 if any was refused.
 
     Raises ParameterFileError, and what `asking` raises.
     """
     overrides = read_parameter_file(file)
-    with asking(node, timeout) as asked:
-        values = meant_for(asked.name, overrides, file, use_wildcard=use_wildcard)
-        results = _load(asked, values)
+    with asking(node, timeout) as client:
+        values = meant_for(client.name, overrides, file, use_wildcard=use_wildcard)
+        results = _load(client, values)
     if as_json:
         say(show.as_json({name: _plain(result) for name, result in results.items()}))
         return int(not all(each.successful for each in results.values()))
@@ -59,10 +59,10 @@ def load(node: str, file: str, timeout: float, *, use_wildcard: bool, as_json: b
 
 
 def meant_for(node: str, overrides: Sequence[Override], file: str, *, use_wildcard: bool) -> dict[str, Value]:
-    """Give what a file has for a node, by name: its own section, and those with * in their names if wanted.
+    """Return the parameters in a file for a node: of its own section, and of those with * in their names if wanted.
 
-    Where there is no section for it, but one for a single other node, that is taken: a file that was dumped of one
-    node is loaded into another. Raises ParameterFileError when there is nothing.
+    If there is no section for it, but one for a single other node, that is taken: a file that was dumped of one
+    node is loaded into another. Raises ParameterFileError if there is nothing.
     """
     own = list(dict.fromkeys(each.pattern for each in overrides if "*" not in each.pattern))
     section = own[0] if node not in own and len(own) == 1 else node
@@ -74,30 +74,30 @@ def meant_for(node: str, overrides: Sequence[Override], file: str, *, use_wildca
     return {each.name: each.value for each in found}
 
 
-def _load(asked: Asked, values: dict[str, Any]) -> dict[str, SetParametersResult]:
-    known = set(asked.names())
+def _load(client: ParameterClient, values: dict[str, Any]) -> dict[str, SetParametersResult]:
+    known = set(client.names())
     names = [each for each in values if each in known]
-    descriptors = dict(zip(names, asked.descriptors(names), strict=True)) if names else {}
+    descriptors = dict(zip(names, client.descriptors(names), strict=True)) if names else {}
     wanted = {name: fitting(value, descriptors.get(name)) for name, value in values.items()}
     results = dict.fromkeys(values, SetParametersResult(successful=True, reason=UNCHANGED))
-    to_set = [name for name in values if name not in _unchanged(asked, wanted, descriptors)]
-    given = asked.set([Parameter(name=name, value=wanted[name]) for name in to_set]) if to_set else []
+    to_set = [name for name in values if name not in _unchanged(client, wanted, descriptors)]
+    given = client.set([Parameter(name=name, value=wanted[name]) for name in to_set]) if to_set else []
     results.update(zip(to_set, given, strict=True))
     return results
 
 
 def _unchanged(
-    asked: Asked, wanted: dict[str, ParameterValue], descriptors: dict[str, ParameterDescriptor]
+    client: ParameterClient, wanted: dict[str, ParameterValue], descriptors: dict[str, ParameterDescriptor]
 ) -> Iterable[str]:
-    """Give the read-only parameters that have the wanted value already: a file that was dumped has those too."""
+    """Return the read-only parameters that have the wanted value already: a file that was dumped has those too."""
     fixed = [name for name, each in descriptors.items() if each.read_only]
-    now = asked.settled_values(fixed) if fixed else {}
+    now = client.settled_values(fixed) if fixed else {}
     return {name for name, each in now.items() if (each.type, plain(each)) == (wanted[name].type, plain(wanted[name]))}
 
 
-def _descriptor(asked: Asked, parameter: str) -> ParameterDescriptor | None:
+def _descriptor(client: ParameterClient, parameter: str) -> ParameterDescriptor | None:
     try:
-        return asked.descriptors([parameter])[0]
+        return client.descriptors([parameter])[0]
     except NotFoundError:  # the node says so itself, or allows it
         return None
 

@@ -1,4 +1,4 @@
-"""robolink plot: draw where robots go, and values over time. Here is what is asked; each job's own file does it."""
+"""robolink plot: draw where robots go, and values over time. Here are the arguments; each verb's file does the work."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from robolink.cli import complete
-from robolink.cli.options import seconds
+from robolink.cli.shared import complete
+from robolink.cli.shared.options import seconds
 
 app = typer.Typer(no_args_is_help=True, help="Draw where robots go, and values over time (needs matplotlib).")
 
@@ -41,9 +41,9 @@ def plot_odometry(
     world: World = "",
 ) -> None:
     """Draw the way of whatever messages say where something is: Odometry, PoseStamped and the like."""
-    from robolink.cli.plot import record, ways
+    from robolink.cli.plot import record, trajectories
 
-    ways.run(topics, ways.POSES, world, record.Wish(out, duration))
+    trajectories.run(topics, trajectories.POSES, world, record.Wish(out, duration))
 
 
 @app.command("path")
@@ -59,9 +59,9 @@ def plot_path(
     world: World = "",
 ) -> None:
     """Draw the paths that were published last, over the world."""
-    from robolink.cli.plot import record, ways
+    from robolink.cli.plot import record, trajectories
 
-    ways.run(topics, ways.PATHS, world, record.Wish(out, duration))
+    trajectories.run(topics, trajectories.PATHS, world, record.Wish(out, duration))
 
 
 @app.command("topic")

@@ -1,4 +1,4 @@
-"""What all plots share: listen to topics for a while, and turn what was heard into a picture."""
+"""Recording for plots: listens to topics for a while, and shows or writes the figure."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.cli.output import tell
-from robolink.cli.pictures import check_picture
-from robolink.cli.topic.echo import matching_qos
-from robolink.cli.types import message_type
+from robolink.cli.shared.matching_qos import matching_qos
+from robolink.cli.shared.output import tell
+from robolink.cli.shared.pictures import check_picture
+from robolink.cli.shared.types import message_type
 from robolink.exceptions import RobolinkError, nearest
 from robolink.executors import SingleThreadedExecutor
 from robolink.task import Future
@@ -25,24 +25,24 @@ if TYPE_CHECKING:
 WINDOW_NEEDED = "there is no screen to open a window on: give --out FILE.png"
 DOTS_PER_INCH = 150
 LEAST_WAIT = 5.0
-"""Seconds that somebody has at least to begin to publish."""
+"""Least time to wait for a publisher, in seconds."""
 TOLD_AFTER = 2.0
-"""Seconds until it is said that a topic is waited for."""
+"""Delay until a note that a topic is waited for, in seconds."""
 
 
 class PlotError(RobolinkError, ValueError):
-    """Something that cannot be drawn."""
+    """A plot cannot be drawn, shown or written."""
 
 
 class Wish(NamedTuple):
-    """Where the picture goes (None: into a window), and how many seconds to listen (None: until Ctrl-C)."""
+    """Options of a plot: the picture's file (None: a window), and the seconds to listen (None: until Ctrl-C)."""
 
     out: Path | None = None
     duration: float | None = None
 
 
 def check(wish: Wish) -> None:
-    """Raise `PlotError` or `DrawingError` before any listening when the picture could not be made in the end."""
+    """Raise `PlotError` or `DrawingError`, before any listening, if the picture could not be made in the end."""
     if wish.out is None:
         _check_window()
         return
@@ -52,7 +52,7 @@ def check(wish: Wish) -> None:
 
 
 def _check_window() -> None:
-    from robolink import drawing
+    from robolink.sim import drawing
 
     try:
         drawing.check_picture(Path("window.png"))  # needs what such a file would
@@ -66,14 +66,14 @@ def _check_window() -> None:
 
 
 def deadline(wish: Wish) -> float | None:
-    """Give the moment (of `time.monotonic`) until which somebody must publish; None while there is no hurry."""
+    """Return the moment (of `time.monotonic`) until which there must be a publisher; None for no limit."""
     return None if wish.duration is None else time.monotonic() + max(wish.duration, LEAST_WAIT)
 
 
 def wait_for(context: Context, topic: str, deadline: float | None) -> type[Any]:
-    """Wait until somebody publishes a topic, named in full, and give its message class.
+    """Wait until a topic, named in full, has a publisher, and return its message class.
 
-    Raises `PlotError` when nobody does until `deadline` (of `time.monotonic`), and KeyboardInterrupt.
+    Raises `PlotError` if there is none until `deadline` (of `time.monotonic`), and KeyboardInterrupt.
     """
     graph, begin, told = context.graph, time.monotonic(), False
 

@@ -1,4 +1,4 @@
-"""What `robolink plot topic` does: draw fields of messages over time."""
+"""Plots of fields of messages over time, for `robolink plot topic`."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import time
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli import show as fields
 from robolink.cli.plot.record import PlotError, Wish, check, deadline, listen, show, wait_for
-from robolink.cli.session import node_of, opened
+from robolink.cli.shared import show as fields
+from robolink.cli.shared.session import node_of, opened
 from robolink.exceptions import EncodeError
 from robolink.wire import EndpointKind
 
@@ -20,19 +20,19 @@ NUMBERS = ("float", "int", "uint", "double", "bool", "byte", "char", "octet")
 
 
 class Curve:
-    """The values of one field, each with the seconds at which it came and, where messages have stamps, was stamped."""
+    """Curve of one field: its values, with their times of arrival and, if messages have them, stamps, in seconds."""
 
     def __init__(self, topic: str, field: str) -> None:
         self.topic, self.field = topic, field
         self.values: list[float] = []
         self.lacked = ""
-        """What the last message without such a value had instead."""
+        """Error of the last message without such a value."""
         self.arrived: list[float] = []
         self.stamped: list[float] = []
 
     @property
     def name(self) -> str:
-        """How the curve is called: as it was asked for."""
+        """Name of the curve: topic and field, as they were given."""
         return f"{self.topic}.{self.field}"
 
     def take(self, message: Any) -> None:
@@ -77,7 +77,7 @@ def _all_of(topic: str, curves: Iterable[Curve]) -> Callable[[Any], None]:
 
 
 def _parted(node: Node, asked: str, until: float | None) -> tuple[str, str]:
-    """Part `/odom.pose.x` or `/odom/pose/x` into topic and field: the topic is the longest name that is published."""
+    """Split `/odom.pose.x` or `/odom/pose/x` into topic and field: the topic is the longest name that is published."""
     if "." in asked:
         topic, _, field = asked.partition(".")
         return node.resolve_topic_name(topic), field
@@ -115,12 +115,12 @@ def _check_number(msg_type: type[Any], curve: Curve) -> None:
 
 
 def _without_option(error: EncodeError) -> str:
-    """Say what is wrong with a field; here it is none of `--field`, as in `topic echo`."""
+    """Return an error about a field without the option `--field`, which it has in `topic echo`."""
     return str(error).removeprefix("--field ")
 
 
 def _times(curves: list[Curve]) -> list[list[float]]:
-    """Give the moments of each curve's values: as stamped if all messages were, so that simulated time counts."""
+    """Return the times of each curve's values: of the stamps if all messages had one, so that simulated time counts."""
     if all(len(curve.stamped) == len(curve.values) for curve in curves):
         return [curve.stamped for curve in curves]
     return [curve.arrived for curve in curves]

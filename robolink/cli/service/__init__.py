@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robolink.cli import complete
+from robolink.cli.shared import complete
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -37,8 +37,8 @@ def list_services(
     as_json: AsJson = False,
 ) -> None:
     """List the services that are served or called."""
-    from robolink.cli.names import show_names
-    from robolink.cli.session import looking
+    from robolink.cli.shared.names import show_names
+    from robolink.cli.shared.session import looking
 
     with looking() as context:
         services = _types(context, hidden=hidden)
@@ -48,8 +48,8 @@ def list_services(
 @app.command("type")
 def show_type(service: Service, hidden: Hidden = False, as_json: AsJson = False) -> None:
     """Show the type of a service."""
-    from robolink.cli.names import show_types
-    from robolink.cli.session import looking
+    from robolink.cli.shared.names import show_types
+    from robolink.cli.shared.session import looking
 
     with looking() as context:
         services = _types(context)
@@ -68,8 +68,8 @@ def find(
     as_json: AsJson = False,
 ) -> None:
     """List the services of a type."""
-    from robolink.cli.names import show_of_type
-    from robolink.cli.session import looking
+    from robolink.cli.shared.names import show_of_type
+    from robolink.cli.shared.session import looking
 
     with looking() as context:
         services = _types(context, hidden=hidden)
@@ -112,8 +112,8 @@ def call_service(
     as_json: Annotated[bool, typer.Option("--json", help="A line of JSON for each call.")] = False,
 ) -> None:
     """Call a service and show what it answers."""
-    from robolink.cli.asked import is_type, read_stdin
     from robolink.cli.service import call
+    from robolink.cli.shared.requests import is_type, read_stdin
 
     if values is None and not is_type(type_):  # SERVICE VALUES: the type was left out
         type_, values = "", type_
@@ -148,7 +148,7 @@ def echo_events(
 ) -> None:
     """Show what a service and its clients say to each other, where introspection is on; until Ctrl-C."""
     from robolink.cli.service import echo
-    from robolink.cli.show import Style
+    from robolink.cli.shared.show import Style
 
     if csv and as_json:
         ctx.fail("--csv and --json do not go together")
@@ -157,9 +157,9 @@ def echo_events(
 
 
 def _types(context: Context, *, hidden: bool = True) -> dict[str, list[str]]:
-    """Give every service with its types, sorted; also those that are only called, as in ros2."""
-    from robolink.cli.announced import endpoints, is_hidden
-    from robolink.graph import names_and_types
+    """Return every service with its types, sorted; also those that are only called, as in ros2."""
+    from robolink.cli.shared.announced import endpoints, is_hidden
+    from robolink.graph.graph import names_and_types
     from robolink.wire import EndpointKind
 
     found = names_and_types(endpoints(context, EndpointKind.SERVICE, EndpointKind.CLIENT))
@@ -167,9 +167,10 @@ def _types(context: Context, *, hidden: bool = True) -> dict[str, list[str]]:
 
 
 def _known(context: Context, service: str, services: dict[str, list[str]]) -> str:
-    """Give the full name of a service. Raises NotFoundError when there is none."""
-    from robolink.cli.announced import absolute
-    from robolink.exceptions import NotFoundError, shown
+    """Return the full name of a service. Raises NotFoundError if there is none."""
+    from robolink.cli.shared.announced import absolute
+    from robolink.exceptions import NotFoundError
+    from robolink.system.terminal import shown
 
     name = absolute(service)
     if name not in services:

@@ -1,4 +1,4 @@
-"""What `robolink service call` does."""
+"""Calls of a service for `robolink service call`, once or at a rate."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ import contextlib
 import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.cli import show
-from robolink.cli.asked import Asked, message_of
-from robolink.cli.elsewhere import domains_with, hint
-from robolink.cli.output import say, tell
-from robolink.cli.session import node_of, opened
-from robolink.exceptions import NotFoundError, RobolinkError, nearest, shown
+from robolink.cli.shared import show
+from robolink.cli.shared.other_domains import domains_with, hint
+from robolink.cli.shared.output import say, tell
+from robolink.cli.shared.requests import GivenRequest, message_of
+from robolink.cli.shared.session import node_of, opened
+from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.interfaces import find, is_named
+from robolink.system.terminal import shown
 from robolink.wire import EndpointKind
 
 if TYPE_CHECKING:
@@ -21,28 +22,28 @@ if TYPE_CHECKING:
     from robolink.executors import Executor
 
 PATIENCE = 1.0
-"""Seconds without an answer after which the reason is given."""
+"""Wait for an answer until the reason is printed, in seconds."""
 
 _SLICE = 0.25
-"""Seconds of one wait: on Windows Ctrl-C does not end a wait that is longer."""
+"""Longest single wait, in seconds: on Windows Ctrl-C does not end a wait."""
 
 
 class CallError(RobolinkError, RuntimeError):
-    """A call that cannot be made, or that nobody answered."""
+    """A call cannot be made, or was not answered."""
 
 
 class Manner(NamedTuple):
-    """How a service is called."""
+    """Options of `service call`: how often, and how long an answer may take."""
 
     rate: float | None = None
-    """Calls a second; None for one call."""
+    """Rate of the calls, in Hz; None for one call."""
     timeout: float = 5.0
-    """Seconds until the answer has to be there, the wait for the service included."""
+    """Timeout of an answer, in seconds, with the wait for the service."""
     json: bool = False
     node_name: str = ""
 
     def problem(self) -> str:
-        """Say what cannot be; nothing if it can."""
+        """Return what is wrong with these options; empty if nothing is."""
         if self.rate is not None and not 1e-9 <= self.rate < float("inf"):
             return f"--rate: expected a number of Hz above 0, got {self.rate:g}"
         if not 0 < self.timeout <= 1e9:
@@ -53,18 +54,18 @@ class Manner(NamedTuple):
 def run(service: str, type_: str, values: str, manner: Manner) -> None:
     """Call a service once, or at a rate until Ctrl-C.
 
-    Raises CallError when nobody answers in time, ServiceError when the server goes away or answers what is no
-    answer, NotFoundError for an unknown type, DocumentError or EncodeError for a wrong request.
+    Raises CallError if there is no answer in time, ServiceError if the server goes away or its answer cannot be
+    read, NotFoundError for an unknown type, DocumentError or EncodeError for a wrong request.
     """
     with opened() as context:
         from robolink.executors import SingleThreadedExecutor
 
         node = node_of(context, manner.node_name)
-        asked = Asked(node.resolve_service_name(service), type_, values)
+        given = GivenRequest(node.resolve_service_name(service), type_, values)
         deadline = time.monotonic() + manner.timeout
-        srv_type = _wait_for_type(context, asked, manner, deadline)
+        srv_type = _wait_for_type(context, given, manner, deadline)
         request = message_of(srv_type.Request, values)
-        client = node.create_client(srv_type, asked.name)
+        client = node.create_client(srv_type, given.name)
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(node)
         while True:
@@ -76,52 +77,52 @@ def run(service: str, type_: str, values: str, manner: Manner) -> None:
             deadline = time.monotonic() + manner.timeout
 
 
-def _wait_for_type(context: Context, asked: Asked, manner: Manner, deadline: float) -> type[Any]:
-    """Wait until the service is there, with the type that is named, if one is; give its class."""
-    from robolink.cli.types import service_type
+def _wait_for_type(context: Context, given: GivenRequest, manner: Manner, deadline: float) -> type[Any]:
+    """Wait until the service is there, with the type that is named, if one is; return its class."""
+    from robolink.cli.shared.types import service_type
 
-    if not _served(context, asked):
-        _check_early(asked)
+    if not _served(context, given):
+        _check_early(given)
         if not manner.json:
             say("waiting for service to become available...")
-        _wait(context, asked, manner, deadline)
-    return service_type(context, asked.name, asked.type_)
+        _wait(context, given, manner, deadline)
+    return service_type(context, given.name, given.type_)
 
 
-def _check_early(asked: Asked) -> None:
-    """Find what is wrong with the request before anybody waits for the service, where its type is installed."""
-    if asked.type_:
+def _check_early(given: GivenRequest) -> None:
+    """Check the request before the wait for the service, if its type is installed."""
+    if given.type_:
         with contextlib.suppress(NotFoundError):  # the server may know it
-            message_of(find(asked.type_, "srv").Request, asked.values)
+            message_of(find(given.type_, "srv").Request, given.values)
 
 
-def _served(context: Context, asked: Asked) -> bool:
-    servers = context.graph.endpoints(EndpointKind.SERVICE, name=asked.name)
-    return any(not asked.type_ or is_named(each.type_name, asked.type_) for each in servers)
+def _served(context: Context, given: GivenRequest) -> bool:
+    servers = context.graph.endpoints(EndpointKind.SERVICE, name=given.name)
+    return any(not given.type_ or is_named(each.type_name, given.type_) for each in servers)
 
 
-def _wait(context: Context, asked: Asked, manner: Manner, deadline: float) -> None:
+def _wait(context: Context, given: GivenRequest, manner: Manner, deadline: float) -> None:
     patience = time.monotonic() + PATIENCE
-    while not context.graph.wait_for(lambda: _served(context, asked) or not context.ok(), _SLICE):
+    while not context.graph.wait_for(lambda: _served(context, given) or not context.ok(), _SLICE):
         now = time.monotonic()
         if now >= deadline:
-            raise CallError(f"gave up after {manner.timeout:g} s: {_why_absent(context, asked)}")
+            raise CallError(f"gave up after {manner.timeout:g} s: {_why_absent(context, given)}")
         if now >= patience:
             patience = float("inf")
-            tell(f"waiting: {_why_absent(context, asked)}")
+            tell(f"waiting: {_why_absent(context, given)}")
     if not context.ok():
         raise KeyboardInterrupt
 
 
-def _why_absent(context: Context, asked: Asked) -> str:
-    """Say why there is no such service."""
+def _why_absent(context: Context, given: GivenRequest) -> str:
+    """Return the reason why there is no such service."""
     served = context.graph.endpoints(EndpointKind.SERVICE)
-    types = sorted({each.type_name for each in served if each.name == asked.name})
+    types = sorted({each.type_name for each in served if each.name == given.name})
     if types:
-        return f"{asked.name} is served as {' and '.join(types)}, not as {shown(asked.type_)}"
-    elsewhere = hint(domains_with(context, asked.name, EndpointKind.SERVICE))
-    near = "" if elsewhere else nearest(asked.name, sorted({each.name for each in served}))
-    return f"nobody serves {asked.name} on domain {context.get_domain_id()}{elsewhere}{near}"
+        return f"{given.name} is served as {' and '.join(types)}, not as {shown(given.type_)}"
+    elsewhere = hint(domains_with(context, given.name, EndpointKind.SERVICE))
+    near = "" if elsewhere else nearest(given.name, sorted({each.name for each in served}))
+    return f"nobody serves {given.name} on domain {context.get_domain_id()}{elsewhere}{near}"
 
 
 def _call(client: Client, executor: Executor, request: Any, manner: Manner, deadline: float) -> None:
@@ -155,7 +156,7 @@ def _sleep(executor: Executor, until: float) -> None:
 
 
 def _server_of(executor: Executor, client: Client) -> str:
-    """Name who serves, as far as is known."""
+    """Return the name of the node that serves, as far as it is known."""
     found = executor.context.graph.endpoints(EndpointKind.SERVICE, name=client.srv_name)
     if not found:
         return f"{client.srv_name}, which nobody serves any more"

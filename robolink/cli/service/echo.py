@@ -1,13 +1,13 @@
-"""What `robolink service echo` does."""
+"""Output of service events for `robolink service echo`: requests and responses, if introspection is on."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from robolink.cli import show
-from robolink.cli.output import say, tell
-from robolink.cli.session import node_of, opened
-from robolink.cli.types import service_type
+from robolink.cli.shared import show
+from robolink.cli.shared.output import say, tell
+from robolink.cli.shared.session import node_of, opened
+from robolink.cli.shared.types import service_type
 from robolink.exceptions import RobolinkError
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.service_msgs.msg import ServiceEventInfo
@@ -16,18 +16,18 @@ from robolink.service_introspection import SUFFIX
 from robolink.task import Future
 
 NAMES = {number: name for name, (_, number) in ServiceEventInfo.__ros_constants__.items()}
-"""What each number of an event means."""
+"""Names of the kinds of events, by number."""
 
 
 class Format(NamedTuple):
-    """How events are shown."""
+    """Format in which events are shown."""
 
     style: show.Style = show.Style()
     csv: bool = False
     json: bool = False
 
     def text(self, event: Any) -> str:
-        """Give an event as it is shown: as ros2 does it, with a name in place of its number but for CSV."""
+        """Return an event as text, like ros2: with a name in place of its number but for CSV."""
         if self.csv:
             return show.as_csv(event, self.style)
         event.info.event_type = NAMES.get(event.info.event_type, event.info.event_type)

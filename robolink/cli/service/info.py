@@ -1,32 +1,33 @@
-"""What `robolink service info` shows: the type, how many serve and call, and who they are."""
+"""Output of `robolink service info`: a service's type, its servers and its clients."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from robolink.cli.announced import absolute, announced
-from robolink.cli.output import say, say_json
-from robolink.cli.session import looking
-from robolink.exceptions import NotFoundError, shown
+from robolink.cli.shared.announced import absolute, announced
+from robolink.cli.shared.output import say, say_json
+from robolink.cli.shared.session import looking
+from robolink.exceptions import NotFoundError
+from robolink.system.terminal import shown
 from robolink.topic_endpoint_info import qos_lines
 from robolink.wire import EndpointKind, EndpointToken, gid_of
 
 if TYPE_CHECKING:
-    from robolink.graph import Token
+    from robolink.graph.graph import Token
 
 TITLES = {EndpointKind.CLIENT: "Clients count", EndpointKind.SERVICE: "Services count"}
 ROLES = {EndpointKind.CLIENT: "CLIENT", EndpointKind.SERVICE: "SERVER"}
 
 
 class End(NamedTuple):
-    """A server or client, and the id that it sends by."""
+    """A server or client, and its gid."""
 
     token: EndpointToken
     gid: str
 
 
 def show(service: str, *, verbose: bool, as_json: bool) -> None:
-    """Show it. Raises NotFoundError for a service that nobody serves or calls."""
+    """Show the service. Raises NotFoundError for one that has neither servers nor clients."""
     with looking() as context:
         tokens = announced(context)
     ends = _ends(tokens, absolute(service), f"domain {context.get_domain_id()}")
@@ -56,7 +57,7 @@ def _ends(tokens: dict[str, Token], name: str, where: str) -> list[End]:
 
 
 def described(end: End) -> str:
-    """Give the lines that ros2 prints for an endpoint."""
+    """Return the lines that ros2 prints for an endpoint."""
     token = end.token
     return "\n".join(
         [

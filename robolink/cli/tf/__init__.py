@@ -1,4 +1,4 @@
-"""robolink tf: see where frames are in each other. Here is what is asked; each verb's own file does it."""
+"""robolink tf: see where frames are in each other. Here are the arguments; each verb's file does the work."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from robolink.cli.options import seconds
+from robolink.cli.shared.options import seconds
 
 app = typer.Typer(no_args_is_help=True, help="See where frames are in each other.")
 

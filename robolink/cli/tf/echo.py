@@ -1,4 +1,4 @@
-"""What `robolink tf echo` does: tf2_echo's output, and why there is none."""
+"""Output of the transform between two frames for `robolink tf echo`, like tf2_echo's, and why there is none."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import time
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from robolink.cli.output import say, say_json, tell
-from robolink.cli.session import node_of, opened
+from robolink.cli.shared.output import say, say_json, tell
+from robolink.cli.shared.session import node_of, opened
+from robolink.cli.shared.silence import PATIENCE
 from robolink.cli.tf.watch import NoTransformsError, Watch
-from robolink.cli.topic.silence import PATIENCE
 from robolink.exceptions import RobolinkError
 from robolink.task import Future
 from robolink.tf2 import listing
@@ -22,11 +22,11 @@ ASKER = "robolink tf"
 
 
 class RateError(RobolinkError, ValueError):
-    """A rate that is no number of times a second."""
+    """The rate is no positive number."""
 
 
 class Wish(NamedTuple):
-    """How often, and until when."""
+    """Options of `tf echo`: how often, and until when."""
 
     rate: float = 1.0
     once: bool = False
@@ -35,7 +35,7 @@ class Wish(NamedTuple):
 
 
 class Found(NamedTuple):
-    """Where a frame is in another."""
+    """Transform from one frame to another."""
 
     source: str
     target: str
@@ -43,7 +43,7 @@ class Found(NamedTuple):
     stamp: int
 
     def text(self) -> str:
-        """Write it as tf2_echo does."""
+        """Return it as text, like tf2_echo."""
         place, turn = self.rigid[:3], self.rigid[3:]
         angles = roll_pitch_yaw(*turn)
         return "\n".join(
@@ -59,7 +59,7 @@ class Found(NamedTuple):
         )
 
     def data(self) -> dict[str, Any]:
-        """Give it for programs."""
+        """Return it as data for JSON."""
         return {
             "stamp": self.stamp / 1e9,
             "frame_id": self.source,
@@ -85,7 +85,7 @@ def run(source: str, target: str, wish: Wish) -> None:
 
 
 def _wait(watch: Watch, source: str, target: str, timeout: float | None) -> None:
-    """Wait for the first transform; tell once a second why there is none, unless that was told."""
+    """Wait for the first transform; print after a second why there is none, again if the reason changes."""
     begin, told = time.monotonic(), ""
     came: Future[None] = Future()
 
@@ -107,7 +107,7 @@ def _wait(watch: Watch, source: str, target: str, timeout: float | None) -> None
 
 
 def why_not(watch: Watch, source: str, target: str) -> str:
-    """Say why there is no transform between two frames; nothing when there is one."""
+    """Return the reason why there is no transform between two frames; empty if there is one."""
     if not watch.links:
         return watch.why_nothing()
     try:
@@ -130,7 +130,7 @@ def _show(watch: Watch, source: str, target: str, *, json: bool) -> None:
 
 
 def roll_pitch_yaw(x: float, y: float, z: float, w: float) -> tuple[float, float, float]:
-    """Give the angles of a unit quaternion about the static axes x, y and z, in radians."""
+    """Return the angles of a unit quaternion about the static axes x, y and z, in radians."""
     sine = 2.0 * (w * y - x * z)
     if abs(sine) > 1.0 - 1e-12:  # straight up or down: roll and yaw are one, which roll has
         return 2.0 * math.atan2(x, w), math.copysign(math.pi / 2, sine), 0.0
@@ -139,7 +139,7 @@ def roll_pitch_yaw(x: float, y: float, z: float, w: float) -> tuple[float, float
 
 
 def matrix(rigid: Rigid) -> list[list[float]]:
-    """Give the 4x4 matrix of a transform, row by row."""
+    """Return the 4x4 matrix of a transform, row by row."""
     px, py, pz, x, y, z, w = rigid
     return [
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w), px],

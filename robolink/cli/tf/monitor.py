@@ -1,4 +1,4 @@
-"""What `robolink tf monitor` does: who publishes transforms, how often, and how late they come."""
+"""Monitor of transforms for `robolink tf monitor`: their publishers, rates and delays."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import time
 from collections.abc import Iterable
 from typing import Any
 
-from robolink.cli.output import say, say_json, tell
-from robolink.cli.session import node_of, opened
+from robolink.cli.shared.figures import Figures, figures_of
+from robolink.cli.shared.output import say, say_json, tell
+from robolink.cli.shared.session import node_of, opened
 from robolink.cli.tf.echo import ASKER, why_not
 from robolink.cli.tf.watch import Seen, Watch
-from robolink.cli.topic.rates import Figures, figures_of
 from robolink.tf2.cache import LATEST
 from robolink.tf2.exceptions import TransformException
 
@@ -38,7 +38,7 @@ def run(source: str, target: str, period: float, *, json: bool) -> None:
 
 
 def _chain(watch: Watch, source: str, target: str) -> list[str] | None:
-    """Give the frames from one to the other; None while nothing connects them."""
+    """Return the frames from one to the other; None while nothing connects them."""
     try:
         return watch.tree.chain(target, source, LATEST, ASKER)
     except TransformException:

@@ -1,4 +1,4 @@
-"""What `robolink tf tree` does: all frames, how often and how long ago they were sent, and what is wrong with them."""
+"""Tree of frames for `robolink tf tree`: all frames, their rates and ages, and what is wrong with them."""
 
 from __future__ import annotations
 
@@ -7,36 +7,36 @@ import time
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from robolink.cli.output import say, say_json
-from robolink.cli.session import node_of, opened
+from robolink.cli.shared.output import say, say_json
+from robolink.cli.shared.session import node_of, opened
 from robolink.cli.tf.watch import NoTransformsError, Seen, Watch
-from robolink.exceptions import shown
+from robolink.system.terminal import shown
 from robolink.tf2.listing import Frame, as_dot
 
 S = 10**9
 
 LATE = 1.0
-"""Seconds, and two periods more, after which a frame that moves counts as old."""
+"""Age from which a moving frame counts as old, in seconds, beyond two periods."""
 
 NAMED_WITHIN = 1.0
-"""Seconds in which who has sent is announced, even on a busy machine."""
+"""Timeout of the announcements of publishers, in seconds, even on a busy machine."""
 
 NEAR = 10 * S
-"""Nanoseconds: stamps that are farther from this computer's clock are of another clock, and compared to each other."""
+"""Upper bound of a stamp's distance to this computer's clock, in ns: beyond, stamps are of another clock."""
 
 
 class Node(NamedTuple):
-    """A frame as it is shown: its link that was heard last, and who publishes that link."""
+    """A frame in the tree: its link that was heard last, and the publishers of that link."""
 
     name: str
     link: Seen
     senders: list[str]
     age: float | None
-    """Seconds since its last stamp; None of a static one."""
+    """Age of its last stamp, in seconds; None of a static one."""
 
 
 def run(wait: float, topics: tuple[str, str], form: str) -> None:
-    """Listen, then show the tree as ``text``, ``json`` or ``dot``. Raises NoTransformsError when nothing comes."""
+    """Listen, then show the tree as ``text``, ``json`` or ``dot``. Raises NoTransformsError if nothing comes."""
     with opened() as context:
         watch = Watch(node_of(context), topics)
         watch.listen(wait)
@@ -55,7 +55,7 @@ def run(wait: float, topics: tuple[str, str], form: str) -> None:
 
 
 def nodes(links: list[Seen], now: int) -> dict[str, Node]:
-    """Make one node of all links of a child; the parent is the one that was heard last."""
+    """Return one node for all links of a child; its parent is the one that was heard last."""
     clock = reference(links, now)
     found = {}
     for child in dict.fromkeys(each.child for each in links):
@@ -68,7 +68,7 @@ def nodes(links: list[Seen], now: int) -> dict[str, Node]:
 
 
 def reference(links: list[Seen], now: int) -> int:
-    """Give the time that ages count from: now, or the latest stamp where stamps are of another clock."""
+    """Return the time that ages count from: now, or the latest stamp if stamps are of another clock."""
     newest = max((max(each.stamps) for each in links if not each.static), default=now)
     return now if abs(now - newest) < NEAR else newest
 
@@ -77,7 +77,7 @@ def reference(links: list[Seen], now: int) -> int:
 
 
 def problems(found: dict[str, Node], links: list[Seen]) -> Iterator[str]:
-    """Say what lookups will stumble over."""
+    """Yield the problems of the tree with which look-ups fail."""
     for child, node in found.items():
         own = [each for each in links if each.child == child]
         parents = {each.parent: each.sender for each in own}
@@ -106,7 +106,7 @@ def _old(node: Node) -> Iterator[str]:
 
 
 def refusals(refused: dict[tuple[str, str, str, str], int]) -> Iterator[str]:
-    """Say what every buffer refuses."""
+    """Yield a line for each kind of transform that buffers refuse."""
     for (parent, child, sender, why), count in refused.items():
         yield f"refused {count} of '{shown(parent)}' -> '{shown(child)}' from {sender}: {why}"
 
@@ -115,7 +115,7 @@ def refusals(refused: dict[tuple[str, str, str, str], int]) -> Iterator[str]:
 
 
 def roots(found: dict[str, Node]) -> list[str]:
-    """Give the tops of all trees; of frames that form a ring, one."""
+    """Return the roots of all trees; one frame of each cycle."""
     tops = list(dict.fromkeys(each.link.parent for each in found.values() if each.link.parent not in found))
     reached = {name for top in tops for name, _ in _below(found, top)}
     for name in found:
@@ -126,7 +126,7 @@ def roots(found: dict[str, Node]) -> list[str]:
 
 
 def _in_ring(found: dict[str, Node], name: str) -> str:
-    """Give the first frame of the ring that is above this one."""
+    """Return a frame of the cycle that is above this one."""
     seen: set[str] = set()
     while name not in seen:
         seen.add(name)
@@ -135,7 +135,7 @@ def _in_ring(found: dict[str, Node], name: str) -> str:
 
 
 def _below(found: dict[str, Node], top: str) -> Iterator[tuple[str, str]]:
-    """Give all frames below one, each once and with what is drawn before it."""
+    """Yield all frames below one, each once and with what is drawn before it."""
     children: dict[str, list[str]] = {}
     for each in found.values():
         children.setdefault(each.link.parent, []).append(each.name)
@@ -155,7 +155,7 @@ def _below(found: dict[str, Node], top: str) -> Iterator[tuple[str, str]]:
 
 
 def lines(found: dict[str, Node]) -> list[str]:
-    """Draw the trees: frames to the left, what is known of them to the right."""
+    """Return the lines of the trees: frames to the left, their figures to the right."""
     rows: list[tuple[str, str]] = []
     for top in roots(found):
         rows.append((shown(top), ""))
@@ -165,7 +165,7 @@ def lines(found: dict[str, Node]) -> list[str]:
 
 
 def _drawable(line: str) -> str:
-    """Draw with ASCII where the output has no lines to draw with, as a pipe on Windows."""
+    """Return a line drawn with ASCII if the output's encoding lacks box characters, as that of a pipe on Windows."""
     try:
         "└├─│".encode(getattr(sys.stdout, "encoding", None) or "ascii")
     except UnicodeEncodeError:

@@ -1,4 +1,4 @@
-"""What comes on /tf and /tf_static, and from whom: for commands that look at it."""
+"""Recorder of /tf and /tf_static for the commands: which transforms come, and from which nodes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from robolink.callback_groups import ReentrantCallbackGroup
-from robolink.cli.topic.silence import Wanted, why_silent
+from robolink.cli.shared.silence import Wanted, why_silent
 from robolink.exceptions import RobolinkError
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.tf2_msgs.msg import TFMessage
@@ -21,64 +21,64 @@ from robolink.tf2.tree import Tree
 from robolink.wire import EndpointKind, unpack_attachment
 
 Link = tuple[str, str, str, bool]
-"""Child, parent, sender, and whether it is static."""
+"""Child, parent, sender, and True if it is static."""
 
 TOPICS = ("/tf", "/tf_static")
 DEPTH = 1000
 QOS = {False: QoSProfile(depth=DEPTH), True: QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)}
 
 LAST = 1000
-"""Delays of so many transforms of a link are kept."""
+"""Number of transforms of a link whose delays are kept."""
 
 
 class NoTransformsError(RobolinkError, TimeoutError):
-    """Nobody sent a transform while a command listened."""
+    """No transform was received while a command listened."""
 
 
 class Seen:
-    """One frame in one parent, as one node publishes it."""
+    """One link, of a frame to its parent, as one node publishes it."""
 
     def __init__(self, child: str, parent: str, sender: str, static: bool) -> None:
         self.child, self.parent, self.sender, self.static = child, parent, sender, static
         self.stamps: list[int] = []
-        """Nanoseconds, in the order of arrival; the last of them."""
+        """Stamps of the last LAST transforms, in ns, in the order of arrival."""
         self.arrivals: list[int] = []
-        """When they came: nanoseconds of this computer's clock."""
+        """Times of arrival, in ns of this computer's clock."""
 
     def add(self, stamp: int, now: int) -> None:
-        """Note one more."""
+        """Record a transform."""
         for kept, new in ((self.stamps, stamp), (self.arrivals, now)):
             kept.append(new)
             del kept[:-LAST]
 
     def add_earlier(self, other: Seen) -> None:
-        """Note all that another has, which turned out to be the same."""
+        """Merge the records of another link, which turned out to be the same."""
         self.stamps[:0], self.arrivals[:0] = other.stamps, other.arrivals
         del self.stamps[:-LAST], self.arrivals[:-LAST]
 
     @property
     def rate(self) -> float | None:
-        """Transforms a second, by their arrival; None of a single one."""
+        """Rate of arrival, in Hz; None for a single transform."""
         spent = self.arrivals[-1] - self.arrivals[0]
         return (len(self.arrivals) - 1) * 1e9 / spent if spent else None
 
     @property
     def delays(self) -> list[float]:
-        """Seconds from stamp to arrival."""
+        """Delays from stamp to arrival, in seconds."""
         return [(came - stamp) / 1e9 for came, stamp in zip(self.arrivals, self.stamps, strict=True)]
 
 
 class Watch:
-    """Listens on a command's node, and notes what comes: each link by child, parent and sender."""
+    """Recorder of all links, by child, parent and sender, on a command's node."""
 
     def __init__(self, node: Node, topics: tuple[str, str] = TOPICS) -> None:
         self.node, self.topics = node, tuple(node.resolve_topic_name(each) for each in topics)
         self.links: dict[Link, Seen] = {}
         self.refused: dict[tuple[str, str, str, str], int] = {}
-        """How many were refused: by parent, child, sender and the reason."""
+        """Number of refused transforms by parent, child, sender and reason."""
         self.tree = Tree(CACHE_TIME)
         self.on_news: Callable[[], object] | None = None
-        """Called after each message."""
+        """Function that is called after each message."""
         self._names: dict[bytes, str] = {}
         self._nameless: dict[str, bytes] = {}
         for topic, static in zip(self.topics, (False, True), strict=True):
@@ -88,18 +88,18 @@ class Watch:
         self._executor.add_node(node)
 
     def listen(self, span: float, until: Future[Any] | None = None) -> None:
-        """Take in what comes for so many seconds, or until a future is done. Raises KeyboardInterrupt at the end."""
+        """Record for `span` seconds, or until a future is done. Raises KeyboardInterrupt on Ctrl-C."""
         self._executor.spin_until_future_complete(until or Future(), timeout_sec=span)
         self._name_late()
 
     def await_names(self, patience: float) -> None:
-        """Listen on until all who have sent are known by name, for so many seconds at most."""
+        """Record on until all senders are known by name, for `patience` seconds at most."""
         deadline = time.monotonic() + patience
         while self._nameless and time.monotonic() < deadline:
             self.listen(0.05)
 
     def why_nothing(self) -> str:
-        """Say why nothing has come."""
+        """Return the reason why nothing has come."""
         graph = self.node.context.graph
         published = [each for each in self.topics if graph.endpoints(EndpointKind.PUBLISHER, name=each)]
         topic = (published or self.topics)[0]
@@ -128,7 +128,7 @@ class Watch:
             self.links.setdefault(link, Seen(*link)).add(stamp, now)
 
     def _name(self, gid: bytes) -> str:
-        """The full name of the node that has this gid; it is remembered, since nodes go."""
+        """Return the full name of the node with this gid; it is remembered, since nodes go."""
         if gid not in self._names:
             token = self.node.context.graph.endpoint_of(gid)
             if token is None:
@@ -139,7 +139,7 @@ class Watch:
         return self._names[gid]
 
     def _name_late(self) -> None:
-        """Name those whose transforms came before they were announced, as the only one on /tf_static may."""
+        """Name the senders whose transforms came before they were announced, as the only one on /tf_static may."""
         for nameless, gid in list(self._nameless.items()):
             del self._nameless[nameless]  # it comes back if it is still not known
             if (name := self._name(gid)) != nameless:
@@ -159,7 +159,7 @@ def _renamed(links: dict[Link, Seen], sender: str, name: str) -> dict[Link, Seen
 
 
 class _Heard(Subscription[TFMessage]):
-    """A subscription that also tells who sent each message."""
+    """A subscription that also passes on the sender of each message."""
 
     def _info(self, attachment: bytes) -> MessageInfo:
         return {**super()._info(attachment), "sender": unpack_attachment(attachment).gid}  # type: ignore[typeddict-unknown-key]

@@ -1,4 +1,4 @@
-"""What `robolink topic echo` does."""
+"""Output of messages for `robolink topic echo`."""
 
 from __future__ import annotations
 
@@ -6,19 +6,18 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.cli import show
-from robolink.cli.output import clear, say, tell
-from robolink.cli.session import node_of, opened
-from robolink.cli.topic import silence
+from robolink.cli.shared import show, silence
+from robolink.cli.shared.matching_qos import matching_qos
+from robolink.cli.shared.output import clear, say, tell
+from robolink.cli.shared.session import node_of, opened
+from robolink.cli.shared.types import message_type
 from robolink.cli.topic.lenient import Leniently
 from robolink.cli.topic.qos_options import QoSFlags
-from robolink.cli.types import message_type
 from robolink.context import Context
 from robolink.event_handler import QoSMessageLostInfo, SubscriptionEventCallbacks
 from robolink.exceptions import RobolinkError
 from robolink.executors import SingleThreadedExecutor
 from robolink.message import type_hash
-from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from robolink.subscription import MessageInfo
 from robolink.task import Future
 from robolink.wire import EndpointKind
@@ -27,8 +26,6 @@ if TYPE_CHECKING:
     from robolink.node import Node
 
 PATIENCE = silence.PATIENCE
-MOST_KEPT = 10_000
-"""Of what a latched publisher says that it has kept, so many are asked for."""
 
 
 class NothingCameError(RobolinkError, TimeoutError):
@@ -36,7 +33,7 @@ class NothingCameError(RobolinkError, TimeoutError):
 
 
 class Format(NamedTuple):
-    """How messages are shown."""
+    """Format in which messages are shown."""
 
     field: str = ""
     style: show.Style = show.Style()
@@ -45,10 +42,15 @@ class Format(NamedTuple):
     raw: bool = False
     info: bool = False
     clear: bool = False
+    image: bool = False
 
     def text(self, message: Any, info: MessageInfo) -> str:
-        """Give a message as it is shown. `info` comes first where it is wanted, in ros2's order."""
+        """Return a message as text. `info` comes first if it is wanted, in ros2's order."""
         value = show.field_of(message, self.field) if self.field else message
+        if self.image:
+            from robolink.cli.topic.picture import drawn
+
+            return drawn(value)
         if self.json:
             return show.as_json({"info": dict(info), "message": value} if self.info else value)
         if self.csv:
@@ -60,14 +62,14 @@ class Format(NamedTuple):
 
 
 class Wish(NamedTuple):
-    """What is to be heard, and until when."""
+    """Options of `topic echo`: what to listen to, and until when."""
 
     type_name: str = ""
     once: bool = False
     timeout: float | None = None
     filter: str = ""
     lost: bool = True
-    """Whether lost messages are told of."""
+    """True to report lost messages."""
     node_name: str = ""
     qos: QoSFlags = QoSFlags()
 
@@ -87,7 +89,7 @@ def run(topic: str, wish: Wish, form: Format) -> None:
 
 
 def _passes(msg_type: type[Any], form: Format, text: str) -> Callable[[Any], bool]:
-    """Give what tells whether a message is shown. Raises EncodeError for a wrong field, FilterError."""
+    """Return the filter of messages. Raises EncodeError for a wrong field, FilterError for a wrong expression."""
     kind = show.check_path(msg_type, form.field) if form.field else None
     if not text:
         return lambda _: True
@@ -100,7 +102,7 @@ def _passes(msg_type: type[Any], form: Format, text: str) -> Callable[[Any], boo
 
 
 class _Echo:
-    """One run: it has come to its end when `done` is."""
+    """One run of `topic echo`, which ends when the future `done` is done."""
 
     def __init__(
         self,
@@ -118,7 +120,7 @@ class _Echo:
         self.qos = wish.qos.over("sensor_data") if wish.qos.given else matching_qos(node.context, name)
 
     def run(self, timeout: float | None, told: bool) -> int:
-        """Show messages until the end; how many were shown."""
+        """Show messages until the end, and return how many were shown."""
         end = None if timeout is None else time.monotonic() + timeout
         # Why nothing comes is told here, in this command's words.
         events = SubscriptionEventCallbacks(message_lost=self.on_lost, use_default_callbacks=False)
@@ -139,11 +141,11 @@ class _Echo:
         return self.shown
 
     def wanted(self) -> silence.Wanted:
-        """Give what is listened for."""
+        """Return the type and QoS that are listened with."""
         return silence.Wanted(self.msg_type.__ros_type__, type_hash(self.msg_type), self.qos)
 
     def on_message(self, message: Any, info: MessageInfo) -> None:
-        """Show a message. What goes wrong is this command's own error, no callback's: no such field, a closed pipe."""
+        """Show a message. Errors, such as a missing field or a closed pipe, end the command, not only the callback."""
         if self.done.done():
             return
         if not self.first.done():
@@ -153,7 +155,7 @@ class _Echo:
                 text = self.form.text(message, info)
                 if self.form.clear and not (self.form.json or self.form.csv):
                     clear()
-                say(text)
+                say(text, colours=self.form.image)
                 self.shown += 1
         except (RobolinkError, OSError) as error:
             self.done.set_exception(error)
@@ -161,14 +163,14 @@ class _Echo:
             self.done.set_result(None)
 
     def on_lost(self, info: QoSMessageLostInfo) -> None:
-        """Tell of messages that were sent and did not come."""
+        """Report messages that were lost."""
         if self.wish.lost:
             change, total = info.total_count_change, info.total_count
             tell(f"A message was lost!!!\n\ttotal count change:{change}\n\ttotal count: {total}")
 
 
 def _wait_for_topic(context: Context, name: str, timeout: float | None) -> bool:
-    """Wait until somebody publishes or subscribes; whether it was told that this takes long."""
+    """Wait until the topic has an endpoint; return True if the reason for the wait was printed."""
     begin, told = time.monotonic(), False
 
     def known() -> bool:
@@ -186,15 +188,3 @@ def _wait_for_topic(context: Context, name: str, timeout: float | None) -> bool:
             tell(silence.why_silent(context, name))
             told = True
     return told
-
-
-def matching_qos(context: Context, name: str) -> QoSProfile:
-    """Ask for what the publishers offer: what they kept, if one of them keeps something."""
-    offered = [each.qos for each in context.graph.endpoints(EndpointKind.PUBLISHER, name=name)]
-    latched = [each.depth for each in offered if each.durability is DurabilityPolicy.TRANSIENT_LOCAL]
-    reliable = all(each.reliability is not ReliabilityPolicy.BEST_EFFORT for each in offered)
-    return QoSProfile(
-        depth=min(max([10, *latched]), MOST_KEPT),
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
-        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-    )

@@ -1,23 +1,23 @@
-"""A filter that one strange message does not bring to its end."""
+"""Lenient filter: one message that cannot be read or filtered is left out, and does not end the command."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-from robolink.cli.output import tell
+from robolink.cli.shared.output import tell
 from robolink.exceptions import DecodeError, TransportError
 
 
 class Leniently:
-    """A filter that lets nothing through of which it cannot tell; why is told on standard error, once."""
+    """Filter that leaves out messages on which it fails; the first error is printed on standard error."""
 
     def __init__(self, passes: Callable[[Any], bool]) -> None:
         self._passes = passes
         self._told = False
 
     def __call__(self, message: Any) -> bool:
-        """Whether a message passes."""
+        """Return True if a message passes."""
         from robolink.cli.topic.filter import FilterError
 
         try:
@@ -27,7 +27,7 @@ class Leniently:
             return False
 
     def decoded(self, decode: Callable[[], Any]) -> Any:
-        """Give what is decoded; None of what cannot be."""
+        """Return a decoded message; None if it cannot be decoded."""
         try:
             return decode()
         except (DecodeError, TransportError) as error:

@@ -1,19 +1,20 @@
-"""What `robolink topic list`, `info`, `type` and `find` say: topics as they are announced."""
+"""Listings of topics as they are announced: `robolink topic list`, `info`, `type` and `find`."""
 
 from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli.announced import absolute, announced, endpoints, is_hidden
-from robolink.cli.names import show_names, show_of_type, show_types
-from robolink.cli.output import say, say_json, tell
-from robolink.cli.session import looking
+from robolink.cli.shared.announced import absolute, announced, endpoints, is_hidden
+from robolink.cli.shared.names import show_names, show_of_type, show_types
+from robolink.cli.shared.output import say, say_json, tell
+from robolink.cli.shared.session import looking
 from robolink.duration import Infinite
-from robolink.exceptions import MessageError, NotFoundError, nearest, shown
-from robolink.graph import names_and_types
+from robolink.exceptions import MessageError, NotFoundError, nearest
+from robolink.graph.graph import names_and_types
 from robolink.interfaces import is_named
 from robolink.qos import QoSProfile
+from robolink.system.terminal import shown
 from robolink.topic_endpoint_info import qos_lines
 from robolink.validate_full_topic_name import validate_full_topic_name
 from robolink.wire import EndpointKind, EndpointToken, gid_of
@@ -22,12 +23,14 @@ if TYPE_CHECKING:
     from robolink.context import Context
 
 End = tuple[bytes, EndpointToken]
-"""One end of a topic, with the gid that its announcement gives it."""
+"""Publisher or subscription, with the gid from its announcement."""
 
 _TYPE = re.compile(r"(?:[A-Za-z]\w*[/.])?(?:msg[/.])?[A-Za-z]\w*", re.ASCII)
 
 
-def list_topics(*, types: bool, count: bool, verbose: bool, hidden: bool, json: bool) -> None:
+def list_topics(
+    *, types: bool = False, count: bool = False, verbose: bool = False, hidden: bool = False, json: bool = False
+) -> None:
     """List the topics that are published or subscribed to."""
     with looking() as context:
         found = [each for each in _ends(context) if hidden or not is_hidden(each.name)]
@@ -42,7 +45,7 @@ def list_topics(*, types: bool, count: bool, verbose: bool, hidden: bool, json: 
 
 
 def show_info(topic: str, *, verbose: bool, json: bool) -> None:
-    """Say of which type a topic is and who uses it."""
+    """Show the type of a topic and its endpoints."""
     with looking() as context:
         name, found = _of_topic(context, topic)
     types = sorted({each.type_name for _, each in found})
@@ -61,7 +64,7 @@ def show_info(topic: str, *, verbose: bool, json: bool) -> None:
 
 
 def show_type(topic: str, *, json: bool) -> None:
-    """Say of which type a topic is: a line for each, where there are several."""
+    """Show the type of a topic: a line for each, if there are several."""
     with looking() as context:
         _, found = _of_topic(context, topic)
     show_types(sorted({each.type_name for _, each in found}), json=json)
@@ -89,7 +92,7 @@ def _ends(context: Context) -> list[EndpointToken]:
 
 
 def _of_topic(context: Context, topic: str) -> tuple[str, list[End]]:
-    """Give a topic's full name and its ends. Raises NotFoundError for one that nobody announces."""
+    """Return a topic's full name and its endpoints. Raises NotFoundError if it has none."""
     name = absolute(topic)
     validate_full_topic_name(name)
     ends = {
@@ -115,7 +118,7 @@ def _spellings(ends: list[EndpointToken]) -> set[str]:
 
 
 def _section(title: str, noun: str, ends: list[EndpointToken], kind: EndpointKind) -> str:
-    """Give a section of `topic list -v`, which ends in an empty line. The types are those of both ends, as in ros2."""
+    """Return a section of `topic list -v`, with an empty line at the end; the types are those of all endpoints."""
     lines = [f"{title} topics:"]
     for name, types in names_and_types(ends):
         number = sum(each.name == name and each.kind is kind for each in ends)
@@ -135,7 +138,7 @@ def _details(ends: list[EndpointToken]) -> dict[str, Any]:
 
 
 def _endpoint_text(gid: bytes, end: EndpointToken) -> str:
-    """Spell one end of a topic as `ros2 topic info -v` does."""
+    """Return one endpoint as text, like `ros2 topic info -v`."""
     return "\n".join(
         [
             f"Node name: {end.node_name}",
@@ -162,7 +165,7 @@ def _endpoint_data(gid: bytes, end: EndpointToken) -> dict[str, Any]:
 
 
 def _qos_data(qos: QoSProfile) -> dict[str, Any]:
-    """Give a profile for programs: policies by name, spans in seconds, null for ever."""
+    """Return a QoS profile as data for JSON: policies by name, durations in seconds, null for ever."""
     policies = ("reliability", "history", "durability", "liveliness")
     spans = ("lifespan", "deadline", "liveliness_lease_duration")
     return (

@@ -1,4 +1,4 @@
-"""What `robolink topic hz`, `bw` and `delay` do: listen, and say once a second what came."""
+"""Meters of topics for `robolink topic hz`, `bw` and `delay`: listen, and print figures once a second."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink import systemclock
-from robolink.cli.output import say, say_json, tell
-from robolink.cli.session import node_of, opened
+from robolink.cli.shared.figures import figures_of
+from robolink.cli.shared.output import say, say_json, tell
+from robolink.cli.shared.session import node_of, opened
+from robolink.cli.shared.silence import PATIENCE, why_silent
 from robolink.cli.topic import rates
 from robolink.cli.topic.arrivals import Arrivals, Take
 from robolink.cli.topic.lenient import Leniently
-from robolink.cli.topic.silence import PATIENCE, why_silent
 from robolink.exceptions import DecodeError, RobolinkError
+from robolink.system import clocks
 from robolink.time_source import CLOCK_TOPIC
 from robolink.wire import EndpointToken
 
@@ -22,29 +23,29 @@ if TYPE_CHECKING:
     from robolink.context import Context
 
 PERIOD = 1.0
-"""Seconds from one report to the next."""
+"""Interval between two reports, in seconds."""
 
 STAMP = {1: struct.Struct("<iI"), 0: struct.Struct(">iI")}
-"""A builtin_interfaces/msg/Time at the beginning of a message, by the byte that tells its order."""
+"""Layouts of a builtin_interfaces/msg/Time at the beginning of a message, by the byte for its byte order."""
 
 NO_NEWS = "no new messages"
 
 
 class NoHeaderError(RobolinkError, ValueError):
-    """A type without the header that `topic delay` needs."""
+    """The type has no header, which `topic delay` needs."""
 
 
 class Flags(NamedTuple):
-    """What all three can be asked for."""
+    """Options of all three meters."""
 
     window: int
     json: bool = False
     sim_time: bool = False
-    """Whether moments are those of /clock."""
+    """True to measure in the time of /clock."""
 
 
 class Report(NamedTuple):
-    """How figures are said: for one topic, in the columns of a table for several, and for programs."""
+    """Report of figures: as text for one topic, as cells of a table for several, and as data for JSON."""
 
     text: str
     cells: list[str]
@@ -52,7 +53,7 @@ class Report(NamedTuple):
 
 
 class Meter(NamedTuple):
-    """What is measured: how a message of a publisher's type is noted, and what is said of those noted."""
+    """A kind of measurement: how a message of a publisher's type is recorded, and the report of what is recorded."""
 
     take: Callable[[EndpointToken, rates.Window], Take]
     header: list[str]
@@ -61,7 +62,7 @@ class Meter(NamedTuple):
 
 
 def hz(topics: list[str], flags: Flags, filter_text: str) -> None:
-    """Say how often messages come; only those that pass a filter, if there is one."""
+    """Print the rate of messages, only of those that pass a filter, if there is one."""
     header = ["topic", "rate", "min_delta", "max_delta", "std_dev", "window"]
     with opened() as context:
         take = _filtered(context, filter_text) if filter_text else _noted
@@ -69,7 +70,7 @@ def hz(topics: list[str], flags: Flags, filter_text: str) -> None:
 
 
 def bw(topics: list[str], flags: Flags) -> None:
-    """Say how many bytes come."""
+    """Print the bandwidth of topics."""
     header = ["topic", "bandwidth", "mean", "min", "max", "messages"]
     nothing = dict.fromkeys(["bytes_per_second", "mean", "min", "max"]) | {"messages": 0}
     with opened() as context:
@@ -79,7 +80,7 @@ def bw(topics: list[str], flags: Flags) -> None:
 
 
 def delay(topic: str, flags: Flags) -> None:
-    """Say how long after the stamp in its header each message came."""
+    """Print the delay from the stamp in the header to the arrival of messages."""
     with opened() as context:
         meter = Meter(lambda publisher, window: _delayed(context, publisher, window), [], _delay, _no_figures("delay"))
         _measure(context, [topic], flags, meter, clock=time.time_ns)
@@ -92,7 +93,7 @@ def _measure(
     meter: Meter,
     *,
     more: int = 0,
-    clock: Callable[[], int] = systemclock.steady,
+    clock: Callable[[], int] = clocks.steady,
 ) -> None:
     node = node_of(context)
     names = list(dict.fromkeys(node.resolve_topic_name(each) for each in topics))
@@ -179,7 +180,7 @@ def _delayed(context: Context, publisher: EndpointToken, window: rates.Window) -
 
 
 def stamp_reader(msg_type: type[Any]) -> Callable[[bytes], int]:
-    """Give what reads a message's stamp, in nanoseconds: the first bytes where the header comes first, as mostly.
+    """Return the function that reads a message's stamp, in ns: from the first bytes if the header is the first field.
 
     Raises NoHeaderError for a type without one.
     """
@@ -204,7 +205,7 @@ def stamp_reader(msg_type: type[Any]) -> Callable[[bytes], int]:
 
 
 def first_stamp(payload: bytes) -> int:
-    """Give the time with which a message begins, in nanoseconds. Raises DecodeError where there is none."""
+    """Return the time with which a message begins, in ns. Raises DecodeError if there is none."""
     try:
         seconds, nanoseconds = STAMP[payload[1]].unpack_from(payload, 4)
     except (KeyError, IndexError, struct.error):
@@ -217,7 +218,7 @@ def _as_it_is(take: Take) -> Take:
 
 
 def _sim_time(context: Context, arrivals: Arrivals) -> Callable[[Take], Take]:
-    """Listen to /clock; what is timed by it is left out before its first message. All of it runs on one thread."""
+    """Listen to /clock, which times all arrivals; those before its first message are left out. Runs on one thread."""
     read, now = context.transport.read, [0]
     leniently = Leniently(lambda _: True)
 
@@ -248,7 +249,7 @@ def _rate(times: list[int], values: list[int]) -> Report | None:
 
 
 def _bandwidth(times: list[int], sizes: list[int]) -> Report | None:
-    found, figures = rates.bandwidth(times, sizes), rates.figures_of(sizes)
+    found, figures = rates.bandwidth(times, sizes), figures_of(sizes)
     if found is None or figures is None:
         return None
     speed = rates.as_bytes(found, found) + "/s"
@@ -262,7 +263,7 @@ def _bandwidth(times: list[int], sizes: list[int]) -> Report | None:
 
 
 def _delay(times: list[int], delays: list[int]) -> Report | None:
-    figures = rates.figures_of([each * rates.NS for each in delays])
+    figures = figures_of([each * rates.NS for each in delays])
     if figures is None:
         return None
     mean, low, high, deviation, count = figures

@@ -1,4 +1,4 @@
-"""The arguments and flags of `robolink topic`, spelled as ros2 spells them."""
+"""Arguments and flags of `robolink topic`, with ros2's spelling."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
-from robolink.cli import complete
-from robolink.cli.options import seconds
+from robolink.cli.shared import complete
+from robolink.cli.shared.options import seconds
 
 
 def _flag(*names: str, help: str) -> Any:  # noqa: A002 - typer's word
@@ -15,21 +15,21 @@ def _flag(*names: str, help: str) -> Any:  # noqa: A002 - typer's word
 
 
 def window(default: int, least: int = 1) -> int:
-    """Give the option of how many messages are looked at, `least` of them."""
+    """Return the option for the number of messages that are evaluated: `default`, and `least` at least."""
     return typer.Option(  # type: ignore[no-any-return]
         default, "--window", "-w", metavar="N", help="So many messages, the last, are looked at.", min=least, max=10**7
     )
 
 
 def refuse_together(ctx: typer.Context, given: dict[str, object]) -> None:
-    """End with a usage error where more than one of these was given."""
+    """End with a usage error if more than one of these was given."""
     names = [name for name, value in given.items() if value]
     if len(names) > 1:
         ctx.fail(f"{' and '.join(names)} do not go together")
 
 
 def are_values(text: str) -> bool:
-    """Whether what stands in the place of a type is a message in YAML: no type is spelled with these characters."""
+    """True if the word in the place of a type is a message in YAML: no type has these characters."""
     return ":" in text or text.lstrip().startswith("{")
 
 
@@ -80,6 +80,7 @@ NoArr = Annotated[bool, _flag("--no-arr", help="Of sequences, show only type and
 NoStr = Annotated[bool, _flag("--no-str", help="Of texts, show only the length.")]
 Flow = Annotated[bool, _flag("--flow-style", help="YAML in one line: {x: 1}.")]
 Clear = Annotated[bool, _flag("--clear", "-c", help="Clear the screen before each message.")]
+AsImage = Annotated[bool, _flag("--image", help="Draw a sensor_msgs/msg/Image, in a terminal with 24-bit colours.")]
 NoLost = Annotated[bool, _flag("--no-lost-messages", help="Tell nothing of lost messages.")]
 
 # topic pub

@@ -1,4 +1,4 @@
-"""What `robolink topic pub` does."""
+"""Publishing of messages for `robolink topic pub`."""
 
 from __future__ import annotations
 
@@ -9,17 +9,18 @@ import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.cli.output import say
-from robolink.cli.session import node_of, opened
+from robolink.cli.shared.output import say
+from robolink.cli.shared.session import node_of, opened
+from robolink.cli.shared.types import message_type
 from robolink.cli.topic.qos_options import QoSFlags
 from robolink.cli.topic.stamps import Stamped
-from robolink.cli.types import message_type
+from robolink.documents.yamlfile import parse
 from robolink.event_handler import PublisherEventCallbacks
-from robolink.exceptions import DocumentError, RobolinkError, nearest, shown
+from robolink.exceptions import DocumentError, RobolinkError, nearest
 from robolink.executors import Executor, SingleThreadedExecutor
+from robolink.system.terminal import shown
 from robolink.task import Future
 from robolink.wire import EndpointKind
-from robolink.yamlfile import parse
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -27,38 +28,38 @@ if TYPE_CHECKING:
     from robolink.publisher import Publisher
 
 LOWEST_RATE = 1e-9
-"""Hz: a message in thirty years."""
+"""Lower bound of the rate, in Hz (a message in about 31 years)."""
 
 FOUND_WITHIN = 0.5
-"""Seconds in which a topic turns up whose type was not named."""
+"""Timeout of the look-up of a topic whose type was not named, in seconds."""
 
 INPUT = "<standard input>"
 LONGEST_INPUT = 64 * 2**20
-"""Bytes of standard input: a few pictures, as YAML."""
+"""Upper bound of standard input, in bytes: a few pictures, as YAML."""
 
 _RULE = re.compile(r"^(?:---|\.\.\.)(?=\s|$)", re.MULTILINE)
-"""What stands between the documents of a YAML stream, and after each that `topic echo` writes."""
+"""Separator of the documents of a YAML stream, which `topic echo` writes after each."""
 
 
 class PublishError(RobolinkError, ValueError):
-    """A rate that is none, flags that do not go together, or no type for the topic."""
+    """The rate is not valid, flags do not go together, or the topic has no type."""
 
 
 class MatchTimeoutError(RobolinkError, TimeoutError):
-    """--max-wait-time-secs passed before enough subscriptions were there."""
+    """The time of --max-wait-time-secs passed before there were enough subscriptions."""
 
 
 class Wish(NamedTuple):
-    """How often, how long, and for whom."""
+    """Options of `topic pub`: how often, how long, and for how many subscriptions."""
 
     rate: float = 1.0
     times: int = 0
-    """Messages; 0 for no end."""
+    """Number of messages; 0 for no end."""
     wait: int | None = None
-    """Subscriptions to wait for; by default one if `times` is given."""
+    """Number of subscriptions to wait for; by default one if `times` is given."""
     max_wait: float | None = None
     keep_alive: float = 0.1
-    """Seconds that the publisher stays after its last message, so that it arrives."""
+    """Time that the publisher stays after its last message, so that it arrives, in seconds."""
     print_every: int = 1
     node_name: str = ""
     qos: QoSFlags = QoSFlags()
@@ -66,7 +67,7 @@ class Wish(NamedTuple):
 
 
 def run(topic: str, type_name: str, values: str | None, wish: Wish) -> None:
-    """Publish what `values` says, or standard input where they are None: one message after the other, in turn."""
+    """Publish the messages in `values`, or on standard input if that is None, in turn."""
     if not LOWEST_RATE <= wish.rate < float("inf"):
         raise PublishError(f"--rate: expected a number of Hz above 0, got {wish.rate:g}")
     wait = (1 if wish.times else 0) if wish.wait is None else wish.wait
@@ -91,7 +92,7 @@ def run(topic: str, type_name: str, values: str | None, wish: Wish) -> None:
 
 
 def read_input() -> str:
-    """Read standard input to its end. Raises DocumentError for what is no text, and for too much."""
+    """Return standard input to its end. Raises DocumentError if it is no text, or too long."""
     raw = b"" if sys.stdin is None else sys.stdin.buffer.read(LONGEST_INPUT + 1)
     if len(raw) > LONGEST_INPUT:
         raise DocumentError(f"more than {LONGEST_INPUT // 2**20} MiB", INPUT)
@@ -103,7 +104,7 @@ def read_input() -> str:
 
 
 def documents_of(text: str) -> Iterator[Any]:
-    """Read each document of a YAML stream that is not empty. Raises DocumentError, also when there is none."""
+    """Yield each document of a YAML stream that is not empty. Raises DocumentError, also if there is none."""
     parts = [each for each in _RULE.split(text) if each.strip()]
     if not parts:
         raise DocumentError("there is nothing to publish in it", INPUT)
@@ -112,7 +113,7 @@ def documents_of(text: str) -> Iterator[Any]:
 
 
 def _type_of(context: Context, name: str, given: str) -> type[Any]:
-    """Give the type that was named, else the one that the topic has. Raises PublishError for an unknown topic."""
+    """Return the type that was named, else the one that the topic has. Raises PublishError for an unknown topic."""
     graph, ends = context.graph, (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
     if given or graph.wait_for(lambda: bool(graph.endpoints(*ends, name=name)), FOUND_WITHIN):
         return message_type(context, name, given)
@@ -127,9 +128,9 @@ def _follow_clock(node: Node) -> None:
 
 
 def _wait(executor: Executor, publisher: Publisher[Any], count: int, longest: float | None) -> None:
-    """Spin until so many subscriptions are there; said once a second.
+    """Spin until there are `count` subscriptions, with a note once a second.
 
-    Who comes may first ask this node what its type is: hence no mere waiting.
+    A new peer may first ask this node for its type, so it has to spin.
     """
     end = None if longest is None else time.monotonic() + longest
     while publisher.get_subscription_count() < count:

@@ -1,4 +1,4 @@
-"""The flags that ask for a quality of service, as `ros2 topic echo` and `pub` take them."""
+"""Options for the quality of service, as `ros2 topic echo` and `pub` have them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Annotated, Any, NamedTuple
 
 import typer
 
-from robolink.cli.options import choice, seconds
+from robolink.cli.shared.options import choice, seconds
 
 PROFILES = [
     "unknown",
@@ -35,7 +35,7 @@ Lease = Annotated[float | None, seconds("--qos-liveliness-lease-duration-seconds
 
 
 class QoSFlags(NamedTuple):
-    """What was said of the quality of service; nothing by default."""
+    """QoS options that were given; none by default."""
 
     profile: str = ""
     depth: int | None = None
@@ -47,11 +47,11 @@ class QoSFlags(NamedTuple):
 
     @property
     def given(self) -> bool:
-        """Whether anything was said."""
+        """True if any option was given."""
         return self != QoSFlags()
 
     def over(self, preset: str) -> Any:
-        """Give the QoSProfile: the preset that was named, else `preset`, with what was said in place of its own."""
+        """Return the QoSProfile: the preset that was named, else `preset`, with the policies that were given."""
         from robolink import qos
         from robolink.duration import Duration
 
@@ -74,5 +74,5 @@ class QoSFlags(NamedTuple):
 
 
 def flags_of(params: dict[str, Any]) -> QoSFlags:
-    """Collect what was said from a command's parameters: `qos_depth` and so on."""
+    """Return the QoS options among a command's parameters: `qos_depth` and so on."""
     return QoSFlags(**{name: params[f"qos_{name}"] for name in QoSFlags._fields})

@@ -1,29 +1,19 @@
-"""What `robolink topic hz`, `bw` and `delay` compute: figures of the last messages of a topic."""
+"""Figures of the last messages of a topic, for `robolink topic hz`, `bw` and `delay`: rates, bandwidths, gaps."""
 
 from __future__ import annotations
 
-import math
 import threading
 from collections import deque
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple
+
+from robolink.cli.shared.figures import Figures, figures_of
 
 NS = 1e-9
 
 
-class Figures(NamedTuple):
-    """What is said of some numbers; how many they are is `number`."""
-
-    mean: float
-    low: float
-    high: float
-    deviation: float
-    number: int
-
-
 class Window:
-    """The last `size` messages of a topic: when each came, in nanoseconds, and a number that goes with it."""
+    """Sliding window of a topic's last `size` messages: the time of each arrival, in ns, and a number with it."""
 
     def __init__(self, size: int) -> None:
         self._times: deque[int] = deque(maxlen=size)
@@ -31,10 +21,10 @@ class Window:
         self._lock = threading.Lock()
         self._new = 0
         self.total = 0
-        """Messages since the beginning."""
+        """Number of messages since the beginning."""
 
     def add(self, at: int, value: int = 0) -> None:
-        """Note a message. A time before the last one means that time began anew: what was before is forgotten."""
+        """Add a message. A time before the last one means that time was reset: what was before is dropped."""
         with self._lock:
             if self._times and at < self._times[-1]:
                 self._times.clear()
@@ -45,47 +35,38 @@ class Window:
             self.total += 1
 
     def look(self) -> tuple[list[int], list[int], int]:
-        """Give the times, the numbers, and how many messages came since the last look."""
+        """Return the times, the numbers, and how many messages came since the last look."""
         with self._lock:
             new, self._new = self._new, 0
             return list(self._times), list(self._values), new
 
 
-def figures_of(numbers: Sequence[float]) -> Figures | None:
-    """Give mean, least, greatest and standard deviation; None of nothing."""
-    if not numbers:
-        return None
-    mean = math.fsum(numbers) / len(numbers)
-    deviation = math.sqrt(math.fsum((each - mean) ** 2 for each in numbers) / len(numbers))
-    return Figures(mean, min(numbers), max(numbers), deviation, len(numbers))
-
-
 def gaps(times: Sequence[int]) -> Figures | None:
-    """Give the figures of the seconds from each message to the next."""
+    """Return the statistics of the gaps from each message to the next, in seconds."""
     return figures_of([(later - earlier) * NS for earlier, later in pairwise(times)])
 
 
 def rate(times: Sequence[int]) -> float | None:
-    """Give messages a second; None of fewer than two, or when all came at once."""
+    """Return the rate in Hz; None for fewer than two messages, or if all came at once."""
     spent = (times[-1] - times[0]) * NS if len(times) > 1 else 0.0
     return (len(times) - 1) / spent if spent > 0 else None
 
 
 def bandwidth(times: Sequence[int], sizes: Sequence[int]) -> float | None:
-    """Give bytes a second: what came after the first message, for it came at the beginning of the time measured."""
+    """Return bytes a second, without the first message, which came at the beginning of the time measured."""
     spent = (times[-1] - times[0]) * NS if len(times) > 1 else 0.0
     return sum(sizes[1:]) / spent if spent > 0 else None
 
 
 def as_bytes(number: float, like: float) -> str:
-    """Spell bytes in the unit that suits `like`, as ros2 does: B, KB or MB, of a thousand each."""
+    """Return bytes as text in the unit that suits `like`, as in ros2: B, KB or MB, of a thousand each."""
     if like < 1e3:
         return f"{number:.0f} B"
     return f"{number / 1e3:.2f} KB" if like < 1e6 else f"{number / 1e6:.2f} MB"
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Lay out rows under a centred header and a rule, as ros2 does, and end in an empty line."""
+    """Return rows under a centred header and a rule, as in ros2, with an empty line at the end."""
     widths = [max(len(each) for each in column) for column in zip(header, *rows, strict=True)]
     head = "   ".join(title.center(width) for title, width in zip(header, widths, strict=True))
     lines = ["   ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]

@@ -1,4 +1,4 @@
-"""Stamps that are put in when a message is sent: `header: auto` and `stamp: now`, as `ros2 topic pub` takes them."""
+"""Stamps that are set when a message is sent: `header: auto` and `stamp: now`, as in `ros2 topic pub`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Path = tuple["str | int", ...]
 
 
 class Stamped:
-    """A message, and those of its stamps that are to be the time at which it is sent."""
+    """A message, with those of its stamps that are to be the time of sending."""
 
     def __init__(self, msg_type: type[Any], data: Any) -> None:
         """`data` is the message as plain data. Raises EncodeError that names the field which does not fit."""
@@ -26,13 +26,13 @@ class Stamped:
         self._stamps = [_at(self.message, path) for path in self._paths]
 
     def stamp(self, now: Time) -> None:
-        """Put in the time."""
+        """Set the stamps to `now`."""
         seconds, nanoseconds = divmod(now.nanoseconds, 10**9)
         for each in self._stamps:
             each.sec, each.nanosec = seconds, nanoseconds
 
     def _without_words(self, fields: dict[str, FieldType], data: Any, path: Path) -> Any:
-        """Give the data without `auto` and `now`; where they stood is noted."""
+        """Return the data without `auto` and `now`, and record their places."""
         if not isinstance(data, dict):
             return data
         return {name: self._value(fields.get(name), value, (*path, name)) for name, value in data.items()}

@@ -5,7 +5,7 @@ from robolink.message import Message, float32
 
 
 class AckermannDrive(Message):
-    """How a car shall drive.
+    """Command to a car: its steering and its speed.
 
     `steering_angle`, in radians, positive to the left, is that of one wheel imagined in the middle of the front axle,
     not of the steering wheel; `steering_angle_velocity`, in rad/s, is how fast to turn it, 0 for as fast as can be.

@@ -24,7 +24,7 @@ class LoadNode(Service):
         extra_arguments: Sequence[Parameter]
 
     class Response(Message):
-        """Whether that worked, otherwise why not.
+        """Success, or the reason of the failure.
 
         `full_node_name` and `unique_id` are the node's; the id is what UnloadNode takes.
         """
@@ -44,7 +44,7 @@ class UnloadNode(Service):
         unique_id: uint64
 
     class Response(Message):
-        """Whether that worked, otherwise why not."""
+        """Success, or the reason of the failure."""
 
         success: bool
         error_message: string

@@ -38,7 +38,7 @@ class FollowJointTrajectory(Action):
         goal_time_tolerance: Duration
 
     class Result(Message):
-        """How it ended: SUCCESSFUL, or why not, with words for people in `error_string`."""
+        """Outcome: SUCCESSFUL, or the kind of failure, with words for people in `error_string`."""
 
         SUCCESSFUL: ClassVar[int32] = 0
         INVALID_GOAL: ClassVar[int32] = -1
@@ -51,7 +51,7 @@ class FollowJointTrajectory(Action):
         error_string: string
 
     class Feedback(Message):
-        """Where the joints should be, where they are, and the first less the second; times count from the start."""
+        """Wanted and actual state of the joints, and the first less the second; times count from the start."""
 
         header: Header
         joint_names: Sequence[string]
@@ -83,12 +83,12 @@ class GripperCommand(Action):
     """Open or close a gripper."""
 
     class Goal(Message):
-        """How wide and how hard."""
+        """Width and force."""
 
         command: GripperCommandMessage
 
     class Result(Message):
-        """How wide the gripper is open, in metres, and how hard it presses, in newtons.
+        """Width of the gripper's opening, in metres, and its force, in newtons.
 
         `reached_goal` is True where it is as wide as wanted, `stalled` where it presses as hard as it may and does
         not move.
@@ -153,7 +153,7 @@ class PointHead(Action):
         """Nothing."""
 
     class Feedback(Message):
-        """How far the axis is off, in radians."""
+        """Angle by which the axis is off, in radians."""
 
         pointing_angle_error: float64
 
@@ -175,7 +175,7 @@ class SingleJointPosition(Action):
         """Nothing."""
 
     class Feedback(Message):
-        """Where the joint is, how fast it moves, and how far it is off."""
+        """Position of the joint, its velocity, and its error."""
 
         header: Header
         position: float64
@@ -192,7 +192,7 @@ class ExecuteMotionPrimitiveSequence(Action):
         trajectory: MotionPrimitiveSequence
 
     class Result(Message):
-        """How it ended: SUCCESSFUL, or why not, with words for people in `error_string`."""
+        """Outcome: SUCCESSFUL, or the kind of failure, with words for people in `error_string`."""
 
         SUCCESSFUL: ClassVar[int32] = 0
         INVALID_GOAL: ClassVar[int32] = -1

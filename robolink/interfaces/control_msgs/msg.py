@@ -18,7 +18,7 @@ from robolink.message import Message, Sequence, float64, int8, string, uint16
 
 
 class JointTolerance(Message):
-    """How far a joint may be from where it should be: radians or metres, and these per second and per second².
+    """Tolerance of a joint's position (radians or metres), of its velocity (per second) and acceleration (per second²).
 
     0 leaves the controller's own limit in force; -1 removes it.
     """
@@ -30,7 +30,7 @@ class JointTolerance(Message):
 
 
 class JointComponentTolerance(Message):
-    """How far a joint with several degrees of freedom may be from where it should be, in one component.
+    """Tolerance of one component of a joint with several degrees of freedom.
 
     The AXIS components and TRANSLATION, the whole distance, are in metres, m/s and m/s²; ROTATION is in radians,
     rad/s and rad/s². A planar joint has no Z_AXIS.
@@ -50,7 +50,7 @@ class JointComponentTolerance(Message):
 
 
 class JointTrajectoryControllerState(Message):
-    """What a joint trajectory controller does now.
+    """Present state of a joint trajectory controller.
 
     `reference` is where the joints should be, `feedback` where they are, `error` the first less the second and
     `output` what the hardware is told. The fields that begin with multi_dof say the same of joints with several
@@ -72,7 +72,7 @@ class JointTrajectoryControllerState(Message):
 
 
 class JointControllerState(Message):
-    """What a PID controller of one joint does now; SingleDOFStateStamped has taken its place.
+    """Present state of a PID controller of one joint; SingleDOFStateStamped has taken its place.
 
     `error` is `process_value` less `set_point`, `process_value_dot` the change of the process value per second,
     `time_step` the seconds between two updates, `command` the output; p, i, d and `i_clamp` are the gains, and the
@@ -108,7 +108,7 @@ class JointJog(Message):
 
 
 class GripperCommand(Message):
-    """How wide a gripper shall open, in metres, and how hard it may press, in newtons."""
+    """Wanted width of a gripper's opening, in metres, and its largest force, in newtons."""
 
     position: float64
     max_effort: float64
@@ -130,7 +130,7 @@ class DynamicJointState(Message):
 
 
 class DynamicInterfaceValues(Message):
-    """What hardware interfaces report (`states`) and what they are told (`commands`)."""
+    """Values of hardware interfaces: what they report (`states`) and what they are told (`commands`)."""
 
     header: Header
     states: InterfaceValue
@@ -160,7 +160,7 @@ class Float64Values(Message):
 
 
 class SingleDOFState(Message):
-    """What a controller does now with one degree of freedom.
+    """Present state of a controller of one degree of freedom.
 
     `reference` is what should be, `feedback` what is and `feedback_dot` its change per second; `error` is the first
     less the second. `time_step` is the seconds between two updates and `output` what the hardware is told.
@@ -177,21 +177,21 @@ class SingleDOFState(Message):
 
 
 class SingleDOFStateStamped(Message):
-    """What a controller does now with one degree of freedom, and when that was."""
+    """State of a controller of one degree of freedom, with its time."""
 
     header: Header
     dof_state: SingleDOFState
 
 
 class MultiDOFStateStamped(Message):
-    """What a controller does now with several degrees of freedom, and when that was."""
+    """State of a controller of several degrees of freedom, with its time."""
 
     header: Header
     dof_states: Sequence[SingleDOFState]
 
 
 class MultiDOFCommand(Message):
-    """What several degrees of freedom shall be, by name, and where wanted their change per second."""
+    """Wanted values of several degrees of freedom, by name, and where wanted their change per second."""
 
     dof_names: Sequence[string]
     values: Sequence[float64]
@@ -221,7 +221,7 @@ class PidState(Message):
 
 
 class SpeedScalingFactor(Message):
-    """How fast to run a trajectory: 1.0 is its own speed, 0.0 a pause; never negative."""
+    """Speed of a trajectory as a factor: 1.0 is its own speed, 0.0 a pause; never negative."""
 
     factor: float64
 
@@ -315,7 +315,7 @@ class MotionPrimitiveSequence(Message):
 
 
 class VDA5050SafetyState(Message):
-    """What keeps an automated vehicle from driving, as VDA 5050 says it.
+    """Safety state of an automated vehicle, after VDA 5050: the reasons why it may not drive.
 
     `e_stop` is how its emergency stop is released: by itself (AUTO_ACK), by hand at the vehicle (MANUAL), from afar
     (REMOTE); NONE when it has not stopped. `field_violation` is True while something is within its protective field.

@@ -25,7 +25,7 @@ class QueryTrajectoryState(Service):
         time: Time
 
     class Response(Message):
-        """Whether that could be said, and a sentence for people.
+        """Success, and a sentence for people.
 
         For each joint of `name`: radians or metres, and these per second and per second².
         """
@@ -39,7 +39,7 @@ class QueryTrajectoryState(Service):
 
 
 class SetOdometry(Service):
-    """Tell a robot's odometry where the robot is."""
+    """Set the pose of a robot in its odometry."""
 
     class Request(Message):
         """The position in metres and the angles in radians."""
@@ -52,7 +52,7 @@ class SetOdometry(Service):
         yaw: float64
 
     class Response(Message):
-        """Whether that worked, and a sentence for people."""
+        """Success, and a sentence for people."""
 
         success: bool
         message: string

@@ -14,7 +14,7 @@ class KeyValue(Message):
 
 
 class DiagnosticStatus(Message):
-    """How one part of the robot is, say its left motor.
+    """State of one part of the robot, say its left motor.
 
     `level` is OK, WARN, ERROR, or STALE where the part has not been heard of for too long. `name` says which part or
     test it is, `message` what is the matter, in words for people; `hardware_id` tells one piece of hardware from

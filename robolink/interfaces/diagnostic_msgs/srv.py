@@ -5,13 +5,13 @@ from robolink.message import Message, Sequence, Service, byte, string
 
 
 class SelfTest(Service):
-    """Have a device test itself."""
+    """Run the self-test of a device."""
 
     class Request(Message):
         """Nothing."""
 
     class Response(Message):
-        """What came of it: `passed` is the byte 1 when all tests passed, the byte 0 when one failed.
+        """Outcome: `passed` is the byte 1 when all tests passed, the byte 0 when one failed.
 
         `id` names the device that was tested; `status` has one entry for each test.
         """
@@ -22,7 +22,7 @@ class SelfTest(Service):
 
 
 class AddDiagnostics(Service):
-    """Have the diagnostic aggregator watch over more parts, while it runs."""
+    """Add parts for the diagnostic aggregator to watch, while it runs."""
 
     class Request(Message):
         """The namespace, given in full (``/my/name/space``), whose parameters say how the parts are to be analysed."""
@@ -30,7 +30,7 @@ class AddDiagnostics(Service):
         load_namespace: string
 
     class Response(Message):
-        """Whether it was done, and a sentence for people. A namespace that is watched already is refused."""
+        """Success, and a sentence for people. A namespace that is watched already is refused."""
 
         success: bool
         message: string

@@ -7,7 +7,7 @@ class Fibonacci(Action):
     """Compute Fibonacci numbers, slowly."""
 
     class Goal(Message):
-        """How far to go: the index of the last number, where the sequence begins 0, 1, 1, 2."""
+        """Index of the last number, where the sequence begins 0, 1, 1, 2."""
 
         order: int32
 

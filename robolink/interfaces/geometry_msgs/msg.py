@@ -92,7 +92,7 @@ class QuaternionStamped(Message):
 
 
 class Pose(Message):
-    """Where something is, in metres, and how it is turned."""
+    """Pose: a position in metres, and an orientation."""
 
     position: Point
     orientation: Quaternion
@@ -142,7 +142,7 @@ class Transform(Message):
 
 
 class TransformStamped(Message):
-    """Where the frame `child_frame_id` stands in the frame ``header.frame_id`` at ``header.stamp``."""
+    """Transform: pose of the frame `child_frame_id` in the frame ``header.frame_id`` at ``header.stamp``."""
 
     header: Header
     child_frame_id: string
@@ -181,7 +181,7 @@ class TwistWithCovarianceStamped(Message):
 
 
 class VelocityStamped(Message):
-    """How `body_frame_id` moves relative to `reference_frame_id`, in m/s and rad/s along the header's axes.
+    """Velocity of `body_frame_id` relative to `reference_frame_id`, in m/s and rad/s along the header's axes.
 
     When the header's frame is the body's own, this is what is called a body twist.
     """
@@ -235,7 +235,7 @@ class WrenchStamped(Message):
 
 
 class Inertia(Message):
-    """How mass is spread: mass `m` in kg, centre of mass `com` in metres, inertia tensor in kg·m².
+    """Inertia of a body: mass `m` in kg, centre of mass `com` in metres, inertia tensor in kg·m².
 
     The tensor is symmetric; the six numbers are its upper triangle, about the centre of mass.
     """

@@ -5,7 +5,7 @@ from robolink.message import Message, Sequence, Service
 
 
 class ChangeState(Service):
-    """Tell a node to make a step; `ros2 lifecycle set` uses it."""
+    """Request a transition of a node; `ros2 lifecycle set` uses it."""
 
     class Request(Message):
         """The step, by its id, or by its label where the id is 0."""
@@ -13,7 +13,7 @@ class ChangeState(Service):
         transition: Transition
 
     class Response(Message):
-        """Whether the step could be made from where the node was, and was."""
+        """True if the state has this transition, and it succeeded."""
 
         success: bool
 

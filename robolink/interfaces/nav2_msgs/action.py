@@ -28,7 +28,7 @@ class NavigateToPose(Action):
         error_msg: string
 
     class Feedback(Message):
-        """How far it is: the time since the start, the time and the metres that are left, both as estimated.
+        """Progress: the time since the start, the time and the metres that are left, both as estimated.
 
         `number_of_recoveries` counts how often the robot was stuck and had to try something else.
         """
@@ -215,7 +215,7 @@ class Spin(Action):
         time_allowance: Duration
 
     class Result(Message):
-        """How it ended: NONE or why not, with words for people in `error_msg`, and the time that it took."""
+        """Outcome: NONE or the kind of failure, with words for people in `error_msg`, and the time that it took."""
 
         NONE: ClassVar[uint16] = 0
         UNKNOWN: ClassVar[uint16] = 700
@@ -237,14 +237,14 @@ class BackUp(Action):
     """Drive backwards."""
 
     class Goal(Message):
-        """How far back (`x` of the target, in metres), at which speed (m/s), and the time to give up after."""
+        """Distance back (`x` of the target, in metres), speed (m/s), and the time to give up after."""
 
         target: Point
         speed: float32
         time_allowance: Duration
 
     class Result(Message):
-        """How it ended: NONE or why not, with words for people in `error_msg`, and the time that it took."""
+        """Outcome: NONE or the kind of failure, with words for people in `error_msg`, and the time that it took."""
 
         NONE: ClassVar[uint16] = 0
         UNKNOWN: ClassVar[uint16] = 710
@@ -267,14 +267,14 @@ class DriveOnHeading(Action):
     """Drive straight ahead."""
 
     class Goal(Message):
-        """How far (`x` of the target, in metres), at which speed (m/s), and the time to give up after."""
+        """Distance (`x` of the target, in metres), speed (m/s), and the time to give up after."""
 
         target: Point
         speed: float32
         time_allowance: Duration
 
     class Result(Message):
-        """How it ended: NONE or why not, with words for people in `error_msg`, and the time that it took."""
+        """Outcome: NONE or the kind of failure, with words for people in `error_msg`, and the time that it took."""
 
         NONE: ClassVar[uint16] = 0
         UNKNOWN: ClassVar[uint16] = 720
@@ -297,12 +297,12 @@ class Wait(Action):
     """Stand still for a while."""
 
     class Goal(Message):
-        """How long."""
+        """Length of the wait."""
 
         time: Duration
 
     class Result(Message):
-        """How it ended, and how long that was."""
+        """Outcome, and the length of the wait."""
 
         total_elapsed_time: Duration
         error_code: uint16

@@ -13,7 +13,7 @@ from robolink.message import Message, Sequence, float32, int8, string, uint32
 
 
 class Odometry(Message):
-    """Where a robot believes to be and how fast it moves.
+    """Odometry: the estimated pose and velocity of a robot.
 
     `pose` is that of `child_frame_id` (the robot's body) in ``header.frame_id`` (often ``odom``), in metres;
     `twist` is given in `child_frame_id`, in m/s and rad/s, so ``twist.twist.linear.x`` is the speed ahead.

@@ -20,10 +20,10 @@ class GetMap(Service):
 
 
 class LoadMap(Service):
-    """Tell a map server to read a map from a file and serve it."""
+    """Load a map from a file into a map server, which serves it."""
 
     class Request(Message):
-        """Where the map's YAML file is: ``file:///...``, or ``package://name/...`` in a package."""
+        """Place of the map's YAML file: ``file:///...``, or ``package://name/...`` in a package."""
 
         map_url: string
 
@@ -50,7 +50,7 @@ class SetMap(Service):
         initial_pose: PoseWithCovarianceStamped
 
     class Response(Message):
-        """Whether the map was taken."""
+        """True if the map was taken."""
 
         success: bool
 

@@ -68,7 +68,7 @@ class IntegerRange(Message):
 
 
 class ParameterDescriptor(Message):
-    """What is known of a parameter beside its value.
+    """Description of a parameter: all that is known beside its value.
 
     `type` is a code of ParameterType. `additional_constraints` tells people what the ranges cannot say. A
     read-only parameter keeps its first value; `dynamic_typing` lets its type change. At most one of the two
@@ -86,7 +86,7 @@ class ParameterDescriptor(Message):
 
 
 class ParameterEvent(Message):
-    """What one step changed in the parameters of `node` (its full name), as sent on /parameter_events."""
+    """Changes of one step in the parameters of `node` (its full name), as sent on /parameter_events."""
 
     stamp: Time
     node: string
@@ -104,7 +104,7 @@ class ParameterEventDescriptors(Message):
 
 
 class SetParametersResult(Message):
-    """Whether a parameter was set, and if not, why not, in words for people."""
+    """Success of setting a parameter, or the reason of the refusal, in words for people."""
 
     successful: bool
     reason: string
@@ -150,7 +150,7 @@ class LoggerLevel(Message):
 
 
 class SetLoggerLevelsResult(Message):
-    """Whether a logger's level was set, and why (not), in words for people."""
+    """Success of setting a logger's level, and the reason of a refusal, in words for people."""
 
     successful: bool
     reason: string

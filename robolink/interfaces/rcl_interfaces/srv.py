@@ -65,7 +65,7 @@ class SetParametersAtomically(Service):
         parameters: Sequence[Parameter]
 
     class Response(Message):
-        """Whether they were set, and if not, why not."""
+        """Success, or the reason of the refusal."""
 
         result: SetParametersResult
 
@@ -88,7 +88,7 @@ class ListParameters(Service):
     """Ask a node which parameters it has, at ``NODE/list_parameters``."""
 
     class Request(Message):
-        """Where to look: below these prefixes, or everywhere when there are none.
+        """Prefixes to search below; with none everything is searched.
 
         `depth` is how many levels of names, parted by dots, to go down; DEPTH_RECURSIVE is all of them.
         """

@@ -5,7 +5,7 @@ from robolink.message import Message, Service, float64, uint64
 
 
 class Play(Service):
-    """Have a player play its bag."""
+    """Start playing the bag of a player."""
 
     class Request(Message):
         """From where, and how far.
@@ -26,7 +26,7 @@ class Play(Service):
 
 
 class PlayNext(Service):
-    """Have a paused player play one message."""
+    """Play one message, in a paused player."""
 
     class Request(Message):
         """Nothing."""
@@ -38,15 +38,15 @@ class PlayNext(Service):
 
 
 class Burst(Service):
-    """Have a paused player play messages as fast as it can."""
+    """Play messages as fast as possible, in a paused player."""
 
     class Request(Message):
-        """How many; 0 is all."""
+        """Number of messages; 0 is all."""
 
         num_messages: uint64
 
     class Response(Message):
-        """How many there were."""
+        """Number of messages that were played."""
 
         actually_burst: uint64
 
@@ -104,7 +104,7 @@ class Stop(Service):
 
 
 class Seek(Service):
-    """Have a player go to another point of its bag."""
+    """Move a player to another point of its bag."""
 
     class Request(Message):
         """The time, as the bag's messages have it."""
@@ -144,19 +144,19 @@ class SetRate(Service):
 
 
 class Snapshot(Service):
-    """Have a recorder that keeps messages in memory write them down."""
+    """Write down the messages that a recorder keeps in memory."""
 
     class Request(Message):
         """Nothing."""
 
     class Response(Message):
-        """Whether that worked."""
+        """True if that worked."""
 
         success: bool
 
 
 class SplitBagfile(Service):
-    """Have a recorder begin the next file."""
+    """Begin the next file of a recording."""
 
     class Request(Message):
         """Nothing."""

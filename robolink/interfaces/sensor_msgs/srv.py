@@ -5,7 +5,7 @@ from robolink.message import Message, Service, string
 
 
 class SetCameraInfo(Service):
-    """Have a camera keep a calibration as its own."""
+    """Store a calibration in a camera."""
 
     class Request(Message):
         """The calibration; its width and height are those of the images that the camera sends now."""
@@ -13,7 +13,7 @@ class SetCameraInfo(Service):
         camera_info: CameraInfo
 
     class Response(Message):
-        """Whether it was stored, and a sentence for people."""
+        """True if it was stored, and a sentence for people."""
 
         success: bool
         status_message: string

@@ -25,7 +25,7 @@ class StatisticDataPoint(Message):
 
 
 class MetricsMessage(Message):
-    """What was measured from `window_start` to `window_stop`.
+    """Statistics of a measurement from `window_start` to `window_stop`.
 
     `measurement_source_name` is the node, topic or process that was looked at, `metrics_source` what was measured
     there (``message_age``, ``cpu_percentage``), `unit` the unit of it (``ms``, ``percent``).

@@ -137,7 +137,7 @@ class MultiArrayDimension(Message):
 
 
 class MultiArrayLayout(Message):
-    """How the flat data of a multi-dimensional array are laid out; the outermost axis stands first.
+    """Layout of the flat data of a multi-dimensional array; the outermost axis stands first.
 
     With three axes element (i, j, k) is ``data[data_offset + dim[1].stride * i + dim[2].stride * j + k]``.
     """

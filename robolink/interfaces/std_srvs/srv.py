@@ -22,7 +22,7 @@ class SetBool(Service):
         data: bool
 
     class Response(Message):
-        """Whether it worked, and a sentence for people, above all when it did not."""
+        """Success, and a sentence for people, above all after a failure."""
 
         success: bool
         message: string
@@ -35,7 +35,7 @@ class Trigger(Service):
         """Nothing."""
 
     class Response(Message):
-        """Whether it worked, and a sentence for people, above all when it did not."""
+        """Success, and a sentence for people, above all after a failure."""
 
         success: bool
         message: string

@@ -13,7 +13,7 @@ class TFMessage(Message):
 
 
 class TF2Error(Message):
-    """How a transform lookup ended: one of the codes below, and a sentence for people."""
+    """Outcome of a transform look-up: one of the codes below, and a sentence for people."""
 
     NO_ERROR: ClassVar[uint8] = 0
     LOOKUP_ERROR: ClassVar[uint8] = 1

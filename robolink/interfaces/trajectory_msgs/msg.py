@@ -7,7 +7,7 @@ from robolink.message import Message, Sequence, float64, string
 
 
 class JointTrajectoryPoint(Message):
-    """Where the joints of a trajectory are to be at one moment, in the order of its `joint_names`.
+    """Wanted state of a trajectory's joints at one moment, in the order of its `joint_names`.
 
     For a joint that turns, positions are in radians, velocities in rad/s, accelerations in rad/s² and effort in
     newton metres; for one that slides, in metres, m/s, m/s² and newtons. Give positions, and as well velocities,
@@ -34,7 +34,7 @@ class JointTrajectory(Message):
 
 
 class MultiDOFJointTrajectoryPoint(Message):
-    """Where joints with several degrees of freedom (planar, floating) are to be at one moment.
+    """Wanted state of joints with several degrees of freedom (planar, floating) at one moment.
 
     There is one element for each name in `joint_names`: the pose of the joint, its velocity (m/s, rad/s) and its
     acceleration (m/s², rad/s²). `time_from_start` counts from the start of the trajectory.

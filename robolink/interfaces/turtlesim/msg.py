@@ -12,7 +12,7 @@ class Color(Message):
 
 
 class Pose(Message):
-    """Where the turtle is and how fast it goes.
+    """Pose and speed of the turtle.
 
     `x` and `y` are in metres from the lower left corner of the window, which is 11.09 m wide and high; `theta` is in
     radians, counter-clockwise from the x axis. The velocities are in m/s and rad/s.

@@ -210,7 +210,7 @@ class InteractiveMarkerInit(Message):
 
 
 class InteractiveMarkerUpdate(Message):
-    """What changed on a server of interactive markers.
+    """Changes on a server of interactive markers.
 
     With type UPDATE, `seq_num` is one more than before; `markers` are new or changed, `poses` are of markers that
     only moved, `erases` names those that went. KEEP_ALIVE says that the server is there: the number stays and the
@@ -229,7 +229,7 @@ class InteractiveMarkerUpdate(Message):
 
 
 class InteractiveMarkerFeedback(Message):
-    """What a user did with an interactive marker, as rviz reports it.
+    """Action of a user on an interactive marker, as rviz reports it.
 
     POSE_UPDATE: it was dragged and is now at `pose`, which is valid in all feedback. KEEP_ALIVE: it is being held.
     MENU_SELECT: `menu_entry_id` was chosen. BUTTON_CLICK, MOUSE_DOWN, MOUSE_UP: at `mouse_point`, in metres in the

@@ -1,1 +1,1 @@
-"""What is seen of a system without starting it: `look` into its nodes, `validate` them, draw their `graph`."""
+"""Static inspection of a system: `look` into its nodes, `validate` them, draw their `graph`, without starting it."""

@@ -1,4 +1,4 @@
-"""Draw a system as text: its nodes, and the topics, services and actions between them, in Mermaid or Graphviz's DOT."""
+"""Graph of a system as text, in Mermaid or Graphviz's DOT: nodes, and the topics, services and actions between them."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ class Channel(NamedTuple):
 
 
 class Arrow(NamedTuple):
-    """From a node to what it publishes or calls, or from there to whom it reaches."""
+    """An edge: from a node to a channel that it publishes or calls, or from a channel to a node that it reaches."""
 
     node: str
     channel: Channel
     leaves: bool
-    """Whether it leaves the node."""
+    """True if it points from the node to the channel."""
 
 
 class Graph(NamedTuple):
-    """What is drawn: full names of nodes in the order of the file, the rest sorted."""
+    """Nodes and edges: full names of nodes in the order of the file, the rest sorted."""
 
     nodes: list[str]
     channels: list[Channel]
@@ -36,19 +36,28 @@ class Graph(NamedTuple):
 
 
 def drawn(entries: Iterable[Entry], looks: Mapping[str, Look], format_: str = "mermaid") -> str:
-    """Draw what was seen of the nodes of a launch file."""
-    graph = graph_of(entries, looks)
+    """Return the graph of a launch file's nodes as text; `format_` is `mermaid` or `dot`."""
+    return as_text(graph_of(entries, looks), format_)
+
+
+def as_text(graph: Graph, format_: str) -> str:
+    """Return a graph as text; `format_` is `mermaid` or `dot`."""
     return (_dot if format_ == "dot" else _mermaid)(graph)
 
 
 def graph_of(entries: Iterable[Entry], looks: Mapping[str, Look]) -> Graph:
-    """Give what there is to draw. A node that nothing was seen of stands alone; a service is there if it is called."""
+    """Return the graph of a launch file's nodes. A node that could not be inspected stands alone."""
     nodes: dict[str, None] = {}
     uses: list[Use] = []
     for entry in entries:
         look = looks.get(entry.name, Look())
         nodes.update(dict.fromkeys(look.nodes or [entry.full_name]))
         uses += uses_of(look)
+    return graph_of_uses(nodes, uses)
+
+
+def graph_of_uses(nodes: Iterable[str], uses: Sequence[Use]) -> Graph:
+    """Return the graph of nodes and of what they use; a service or action is drawn only if it is called."""
     called = {each.name for each in uses if not each.offers}
     arrows = {_arrow(each) for each in uses if each.kind == "topic" or each.name in called}
     return Graph(list(nodes), sorted({each.channel for each in arrows}), sorted(arrows))
@@ -99,7 +108,7 @@ def _dot(graph: Graph) -> str:
 
 
 def _id(channel: Channel) -> str:
-    """Give what tells a topic from others: two nodes may use one name with two types."""
+    """Return the unique id of a channel: two nodes may use one name with two types."""
     return " ".join(channel)
 
 

@@ -1,7 +1,7 @@
-"""What the nodes of a launch file are made of, seen without running them: their topics, services and parameters.
+"""Introspection of a launch file's nodes without running them: their topics, services and parameters.
 
-A child process makes them, since it is anybody's code that runs then: it may raise, hang, or take its process with it.
-What is seen is what there is when a node is made, or when its program would begin to wait.
+A child process constructs them, since that runs the user's code: it may raise, hang, or crash its process.
+A node is seen as it is after its constructor, or when its program would begin to wait.
 """
 
 from __future__ import annotations
@@ -22,28 +22,28 @@ import msgspec
 from robolink.exceptions import RobolinkError
 from robolink.launch.planning import arguments, environment
 from robolink.launch.reading.entry import Entry
-from robolink.own_command import own_command
 from robolink.supervisor.rules import described
+from robolink.system.own_command import own_command
 
 COMMAND = "look-into"
-"""What `robolink` is asked to do then; no command for people."""
+"""Hidden sub-command of `robolink` for the child process; not for people."""
 
 PATIENCE = 10.0
-"""Seconds that a node may take to be made."""
+"""Timeout of a node's construction, in seconds."""
 
 _GRACE = 10.0
-"""Seconds more, for a process that cannot even notice that its time is over."""
+"""Further timeout for a process that cannot even notice the first one, in seconds."""
 
 
 _HELD_UP = "it holds up its whole process when it is made"
 
 
 class LookError(RobolinkError, ValueError):
-    """What came on standard input is no list of nodes to look into."""
+    """Standard input is not a list of nodes to inspect."""
 
 
 class Job(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """A node to look into: what `find_node` finds, its program's arguments, and its environment."""
+    """A node to inspect: its `find_node` spec, its program's arguments, and its environment."""
 
     node: str
     args: list[str]
@@ -58,43 +58,46 @@ class End(msgspec.Struct, frozen=True, order=True):
     type: str
     hash: str
     node: str
-    """The full name of the node that has it."""
+    """Full name of the node that owns it."""
 
 
 class Look(msgspec.Struct, frozen=True):
-    """What was seen of a node, or of the several that its program makes."""
+    """Result of inspecting a program: its node, or the several that it makes."""
 
     nodes: list[str] = []
-    """Full names."""
+    """Full names of the nodes."""
     ends: list[End] = []
     declared: list[str] = []
-    """The names of its parameters."""
+    """Names of its declared parameters."""
     refused: dict[str, str] = {}
-    """Why it does not take a parameter that it was given."""
+    """Reason for each given parameter that the node rejects, by name."""
     is_open: bool = False
-    """Whether it takes parameters that it has not declared, or may declare more later."""
+    """True if it takes undeclared parameters, or may declare more later."""
     error: str = ""
-    """Why it cannot be made."""
+    """Reason why the node cannot be constructed; empty if it can."""
     unseen: str = ""
-    """Why it was not looked into, or not to the end."""
+    """Reason why the inspection is missing or incomplete; empty if it is complete."""
 
 
 class Request(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """What the child process is asked."""
+    """Request to the child process."""
 
     jobs: list[Job]
     patience: float
 
 
 def looks_of(entries: Iterable[Entry], patience: float = PATIENCE) -> dict[str, Look]:
-    """Look into the nodes of a system; give what was seen by their entries' names. Commands are not looked into."""
+    """Inspect the nodes of a system; return the results by entry name. Commands are not inspected.
+
+    `patience` is the timeout of each node's construction, in seconds.
+    """
     nodes = [each for each in entries if each.source is not None]
     jobs = [Job(each.source.spec, list(arguments(each)), environment(each)) for each in nodes if each.source]
     return {each.name: look for each, look in zip(nodes, look_into(jobs, patience), strict=True)}
 
 
 def look_into(jobs: Sequence[Job], patience: float = PATIENCE) -> list[Look]:
-    """Look into nodes, each for at most `patience` seconds."""
+    """Inspect nodes, each for at most `patience` seconds; return a result for each."""
     found: list[Look] = []
     while len(found) < len(jobs):
         before, is_held_up = len(found), threading.Event()
@@ -108,7 +111,7 @@ def look_into(jobs: Sequence[Job], patience: float = PATIENCE) -> list[Look]:
 
 
 def read(text: bytes) -> Request:
-    """Read what is asked on standard input. Raises `LookError`."""
+    """Parse the request from standard input; raises `LookError` for anything else."""
     try:
         return msgspec.json.decode(text, type=Request)
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
@@ -117,7 +120,7 @@ def read(text: bytes) -> Request:
 
 @contextlib.contextmanager
 def _child(request: Request) -> Iterator[subprocess.Popen[bytes]]:
-    """Start the process that looks; what it starts itself ends with it."""
+    """Start the child process; its own children end with it."""
     with tempfile.TemporaryFile() as asked:
         asked.write(msgspec.json.encode(request))
         asked.seek(0)
@@ -136,7 +139,7 @@ def _child(request: Request) -> Iterator[subprocess.Popen[bytes]]:
 
 
 def _lines(child: subprocess.Popen[bytes], patience: float, is_held_up: threading.Event) -> Iterator[Look]:
-    """Yield what the child tells, until it ends or is killed, since it was silent for too long."""
+    """Yield the child's results until it ends, or is killed because it was silent for too long."""
     output: IO[bytes] | None = child.stdout
     assert output is not None
 
@@ -158,7 +161,7 @@ def _lines(child: subprocess.Popen[bytes], patience: float, is_held_up: threadin
 
 
 def _end_of(child: subprocess.Popen[bytes]) -> str:
-    """Say how a child ended whose output has ended."""
+    """Return how a child ended whose output has ended."""
     with contextlib.suppress(subprocess.TimeoutExpired):
         return f"its process {described(child.wait(_GRACE))} while it was made"
     return _HELD_UP
@@ -170,7 +173,7 @@ if sys.platform == "win32":
 
 
 def _kill(child: subprocess.Popen[bytes]) -> None:
-    """Kill the child, and what it has started where that can be told."""
+    """Kill the child, and its own children where they are known."""
     with contextlib.suppress(OSError):
         if sys.platform == "win32":
             child.kill()

@@ -1,4 +1,4 @@
-"""What nodes do with topics, services and actions, of all that was seen of them."""
+"""Uses of topics, services and actions by the nodes that were inspected."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from robolink.launch.looking.look import End, Look
 Kind: TypeAlias = Literal["topic", "service", "action"]
 
 _EVERY_NODE_HAS = ("rcl_interfaces/", "type_description_interfaces/")
-"""Packages with the types of what nodes have without being asked: logs, parameters, types."""
+"""Packages whose types belong to the built-in endpoints of every node: logs, parameters, types."""
 
 _ENDS: dict[str, tuple[Kind, str, bool]] = {
     "MP": ("topic", "publishes", True),
@@ -22,7 +22,7 @@ _ACTION, _GOAL, _GOAL_TYPE = "/_action/", "/_action/send_goal", "_SendGoal"
 
 
 class Use(NamedTuple):
-    """What one node does with one topic, service or action."""
+    """One node's use of one topic, service or action."""
 
     node: str
     kind: Kind
@@ -30,13 +30,13 @@ class Use(NamedTuple):
     type: str
     hash: str
     verb: str
-    """What the node does with it: publishes, subscribes to, serves, calls."""
+    """Kind of use: publishes, subscribes to, serves, calls."""
     offers: bool
-    """Whether it publishes or serves."""
+    """True if it publishes or serves."""
 
 
 def uses_of(look: Look) -> Iterator[Use]:
-    """Yield what a node uses, without what every node has; an action, which is five ends, once."""
+    """Yield the uses of a node, without the built-in endpoints; an action, which is five endpoints, once."""
     for end in look.ends:
         use = _use(end)
         if use is not None and not end.type.startswith(_EVERY_NODE_HAS):

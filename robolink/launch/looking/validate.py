@@ -1,4 +1,4 @@
-"""Find what is wrong with a system without starting it: what a launch file says, held against what its nodes are."""
+"""Validation of a system without starting it: compares a launch file with what its nodes declare."""
 
 from __future__ import annotations
 
@@ -7,26 +7,27 @@ from typing import NamedTuple
 
 import msgspec
 
+from robolink.arguments.remapping import parse_remap_rule
 from robolink.exceptions import DocumentError, nearest
 from robolink.expand_topic_name import expand_topic_name
+from robolink.launch.looking.enclaves import enclave_errors, enclave_notes
 from robolink.launch.looking.look import Look, looks_of
 from robolink.launch.looking.uses import Use, uses_of
 from robolink.launch.planning import core_errors, processes
 from robolink.launch.readiness import awaited
 from robolink.launch.reading.entry import Entry
-from robolink.remapping import parse_remap_rule
 
 
 class Report(NamedTuple):
-    """What was found."""
+    """Mistakes, and notes about nodes that could not be checked."""
 
     mistakes: list[DocumentError]
     notes: list[str]
-    """What could not be looked into, and why."""
+    """Nodes that could not be inspected, and why."""
 
 
 class Found(msgspec.Struct):
-    """A mistake as programs read it; lines and columns count from 1."""
+    """A mistake in a machine-readable form; lines and columns count from 1."""
 
     file: str
     line: int
@@ -35,7 +36,7 @@ class Found(msgspec.Struct):
 
 
 def validate(entries: Sequence[Entry]) -> Report:
-    """Check a system: every node is made, in another process; the texts of mistakes begin with file:line:column."""
+    """Check a system by constructing every node in a child process; mistakes begin with file:line:column."""
     mistakes: list[DocumentError] = []
     try:
         processes(entries)
@@ -46,7 +47,7 @@ def validate(entries: Sequence[Entry]) -> Report:
 
 
 def judged(entries: Sequence[Entry], looks: Mapping[str, Look]) -> Report:
-    """Check a system by what was seen of its nodes."""
+    """Check a system by the results of `looks_of`."""
     notes = [f"{each.name} was not looked into: {reason}" for each in entries if (reason := _unseen(each, looks))]
     mistakes = [*core_errors(entries), *_load_errors(entries, looks)]
     for each in entries:
@@ -54,6 +55,8 @@ def judged(entries: Sequence[Entry], looks: Mapping[str, Look]) -> Report:
     mistakes += _wide_errors(entries, looks)
     mistakes += _remapping_errors(entries, looks)
     mistakes += _type_errors(entries, looks)
+    mistakes += enclave_errors(entries, looks)
+    notes += enclave_notes(entries)
     named = {each.full_name: each for each in entries}
     is_all_known = all(each.name in looks and _is_known(looks[each.name]) for each in entries)
     for each in entries if is_all_known else ():
@@ -67,7 +70,7 @@ def judged(entries: Sequence[Entry], looks: Mapping[str, Look]) -> Report:
 
 
 def found(error: DocumentError) -> Found:
-    """Give what an error says, for a program."""
+    """Convert an error to its machine-readable form."""
     return Found(error.file, error.line, error.column, error.message)
 
 
@@ -79,7 +82,7 @@ def _unseen(entry: Entry, looks: Mapping[str, Look]) -> str:
 
 
 def _is_known(look: Look) -> bool:
-    """Whether all is known of a node: what it has not now it will never have."""
+    """True if a node was inspected completely: it will never have more than it has now."""
     return not (look.error or look.unseen or look.is_open)
 
 
@@ -103,7 +106,7 @@ def _parameter_errors(entry: Entry, look: Look) -> Iterator[DocumentError]:
 
 
 def _wide_errors(entries: Sequence[Entry], looks: Mapping[str, Look]) -> Iterator[DocumentError]:
-    """What was given to several nodes one of them must know."""
+    """Yield an error for each parameter that was given to several nodes and that none of them declares."""
     for wide in sorted({name for each in entries for name in each.wide}):
         concerned = [each for each in entries if wide in each.wide]
         seen = [looks.get(each.name, Look(unseen="a command")) for each in concerned]
@@ -117,7 +120,7 @@ def _wide_errors(entries: Sequence[Entry], looks: Mapping[str, Look]) -> Iterato
 
 
 def _remapping_errors(entries: Iterable[Entry], looks: Mapping[str, Look]) -> Iterator[DocumentError]:
-    """A rule that a group says, or copies of a node have, is right when it renames something for one of them."""
+    """Yield an error for each remapping that renames nothing; of a group or of copies, one match is enough."""
     errors: dict[tuple[str, int, int], DocumentError] = {}
     useful: set[tuple[str, int, int]] = set()
     for each in entries:
@@ -136,7 +139,7 @@ def _remapping_errors(entries: Iterable[Entry], looks: Mapping[str, Look]) -> It
 
 
 def _renames(rule: str, look: Look) -> bool:
-    """Whether something of a node has the new name that a rule gives."""
+    """True if something of a node has the new name that a rule gives."""
     parsed = parse_remap_rule(rule)
     if not parsed.match:  # of the node itself
         return True
@@ -152,7 +155,7 @@ def _renames(rule: str, look: Look) -> bool:
 
 
 def _type_errors(entries: Iterable[Entry], looks: Mapping[str, Look]) -> Iterator[DocumentError]:
-    """Whoever publishes or serves is right; else the first."""
+    """Yield an error for each name with two types: whoever publishes or serves is right, else the first."""
     users: dict[tuple[str, str], list[tuple[Entry, Use]]] = {}
     for entry in entries:
         for use in uses_of(looks.get(entry.name, Look())):
@@ -172,9 +175,11 @@ def _type_errors(entries: Iterable[Entry], looks: Mapping[str, Look]) -> Iterato
 
 
 def _waiting(entry: Entry, named: Mapping[str, Entry], looks: Mapping[str, Look]) -> Iterator[tuple[bool, str]]:
-    """Tell what nobody of this system offers: a mistake where it is nearly what somebody does, else somebody else may.
+    """Yield a text for each awaited name that this system does not offer, and True if that is a mistake, not a note.
 
-    Every node was looked into: else it may be one of the others.
+    It is a mistake if a node is announced by another name, or if something similar is offered.
+
+    Call it only if every node was inspected: else one of the others may offer it.
     """
     others = [look for name, look in looks.items() if name != entry.name]
     for each in awaited(entry, named):

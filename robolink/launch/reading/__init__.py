@@ -1,1 +1,1 @@
-"""From the text of a launch file to the nodes and commands that it stands for: `entries` gives them."""
+"""Parser of launch files: YAML text in, a flat list of nodes and commands to start out (`entries`)."""

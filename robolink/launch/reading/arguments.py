@@ -1,4 +1,4 @@
-"""What is asked for when a launch file is started: its `arguments`."""
+"""Launch arguments: the `arguments` section of a launch file, its defaults and choices, and the values given."""
 
 from __future__ import annotations
 
@@ -9,20 +9,21 @@ from typing import Any
 
 import msgspec
 
-from robolink.exceptions import DocumentError, nearest, shown
+from robolink.documents.yamlfile import parse
+from robolink.exceptions import DocumentError, nearest
 from robolink.launch.reading.conditions import as_bool
 from robolink.launch.reading.description import Argument
 from robolink.launch.reading.file import LaunchFile
-from robolink.launch.reading.part import Place
+from robolink.launch.reading.section import Place
 from robolink.launch.reading.substitution import HERE, NUMBER, Step, SubstitutionError, Value, Values, filled
-from robolink.yamlfile import parse
+from robolink.system.terminal import shown
 
 _FIELDS = Argument.__struct_fields__
 _OTHERS = {HERE: "the launch file's folder", NUMBER: "the number of a copy"}
 
 
 class ArgumentHelp(msgspec.Struct, frozen=True):
-    """What a person needs to know to give an argument: `default` is None where a value must be given."""
+    """Help text of a launch argument; `default` is None where a value is required."""
 
     name: str
     default: str | None
@@ -31,7 +32,7 @@ class ArgumentHelp(msgspec.Struct, frozen=True):
 
 
 def arguments_of(path: str | os.PathLike[str], *, text: str | None = None) -> list[ArgumentHelp]:
-    """Give the arguments of a launch file (or of `text` in its place), in its order.
+    """Return the arguments of a launch file (or of `text` in its place), in its order.
 
     Raises `DocumentError` with `file:line:column`.
     """
@@ -40,22 +41,22 @@ def arguments_of(path: str | os.PathLike[str], *, text: str | None = None) -> li
 
 
 def read_given(given: Mapping[str, str]) -> dict[str, Value]:
-    """Read arguments as people type them, `1e3` or `[1, 2]`. Raises `DocumentError` for what is no YAML."""
+    """Parse arguments as people type them, `1e3` or `[1, 2]`; raises `DocumentError` for invalid YAML."""
     return {name: Value(_data(name, text), text) for name, text in given.items()}
 
 
 def values_of(file: LaunchFile, given: Mapping[str, Value], asker: Place | None = None) -> Values:
-    """Give what `{name}` stands for in a launch file: its arguments, `{here}`, and `{env:NAME}`.
+    """Return the values for `{name}` in a launch file: its arguments, `{here}`, and `{env:NAME}`.
 
-    `asker` is who includes the file; what is wrong with what is given is an error there. Raises `DocumentError` for
-    arguments that it does not have, for one that is missing and for one that is not among its choices.
+    `asker` is the place that includes the file; errors in given values point there. Raises `DocumentError` for an
+    unknown argument, for a missing one and for one that is not among its choices.
     """
     declared = _declared(file)
     for name in given:
         if name not in declared:
             raise _asked(file, asker, name, _unknown(name, declared))
     named = {HERE: Value.of(str(file.folder.resolve()))}
-    values = Values(named, budget=None if asker is None else asker.part.values.budget)
+    values = Values(named, budget=None if asker is None else asker.section.values.budget)
     for name, argument in declared.items():
         if name in given:
             value = _given(file, asker, name, argument, given[name])
@@ -70,14 +71,14 @@ def values_of(file: LaunchFile, given: Mapping[str, Value], asker: Place | None 
 
 
 def _asked(file: LaunchFile, asker: Place | None, name: str, message: str) -> DocumentError:
-    """Make an error about what is given as an argument, at whoever gives it."""
+    """Return an error about a given value, at the place that gives it."""
     if asker is None:
         return file.error(["arguments", name], message)
     return asker.error(f"{file.path.name}: {message}", ["arguments", name])
 
 
 def _declared(file: LaunchFile) -> dict[str, Argument]:
-    """Read what a file says of its arguments, a bare value being the default."""
+    """Parse the `arguments` section; a bare value is the default."""
     declared = file.value(file.data.get("arguments", {}), dict[str, Any], ["arguments"])
     return {name: _argument(file, name, each) for name, each in declared.items()}
 
@@ -111,7 +112,7 @@ def _default(file: LaunchFile, name: str, argument: Argument, values: Values) ->
 
 
 def _given(file: LaunchFile, asker: Place | None, name: str, argument: Argument, value: Value) -> Value:
-    """Read a value as what the default is, where the two can be read as the same."""
+    """Convert a value to the default's type where both can be read as the same type."""
     if isinstance(argument.default, bool) and (decided := as_bool(value.data)) is not None:
         value = Value(decided, value.text)
     elif _is_text_on_purpose(argument.default):
@@ -123,7 +124,7 @@ def _given(file: LaunchFile, asker: Place | None, name: str, argument: Argument,
 
 
 def _is_text_on_purpose(default: Any) -> bool:
-    """Say whether a default is in quotes that it needs to be a text, such as "8080"."""
+    """True if a default is a text only by its quotes, such as "8080"."""
     if not isinstance(default, str):
         return False
     try:
@@ -133,7 +134,7 @@ def _is_text_on_purpose(default: Any) -> bool:
 
 
 def _chosen(file: LaunchFile, name: str, argument: Argument, value: Value) -> Value | None:
-    """Give the choice that is meant, the value itself where all are allowed; None if it is none of them."""
+    """Return the matching choice, or the value itself where all are allowed; None if it matches none."""
     if not argument.choices:
         return value
     for choice, text in zip(argument.choices, _texts(file, name, argument), strict=True):
@@ -149,7 +150,7 @@ def _none_of(file: LaunchFile, name: str, argument: Argument, value: Value) -> s
 
 
 def _texts(file: LaunchFile, name: str, argument: Argument) -> list[str]:
-    """Give the choices as they are written."""
+    """Return the choices as they are written."""
     places: list[list[Step]] = [["arguments", name, "choices", at] for at in range(len(argument.choices))]
     return [file.written(each) or "" for each in places]
 
@@ -178,7 +179,7 @@ def _unknown(name: str, declared: Mapping[str, Argument]) -> str:
 
 
 def _data(name: str, text: str) -> Any:
-    """Read what stands behind `:=`; nothing at all is an empty text."""
+    """Parse the text behind `:=` as YAML; nothing at all is an empty text."""
     if not text.strip():
         return text
     try:

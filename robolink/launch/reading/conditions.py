@@ -1,11 +1,11 @@
-"""Whether a part of a launch file is wanted: its `if` and `unless`."""
+"""Conditions of a launch file: the keys `if` and `unless`."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from robolink.launch.reading.part import Part
-from robolink.yamlfile import spell
+from robolink.documents.yamlfile import spell
+from robolink.launch.reading.section import Section
 
 _WORDS = {
     **dict.fromkeys(("true", "yes", "on", "y", "1"), True),
@@ -14,24 +14,24 @@ _WORDS = {
 
 
 def as_bool(value: Any) -> bool | None:
-    """Read true or false in the spellings that people use, `on` or `0` among them; None for anything else."""
+    """Parse a boolean in the spellings that people use, `on` or `0` among them; None for anything else."""
     if isinstance(value, bool | int | str):
         return _WORDS.get(str(value).strip().lower())
     return None
 
 
-def is_wanted(part: Part) -> bool:
-    """Say whether a part is to be started. Raises `DocumentError` for a condition that is neither true nor false."""
-    return decided(part, "if", default=True) and not decided(part, "unless", default=False)
+def is_wanted(section: Section) -> bool:
+    """True if a section is to be started; raises `DocumentError` for a condition that is no boolean."""
+    return decided(section, "if", default=True) and not decided(section, "unless", default=False)
 
 
-def decided(part: Part, key: str, *, default: bool) -> bool:
-    """Say whether a key of a part says true. Raises `DocumentError` for what is neither true nor false."""
-    if key not in part:
+def decided(section: Section, key: str, *, default: bool) -> bool:
+    """Return the boolean under a key of a section; raises `DocumentError` for a value that is none."""
+    if key not in section:
         return default
-    said = part.get(key)
+    said = section.get(key)
     result = as_bool(said)
     if result is None:
         found = f"'{said if isinstance(said, str) else spell(said)}'"
-        raise part.error([key], f"expected true or false, got {'nothing' if said is None else found}")
+        raise section.error([key], f"expected true or false, got {'nothing' if said is None else found}")
     return result

@@ -1,10 +1,12 @@
-"""What a launch file may say."""
+"""Schema of launch files, as Structs."""
 
 from __future__ import annotations
 
 from typing import Annotated, Any, Literal, TypeAlias
 
 import msgspec
+
+from robolink.networks.limits import Limits
 
 MOST_COPIES = 10_000
 
@@ -13,19 +15,20 @@ Seconds = Annotated[float, msgspec.Meta(ge=0.0)]
 Scalar: TypeAlias = str | int | float | bool
 Core = Annotated[int, msgspec.Meta(ge=0)]
 Condition: TypeAlias = bool | int | str
-"""Whether something is wanted: true, yes, on and 1, or false, no, off and 0."""
+"""Type of a condition: true, yes, on and 1, or false, no, off and 0."""
 When = Literal["never", "on_failure", "always"]
 OnExit = Literal["shutdown", "ignore"]
 LogLevel = Literal["debug", "info", "warn", "error", "fatal"]
 Parameters: TypeAlias = dict[str, Any] | str | list[str | dict[str, Any]]
-"""Parameters by name (nested ones are joined by dots), a parameter file, or several of these: the last word counts."""
+"""Type of `parameters`: values by name (nested names are joined by dots), a parameter file, or a list of these, of
+which the later ones win."""
 
 
 class Respawn(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """Whether a process that ends is started again.
+    """Restart policy of a process, with exponential backoff.
 
-    It waits `delay` seconds, twice as long each time, up to `delay_max`. After `most` starts `within` so many seconds
-    it is given up, and its end counts as an end.
+    A restart waits `delay` seconds, twice as long each time, up to `delay_max`. After `most` starts `within` so many
+    seconds the process is given up, and its end counts as an end.
     """
 
     when: When = "on_failure"
@@ -36,10 +39,10 @@ class Respawn(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class StartAfter(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """What is waited for before a process is started: one of these.
+    """A readiness condition that holds a process back; exactly one of the keys.
 
-    A node that is announced, by the name it has in this launch file or by its full name; a topic that somebody
-    publishes; a service that somebody serves. Relative names are in the namespace of who waits.
+    `node`: a node is announced, by its name in this launch file or its full name. `topic`: somebody publishes it.
+    `service`: somebody serves it. Relative names are in the namespace of the node that waits.
     """
 
     node: str = ""
@@ -48,7 +51,7 @@ class StartAfter(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class NodeDescription(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """One node or command of a system, or `count` copies of it, in a process of its own or with other nodes in one.
+    """One node or command of a system, or `count` copies of it, in its own process or in one shared with other nodes.
 
     `node` is a name, a file, FILE:function or FILE:Class, or a package and its executable; a relative file is one of
     the launch file's workspace. `run` stands in its place: a command and its arguments. `args` are the program's own
@@ -56,6 +59,11 @@ class NodeDescription(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     terminal's keyboard. All nodes that name the same `process` run there; its name is in the namespace of the groups
     and includes around, unless it begins with a slash. `cpu` says on which cores (from 0) it may run. With `count`,
     `{i}` in all that is said of it stands for 0, 1, 2 ... in turn.
+
+    `name` and `namespace` are those of its ROS node, the program's own if empty; `parameters`, `remappings`,
+    `log_level` and `enclave`, whose keys and rights it has, are given to it. It is left out unless `if_` is true and
+    `unless` is false. It starts once all that `start_after` names is there. `respawn` says when it is started again,
+    `on_exit` what its end means for the system; None leaves these two, `log_level` and `cpu` to the groups around it.
     """
 
     node: str = ""
@@ -75,6 +83,7 @@ class NodeDescription(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     respawn: When | Respawn | None = None
     on_exit: OnExit | None = None
     log_level: LogLevel | None = None
+    enclave: str = ""
     cpu: Core | list[Core] | None = None
 
 
@@ -110,6 +119,7 @@ class GroupDescription(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     respawn: When | Respawn | None = None
     on_exit: OnExit | None = None
     log_level: LogLevel | None = None
+    enclave: str = ""
     cpu: Core | list[Core] | None = None
     count: Count = 0  # not given
     nodes: list[NodeDescription] = []
@@ -118,10 +128,10 @@ class GroupDescription(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class Argument(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """Something that is asked for when the file is launched; without a default it must be given.
+    """Declaration of a launch argument; without a default its value is required.
 
-    What is given is read as YAML: `2` is a number. A default that is a text only by its quotes, such as "8080", makes
-    what is given a text, and one of true or false makes `on` and `no` these.
+    A given value is read as YAML: `2` is a number. If the default is a text only by its quotes, such as "8080", the
+    value stays a text; if the default is a boolean, `on` and `no` are booleans too.
     """
 
     default: Any = msgspec.UNSET  # so that null, too, is one
@@ -133,10 +143,17 @@ class LaunchDescription(msgspec.Struct, forbid_unknown_fields=True, frozen=True)
     """A system: the nodes to start, with `{name}` for each of its `arguments`.
 
     An argument is a default value, nothing where it must be given, or a mapping with `default`, `description` and
-    `choices`. `{here}` is the launch file's folder, and `{env:NAME}` a variable of the environment.
+    `choices`. `{here}` is the launch file's folder, and `{env:NAME}` a variable of the environment. What is started are
+    the `nodes`, those of the launch files in `include`, and those in `groups`. All of them are on one `network`, as
+    the command line names it, unless that or ROBOLINK_NETWORK names another; `limits` thin the topics that leave this
+    machine. `record` asks for a bag of all that is published: its folder, or true for one with the date in its name;
+    included files are not asked.
     """
 
     description: str = ""
+    network: str = ""
+    limits: Limits | None = None
+    record: bool | str | None = None
     arguments: dict[str, Argument | Scalar | list[Any] | None] = {}
     nodes: list[NodeDescription] = []
     include: list[IncludeDescription] = []

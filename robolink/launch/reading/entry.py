@@ -1,4 +1,4 @@
-"""What a launch file comes to: a node or command to start, with all that is said of it in place."""
+"""Result of reading a launch file: entries, each a fully expanded node or command to start."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from robolink.workspace import NodeSource
 
 
 class NodeToStart(msgspec.Struct, frozen=True):
-    """A node or command with nothing left open: texts filled in, files read, defaults in place.
+    """A fully expanded node or command: variables substituted, files read, defaults in place.
 
-    Its fields are what a `NodeDescription` of the same name comes to; names in `start_after` are full ones, a process's
-    has its namespace in front.
+    The fields are those of `NodeDescription`. Names in `start_after` are full names, and `process` has its namespace
+    in front.
     """
 
     node: str = ""
@@ -35,6 +35,7 @@ class NodeToStart(msgspec.Struct, frozen=True):
     respawn: Respawn = Respawn(when="never")
     on_exit: OnExit = "shutdown"
     log_level: LogLevel | None = None
+    enclave: str = ""
     cpu: tuple[int, ...] = ()
 
 
@@ -42,11 +43,13 @@ class NodeToStart(msgspec.Struct, frozen=True):
 class Entry:
     """One node or command to start.
 
-    `name` is how people are told of it, `ns/name`, and no other entry's; `full_name` is a node's, `/ns/name` (where the
-    launch file gives no name, that of the program's file, or of its class, stands for it). `source` is where the node
-    comes from, None for a command. `home` is the workspace in which it looks things up, None for none.
+    `name` is unique and shown to people, `ns/name`; `full_name` is a node's ROS name, `/ns/name` (if the launch file
+    gives no name, that of the program's file or class is used). `node` has its settings, `source` is the node's
+    program, None for a command. `place` makes an error that names the place of a setting, as `error` does.
+    `home` is the workspace in which it looks things up, None for none.
     `wide` names the parameters that were given to more than this node, by a group or by a section such as `/**`.
-    `files` are the launch files and parameter files that were read for it.
+    `files` are the launch files and parameter files that were read for it. `network` is the one of the whole system,
+    empty if no file says any; `limits` are its limits, as the text of ROBOLINK_LIMITS.
     """
 
     name: str
@@ -56,15 +59,19 @@ class Entry:
     place: Callable[[Sequence[str | int], str, bool], DocumentError]
     wide: frozenset[str] = frozenset()
     files: frozenset[Path] = frozenset()
+    network: str = ""
+    limits: str = ""
 
     @property
     def full_name(self) -> str:
-        """The full name of the node."""
+        """Full ROS name of the node."""
         return f"/{self.name}"
 
     def error(self, steps: Sequence[str | int], message: str, *, key: bool = False) -> DocumentError:
-        """Make an error (to raise) about what is said of it at `steps`, such as `["parameters", "speed"]`.
+        """Return an error (to raise) with this `message` about the value at `steps`, or with `key` about its key.
 
-        The text begins with file:line:column of where it is said: there, in a group around it, or in another file.
+        The steps are such as `["parameters", "speed"]`.
+
+        Its text begins with the file:line:column of that value: at the entry, in a group around it, or in another file.
         """
         return self.place(steps, message, key)

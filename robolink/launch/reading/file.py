@@ -1,4 +1,4 @@
-"""A launch file's text: its data, and errors that say where in it something is wrong."""
+"""A parsed launch file: its data, and errors with line and column."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from typing import Any
 
 import msgspec
 
+from robolink.documents.mistakes import Reader
+from robolink.documents.yamlfile import read_text
 from robolink.exceptions import DocumentError
-from robolink.launch.reading.slips import hint, misshapen, slips
 from robolink.launch.reading.substitution import Step
-from robolink.yamlfile import read_text
-from robolink.yamlmistakes import Reader
+from robolink.launch.reading.yaml_pitfalls import hint, misreadings, misshapen
 
 _LONGEST_CHAIN = 100
 
@@ -22,9 +22,9 @@ _LONGEST_CHAIN = 100
 class LaunchFile:
     """A YAML file that was read, or `text` in its place.
 
-    `data` is what it says as plain data, `length` how many characters it has, `folder` where it stands. `above` says
-    which files included it, nearest first: `lap.yaml:3, fleet.yaml:7`. Raises `DocumentError`, as all its methods do,
-    when the text is no YAML.
+    `data` is its content as plain data, `length` its number of characters, `folder` its directory. `above` lists the
+    files that include it, nearest first: `lap.yaml:3, fleet.yaml:7`. Raises `DocumentError`, as all its methods do,
+    for invalid YAML.
     """
 
     def __init__(self, path: Path, text: str | None = None, above: str = "") -> None:
@@ -41,26 +41,26 @@ class LaunchFile:
 
     @property
     def folder(self) -> Path:
-        """The folder in which it stands."""
+        """Directory of the file."""
         return self.path.parent
 
     def error(self, steps: Sequence[Step], message: str, *, key: bool = False) -> DocumentError:
-        """Make an error (to raise) about what stands at these steps, or at the nearest of them that is there."""
+        """Return an error (to raise) about the value at these steps, or at the nearest of them that exists."""
         return self._told(self._reader.error(steps, message, key=key))
 
     def value(self, data: Any, type_: Any, steps: Sequence[Step]) -> Any:
-        """Make a value of a type out of data that stands, or is written otherwise, at these steps."""
+        """Convert data at these steps, which may be written otherwise there, to a type."""
         try:
             return self._reader.convert(data, type_)
         except msgspec.ValidationError as error:
             raise self._told(self._reader.explained(data, type_, error, steps)) from None
 
     def written(self, steps: Sequence[Step]) -> str | None:
-        """Give the value that stands there letter by letter, such as `012`; None if it is no single value."""
+        """Return the value there letter by letter, such as `012`; None if it is no single value."""
         return self._reader.written(steps)
 
     def mentioned(self, steps: Sequence[Step]) -> str:
-        """Say where something stands for an error in another file, and which files are above: `lap.yaml:3`."""
+        """Return a place, with the files above it, for an error in another file: `lap.yaml:3`."""
         place = f"{self.path.name}:{self._reader.line(steps)}"
         whole = f"{place}, {self._above}" if self._above else place
         return whole if len(whole) <= _LONGEST_CHAIN else place
@@ -71,14 +71,14 @@ class LaunchFile:
 
 @functools.lru_cache(maxsize=8)
 def _reader(text: str, name: str) -> tuple[Reader, tuple[Sequence[Step], str] | None]:
-    """Read a text, and find the first slip in it; a file that is included for each of a hundred robots is so once."""
+    """Parse a text and find its first pitfall. Cached: a file may be included for each of a hundred robots."""
     reader = Reader(text, name)
-    found = itertools.chain(slips(reader.data, reader.spelled), misshapen(reader.data))
+    found = itertools.chain(misreadings(reader.data, reader.spelled), misshapen(reader.data))
     return reader, next(found, None)
 
 
 def _with_hint(error: DocumentError, text: str | None) -> DocumentError:
-    """Give an error about a text that is no YAML, with what is probably the reason."""
+    """Return an error about invalid YAML, with its probable reason added."""
     said = hint(text, error.line) if text is not None and error.line else ""
     return _longer(error, f": {said}") if said else error
 

@@ -1,4 +1,4 @@
-"""Keys that a launch file cannot have, and what was probably meant."""
+"""Unknown keys of a launch file, with a suggestion for each."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from robolink.exceptions import DocumentError, nearest, shown
+from robolink.exceptions import DocumentError, nearest
 from robolink.launch.reading.description import GroupDescription, IncludeDescription, LaunchDescription, NodeDescription
 from robolink.launch.reading.file import LaunchFile
 from robolink.launch.reading.substitution import Step
+from robolink.system.terminal import shown
 
 
 class _Kind(NamedTuple):
-    """What a mapping is, the keys that it may have, and other names under which these are known elsewhere."""
+    """Kind of a mapping: its name, its valid keys, and their names in other launch systems."""
 
     title: str
     struct: type[msgspec.Struct]
@@ -53,7 +54,7 @@ _NODE_OTHERS = {
     "exec": "`node: NAME`, or `run: [program, ...]`",
     "plugin": "`node: FILE.py:Class`, with `process` for nodes that share one",
     "arguments": "`args`",
-    "ros_arguments": "`parameters`, `remappings` and `log_level`",
+    "ros_arguments": "`parameters`, `remappings`, `log_level` and `enclave`",
     "cmd": "`run: [program, ...]`",
     "command": "`run: [program, ...]`",
     "stdin": "`interactive: true`",
@@ -63,6 +64,7 @@ _NODE_OTHERS = {
     "emulate_tty": "leave it out: output is line-buffered as it is",
 }
 _TOP_OTHERS = {
+    "bag": "`record: FOLDER`, or `record: true`",
     "launch": "at the top stand `arguments`, `nodes`, `include` and `groups`",
     "node": "`nodes`, a list",
     "group": "`groups`, a list",
@@ -75,7 +77,9 @@ _NODE = _Kind("a node", NodeDescription, _NODE_OTHERS)
 _GROUP = _Kind("a group", GroupDescription, {**_SHARED, "node": "`nodes`, a list", "group": "`groups`, a list"})
 _AROUND = "a group around the include can say it"
 _INCLUDE_OTHERS = {
-    **dict.fromkeys(("parameters", "remappings", "env", "process", "start_after", "respawn", "on_exit"), _AROUND),
+    **dict.fromkeys(
+        ("parameters", "remappings", "env", "process", "start_after", "respawn", "on_exit", "enclave"), _AROUND
+    ),
     "path": "`file`",
     "args": "`arguments`",
     "ns": "`namespace`",
@@ -83,23 +87,20 @@ _INCLUDE_OTHERS = {
 _INCLUDE = _Kind("an include", IncludeDescription, _INCLUDE_OTHERS)
 _KINDS = (_NODE, _GROUP, _INCLUDE, _TOP)
 _PARTS = {"nodes": _NODE, "include": _INCLUDE, "groups": _GROUP}
-"""What the mappings are that a launch file and a group list under these keys."""
+"""Kinds of the mappings that a launch file and a group list under these keys."""
 
 
 def unknown_keys(file: LaunchFile) -> Iterator[DocumentError]:
-    """Yield an error for each key that means nothing, everywhere in a file, also in what is not to be started now.
+    """Yield an error for each unknown key of a file, also in sections that are switched off.
 
-    It says which key is the nearest, or for what its name stands in other launch files.
+    It suggests the nearest key, or the one that has this name in other launch systems.
     """
     for steps, key, meant in _unknown(file.data, _TOP, []):
         yield file.error([*steps, key], f"unknown key '{shown(key)}'{meant}", key=True)
 
 
 def _unknown(data: Any, kind: _Kind, steps: list[Step]) -> Iterator[tuple[list[Step], str, str]]:
-    """Yield the unknown keys of a mapping of some kind and of those within: steps, key and what was probably meant.
-
-    What is no mapping has none.
-    """
+    """Yield the unknown keys of a mapping and of those within: steps, key and suggestion; none for other data."""
     if not isinstance(data, dict):
         return
     for key, value in data.items():
@@ -123,7 +124,7 @@ def _meant(key: str, kind: _Kind) -> str:
 
 
 def _named(key: str, value: Any, kind: _Kind) -> str:
-    """Say what a key is that nothing is like: perhaps a node's name, as in `- world: {...}`."""
+    """Return a hint for a key that is like no other: perhaps it is a node's name, as in `- world: {...}`."""
     if kind is _NODE and (value is None or isinstance(value, dict)) and key:
         return f" in a node: write `node: {shown(key, 40)}`"
     return f" in {kind.title}"

@@ -1,37 +1,37 @@
-"""Limits on what a launch file may come to: they are found while it is read, before anything is built of it."""
+"""Resource limits of launch files, checked while a file is read, before anything is built from it."""
 
 from __future__ import annotations
 
 MOST_TEXT = 1_000_000
-"""Characters that one text, or all that stands under one key, may have once `{name}` is replaced in it."""
+"""Most characters of one text, or of everything under one key, after substitution."""
 MOST_TEXT_IN_ALL = 20_000_000
-"""Characters of all texts of a system together, each copy counted, and of all files as often as they are included."""
+"""Most characters of a system: of all texts, each copy counted, and of all files, each include counted."""
 MOST_PROCESSES = 1_000
-"""Processes of a system."""
+"""Most processes of a system."""
 MOST_PARTS = 20_000
-"""Copies of nodes, groups and includes."""
+"""Most copies of nodes, groups and includes in all."""
 MOST_INCLUDES = 2_000
-"""Files that are included, each as often as it is."""
+"""Most includes, each file counted as often as it is included."""
 DEEPEST_INCLUDES = 50
-"""Files within files: each is read while the one before is."""
+"""Deepest nesting of includes: each file is read while the one above it is."""
 MOST_PARAMETERS = 10_000
-"""Parameters of a node."""
+"""Most parameters of a node."""
 MOST_REMAPPINGS = 1_000
-"""Remappings that a node or a group says."""
+"""Most remappings of a node or a group."""
 
 
 class TextBudget:
-    """Characters that the texts of a system have taken so far."""
+    """Counter of the characters that the texts of a system have taken so far."""
 
     def __init__(self) -> None:
         self._in_all = self._in_this = 0
 
     def begin(self) -> None:
-        """Count anew for one key."""
+        """Restart the count of a single key."""
         self._in_this = 0
 
     def take(self, count: int, *, is_new: bool) -> str:
-        """Count characters of a text, and whether they were put there; return what is wrong if that is too much."""
+        """Count characters of a text, `is_new` if substitution added them; return an error text if it is too much."""
         self._in_all += count
         self._in_this += count if is_new else 0
         if self._in_this > MOST_TEXT:

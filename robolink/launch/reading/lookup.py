@@ -1,4 +1,4 @@
-"""Where the launch files, nodes and other files are that somebody types or that a launch file names."""
+"""Look-up of launch files, nodes, parameter files and commands by name or path."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
-from robolink.own_command import own_command
+from robolink.system.own_command import own_command
 from robolink.workspace import (
     Folder,
     NodeSource,
@@ -28,19 +28,19 @@ from robolink.workspace import (
 from robolink.workspace.find import YAML
 
 LAUNCH_FOLDER = "launch"
-"""Where a ROS 2 package has its launch files."""
+"""Folder of the launch files in a ROS 2 package."""
 
 WHERE_PROGRAMS_ARE = "a name is looked up on the PATH, a path from the working directory ({here} is the file's folder)"
 _PYTHON = ("python", "python3")
 
 NOT_FOUND = (NotFoundError, OSError, ValueError, RuntimeError)
-"""What looking for a file raises: it is not there, or what is asked for can be no file's name."""
+"""Exceptions of a look-up: the file does not exist, or the text cannot be a file's name."""
 
 _PROGRAMS = {".py": "a Python program", ".xml": "XML"}
 
 
 class LaunchKindError(RobolinkError, ValueError):
-    """What is asked for is no launch file that robolink reads: one of ROS 2's programs, or a node."""
+    """The file is no YAML launch file: one of ROS 2's launch programs, or a node."""
 
 
 def find(names: Sequence[str], *, workspace: Folder = None) -> Path:
@@ -72,7 +72,7 @@ def _by_name(name: str, workspace: Folder) -> Path:
 
 
 def _which_of(folder: Path, package: str) -> str:
-    """Describe what a package has in its launch folder, for somebody who named only the package."""
+    """Return a hint with the launch files of a package, for somebody who named only the package."""
     there = [each for each in sorted((folder / LAUNCH_FOLDER).glob("*")) if each.suffix in (*YAML, *_PROGRAMS)]
     names = [each.name for each in there if each.suffix in YAML]
     if names:
@@ -112,12 +112,12 @@ def _in_package(folder: Path, package: str, name: str) -> Path:
 
 
 def reason_of(error: Exception) -> str:
-    """Say why something was not found."""
+    """Return why a look-up failed."""
     return (error.strerror if isinstance(error, OSError) else None) or str(error)
 
 
 def home_of(path: Path, workspace: Folder) -> Path | None:
-    """Give the workspace in which a launch file's nodes, worlds and files are looked up first.
+    """Return the workspace in which a launch file's nodes, worlds and files are looked up first.
 
     Its own or, when it came with robolink, the user's. Raises `NotFoundError` when that is named and no folder.
     """
@@ -155,7 +155,7 @@ def _executable(package: str, name: str, home: Path | None) -> NodeSource:
 def included_file(name: str, home: Path | None, folder: Path) -> Path:
     """Find a launch file that another one in `folder` includes.
 
-    It is looked for beside that one, with or without `.yaml`, as a path from the workspace, and by name. Raises
+    Candidates are a path from that folder, with or without `.yaml`, a path from the workspace, and a name. Raises
     `NotFoundError` with the nearest name.
     """
     path = Path(name).expanduser()
@@ -185,7 +185,7 @@ def parameter_file(name: str, home: Path | None, folder: Path) -> Path:
 
 
 def command_of(run: Sequence[str], path: str | None) -> list[str] | None:
-    """Give how a command is started, None if there is no such program; `path` is its PATH, or None for ours.
+    """Return the full command line of a command, None if there is no such program; `path` is its PATH, None for ours.
 
     `robolink` and `python` are those of this process where the PATH has none.
     """
@@ -205,12 +205,12 @@ def _ours(name: str) -> tuple[str, ...] | None:
 
 
 def _around(folder: Path, home: Path | None) -> list[Path]:
-    """Give the folders from which a launch file names files, wherever it is launched: its own, its workspace's."""
+    """Return the base folders of a launch file's relative paths: its own and its workspace's."""
     return [folder] if home is None else [folder, home]
 
 
 def why_no_command(program: str) -> str:
-    """Say why `command_of` finds no such program."""
+    """Return why `command_of` finds no such program."""
     if Path(program).name != program and Path(program).is_file():
         if sys.platform == "win32":
             return f"'{program}' is nothing that Windows starts by itself: write before it what runs it, as python"
@@ -219,7 +219,7 @@ def why_no_command(program: str) -> str:
 
 
 def _first(candidates: Iterable[Path]) -> Path | None:
-    """Return what is there first and is no folder: whoever reads it says what else is wrong with it."""
+    """Return the first candidate that exists and is no folder; other problems show when it is read."""
     return next((each for each in candidates if each.exists() and not each.is_dir()), None)
 
 

@@ -1,4 +1,4 @@
-"""The parameters that a launch file gives: by name, by parameter files, by both."""
+"""Node parameters of a launch file: given by name, by parameter files, or by both."""
 
 from __future__ import annotations
 
@@ -7,20 +7,21 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from robolink.exceptions import DocumentError, shown
+from robolink.arguments.overrides import Override
+from robolink.arguments.parameter_file import parse_parameter_value, read_parameter_file
+from robolink.documents.yamlfile import spell
+from robolink.exceptions import DocumentError
 from robolink.launch.reading import limits, lookup
-from robolink.launch.reading.part import Part, Place
+from robolink.launch.reading.section import Place, Section
 from robolink.launch.reading.substitution import Step
-from robolink.parameter_file import parse_parameter_value, read_parameter_file
-from robolink.parameter_overrides import Override
+from robolink.system.terminal import shown
 from robolink.workspace.find import YAML
-from robolink.yamlfile import spell
 
 _TOO_MANY = f"more than {limits.MOST_PARAMETERS:,} parameters for one node"
 
 
 class Given(NamedTuple):
-    """Parameters that somebody gave, each with the place where that is written. `file` is what they were read from."""
+    """Given parameters, each with its place; `file` is the parameter file they were read from."""
 
     overrides: list[tuple[Override, Place]]
     file: Path | None = None
@@ -35,22 +36,22 @@ class Parameter(NamedTuple):
     is_wide: bool
 
 
-def given_in(part: Part, home: Path | None) -> list[Given]:
-    """Read what a part says under `parameters`, the files among them too.
+def given_in(section: Section, home: Path | None) -> list[Given]:
+    """Read the `parameters` of a section, parameter files included.
 
     Raises `DocumentError` with the place in the launch file, or in the parameter file.
     """
-    said = part.get("parameters", {})
+    said = section.get("parameters", {})
     if isinstance(said, list):
-        return [_given(part, each, ("parameters", index), home) for index, each in enumerate(said)]
-    return [_given(part, said, ("parameters",), home)]
+        return [_given(section, each, ("parameters", index), home) for index, each in enumerate(said)]
+    return [_given(section, said, ("parameters",), home)]
 
 
 def parameters_for(full_name: str, given: Iterable[Given], own: Iterable[Given]) -> dict[str, Parameter]:
-    """Give the parameters of a node by name, nested names joined by dots: the last that was given counts.
+    """Return the parameters of a node by name, nested names joined by dots; the last one given wins.
 
     `own` are the node's own, `given` those of the groups around it. Raises `DocumentError` for a file that the node
-    itself names and that has something for other nodes only.
+    itself names and that has parameters for other nodes only.
     """
     found: dict[str, Parameter] = {}
     for each in given:
@@ -67,18 +68,18 @@ def parameters_for(full_name: str, given: Iterable[Given], own: Iterable[Given])
     return found
 
 
-def _given(part: Part, said: Any, steps: tuple[Step, ...], home: Path | None) -> Given:
-    place = Place(part, steps)
+def _given(section: Section, said: Any, steps: tuple[Step, ...], home: Path | None) -> Given:
+    place = Place(section, steps)
     if isinstance(said, dict):
         _check_ros_spelling(said, place)
         return Given(list(_inline(said, place)))
     try:
-        file = lookup.parameter_file(said, home, part.file.folder)
+        file = lookup.parameter_file(said, home, section.file.folder)
         overrides = _read(file)
     except DocumentError:  # it says where in the parameter file
         raise
     except lookup.NOT_FOUND as error:
-        raise part.error(steps, lookup.reason_of(error)) from None
+        raise section.error(steps, lookup.reason_of(error)) from None
     return Given([(each, place) for each in overrides], file, place)
 
 
@@ -88,7 +89,7 @@ def _inline(said: dict[str, Any], place: Place) -> Iterator[tuple[Override, Plac
     if len(flat) > limits.MOST_PARAMETERS:
         raise place.error(_TOO_MANY)
     for name, steps, value in flat:
-        at = Place(place.part, (*place.steps, *steps))
+        at = Place(place.section, (*place.steps, *steps))
         if "ros__parameters" in steps:
             is_of_files = "`ros__parameters` and what stands above it are for parameter files"
             raise at.error(f"{is_of_files}: write {{{shown(steps[-1])}: {shown(spell(value))}}}", key=True)
@@ -113,7 +114,7 @@ def _flattened(
 
 
 def _check_value(value: Any, place: Place) -> None:
-    """Refuse what would arrive at the node as something else, or not at all."""
+    """Raise `DocumentError` for a value that would arrive at the node as something else, or not at all."""
     for item in value if isinstance(value, list) else [value]:
         if item is None:
             raise place.error("a parameter cannot be null: give a value, or leave it out")
@@ -141,7 +142,7 @@ def _read_at(file: Path, changed: int) -> tuple[Override, ...]:
 
 
 def _read(file: Path) -> tuple[Override, ...]:
-    """Read a parameter file; a hundred copies of a node read it once."""
+    """Read a parameter file. Cached: a hundred copies of a node read it once."""
     return _read_at(file, file.stat().st_mtime_ns)
 
 

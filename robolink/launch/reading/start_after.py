@@ -1,32 +1,33 @@
-"""What `start_after` names: nodes of the system, topics, services, by their full names."""
+"""Name resolution of `start_after`: nodes of the system, topics and services, to full names."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple
 
-from robolink.exceptions import NameValidationException, shown
+from robolink.exceptions import NameValidationException
 from robolink.expand_topic_name import expand_topic_name
-from robolink.launch.reading.around import Placed
 from robolink.launch.reading.description import StartAfter
-from robolink.names import near
+from robolink.launch.reading.inherited import Placed
+from robolink.system.terminal import shown
+from robolink.text.names import near
 from robolink.validate_topic_name import validate_topic_name
 
 
 class Known(NamedTuple):
-    """The full names of all that a system has."""
+    """Full names of all nodes and commands of a system."""
 
     nodes: Collection[str]
     commands: Collection[str]
     off: Collection[str]
-    """What its conditions leave out this time."""
+    """Those that conditions switch off this time."""
 
 
 def resolved(awaited: Iterable[Placed], name: str, known: Known) -> Iterator[StartAfter]:
-    """Yield what a node or command waits for, with full names; `name` is its own full name.
+    """Yield the readiness conditions of a node or command, with full names; `name` is its own full name.
 
-    A node is looked for in the namespace of who waits, then in those around it; one that is switched off is not waited
-    for. Raises `DocumentError` for a node that there is not, and for what is no name.
+    A node is searched in the namespace of the one that waits, then in those around it; one that is switched off is
+    not waited for. Raises `DocumentError` for an unknown node and for an invalid name.
     """
     namespace, _, own = name.rpartition("/")
     for each in awaited:
@@ -57,9 +58,9 @@ def _node(each: Placed, name: str, namespace: str, known: Known) -> Iterator[Sta
 
 
 def _nearest(name: str, namespace: str, nodes: Collection[str]) -> str:
-    """Suggest the node that was probably meant, by a name that finds it."""
-    around = [f"{above}/" for above in _and_above(namespace)]
-    short = {full: full.removeprefix(next(each for each in around if full.startswith(each))) for full in nodes}
+    """Return a suggestion: the nearest node, by a name that finds it."""
+    inherited = [f"{above}/" for above in _and_above(namespace)]
+    short = {full: full.removeprefix(next(each for each in inherited if full.startswith(each))) for full in nodes}
     return near(name, short.values())
 
 

@@ -1,4 +1,4 @@
-"""Put values in the place of `{name}` in what a launch file says."""
+"""Variable substitution: replaces `{name}` in the texts and keys of a launch file."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
-from robolink.exceptions import RobolinkError, nearest, shown
+from robolink.documents.yamlfile import spell
+from robolink.exceptions import RobolinkError, nearest
 from robolink.launch.reading.limits import TextBudget
-from robolink.yamlfile import spell
+from robolink.system.terminal import shown
 
 Step: TypeAlias = "str | int"
 Renamed: TypeAlias = "dict[tuple[Step, ...], str]"
-"""Keys that a substitution changed: the steps to what each became, the last one filled in, and how it is written."""
+"""Keys that a substitution changed: the steps to the new key, and how it was written."""
 
 HERE = "here"
 NUMBER = "i"
@@ -31,7 +32,7 @@ _ROS_MEANS = {
 
 
 class SubstitutionError(RobolinkError, ValueError):
-    """A `{name}` stands for nothing; `steps` lead to it, to the key of a mapping if `is_key`."""
+    """A `{name}` has no value; `steps` lead to it, to the key of a mapping if `is_key`."""
 
     def __init__(self, reason: str, steps: Sequence[Step], is_key: bool) -> None:
         super().__init__(reason)
@@ -39,19 +40,19 @@ class SubstitutionError(RobolinkError, ValueError):
 
 
 class Value(NamedTuple):
-    """What a name stands for: plain data, and how it reads within a text, which is how somebody wrote it."""
+    """Value of a variable: plain data, and its spelling inside a text, as somebody wrote it."""
 
     data: Any
     text: str
 
     @classmethod
     def of(cls, data: Any) -> Value:
-        """Make a value that nobody has written, or that has come from elsewhere."""
+        """Return the value for data that was not written in a file."""
         return cls(data, data if isinstance(data, str) else spell(data))
 
 
 class Values:
-    """What may stand in braces: names, and `env:NAME` for a variable of the environment."""
+    """Variables in scope: names, and `env:NAME` for a variable of the environment."""
 
     def __init__(
         self,
@@ -63,18 +64,18 @@ class Values:
         self.budget = TextBudget() if budget is None else budget
 
     def joined_by(self, more: Mapping[str, Value]) -> Values:
-        """Give these and more; the new ones count where a name is the same."""
+        """Return these values and more; the new ones win where a name is the same."""
         return Values({**self._named, **more}, self._environment, self.budget)
 
     def get(self, name: str) -> Value | None:
-        """Give what a name stands for, None if nothing."""
+        """Return the value of a name, None if it has none."""
         if name.startswith(ENVIRONMENT):
             text = self._environment.get(name.removeprefix(ENVIRONMENT).strip())
             return None if text is None else Value(text, text)
         return self._named.get(name)
 
     def why_not(self, name: str) -> str:
-        """Say why a name stands for nothing, and what would help."""
+        """Return why a name has no value, with a suggestion."""
         if name.startswith(ENVIRONMENT):
             variable = name.removeprefix(ENVIRONMENT).strip()
             return f"the environment has no '{shown(variable)}'{nearest(variable, self._environment)}"
@@ -91,13 +92,21 @@ class Values:
 def filled(
     data: Any, values: Values, steps: Sequence[Step], *, as_text: bool = False, renamed: Renamed | None = None
 ) -> Any:
-    """Give plain data with each `{name}` in its texts and keys replaced.
+    """Return plain data with each `{name}` in its texts and keys substituted.
 
-    A text that is nothing but `{name}` becomes the value itself, so that a number stays one, unless only texts can
-    stand there. Braces around anything but a name stay as they are, so that JSON need not be written otherwise; in a
-    text with `{{` somewhere, `{{` and `}}` are braces and all others stand for something.
-    `steps` lead to the data, for the SubstitutionError that is raised for an unknown name. Keys that become others
-    are noted in `renamed`. More text than `limits` allow is such an error, too.
+    A text that is nothing but `{name}` becomes the value itself, so that a number stays one. Braces around anything
+    but a name stay as they are, so that JSON can be written as usual; in a text with `{{` somewhere, `{{` and `}}`
+    are braces and all others are variables.
+
+    Args:
+        data: Texts, lists and mappings.
+        values: The variables in scope.
+        steps: Steps from the root of the file to the data, for errors.
+        as_text: True where only texts can stand: then a lone `{name}` becomes its spelling.
+        renamed: Gets the keys that were changed.
+
+    Raises:
+        SubstitutionError: for an unknown name, and for more text than `limits` allow.
     """
     values.budget.begin()
     return _filled(data, values, steps, as_text, renamed)
@@ -114,7 +123,7 @@ def _filled(data: Any, values: Values, steps: Sequence[Step], as_text: bool, ren
 
 
 def is_null(data: Any, values: Values) -> bool:
-    """Say whether a text is nothing but a `{name}` that stands for null."""
+    """True if a text is nothing but a `{name}` whose value is null."""
     whole = _IN_BRACES.fullmatch(data) if isinstance(data, str) else None
     value = values.get(whole[1].strip()) if whole and _is_name(whole[1]) else None
     return value is not None and value.data is None

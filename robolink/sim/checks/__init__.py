@@ -1,1 +1,1 @@
-"""What is wrong with a description that types cannot say, each problem with its place."""
+"""Validation of descriptions beyond their types: each problem with its place."""

@@ -1,4 +1,4 @@
-"""What makes an outline or a line of points degenerate: no length, no area, edges that meet where they must not."""
+"""Checks of outlines and lines of points: no length, no area, edges that cross or touch."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TypeAlias
 
-from robolink.sim.description import Point, signed_area, turn
+from robolink.sim.description import signed_area, turn
+from robolink.sim.quantities import Point
 
 SHORTEST = 1e-6
-"""Metres: what is nearer than that is one point."""
+"""Distance below which two points count as one, in metres."""
 
 SMALLEST = 1e-6
-"""Square metres that an outline encloses at least, as the smallest box does."""
+"""Least area of an outline, in m²: that of the smallest box."""
 
 Edge: TypeAlias = "tuple[Point, Point]"
 
@@ -27,7 +28,7 @@ def repeated(points: Sequence[Point], closed: bool) -> Iterator[int]:
 
 
 def in_line(polygon: Sequence[Point]) -> bool:
-    """Say whether all corners lie on one straight line."""
+    """True if all corners lie on one straight line."""
     first = polygon[0]
     far = max(polygon, key=lambda each: math.dist(first, each))
     length = math.dist(first, far)
@@ -35,7 +36,7 @@ def in_line(polygon: Sequence[Point]) -> bool:
 
 
 def has_area(polygon: Sequence[Point]) -> bool:
-    """Say whether a polygon encloses anything."""
+    """True if a polygon encloses an area."""
     return abs(signed_area(polygon)) >= SMALLEST
 
 
@@ -68,12 +69,12 @@ def _meet(edges: Sequence[Edge], first: int, second: int) -> bool:
 
 
 def _between(a: Point, b: Point, c: Point, d: Point) -> bool:
-    """Say whether c and d are not both on the same side of the line through a and b."""
+    """True if c and d are not both on the same side of the line through a and b."""
     left, right = turn(a, b, c), turn(a, b, d)
     return not (left > 0.0 < right or left < 0.0 > right)
 
 
 def _folded(a: Point, b: Point, c: Point) -> bool:
-    """Say whether the way from b to c leads straight back over the one from a to b."""
+    """True if the way from b to c leads straight back over the one from a to b."""
     back = (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0
     return back and turn(a, b, c) == 0.0

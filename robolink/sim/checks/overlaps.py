@@ -1,4 +1,4 @@
-"""Finds what stands in the place of something else when a world begins."""
+"""Overlap check: robots and obstacles that start inside of something else."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pymunk
 from robolink.sim.checks.problem import Problem
 from robolink.sim.description import MapWalls, Obstacle, RobotDescription, WorldDescription
 from robolink.sim.physics.bodies import fixed_body, placed, solids, wall_shapes
-from robolink.sim.physics.placing import overlap
+from robolink.sim.physics.placing import overlapped
 
 if TYPE_CHECKING:
     from robolink.sim.maps.gridmap import GridMap
@@ -20,13 +20,13 @@ _BUT_WALLS = pymunk.ShapeFilter(categories=1, mask=pymunk.ShapeFilter.ALL_MASKS(
 _MAP = "the map's walls"
 
 CROWDED = "$.obstacles"
-"""Where the problem stands that so many shapes meet."""
+"""Path of the problem that too many shapes meet."""
 MOST_MEETINGS = 30_000
-"""How often shapes may meet others, counted from both, when a world begins: each time takes 20 us."""
+"""Most meetings of shapes at the start of a world, counted from both sides: each takes 20 us to check."""
 
 
 class _Thing(NamedTuple):
-    """A robot or an obstacle where it starts; `free` if it moves by what touches it."""
+    """A robot or an obstacle where it starts; `free` if others can push it."""
 
     place: str
     body: pymunk.Body
@@ -35,13 +35,13 @@ class _Thing(NamedTuple):
 
 
 class _CrowdedError(Exception):
-    """So many shapes meet that to look at all of them would take minutes."""
+    """Too many shapes meet: a check of all would take minutes."""
 
 
 def overlaps(
     description: WorldDescription, grid: GridMap | None = None, *, fixed_too: bool = True
 ) -> Iterator[Problem]:
-    """Yield robots and obstacles that start inside of others; obstacles that nobody pushes may stand in walls.
+    """Yield robots and obstacles that start inside of others; fixed obstacles may overlap walls.
 
     All shapes must be right by themselves. `grid` is the world's map, in whose occupied cells nothing free may be.
     Without `fixed_too` fixed obstacles may stand in each other. Where too many shapes meet, that is the last problem.
@@ -59,23 +59,33 @@ def _overlaps(description: WorldDescription, grid: GridMap | None, fixed_too: bo
     for thing in things:
         space.add(thing.body, *thing.shapes)
     owners |= _add_walls(description, space, [thing for thing in things if thing.free])
-    found = set[frozenset[str]]()
-    met = 0
-
-    def count(more: int) -> None:
-        nonlocal met
-        met += more
-        if met > MOST_MEETINGS:
-            raise _CrowdedError
-
+    found, search = set[frozenset[str]](), _Search(space)
     for thing in (each for each in things if each.free or fixed_too):
-        other = overlap(space, thing.shapes, count)
+        other = search.overlap(thing)
         pair = frozenset((thing.place, "" if other is None else owners[other]))
         if other is not None and pair not in found:
             yield Problem(f"$.{thing.place}.pose", _said(thing, owners[other]))
         elif other is None and thing.free and grid is not None and grid.is_occupied(*_inner_point(thing)):
             yield Problem(f"$.{thing.place}.pose", _said(thing, _MAP))
         found.add(pair)
+
+
+class _Search:
+    """Finds overlaps in a space; raises `_CrowdedError` once shapes have met others more than `MOST_MEETINGS` times."""
+
+    def __init__(self, space: pymunk.Space) -> None:
+        self._space, self._met = space, 0
+
+    def overlap(self, thing: _Thing) -> pymunk.Shape | None:
+        """Return the first shape that a thing overlaps, or None."""
+        for shape in thing.shapes:
+            found = self._space.shape_query(shape)
+            self._met += len(found)
+            if self._met > MOST_MEETINGS:
+                raise _CrowdedError
+            if (other := overlapped(shape, found)) is not None:
+                return other
+        return None
 
 
 def _said(thing: _Thing, other: str) -> str:
@@ -85,7 +95,7 @@ def _said(thing: _Thing, other: str) -> str:
 
 
 def _things(description: WorldDescription) -> list[_Thing]:
-    """Give what stands in the world, in the order in which it is to blame: later fixed things before earlier ones."""
+    """Return robots and obstacles in the order in which they are to blame: later fixed ones before earlier ones."""
     robots = [_robot(f"robots[{index}]", each) for index, each in enumerate(description.robots)]
     obstacles = [_obstacle(f"obstacles[{index}]", each) for index, each in enumerate(description.obstacles)]
     fixed = [each for each in obstacles if not each.free]
@@ -107,7 +117,7 @@ def _obstacle(place: str, obstacle: Obstacle) -> _Thing:
 
 
 def _add_walls(description: WorldDescription, space: pymunk.Space, free: Sequence[_Thing]) -> dict[pymunk.Shape, str]:
-    """Add all walls to the space, of a map those that something free is near to; tell what each shape belongs to."""
+    """Add all walls to the space, of a map those near anything free; return what each shape belongs to."""
     owners = dict[pymunk.Shape, str]()
     for index, wall in enumerate(description.walls):
         near = _near(wall, free) if isinstance(wall, MapWalls) else wall
@@ -132,6 +142,6 @@ def _near(walls: MapWalls, free: Sequence[_Thing]) -> MapWalls:
 
 
 def _inner_point(thing: _Thing) -> tuple[float, float]:
-    """Give a point of the world that lies inside of a thing."""
+    """Return a point of the world that lies inside of a thing."""
     x, y = thing.body.local_to_world(thing.shapes[0].center_of_gravity)
     return x, y

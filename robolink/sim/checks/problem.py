@@ -1,15 +1,15 @@
-"""What every check gives: a problem, with its place in the description."""
+"""Result of every check: a problem, with its place in the description."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from robolink.exceptions import shown
+from robolink.system.terminal import shown
 
 
 class Problem(NamedTuple):
-    """Where, such as ``$.robots[0].pose``, and what is wrong; with `key`, that this key is there at all."""
+    """A mistake: its path, such as ``$.robots[0].pose``, and the reason; with `key` the key itself is the mistake."""
 
     path: str
     message: str
@@ -17,12 +17,12 @@ class Problem(NamedTuple):
 
 
 def under(path: str, found: Iterator[Problem]) -> Iterator[Problem]:
-    """Put what was found in a part where that part is."""
+    """Prefix the paths of a part's problems with the path of the part."""
     return (each._replace(path=path + each.path) for each in found)
 
 
 def repeated_names(names: Sequence[str], path: str, words: str) -> Iterator[Problem]:
-    """Yield each name that has been there before; `path` has a place for its index."""
+    """Yield a problem for each name that was there before; `path` has a placeholder for its index."""
     seen: dict[str, int] = {}
     for index, name in enumerate(names):
         if name in seen:

@@ -1,4 +1,4 @@
-"""What is wrong with the description of one robot: its drive, its wheels, its sensors."""
+"""Checks of a robot's description: its drive, its wheels, its sensors."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from robolink.exceptions import shown
 from robolink.sim.checks.problem import Problem, repeated_names, under
 from robolink.sim.checks.shapes import shape_problems, speed_problems
-from robolink.sim.description import Drive, Encoders, Lidar, RangeFinder, RobotDescription, Sensor, Wheel, steps_between
+from robolink.sim.description import Drive, RobotDescription, Wheel, steps_between
+from robolink.sim.sensors import Encoders, Sensor
+from robolink.system.terminal import shown
 
 TAKEN = (
     "clock",
@@ -33,9 +34,9 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 _LONGEST_NAME = 64
 _MOST_THREES = 2000
 _ABREAST = 1e-4
-"""Metres: wheels nearer to each other than that, across the way that they roll, turn nothing."""
+"""Least distance of wheels across the way that they roll, in metres: nearer ones cannot turn a robot."""
 _CROOKED = 0.02
-"""Radians by which a wheel of a drive that cannot go sideways may point elsewhere than ahead."""
+"""Largest angle from ahead, in radians, of a wheel of a drive that cannot go sideways."""
 _ONLY_ACKERMANN = ("wheelbase", "steer_max", "steer_rate")
 
 
@@ -50,7 +51,7 @@ def robot_misfits(data: Mapping[str, Any]) -> Iterator[Problem]:
 
 
 def robot_problems(robot: RobotDescription, dt: float) -> Iterator[Problem]:
-    """Yield what is wrong with a robot in a world with steps of `dt` seconds."""
+    """Yield the problems of a robot in a world with steps of `dt` seconds."""
     if not _NAME.fullmatch(robot.name):
         yield Problem(".name", _bad_name(robot.name))
     shape = list(_outline_problems(robot))
@@ -89,7 +90,7 @@ def _drive_problems(robot: RobotDescription, dt: float, *, has_shape: bool) -> I
 
 
 def _corner_problems(robot: RobotDescription, dt: float) -> Iterator[Problem]:
-    """Yield what is wrong with speeds at which a corner, when the robot turns, could pass through a wall in a step."""
+    """Yield a problem if a corner of the turning robot could pass through a wall in one step."""
     v, w, inner = robot.drive.v_max, robot.drive.w_max, robot.shape.inner_radius()
     beyond = robot.shape.outer_radius() - inner
     if v + w * beyond > inner / dt:
@@ -130,7 +131,7 @@ def _crooked(robot: RobotDescription) -> Iterator[Problem]:
 
 
 def _driving_problems(robot: RobotDescription) -> Iterator[Problem]:
-    """Say so if no turning of the wheels can make all the motions that the drive is for."""
+    """Yield a problem if no turning of the wheels can make all the motions of the drive."""
     kind = robot.drive.type
     sides = [each.at.y for each in robot.wheels]
     if kind == "diff" and max(sides) - min(sides) < _ABREAST:
@@ -152,13 +153,13 @@ def _lonely() -> str:
 
 
 def _independent(*wheels: Wheel) -> bool:
-    """Say whether three wheels, each turned alone, make three different motions: by the determinant of them."""
+    """True if three wheels, each turned alone, make three independent motions: by the determinant."""
     (a, b, c), (d, e, f), (g, h, i) = (_motion(each) for each in wheels)
     return abs(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)) > _ABREAST
 
 
 def _motion(wheel: Wheel) -> tuple[float, float, float]:
-    """Give how fast a wheel rolls when the robot goes ahead, goes sideways, and turns."""
+    """Return the rolling speed of a wheel when the robot goes ahead, goes sideways, and turns."""
     cos, sin = math.cos(wheel.at.theta), math.sin(wheel.at.theta)
     return cos, sin, sin * wheel.at.x - cos * wheel.at.y
 
@@ -169,15 +170,12 @@ def _sensor_problems(sensor: Sensor, robot: RobotDescription, dt: float) -> Iter
     elif sensor.topic in TAKEN or (sensor.topic == "joint_states" and tells_joints(robot)):
         yield Problem(f".{sensor.kind}", f"the simulation itself has a topic '{sensor.topic}': take another name")
     yield from under(".rate", _rate_problems(sensor.rate, dt))
-    if isinstance(sensor, Lidar | RangeFinder) and sensor.range[0] >= sensor.range[1]:
-        near, far = sensor.range
-        yield Problem(".range", f"the nearest, {near:g} m, must be less than the farthest, {far:g} m")
-    if isinstance(sensor, Encoders) and not robot.wheels:
-        yield Problem("", "encoders count the turns of wheels, and this robot has no 'wheels'")
+    for key, reason in sensor.problems(len(robot.wheels)):
+        yield Problem(f".{key}" if key else "", reason)
 
 
 def tells_joints(robot: RobotDescription) -> bool:
-    """Say whether the simulation itself publishes joint_states: of wheels that no encoders count."""
+    """True if the simulation itself publishes joint_states: of wheels without encoders."""
     return bool(robot.wheels) and not any(isinstance(each, Encoders) for each in robot.sensors)
 
 
@@ -187,7 +185,7 @@ def _repeated_topics(sensors: Sequence[Sensor]) -> Iterator[Problem]:
 
 
 def _rate_problems(rate: float, dt: float) -> Iterator[Problem]:
-    """Yield what is wrong with a rate: it must be a whole number of steps of `dt` seconds from one time to the next."""
+    """Yield a problem if a rate's period is not a whole number of steps of `dt` seconds."""
     if steps_between(rate, dt):
         return
     steps = math.floor(1.0 / (rate * dt))

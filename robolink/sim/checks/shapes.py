@@ -1,4 +1,4 @@
-"""What is wrong with walls, obstacles and outlines, each by itself."""
+"""Checks of walls, obstacles and outlines, each by itself."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Any
 
 from robolink.sim.checks.outlines import SHORTEST, has_area, in_line, meeting, repeated
 from robolink.sim.checks.problem import Problem, under
-from robolink.sim.description import Obstacle, Point, Shape, Wall
+from robolink.sim.description import Obstacle, Shape, Wall
+from robolink.sim.quantities import Point
 
 _KINDS = ("box", "circle", "polygon")
 _ONLY_MOVING = ("speed", "closed")
@@ -22,7 +23,7 @@ def obstacle_misfits(data: Mapping[str, Any]) -> Iterator[Problem]:
 
 
 def wall_problems(wall: Wall) -> Iterator[Problem]:
-    """Yield what is wrong with one wall."""
+    """Yield the problems of one wall."""
     points = wall.polyline
     if wall.closed and len(points) < 3:
         yield Problem(".polyline", f"a closed wall needs 3 points or more, got {len(points)}")
@@ -40,7 +41,7 @@ def _repeated_points(points: Sequence[Point], what: str, closing: str) -> Iterat
 
 
 def shape_problems(shape: Shape) -> Iterator[Problem]:
-    """Yield what is wrong with an outline."""
+    """Yield the problems of an outline."""
     given = [kind for kind in _KINDS if getattr(shape, kind) is not None]
     if len(given) != 1:
         yield Problem("", f"expected one of 'box', 'circle' and 'polygon', got {' and '.join(given) or 'none of them'}")
@@ -66,7 +67,7 @@ def _at(point: Point) -> str:
 
 
 def obstacle_problems(obstacle: Obstacle, dt: float) -> Iterator[Problem]:
-    """Yield what is wrong with one obstacle in a world with steps of `dt` seconds."""
+    """Yield the problems of one obstacle in a world with steps of `dt` seconds."""
     shape = list(shape_problems(obstacle))
     yield from shape
     if obstacle.path is None:
@@ -88,7 +89,7 @@ def obstacle_problems(obstacle: Obstacle, dt: float) -> Iterator[Problem]:
 
 
 def speed_problems(speed: float, dt: float, shape: Shape, through: str) -> Iterator[Problem]:
-    """Yield what is wrong with a speed at which a shape could be on the other side of something after one step."""
+    """Yield a problem if a shape at this speed could pass through something in one step."""
     reach = shape.inner_radius() or shape.outer_radius()
     if speed * dt > reach:
         way = f"{speed:g} m/s is {speed * dt:.3g} m in a step of {dt:g} s"

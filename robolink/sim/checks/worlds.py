@@ -1,25 +1,26 @@
-"""What is wrong with a whole world: each of its parts, and how they stand to each other."""
+"""Checks of a whole world: each of its parts, and all parts together."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from robolink.exceptions import shown
 from robolink.sim.checks.overlaps import overlaps
 from robolink.sim.checks.problem import Problem, repeated_names, under
 from robolink.sim.checks.robots import robot_misfits, robot_problems
 from robolink.sim.checks.shapes import obstacle_misfits, obstacle_problems, wall_problems
-from robolink.sim.description import MapWalls, Obstacle, Point, RobotDescription, WorldDescription
+from robolink.sim.description import MapWalls, Obstacle, RobotDescription, WorldDescription
+from robolink.sim.quantities import Point
+from robolink.system.terminal import shown
 
 if TYPE_CHECKING:
     from robolink.sim.maps.gridmap import GridMap
 
 _MARGIN = 1e-9
-"""Metres."""
+"""Tolerance of the world's size, in metres."""
 
 _LIGHTEST = 0.01
-"""The least mass of what a robot pushes, as a share of its own: Chipmunk presses lighter things into walls."""
+"""Least mass of a thing that a robot pushes, as a share of its own: Chipmunk presses lighter ones into walls."""
 
 
 def misfits(data: Mapping[str, Any]) -> Iterator[Problem]:
@@ -59,7 +60,7 @@ def _local_problems(description: WorldDescription) -> Iterator[Problem]:
 
 
 def mass_problems(robots: Sequence[RobotDescription], obstacles: Sequence[Obstacle]) -> Iterator[Problem]:
-    """Yield what is so light that the heaviest of the robots would push it through walls."""
+    """Yield a problem for each thing so light that the heaviest robot would push it through walls."""
     if not robots:
         return
     heaviest = max(robots, key=lambda each: each.mass)
@@ -73,7 +74,7 @@ def mass_problems(robots: Sequence[RobotDescription], obstacles: Sequence[Obstac
 
 
 def _size_problems(description: WorldDescription) -> Iterator[Problem]:
-    """Yield what lies outside of the size that the world says it has."""
+    """Yield a problem for each point outside of the world's size."""
     if description.world.size is None:
         return
     width, height = description.world.size

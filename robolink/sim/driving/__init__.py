@@ -1,1 +1,1 @@
-"""How robots are driven: limits, forces onto exact arcs, wheels, odometry; one by one or all at once."""
+"""Drive models of robots: limits, forces onto exact arcs, wheels, odometry; one by one or all at once."""

@@ -1,4 +1,4 @@
-"""The functions that a formula needs beyond + - * /, once for floats and once for arrays.
+"""Elementary functions for formulas, once for floats and once for arrays.
 
 A formula written with these serves one robot or a hundred at once, and gives the same bits either way: Python and
 numpy both ask the C library for sines and cosines (not so for tangents, powers and hypotenuses), and a root is exact.
@@ -18,12 +18,12 @@ from robolink.sim.arrays import Array
 Number = TypeVar("Number", float, Array)
 
 _SMALL = 1e-3
-"""Below this square of x, four terms of the series of sin(x) / x are exact."""
+"""Square of x below which four terms of the series of sin(x) / x are exact."""
 
 
 @dataclass(frozen=True)
 class Arithmetic(Generic[Number]):
-    """Functions of floats, or the same of arrays."""
+    """A set of functions of floats, or the same functions of arrays."""
 
     cos: Callable[[Number], Number]
     sin: Callable[[Number], Number]
@@ -34,7 +34,7 @@ class Arithmetic(Generic[Number]):
 
 
 def sinc(x: float) -> float:
-    """Give sin(x) / x: the chord of an arc that turns by 2x, as a share of the arc."""
+    """Return sin(x) / x: the chord of an arc that turns by 2x, as a share of the arc."""
     square = x * x
     if square < _SMALL:
         return 1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0 - square / 5040.0))
@@ -42,7 +42,7 @@ def sinc(x: float) -> float:
 
 
 def clipped(value: float, limit: float) -> float:
-    """Bring a value into [-limit, limit]."""
+    """Return a value clipped to [-limit, limit]."""
     return limit if value > limit else -limit if value < -limit else value
 
 

@@ -1,4 +1,4 @@
-"""What drives a robot: velocity commands and motors, brought within the limits of its kind of drive."""
+"""Drive of a robot: cuts velocity and motor commands to the limits of its kind of drive."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class CommandError(RobolinkError, ValueError):
 
 
 class Driver:
-    """Tells the `motion` of one robot what it shall be.
+    """Driver of one robot: sets the targets of its `motion`.
 
     The reference point of every drive is the body's origin, base_link; of `ackermann` that is the middle of the
     rear axle. Its mass is taken to be centred there.
@@ -36,7 +36,7 @@ class Driver:
         self.motion: Motion[float] = motion_of_one(dt, robot.pose, limits, wheeled=bool(robot.wheels))
 
     def command(self, wanted: Velocity, step: int) -> None:
-        """Ask for a velocity from `step` on, cut to the limits; it holds for the drive's timeout.
+        """Set the target velocity from `step` on, cut to the limits; it holds for the drive's timeout.
 
         Raises `CommandError` when it is not finite.
         """
@@ -48,7 +48,7 @@ class Driver:
         self.motion.deadline = self.motion.expiry = step + self._timeout_steps
 
     def turn_wheels(self, speeds: Mapping[str, float]) -> None:
-        """Turn motors at these speeds (rad/s), each until it or the whole robot is told otherwise.
+        """Turn motors at these speeds (rad/s), each until its next command or a velocity command.
 
         Raises `NotFoundError` for an unknown motor and `CommandError` for a speed that is not finite.
         """
@@ -59,7 +59,7 @@ class Driver:
         self.motion.deadline = self.motion.expiry = NEVER
 
     def wheels(self, motion: Motion[float], twist: Velocity) -> tuple[WheelState, ...]:
-        """Give how far each wheel has turned on the way of a motion, and how fast it turns at these true speeds."""
+        """Return the state of each wheel: its angle on the way of a motion, and its speed at these true speeds."""
         wheels, way = self._wheels, Velocity(motion.rolled, motion.turned, motion.slid)
         return tuple(map(WheelState, wheels.names, wheels.speeds(way), wheels.speeds(twist)))
 
@@ -73,13 +73,13 @@ class Driver:
         return Velocity(clipped(v, drive.v_max), clipped(w, drive.w_max))
 
     def _slowed(self, wanted: Velocity) -> Velocity:
-        """Multiply all speeds by one share, so that the way stays the same and none is too fast."""
+        """Multiply all speeds by one factor, so that the way stays the same and none is too fast."""
         v_max, w_max, (v, w, s) = self._drive.v_max, self._drive.w_max, wanted
         share = min(v_max / max(math.sqrt(v * v + s * s), v_max), w_max / max(abs(w), w_max))
         return Velocity(v * share, w * share, s * share)
 
     def _aim(self, wanted: Velocity) -> None:
-        """Set the targets; a car that is to stand keeps its front wheels as they are."""
+        """Set the targets; a car that stops keeps its steering angle."""
         motion, drive, (v, w, s) = self.motion, self._drive, wanted
         motion.target_v, motion.target_s, motion.target_w = v, s, w
         if drive.type == "ackermann" and v:
@@ -87,7 +87,7 @@ class Driver:
 
 
 def _limits(drive: Drive, body: pymunk.Body, radius: float, dt: float) -> dict[str, float]:
-    """Give the limits of a robot's `Motion`; what nothing but grip holds back has an infinite one."""
+    """Return the limits of a robot's `Motion`; infinite where only grip limits it."""
     return {
         "a_dt": drive.a_max * dt,
         "side_dt": drive.a_max * dt if drive.type == "omni" else math.inf,

@@ -1,4 +1,4 @@
-"""All robots of a world driven together: one by one while they are few, as columns of numbers when they are many."""
+"""Fleet of a world: drives all robots, one by one while they are few, vectorized with numpy when they are many."""
 
 from __future__ import annotations
 
@@ -8,20 +8,24 @@ from typing import NamedTuple
 import numpy as np
 import pymunk
 
+from robolink.geometry.plane import wrapped
 from robolink.sim.arrays import Array
-from robolink.sim.driving.motion import NEVER, Motion, fetch, motion_of_many, store
+from robolink.sim.driving.arithmetic import ARRAYS, FLOATS
+from robolink.sim.driving.motion import NEVER, Motion, fetch, motion_of_many, speeds, store
 from robolink.sim.driving.odometry_noise import BLOCK, OdometryNoise
 from robolink.sim.physics.body_columns import BodyColumns
+from robolink.sim.quantities import Pose
+from robolink.sim.readings import Velocity
 
 MANY = 20
-"""From so many robots on, numpy's fixed costs are less than Python's for each robot; the results are the same."""
+"""Number of robots from which on numpy's fixed costs are less than Python's per robot; the results are the same."""
 
 _set_force, _set_torque = (vars(pymunk.Body)[name].fset for name in ("force", "torque"))
-"""As an assignment, but in half the time: that passes through a `__setattr__` in Python."""
+"""Setters of pymunk's Body: half the time of an assignment, which passes through a `__setattr__` in Python."""
 
 
 class Member(NamedTuple):
-    """A robot's body, its own motion, and how wrong its odometry is."""
+    """A robot's body, its own motion, and the noise of its odometry."""
 
     body: pymunk.Body
     motion: Motion[float]
@@ -29,7 +33,7 @@ class Member(NamedTuple):
 
 
 class Fleet:
-    """Pushes robots step by step and keeps their odometry."""
+    """Drives robots step by step and keeps their odometry."""
 
     def __init__(self, space: pymunk.Space) -> None:
         self._space = space
@@ -40,46 +44,58 @@ class Fleet:
         self._changed = False
 
     def add(self, member: Member) -> None:
-        """Take in a robot whose body is in the space."""
+        """Add a robot whose body is in the space."""
         self._disband()
         self._members.append(member)
 
     def remove(self, member: Member) -> None:
-        """Let a robot go whose body has left the space."""
+        """Remove a robot whose body has left the space."""
         self._disband()
         self._members = [each for each in self._members if each.body is not member.body]
 
     def motion(self, member: Member) -> Motion[float]:
-        """Give a robot's own motion, up to date."""
+        """Return a robot's own motion, up to date."""
         if self._columns is not None:
             fetch(member.motion, self._columns.motion, self._rows[member.body])
         return member.motion
 
-    def odometry(self, member: Member) -> tuple[float, float, float]:
-        """Give where a robot believes to be: x, y, theta."""
+    def odometry(self, member: Member) -> Pose:
+        """Return a robot's pose by odometry."""
         if self._columns is not None:
             return self._columns.odometry()[self._rows[member.body]]
         motion = member.motion
-        return motion.x, motion.y, motion.theta
+        return Pose(motion.x, motion.y, wrapped(motion.theta))
 
-    def told(self, member: Member) -> None:
-        """Heed what a robot's own motion has been told."""
+    def twist(self, member: Member) -> Velocity:
+        """Return a robot's true speeds."""
+        if self._columns is not None:
+            return self._columns.twists(self._bodies)[self._rows[member.body]]
+        body = member.body
+        return Velocity(*speeds(FLOATS, member.motion.dt, body.angle, *body.velocity, body.angular_velocity))
+
+    def moved(self) -> None:
+        """Note that the bodies have made a step, or that one of them was put elsewhere."""
+        if self._columns is not None:
+            self._columns.moved()
+
+    def take_targets(self, member: Member) -> None:
+        """Take over new targets of a robot's own motion."""
         if self._columns is not None:
             store(member.motion, self._columns.motion, self._rows[member.body])
 
     def rest(self, member: Member) -> None:
-        """Let a robot stand that has been put elsewhere."""
+        """Stop a robot that has been put elsewhere."""
         self._disband()
         motion = member.motion
         motion.ramp_v = motion.ramp_s = motion.ramp_w = 0.0
         motion.vx = motion.vy = motion.v = motion.s = motion.w = 0.0
 
     def advance(self, step: int) -> None:
-        """Push all robots for the coming step, and count into their odometry the arcs that it makes."""
+        """Set the forces of all robots for the coming step, and add its arcs to their odometry."""
         if self._changed:
             self._gather()
         if self._columns is not None:
-            self._bodies.write(self._columns.advance(step, self._bodies.read()))
+            self._bodies.write(self._columns.advance(step, self._columns.states(self._bodies)))
             return
         if not self._bodies.batched:
             for body, motion, noise in self._members:
@@ -94,7 +110,7 @@ class Fleet:
         )
 
     def _disband(self) -> None:
-        """Let each robot have its own motion again, until the next step."""
+        """Return to one motion per robot, until the next step."""
         for member in self._members:
             self.motion(member)
         self._columns, self._changed = None, True
@@ -107,24 +123,44 @@ class Fleet:
 
 
 class _Columns:
-    """Many robots."""
+    """The motions of many robots as numpy columns."""
 
     def __init__(self, members: list[Member]) -> None:
         self.motion = motion_of_many([member.motion for member in members])
         self._noises = [member.noise for member in members]
         self._noisy = any(noise is not None for noise in self._noises)
         self._errors, self._block = np.ones((3, BLOCK, len(members))), -1
-        self._odometry: list[tuple[float, float, float]] | None = None
+        self._odometry: list[Pose] | None = None
+        self._states: Array | None = None
+        self._twists: list[Velocity] | None = None
 
-    def odometry(self) -> list[tuple[float, float, float]]:
-        """Give where the robots believe to be; all at once, since who asks for one asks for the others too."""
+    def odometry(self) -> list[Pose]:
+        """Return the odometry of all robots; at once, since a reader of one reads the others too."""
         if self._odometry is None:
             motion = self.motion
-            self._odometry = list(zip(motion.x.tolist(), motion.y.tolist(), motion.theta.tolist(), strict=True))
+            columns = motion.x.tolist(), motion.y.tolist(), map(wrapped, motion.theta.tolist())
+            self._odometry = list(map(Pose, *columns))
         return self._odometry
 
+    def moved(self) -> None:
+        """Forget how the bodies were before."""
+        self._states = self._twists = None
+
+    def states(self, bodies: BodyColumns) -> Array:
+        """Return the bodies' angles and velocities after the last step."""
+        if self._states is None:
+            self._states = bodies.read()
+        return self._states
+
+    def twists(self, bodies: BodyColumns) -> list[Velocity]:
+        """Return the true speeds of all robots; at once, as odometry."""
+        if self._twists is None:
+            found = speeds(ARRAYS, self.motion.dt, *self.states(bodies).T)
+            self._twists = list(map(Velocity, *(each.tolist() for each in found)))
+        return self._twists
+
     def advance(self, step: int, rows: Array) -> Array:
-        """Take the bodies' angles and velocities before a step; give its forces."""
+        """Return the forces of a step from the bodies' angles and velocities before it."""
         motion = self.motion
         if step >= motion.expiry:
             self._stop_late(step)
@@ -154,7 +190,7 @@ class _Columns:
 def _advanced(
     motion: Motion[float], noise: OdometryNoise | None, state: Sequence[float], step: int
 ) -> tuple[float, float, float]:
-    """Move one robot on; give its force and torque."""
+    """Advance one robot; return its force and torque."""
     if step >= motion.expiry:
         motion.target_v = motion.target_s = motion.target_w = 0.0
         motion.deadline = motion.expiry = NEVER

@@ -1,4 +1,4 @@
-"""How robots move: the force of a step that leads onto the next exact arc, and odometry along those arcs.
+"""Motion of robots: the force of a step that leads onto the next exact arc, and odometry along those arcs.
 
 A body whose velocity is set drives through walls, because Chipmunk moves it before it solves contacts. So robots
 are pushed, and only as hard as wheels grip the floor.
@@ -12,11 +12,11 @@ from typing import Generic
 import numpy as np
 
 from robolink.sim.arrays import Array
-from robolink.sim.description import Pose
 from robolink.sim.driving.arithmetic import ARRAYS, FLOATS, Arithmetic, Number
+from robolink.sim.quantities import Pose
 
 NEVER = 1e18
-"""The step at which a command runs out that holds until the next one."""
+"""The deadline, in steps, of a command that holds until the next one."""
 
 _LIMITS = (
     "a_dt",  # the most that a step may change the set speeds by, in m/s and rad/s
@@ -54,7 +54,7 @@ _STATE = (
 
 
 class Motion(Generic[Number]):
-    """What drives one robot (numbers are floats) or many (arrays, an element for each robot): limits, targets, state.
+    """Motion of one robot (numbers are floats) or many (arrays, an element for each robot): limits, targets, state.
 
     `v`, `s` and `w` are the true speeds ahead (m/s), to the left (m/s) and about the robot (rad/s).
     """
@@ -107,7 +107,7 @@ class Motion(Generic[Number]):
         self.expiry = 0.0
 
     def push(self, vx: Number, vy: Number, angle: Number, w: Number) -> tuple[Number, Number, Number]:
-        """Take the bodies' true velocity; give the force (N, in the world) and the torque (N m) of one step.
+        """Return the force (N, in the world) and the torque (N m) of one step, from the bodies' true velocity.
 
         The step first moves a body by its present velocity, which is the chord of this arc; the force then turns
         that into the chord of the next one: heading theta + w dt + w' dt / 2, length v' sinc(w' dt / 2).
@@ -142,16 +142,16 @@ class Motion(Generic[Number]):
         self.ramp_w = self.w + clipped(w - self.w, self.turn_grip_dt)
 
     def _steered(self) -> Number:
-        """Turn a car's front wheels; give the turning speed that follows from their angle."""
+        """Turn a car's front wheels; return the turning speed that follows from their angle."""
         self.steer = self.steer + self.arithmetic.clipped(self.target_steer - self.steer, self.steer_dt)
         tangent = self.arithmetic.sin(self.steer) / self.arithmetic.cos(self.steer)
         return self.ramp_v * tangent / self.wheelbase
 
     def count(self, errors: tuple[Number, Number, Number] | None) -> None:
-        """Count the step's arc into the odometry; `errors` are the shares of v, s and w that it believes, None for 1.
+        """Add the step's arc to the odometry; `errors` are factors of v, s and w, None for 1.
 
-        Wheels that only roll ahead don't notice how a robot slips. The true way is counted too, if wheels are to
-        tell it.
+        Wheels that only roll ahead do not notice how a robot slips. The true way is added up too, if there are wheels
+        that measure it.
         """
         dt, v, s, turn, chord = self.dt, self.v, self.s, self.w * self.dt, self.chord
         self.driven = self.driven + self._way(v, s) * dt
@@ -169,15 +169,24 @@ class Motion(Generic[Number]):
         self.x, self.y, self.theta = self.x + x, self.y + y, self.theta + turn
 
     def _way(self, v: Number, s: Number) -> Number:
-        """Give the speed of the wheels' way over the floor; a robot that slips does not drive sideways."""
+        """Return the speed of the wheels' way over the floor; a robot that slips does not drive sideways."""
         if not self.sideways:
             return abs(v)
         aside = s * self.omni
         return self.arithmetic.root(v * v + aside * aside)
 
 
+def speeds(
+    arithmetic: Arithmetic[Number], dt: float, angle: Number, vx: Number, vy: Number, w: Number
+) -> tuple[Number, Number, Number]:
+    """Return the speeds along, about and across the heading of a body with these velocities, on the arc of a step."""
+    half = w * dt / 2
+    cos, sin, chord = arithmetic.cos(angle + half), arithmetic.sin(angle + half), arithmetic.sinc(half)
+    return (vx * cos + vy * sin) / chord, w, (vy * cos - vx * sin) / chord
+
+
 def motion_of_one(dt: float, start: Pose, limits: Mapping[str, float], wheeled: bool = False) -> Motion[float]:
-    """Make the motion of a robot that rests; odometry begins at its pose."""
+    """Make the motion of a robot at rest; odometry begins at its pose."""
     made = Motion[float](FLOATS, dt)
     for name in (*_LIMITS, *_TARGETS, *_STATE):
         setattr(made, name, limits.get(name, 0.0))
@@ -188,7 +197,7 @@ def motion_of_one(dt: float, start: Pose, limits: Mapping[str, float], wheeled: 
 
 
 def motion_of_many(ones: Sequence[Motion[float]]) -> Motion[Array]:
-    """Put the motions of several robots together, in their order."""
+    """Join the motions of several robots, in their order."""
     made = Motion[Array](ARRAYS, ones[0].dt)
     for name in (*_LIMITS, *_TARGETS, *_STATE):
         setattr(made, name, np.array([getattr(each, name) for each in ones]))
@@ -199,13 +208,13 @@ def motion_of_many(ones: Sequence[Motion[float]]) -> Motion[Array]:
 
 
 def fetch(one: Motion[float], many: Motion[Array], row: int) -> None:
-    """Bring a robot's own motion up to date with its row of many."""
+    """Copy the state of a robot's row of many into its own motion."""
     for name in _STATE:
         setattr(one, name, float(getattr(many, name)[row]))
 
 
 def store(one: Motion[float], many: Motion[Array], row: int) -> None:
-    """Take what a robot has been told into its row of many."""
+    """Copy the targets of a robot's own motion into its row of many."""
     for name in _TARGETS:
         getattr(many, name)[row] = getattr(one, name)
     many.expiry = min(many.expiry, one.deadline)

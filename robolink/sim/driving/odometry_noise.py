@@ -1,4 +1,4 @@
-"""What odometry gets wrong: errors of its speeds, drawn for many steps at once."""
+"""Noise of odometry: factors of its speeds, drawn for many steps at once."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from robolink.sim.arrays import Array
 from robolink.sim.description import OdomNoise
 
 BLOCK = 256
-"""Steps whose errors of odometry are drawn at once, which is cheaper than one by one."""
+"""Number of steps whose errors are drawn at once, which is cheaper than one by one."""
 
 
 class OdometryNoise:
-    """The errors of one robot's odometry: what its speeds v, s and w are multiplied by, anew at each step."""
+    """The errors of one robot's odometry: factors of its speeds v, s and w, drawn for each step."""
 
     def __init__(self, noise: OdomNoise, random: np.random.Generator) -> None:
         self._shares, self._random = np.array((noise.v, noise.v, noise.w)), random
@@ -20,7 +20,7 @@ class OdometryNoise:
         self._rows: list[tuple[float, float, float]] = []
 
     def block(self, step: int) -> Array:
-        """Give the errors of the `BLOCK` steps that `step` is among, as rows; steps only go on."""
+        """Return the errors of the block of `BLOCK` steps that holds `step`, as rows; steps only increase."""
         if step // BLOCK != self._number:
             self._number = step // BLOCK
             self._block = 1.0 + self._shares * self._random.standard_normal((BLOCK, 3))
@@ -28,7 +28,7 @@ class OdometryNoise:
         return self._block
 
     def at(self, step: int) -> tuple[float, float, float]:
-        """Give the errors of one step."""
+        """Return the errors of one step."""
         block = self.block(step)
         if not self._rows:
             self._rows = [(v, s, w) for v, s, w in block.tolist()]

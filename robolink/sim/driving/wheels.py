@@ -1,4 +1,4 @@
-"""Wheels as motors turn them: a robot's speeds from those of its wheels, and the other way round.
+"""Wheel kinematics: a robot's speeds from those of its wheels, and the other way round.
 
 A wheel at (x, y) that rolls towards theta goes over the floor at (v - w y) cos theta + (s + w x) sin theta, which
 is its own speed times its radius. A robot whose wheels contradict each other goes the way of the least squares.
@@ -16,7 +16,7 @@ from robolink.sim.description import Wheel
 from robolink.sim.readings import Velocity
 
 _DIGITS = 15
-"""Decimals of the pseudo-inverse: what lies beyond differs between versions of the linear algebra below numpy."""
+"""Decimals kept of the pseudo-inverse: later ones differ between versions of the linear algebra below numpy."""
 
 
 class Wheels:
@@ -30,7 +30,7 @@ class Wheels:
         self._told = dict.fromkeys(self.names, 0.0)
 
     def turn(self, speeds: Mapping[str, float]) -> Velocity:
-        """Take what motors are told, in rad/s; give the robot's speeds that all of them together ask for.
+        """Set the speeds of motors, in rad/s; return the robot's speeds that all of them together ask for.
 
         Raises `NotFoundError` when there is no such motor, and changes none then.
         """
@@ -43,17 +43,17 @@ class Wheels:
         return Velocity(v, w, s)
 
     def forget(self) -> None:
-        """Let all motors be told nothing: a velocity command has come."""
+        """Set all motors to 0: a velocity command has come."""
         self._told = dict.fromkeys(self.names, 0.0)
 
     def speeds(self, robot: Velocity) -> list[float]:
-        """Give what each wheel turns by, in rad/s, when the robot goes so; or in rad, of metres and radians."""
+        """Return the speed of each wheel in rad/s from a robot's speeds; or its angle in rad from its way."""
         v, w, s = robot
         return [row[0] * v + row[1] * s + row[2] * w for row in self._rows]
 
 
 def _row(wheel: Wheel) -> tuple[float, float, float]:
-    """Give what a wheel turns by for each of v, s and w."""
+    """Return the speed of a wheel for each of v, s and w."""
     at, cos, sin = wheel.at, math.cos(wheel.at.theta), math.sin(wheel.at.theta)
     return cos / wheel.radius, sin / wheel.radius, (at.x * sin - at.y * cos) / wheel.radius
 

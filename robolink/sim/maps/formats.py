@@ -1,15 +1,15 @@
-"""Reads the images that ROS keeps maps in, PGM and PNG; no library of images is needed for it."""
+"""Reader of images of maps, PGM and PNG; needs no image library."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from robolink.plainfile import read_plain
 from robolink.sim.maps import pgm, png
 from robolink.sim.maps.image import MOST_BYTES, Image, ImageError
+from robolink.system.plainfile import read_plain
 
 LARGEST_FILE = MOST_BYTES + 10_000_000
-"""Bytes that an image may have: its pixels where they cannot be packed, and what is said around them."""
+"""Largest file of an image in bytes: uncompressed pixels, and headers around them."""
 
 
 def read_image(path: Path) -> Image:

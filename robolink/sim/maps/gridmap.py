@@ -1,6 +1,6 @@
-"""Reads maps of ROS's map_server, a YAML file with an image, and finds the walls in them.
+"""Occupancy grid maps of ROS's map_server: reads the YAML file with its image, and finds the walls.
 
-What pixels mean is nav2_map_server's rule: a shade becomes an occupancy of 0 to 1 (black is 1, or white with
+Pixels have the meaning of nav2_map_server: a shade becomes an occupancy of 0 to 1 (black is 1, or white with
 `negate`); at `occupied_thresh` and above it is occupied, at `free_thresh` and below free, between them unknown. With
 the mode `scale` those between have a number, with `raw` the shade itself is the percentage.
 """
@@ -15,21 +15,23 @@ import numpy as np
 import numpy.typing as npt
 from msgspec import Meta, Struct
 
-from robolink import yamlfile
-from robolink.exceptions import nearest, shown
-from robolink.sim.description import Angle, Coordinate, MapWalls, Pose, Share
+from robolink.documents import yamlfile
+from robolink.exceptions import nearest
+from robolink.sim.description import MapWalls
 from robolink.sim.maps.formats import read_image
 from robolink.sim.maps.image import Image, ImageError
+from robolink.sim.quantities import Angle, Coordinate, Pose, Share
+from robolink.system.terminal import shown
 
 MOST_PIECES = 200_000
-"""Pieces of wall that a map may have: a building has about ten thousand, and noise has millions."""
+"""Most pieces of wall of a map: a building has about ten thousand, and noise has millions."""
 
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 """Values of cells, as in nav_msgs/OccupancyGrid."""
 
 
 class MapFile(Struct, frozen=True, forbid_unknown_fields=True):
-    """What a map's YAML file says: metres a pixel, and the pose of the image's lower left corner."""
+    """A map's YAML file: `resolution` in metres per pixel, `origin` the pose of the image's lower left corner."""
 
     image: str
     resolution: Annotated[float, Meta(ge=0.0001, le=1000.0)]
@@ -41,7 +43,7 @@ class MapFile(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class GridMap(NamedTuple):
-    """A map: `cells` by row from the bottom and column from the left, 0 free to 100 occupied, -1 unknown."""
+    """An occupancy grid: `cells` by row from the bottom, column from the left; 0 free to 100 occupied, -1 unknown."""
 
     cells: npt.NDArray[np.int8]
     occupied: npt.NDArray[np.bool_]
@@ -49,7 +51,7 @@ class GridMap(NamedTuple):
     origin: Pose
 
     def is_occupied(self, x: float, y: float) -> bool:
-        """Say whether a point of the world, in metres, lies in an occupied cell."""
+        """True if a point of the world, in metres, lies in an occupied cell."""
         dx, dy, cos, sin = (
             x - self.origin.x,
             y - self.origin.y,
@@ -74,7 +76,7 @@ class GridMap(NamedTuple):
 
 
 def load_map(path: Path) -> GridMap:
-    """Read a map's YAML file and its image. Raises `DocumentError` with file:line:column for what is wrong."""
+    """Read a map's YAML file and its image. Raises `DocumentError` with file:line:column for a mistake."""
     document = yamlfile.read(path, MapFile)
     file = document.value
     if file.free_thresh >= file.occupied_thresh:
@@ -94,7 +96,7 @@ def load_map(path: Path) -> GridMap:
 
 
 def map_walls(grid: GridMap) -> MapWalls:
-    """Give a map's walls as a part of a world. Raises ValueError if they are too many."""
+    """Return a map's walls as a part of a world. Raises ValueError if they are too many."""
     segments = grid.walls()
     if len(segments) > MOST_PIECES:
         raise ValueError(_too_many(len(segments)))
@@ -102,7 +104,7 @@ def map_walls(grid: GridMap) -> MapWalls:
 
 
 def occupancy(image: Image, file: MapFile) -> npt.NDArray[np.int8]:
-    """Give what the pixels of an image mean, the first row at the bottom."""
+    """Return the occupancy of an image's pixels, the first row at the bottom."""
     shade = np.arange(256)
     if file.mode == "raw":
         return _looked_up(image, np.where(shade <= OCCUPIED, shade, UNKNOWN))[::-1]
@@ -124,7 +126,7 @@ def _looked_up(image: Image, meaning: npt.NDArray[Any]) -> npt.NDArray[np.int8]:
 
 
 def cell_edges(occupied: npt.NDArray[np.bool_]) -> npt.NDArray[np.float64]:
-    """Give the edges between occupied cells and others as rows x1, y1, x2, y2 in cells, as long as they go straight."""
+    """Return the edges between occupied cells and others as rows x1, y1, x2, y2 in cells, joined where straight."""
     padded = np.pad(occupied, 1)
     upright = _runs((padded[1:-1, 1:] != padded[1:-1, :-1]).T)
     level = _runs(padded[1:, 1:-1] != padded[:-1, 1:-1])

@@ -1,4 +1,4 @@
-"""What an image is, whatever file it was in: shades of gray as an array, and what makes one too large."""
+"""Gray images as arrays, whatever file they were in, and limits of their size."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from robolink.exceptions import RobolinkError
 Shades: TypeAlias = npt.NDArray[np.uint8]
 
 MOST_PIXELS = 25_000_000
-"""What an image may have: 5,000 x 5,000, a quarter of a kilometre each way at 5 cm."""
+"""Most pixels of an image: 5,000 x 5,000, a quarter of a kilometre each way at 5 cm."""
 MOST_BYTES = 50_000_000
-"""What its pixels may take as they are stored, unpacked: 16 bits of gray for all of them, colours for fewer."""
+"""Most bytes of an image's pixels as stored, uncompressed: 16 bits of gray for all of them, colours for fewer."""
 _BLOCK = 1_000_000
-"""Pixels that are converted at once, since numpy takes eight bytes for each meanwhile."""
+"""Number of pixels that are converted at once, since numpy takes eight bytes for each meanwhile."""
 
 
 class ImageError(RobolinkError, ValueError):
-    """A file that is no image, or none that can be read here; the text says what is wrong with it."""
+    """A file that is no image, or none that can be read here; the text says why."""
 
 
 class Image(NamedTuple):
-    """An image's shades, 0 black to 255 white, first row at the top; and where one can see through it, if anywhere."""
+    """An image: `shades` 0 black to 255 white, first row at the top; `transparent` pixels, None if there are none."""
 
     shades: Shades
     transparent: npt.NDArray[np.bool_] | None = None
 
 
 def check_size(width: int, height: int, bits: int = 8) -> None:
-    """Refuse an image without pixels, or with too many (of so many bits each), before memory is taken for them."""
+    """Raise `ImageError` for an image without pixels or with too many (of `bits` each), before memory is allocated."""
     if not 0 < width * height <= MOST_PIXELS:
         raise ImageError(f"{width} x {height} pixels: expected 1 to {MOST_PIXELS // 10**6} million")
     if width * height * bits > 8 * MOST_BYTES:
@@ -51,7 +51,7 @@ def in_blocks(convert: Callable[[npt.NDArray[Any]], Shades], samples: npt.NDArra
 
 
 def eight_bits(values: npt.NDArray[Any], largest: int) -> Shades:
-    """Bring values of 0 to `largest` to 0 to 255."""
+    """Scale values of 0 to `largest` to 0 to 255."""
     if largest == 255:
         return values.astype(np.uint8, copy=False)
     shades: Shades = np.round(np.arange(largest + 1) * (255.0 / largest)).astype(np.uint8)[values]

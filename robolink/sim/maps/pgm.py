@@ -1,4 +1,4 @@
-"""Reads PGM images as shades: plain (P2) and raw (P5), of any depth. The format is netpbm's pgm(5)."""
+"""Reader of PGM images: plain (P2) and raw (P5), of any depth. The format is netpbm's pgm(5)."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from robolink.sim.maps.image import Image, ImageError, check_size, eight_bits, i
 
 BEGINNINGS = (b"P2", b"P5")
 LONGEST_PLAIN = 20_000_000
-"""Bytes of an image whose numbers are text, which takes much more memory to read."""
+"""Most bytes of an image whose numbers are text, which takes much more memory to read."""
 
 LONGEST_HEADER = 100_000
-"""Bytes of a header with its comments, each of which takes a hundred times as much memory to read."""
+"""Most bytes of a header with its comments, each of which takes a hundred times as much memory to read."""
 
 _PGM = re.compile(rb"P([25])" + 3 * rb"(?:\s|#[^\n]*\n)+(\d{1,9})" + rb"(?:[ \t]*#[^\n]*)?\s")
 

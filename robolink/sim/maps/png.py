@@ -1,4 +1,4 @@
-"""Reads PNG images as shades: every colour type and depth, all five filters, no interlacing.
+"""Reader of PNG images: every colour type and depth, all five filters, no interlacing.
 
 The format is W3C's Portable Network Graphics (third edition).
 """
@@ -17,10 +17,10 @@ from robolink.sim.maps.image import Image, ImageError, Shades, check_size, eight
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 LUMA = (77, 150, 29)
-"""How bright red, green and blue are, of 256 (ITU-R BT.601: 0.299, 0.587, 0.114), as map_server's library has it."""
+"""Weights of red, green and blue in luma, of 256 (ITU-R BT.601: 0.299, 0.587, 0.114), as map_server's library."""
 
 MOST_CHUNKS = 100_000
-"""Chunks of a file: 50 MB have 6,000 as they are usually written."""
+"""Most chunks of a file: 50 MB usually have 6,000."""
 
 _GRAY, _RGB, _PALETTE, _GRAY_ALPHA, _RGBA = 0, 2, 3, 4, 6
 _CHANNELS = {_GRAY: 1, _RGB: 3, _PALETTE: 1, _GRAY_ALPHA: 2, _RGBA: 4}
@@ -41,7 +41,7 @@ class _Header(NamedTuple):
 
     @property
     def line(self) -> int:
-        """Bytes of a line of pixels."""
+        """Number of bytes of a line of pixels."""
         return (self.width * _CHANNELS[self.colour] * self.depth + 7) // 8
 
 
@@ -120,7 +120,7 @@ def _lines(header: _Header, packed: Sequence[memoryview]) -> npt.NDArray[np.uint
 
 
 def unfiltered(kinds: npt.NDArray[np.uint8], lines: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
-    """Add to each byte of each pixel (line, column, byte) what the line's filter had foretold from its neighbours.
+    """Undo the filters: add to each byte (line, column, byte) the prediction of its line's filter.
 
     A pixel needs those at its left, above and in the corner between. So each step does one pixel of each line, and
     each line is one column behind the line above it.
@@ -143,7 +143,7 @@ def unfiltered(kinds: npt.NDArray[np.uint8], lines: npt.NDArray[np.uint8]) -> np
 
 
 def _foretold(kinds: npt.NDArray[Any], left: npt.NDArray[Any], up: npt.NDArray[Any], corner: npt.NDArray[Any]) -> Any:
-    """Give what filters 0 to 4 foretell: nothing, the left, what is above, their mean, and Paeth's choice of three."""
+    """Return the predictions of filters 0 to 4: none, left, up, their average, and Paeth's choice of three."""
     to_left, to_up, to_corner = abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)
     nearer = np.where(to_up <= to_corner, up, corner)
     paeth = np.where((to_left <= to_up) & (to_left <= to_corner), left, nearer)
@@ -151,7 +151,7 @@ def _foretold(kinds: npt.NDArray[Any], left: npt.NDArray[Any], up: npt.NDArray[A
 
 
 def _samples(header: _Header, lines: npt.NDArray[np.uint8]) -> npt.NDArray[Any]:
-    """Part the lines' bytes into the samples of each pixel (line, column, channel)."""
+    """Split the lines' bytes into the samples of each pixel (line, column, channel)."""
     shape = (header.height, header.width, _CHANNELS[header.colour])
     if header.depth == 16:
         return np.ascontiguousarray(lines).view(">u2").reshape(shape)
@@ -175,7 +175,7 @@ def _from_palette(index: npt.NDArray[Any], palette: memoryview, clear: npt.NDArr
 
 
 def _shades(colours: Shades) -> Shades:
-    """Make shades of gray of colours, whose channels come last."""
+    """Convert colours, whose channels come last, to shades of gray."""
     if colours.shape[-1] == 1:
         return colours[..., 0]
     red, green, blue = (colours[..., channel].astype(np.uint16) * weight for channel, weight in enumerate(LUMA))

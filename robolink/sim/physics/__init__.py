@@ -1,1 +1,1 @@
-"""What knows pymunk: bodies out of descriptions, what they run into, and where there is room for them."""
+"""Physics with pymunk: bodies from descriptions, contacts, and free places."""

@@ -1,4 +1,4 @@
-"""Physical bodies out of descriptions: the one place that makes pymunk shapes."""
+"""Physical bodies from descriptions: the only place that makes pymunk shapes."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from collections.abc import Sequence
 
 import pymunk
 
-from robolink.sim.description import GRAVITY, Obstacle, Point, Pose, Shape, Wall, signed_area
+from robolink.sim.description import GRAVITY, Obstacle, Shape, Wall, signed_area
 from robolink.sim.physics.convex import convex_parts
+from robolink.sim.quantities import Point, Pose
 
 FRICTION = 0.2
-"""Between any two things that touch; low, as of plastic on painted wood."""
+"""Coefficient of friction between any two things that touch; low, as of plastic on painted wood."""
 
 FLOOR_FRICTION = 0.3
-"""Between the floor and what can be pushed over it."""
+"""Coefficient of friction between the floor and an obstacle that can be pushed."""
 
 
 def body_at(pose: Pose, mass: float | None, shape: Shape) -> pymunk.Body:
@@ -42,7 +43,7 @@ def fixed_body() -> pymunk.Body:
 
 
 def placed(body: pymunk.Body, pose: Pose) -> pymunk.Body:
-    """Put a body's origin at a pose; the angle first, for it turns a body about its centre of gravity."""
+    """Put a body's origin at a pose; the angle first, since it turns a body about its centre of gravity."""
     body.angle = pose.theta
     body.position = (pose.x, pose.y)
     return body
@@ -61,7 +62,7 @@ def solids(shape: Shape, body: pymunk.Body) -> list[pymunk.Shape]:
 
 
 def centroid(corners: Sequence[Point]) -> Point:
-    """Give the middle of a polygon's area."""
+    """Return the centroid of a polygon."""
     x = y = 0.0
     for (x1, y1), (x2, y2) in zip(corners, [*corners[1:], corners[0]], strict=True):
         cross = x1 * y2 - x2 * y1

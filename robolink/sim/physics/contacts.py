@@ -1,4 +1,4 @@
-"""What robots run into: counted as it begins and ends, and measured while it lasts."""
+"""Contacts of robots: counted as they begin and end, and measured while they last."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import pymunk
 import pymunk.batch
 from pymunk.batch import ArbiterFields
 
-from robolink.sim.description import Bumper
-from robolink.sim.physics.squeeze import MOVER, Contact, Squeeze
+from robolink.sim.physics.mover_contacts import MOVER, Contact, MoverContacts
+from robolink.sim.sensors import Bumper
 
 ROBOT = 1
-"""Chipmunk's type of collision of robots; walls, crates and fixed things have none."""
+"""Chipmunk's collision type of robots; walls, crates and fixed things have none."""
 
 _WHO = ArbiterFields.BODY_A_ID | ArbiterFields.BODY_B_ID | ArbiterFields.CONTACT_COUNT
 _POINTS = ArbiterFields.POINT_A_1 | ArbiterFields.DISTANCE_1 | ArbiterFields.POINT_A_2 | ArbiterFields.DISTANCE_2
@@ -23,21 +23,21 @@ _FIELDS = _WHO | ArbiterFields.NORMAL | _POINTS
 
 
 class Sector:
-    """Part of a robot's surface: `touched` since somebody last put that to False."""
+    """Sector of a robot's surface: `touched` since it was last set to False."""
 
     def __init__(self, bumper: Bumper) -> None:
         self._middle, self._half = math.radians(bumper.right + bumper.fov / 2), math.radians(bumper.fov) / 2
         self.touched = False
 
     def feel(self, direction: float) -> None:
-        """Take in a touch in a direction, in radians from ahead."""
+        """Note a touch in a direction, in radians from ahead."""
         if abs(math.remainder(direction - self._middle, math.tau)) <= self._half + 1e-9:
             self.touched = True
 
 
 @dataclass
 class Touches:
-    """What one robot has run into (`contacts`), touches now, and how deep it has ever been inside, in metres."""
+    """Contacts of one robot: begun so far (`contacts`), now (`touching`), and the deepest `penetration` in metres."""
 
     body: pymunk.Body
     contacts: int = 0
@@ -46,7 +46,7 @@ class Touches:
     sectors: list[Sector] = field(default_factory=list)
 
     def feel(self, contact: Contact) -> None:
-        """Take in where the robot is touched after a step."""
+        """Note where the robot is touched after a step."""
         (_, _, count), (_, _, *points) = contact
         (x, y), theta = self.body.position, self.body.angle
         for first in range(0, 3 * count, 3):
@@ -62,17 +62,17 @@ class Contacts:
         self._space = space
         self._touches: dict[pymunk.Shape, Touches] = {}
         self._by_body: dict[int, Touches] = {}
-        self._squeeze = Squeeze(space, dt)
+        self._movers = MoverContacts(space, dt)
         self._buffer = pymunk.batch.Buffer()
         self._pairs = set[tuple[pymunk.Shape, pymunk.Shape]]()
         self.begun = 0
-        """How many contacts of robots have begun since the start."""
+        """Number of contacts of robots that have begun since the start."""
         space.on_collision(ROBOT, None, begin=self._begin, separate=self._separate)
 
     def add(self, touches: Touches, shapes: Iterable[pymunk.Shape]) -> None:
-        """Count what a robot's shapes run into."""
+        """Count the contacts of a robot's shapes."""
         self._by_body[touches.body.id] = touches
-        self._squeeze.free.add(touches.body.id)
+        self._movers.free.add(touches.body.id)
         for shape in shapes:
             shape.collision_type = ROBOT
             self._touches[shape] = touches
@@ -80,22 +80,22 @@ class Contacts:
     def remove(self, touches: Touches, shapes: Iterable[pymunk.Shape]) -> None:
         """Forget a robot that has left the space."""
         del self._by_body[touches.body.id]
-        self._squeeze.free.discard(touches.body.id)
+        self._movers.free.discard(touches.body.id)
         for shape in shapes:
             del self._touches[shape]
 
     def add_pushable(self, body: pymunk.Body) -> None:
-        """Take note of an obstacle that can be pushed."""
-        self._squeeze.free.add(body.id)
+        """Add an obstacle that can be pushed."""
+        self._movers.free.add(body.id)
 
     def add_mover(self, shapes: Iterable[pymunk.Shape]) -> None:
-        """Take note of an obstacle that moves by itself."""
+        """Add an obstacle that moves by itself."""
         for shape in shapes:
             shape.collision_type = MOVER
 
     def measure(self) -> None:
-        """Feel who is touched where after a step; costs nothing while nobody is."""
-        if not (self._pairs or self._squeeze.active):
+        """Measure all contacts after a step; costs nothing while there are none."""
+        if not (self._pairs or self._movers.active):
             return
         buffer = self._buffer
         buffer.clear()
@@ -105,7 +105,7 @@ class Contacts:
         contacts = [contact for contact in zip(bodies, numbers, strict=True) if contact[0][2]]
         for contact in contacts:
             self._feel(contact)
-        self._squeeze.settle(contacts)
+        self._movers.settle(contacts)
 
     def _feel(self, contact: Contact) -> None:
         (one, other, count), (_, _, _, _, first, _, _, second) = contact
@@ -119,7 +119,7 @@ class Contacts:
                     touches.feel(contact)
 
     def _begin(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
-        """Count a contact; when two robots meet, each is the first shape of a call of its own."""
+        """Count a contact; if two robots meet, each is the first shape of a call of its own."""
         one, other = arbiter.shapes
         touches = self._touches[one]
         touches.contacts += 1
@@ -128,7 +128,7 @@ class Contacts:
         self._pairs.add((one, other))
 
     def _separate(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
-        """End a contact; when a shape is removed, Chipmunk names it first in both calls."""
+        """End a contact; if a shape is removed, Chipmunk names it first in both calls."""
         one, other = arbiter.shapes
         for pair in ((one, other), (other, one)):
             if pair in self._pairs:

@@ -1,4 +1,4 @@
-"""Cuts polygons into convex parts, which is what a physics engine collides.
+"""Convex decomposition of polygons by ear clipping: a physics engine collides only convex parts.
 
 Chipmunk's own `convex_decomposition` ends the process for some polygons whose corners lie almost in a line.
 """
@@ -8,12 +8,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TypeAlias
 
-from robolink.sim.description import Point, signed_area, turn
+from robolink.sim.description import signed_area, turn
+from robolink.sim.quantities import Point
 
 Ring: TypeAlias = "list[int]"
 
 _NOTHING = 1e-12
-"""Square metres of a part that is left out."""
+"""Area of a part below which it is left out, in m²."""
 
 
 def convex_parts(corners: Sequence[Point]) -> list[list[Point]]:
@@ -61,7 +62,7 @@ def _is_ear(points: Sequence[Point], ring: Ring, at: int) -> bool:
 
 
 def _joined(points: Sequence[Point], rings: list[Ring]) -> list[Ring]:
-    """Join rings across the edges that they share, where what comes of it is convex (Hertel and Mehlhorn's way)."""
+    """Join rings across shared edges if the result is convex (the algorithm of Hertel and Mehlhorn)."""
     owners = {edge: ring for ring in rings for edge in _edges(ring)}
     for p, q in list(owners):
         left, right = owners.get((p, q)), owners.get((q, p))

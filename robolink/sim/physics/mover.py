@@ -1,4 +1,4 @@
-"""Obstacles that go along a path by themselves: where they are is a function of time alone."""
+"""Obstacles that move along a path by themselves: their position is a function of time alone."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from itertools import accumulate
 
 import pymunk
 
-from robolink.sim.description import Obstacle, Point
+from robolink.sim.description import Obstacle
 from robolink.sim.physics.bodies import moving_body
+from robolink.sim.quantities import Point
 
 
 class Mover:
-    """One such obstacle; its heading stays as it is."""
+    """An obstacle that moves along its path; its heading stays as it is."""
 
     def __init__(self, obstacle: Obstacle, dt: float) -> None:
         self.body: pymunk.Body = moving_body(obstacle)
@@ -24,7 +25,7 @@ class Mover:
         self._starts = [0.0, *accumulate(ways)]
 
     def place(self, step: int) -> Point:
-        """Give where it is at a step: on the way to the path's end, on the way back, or round and round."""
+        """Return its position at a step: on the way to the path's end, on the way back, or round and round."""
         whole = self._starts[-1]
         if whole == 0.0:
             return self._points[0]
@@ -35,6 +36,6 @@ class Mover:
         return x1 + share * (x2 - x1), y1 + share * (y2 - y1)
 
     def aim(self, step: int) -> None:
-        """Set off to where it shall be at `step`, the next one."""
+        """Set the velocity that leads to its position at `step`, the next one."""
         (x, y), (now_x, now_y) = self.place(step), self.body.position
         self.body.velocity = ((x - now_x) / self._dt, (y - now_y) / self._dt)

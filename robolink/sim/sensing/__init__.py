@@ -1,1 +1,1 @@
-"""What robots sense: who is due when, what there is to be seen, and how each kind of sensor measures it."""
+"""Sensing: the devices that measure, and the scene that they see."""

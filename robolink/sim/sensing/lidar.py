@@ -1,4 +1,4 @@
-"""Planar laser scanners, exact and without rays: each shape covers one interval of beams.
+"""Planar laser scanners, exact and without ray casting: each shape covers one interval of beams.
 
 Seen from the sensor a segment spans an interval of beam indices. All intervals are expanded once into (beam,
 shape) pairs; the inverse range of a beam with direction u to a line is ``u . g``, linear in u, where ``g`` is the
@@ -14,35 +14,45 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from robolink.sim.arrays import Array, Indices, Place
-from robolink.sim.description import Lidar, Pose
+from robolink.sim.quantities import Pose
 from robolink.sim.sensing.surroundings import NOBODY, Circles, Surroundings
 from robolink.sim.sensing.tiles import NORMAL, REFLECTANCE, X, Y
 from robolink.sim.sensing.trigonometry import cos_and_sin
+from robolink.sim.sensors import Lidar
 
 Numbers: TypeAlias = "float | Array"
-"""One for all, or one for each."""
+"""One number for all sensors, or one for each."""
 
 _EDGE = 1e-9
-"""How far, in beams, an interval reaches beyond its ends, so that rounding leaves no gap at a corner."""
+"""Margin of an interval beyond its ends, in beams, so that rounding leaves no gap at a corner."""
 
 _GRAZING = 0.01
-"""A line nearer than this (in metres) may be seen so edge-on that its range beside its ends would mean nothing."""
+"""Distance in metres below which a line may be seen so edge-on that its range beside its ends would mean nothing."""
 
 _EDGE_ON = 1e-9
-"""A line nearer than this (in metres) has no range of its own: of a segment so seen the nearest point counts."""
+"""Distance in metres below which a line has no range of its own: the nearest point of the segment counts."""
 
 _TOUCHING = 1e-12
-"""The range in metres of what touches the sensor."""
+"""Range in metres of a shape that touches the sensor."""
 
 _AT_ONCE = 20_000
-"""Beams that are worked on together, so that arrays stay in the processor's cache."""
+"""Number of beams that are computed together, so that arrays stay in the processor's cache."""
+
+_MANY = 64
+"""Number of circles from which on it pays to leave out hidden ones."""
+
+_BLOCK = 8
+"""Number of beams that are asked together if they end before a circle."""
+
+_NEAR = 1e-6
+"""Share of a range, and distance in metres, within which a circle is not taken to be hidden."""
 
 _KEPT = 4 << 20
-"""Bytes; see `_keep_memory`."""
+"""Size of the block that `_keep_memory` frees, in bytes."""
 
 
 class Beams:
-    """The fixed directions of a scanner's beams, in its own frame, and how far it may ever read."""
+    """The fixed directions of a scanner's beams, in its own frame, and its reach in metres."""
 
     def __init__(self, lidar: Lidar) -> None:
         self.full = lidar.fov == 360.0
@@ -57,7 +67,7 @@ class Beams:
         self._directions = np.resize(np.column_stack((self.cos, self.sin)), (self.stride, 2))
 
     def directions(self, sensors: int) -> Array:
-        """Give the directions of all beams of so many sensors, `stride` of each, as rows of cosine and sine."""
+        """Return the directions of all beams of a number of sensors, `stride` of each, as rows of cosine and sine."""
         if len(self._directions) < sensors * self.stride:
             _keep_memory()
             self._directions = np.resize(self._directions, (sensors * self.stride, 2))
@@ -65,27 +75,27 @@ class Beams:
 
 
 def _keep_memory() -> None:
-    """Have the memory of a batch's arrays kept for the next batch, where it is glibc that gives it.
+    """Make glibc's malloc keep the memory of a batch's arrays for the next batch.
 
-    That gives back to the system what is free beyond twice the largest block that was ever freed; else the pages of
-    each batch would be asked for anew, which takes as long as a third of its arithmetic.
+    It gives back to the system what is free beyond twice the largest block that was ever freed; else the pages of
+    each batch would be requested again, which takes as long as a third of its arithmetic.
     """
     np.empty(_KEPT, dtype=np.uint8)
 
 
 def distances(beams: Beams, sensor: Pose, surroundings: Surroundings, own: int = NOBODY) -> Array:
-    """Give what each beam of a sensor at a pose (in the world) hits first: metres, inf for nothing within reach.
+    """Return the range of each beam of a sensor at a pose (in the world): metres, inf for nothing within reach.
 
-    `own` is the number of the moving shape that the sensor is mounted on, which it doesn't see.
+    `own` is the number of the moving shape that the sensor is mounted on, which it does not see.
     """
     found: Array = measured(beams, [(sensor.x, sensor.y, sensor.theta)], [own], surroundings)[0][0]
     return found
 
 
 def distances_batch(beams: Beams, poses: Array, surroundings: Surroundings, own: Indices | None = None) -> Array:
-    """Measure with many sensors of one kind at once: an array (sensors, beams), each row as `distances` gives it.
+    """Return the ranges of many sensors of one kind as an array (sensors, beams), each row as from `distances`.
 
-    `poses` are rows x, y, theta in the world; `own` says for each the number of the moving shape that it is mounted
+    `poses` are rows x, y, theta in the world; `own` is for each the number of the moving shape that it is mounted
     on (`Scene.number`). How many are measured together changes no bit of a result.
     """
     return measured(beams, *_listed(poses, own), surroundings)[0]
@@ -94,10 +104,10 @@ def distances_batch(beams: Beams, poses: Array, surroundings: Surroundings, own:
 def returns_batch(
     beams: Beams, poses: Array, surroundings: Surroundings, own: Indices | None = None
 ) -> tuple[Array, Array]:
-    """Give what `distances_batch` gives, and as an array of the same shape the share of light that comes back.
+    """Return the ranges as `distances_batch`, and as an array of the same shape the light that comes back.
 
-    That is the reflectance of what a beam hits times the cosine of the angle at which it does; 0 where there is
-    nothing.
+    That is a share: the reflectance of the shape that a beam hits times the cosine of the angle at which it does;
+    0 where there is nothing.
     """
     return measured(beams, *_listed(poses, own), surroundings, lit=True)
 
@@ -105,32 +115,41 @@ def returns_batch(
 def measured(
     beams: Beams, places: Sequence[Place], own: Sequence[int], surroundings: Surroundings, lit: bool = False
 ) -> tuple[Array, Array]:
-    """Give ranges and light of sensors (of light no columns unless `lit`), working on some of them at a time.
+    """Return ranges and light of sensors (of light no columns unless `lit`), computed for some of them at a time.
 
     `places` and `own` are those of `distances_batch`, as lists.
     """
     if len(places) == 1:
-        return _nearest(beams, 1, _look(beams, places, own, surroundings, lit), lit)
+        return _nearest(beams, 1, *_look(beams, places, own, surroundings, lit), lit)
     ranges, light = np.empty((len(places), beams.count)), np.empty((len(places), beams.count if lit else 0))
+    order = _by_neighbourhood(places, beams.reach)
+    places, own = [places[row] for row in order], [own[row] for row in order]
     first = 0
     while first < len(places):
         segments = surroundings.segments_near(*places[first][:2], beams.reach, own[first]).shape[1]
-        part = slice(first, min(first + max(1, _AT_ONCE // max(beams.stride, 3 * segments)), len(places)))
-        looked = _look(beams, places[part], own[part], surroundings, lit)
-        ranges[part], light[part] = _nearest(beams, part.stop - first, looked, lit)
-        first = part.stop
+        last = min(first + max(1, _AT_ONCE // max(beams.stride, 3 * segments)), len(places))
+        looked = _look(beams, places[first:last], own[first:last], surroundings, lit)
+        ranges[order[first:last]], light[order[first:last]] = _nearest(beams, last - first, *looked, lit)
+        first = last
     return ranges, light
 
 
+def _by_neighbourhood(places: Sequence[Place], reach: float) -> Indices:
+    """Return an order in which neighbours follow each other, along strips: so they have few circles near them."""
+    x, y, _ = np.array(places).reshape(-1, 3).T
+    order: Indices = np.lexsort((y, np.floor(x / reach)))
+    return order
+
+
 def limited(ranges: Array, range_min: float, range_max: float) -> Array:
-    """Apply a scanner's limits to ranges, in place, as REP 117 has it: too far is +inf, too near -inf."""
+    """Apply a scanner's limits to ranges, in place, as in REP 117: too far is +inf, too near -inf."""
     np.putmask(ranges, ranges > range_max, np.inf)
     np.putmask(ranges, ranges < range_min, -np.inf)
     return ranges
 
 
 class _Eyes(NamedTuple):
-    """A number of sensors: for each the index of its first beam among all, its place, its heading, its first direction.
+    """Sensors as arrays: for each the index of its first beam among all, its position, heading and first direction.
 
     Each is an array, with an entry for each sensor or for each shape that one looks at. Of one sensor it is a plain
     number, which is quicker and gives the same. The direction of the first beam is in turns, from the x axis.
@@ -145,7 +164,7 @@ class _Eyes(NamedTuple):
     turn: Numbers
 
     def of(self, rows: Indices) -> _Eyes:
-        """Give for each shape the sensor that looks at it."""
+        """Return for each shape the sensor that sees it."""
         if self.number == 1:
             return self
         facts: list[Array] = [np.take(each, rows) for each in self[2:]]
@@ -153,18 +172,18 @@ class _Eyes(NamedTuple):
 
 
 class _Spans(NamedTuple):
-    """Intervals of beams: whose they are (None: one of each, in order), how many beams each has, and which."""
+    """Intervals of beams: the shape of each (None: one per shape, in order), its number of beams, and which."""
 
     who: Indices | None
     counts: Indices
     beams: Indices
 
     def spread(self, values: Array) -> Array:
-        """Repeat what each shape has for each of its beams."""
+        """Repeat the value of each shape for each of its beams."""
         return (values if self.who is None else values.take(self.who)).repeat(self.counts)
 
     def along(self, directions: Array, vectors: Array) -> Array:
-        """Give the scalar product of each beam's direction and its shape's vector; x and y are rows of `vectors`."""
+        """Return the scalar product of each beam's direction and its shape's vector; x and y are rows of `vectors`."""
         if self.who is not None:
             vectors = vectors.take(self.who, axis=1)
         products = vectors.T.repeat(self.counts, axis=0)
@@ -174,7 +193,7 @@ class _Spans(NamedTuple):
 
 
 class _Hits(NamedTuple):
-    """What beams meet, nearest or not: which beam, its inverse range, the share of light that comes back if wanted."""
+    """Hits of beams, nearest or not: the beam, its inverse range, the share of light that comes back if wanted."""
 
     beams: Indices
     inverse: Array
@@ -187,9 +206,9 @@ def _listed(poses: Array, own: Indices | None) -> tuple[list[Place], list[int]]:
 
 def _look(
     beams: Beams, places: Sequence[Place], own: Sequence[int], surroundings: Surroundings, lit: bool
-) -> list[_Hits]:
-    """Give all that the beams of some sensors meet."""
-    found, eyes = [], _eyes(beams, places)
+) -> tuple[Array, list[_Hits]]:
+    """Return the inverse range of each beam of some sensors, and all hits that it may come from."""
+    found, eyes, inverse = [], _eyes(beams, places), np.zeros(len(places) * beams.stride)
     near = [
         surroundings.segments_near(x, y, beams.reach, number) for (x, y, _), number in zip(places, own, strict=True)
     ]
@@ -197,18 +216,20 @@ def _look(
     if columns.size:
         seeing = eyes if len(near) == 1 else eyes.of(np.arange(len(near)).repeat([each.shape[1] for each in near]))
         found.append(_see_segments(beams, seeing, columns, lit))
+        np.maximum.at(inverse, found[0].beams, found[0].inverse)
     if surroundings.has_circles_but(own):
         sensors, which = surroundings.circles_near(places, beams.reach, own)
+        if len(which) >= _MANY:
+            seen = _unhidden(beams, eyes, sensors, surroundings.circles.taken(which), inverse)
+            sensors, which = sensors.take(seen), which.take(seen)
         if len(which):
             found.append(_see_circles(beams, eyes.of(sensors), surroundings.circles.taken(which), lit))
-    return found
+            np.maximum.at(inverse, found[-1].beams, found[-1].inverse)
+    return inverse, found
 
 
-def _nearest(beams: Beams, sensors: int, found: list[_Hits], lit: bool) -> tuple[Array, Array]:
-    """Give for each beam the range of the nearest of its hits, and that one's light (an empty array unless `lit`)."""
-    inverse: Array = np.zeros(sensors * beams.stride)
-    for hits in found:
-        np.maximum.at(inverse, hits.beams, hits.inverse)
+def _nearest(beams: Beams, sensors: int, inverse: Array, found: list[_Hits], lit: bool) -> tuple[Array, Array]:
+    """Return for each beam the range of its nearest hit, and the light of that (an empty array unless `lit`)."""
     light: Array = _light(inverse, found) if lit else inverse[:0]
     inverse, light = inverse.reshape(sensors, -1), light.reshape(sensors, -1)
     if beams.full:  # lay the two turns on each other
@@ -222,7 +243,7 @@ def _nearest(beams: Beams, sensors: int, found: list[_Hits], lit: bool) -> tuple
 
 
 def _light(inverse: Array, found: list[_Hits]) -> Array:
-    """Give for each beam the light of its nearest hit."""
+    """Return for each beam the light of its nearest hit."""
     light = np.zeros(len(inverse))
     for hits in found:
         nearest = np.flatnonzero(hits.inverse == inverse.take(hits.beams))
@@ -256,7 +277,7 @@ def _see_segments(beams: Beams, eyes: _Eyes, columns: Array, lit: bool) -> _Hits
 
 
 def _mended(normal: Array, x: Array, y: Array, distance: Array, width: Array) -> tuple[Array, Array, Array]:
-    """Give normals and distances with those mended of lines that a sensor is nearly on, and the most of each inverse.
+    """Return normals and distances, mended for lines that a sensor is nearly on, and an upper limit of each inverse.
 
     No beam sees a segment nearer than it is: that bounds the beams that pass just beside an end. A segment that is
     seen edge-on counts as its nearest point; one that the sensor stands on is on the side that its beams are on.
@@ -303,8 +324,37 @@ def _see_circles(beams: Beams, eyes: _Eyes, circles: Circles, lit: bool) -> _Hit
     return _Hits(spans.beams, inverse, light)
 
 
+def _unhidden(beams: Beams, eyes: _Eyes, sensors: Indices, circles: Circles, inverse: Array) -> Indices:
+    """Return which circles may be seen by their sensors, past what is at the `inverse` ranges already.
+
+    Beams are taken in blocks. A circle that covers less than a block lies within two of them, and is hidden if every
+    beam of these ends before the circle's nearest point; it would change no bit.
+    """
+    table = inverse.reshape(eyes.number, -1)
+    if beams.full:
+        table = np.maximum(table[:, : beams.count], table[:, beams.count :])
+    blocks = max(1, beams.count // _BLOCK)  # the last one has the rest too
+    farthest = np.minimum.reduceat(table, np.arange(blocks) * _BLOCK, axis=1)
+    seeing = eyes.of(sensors)
+    dx, dy = circles.x - seeing.x, circles.y - seeing.y
+    distance = np.sqrt(dx * dx + dy * dy)
+    gap = distance - circles.radius
+    width = np.arcsin(circles.radius / np.maximum(distance, circles.radius)) / math.pi
+    low = _in_turns(seeing, dx, dy) - width / 2
+    low = (low - np.floor(low)) * beams.period
+    begin, end = low.astype(np.intp), (low + width * beams.period + 1.0).astype(np.intp)
+    narrow = (end - begin < _BLOCK) & (gap > _NEAR)
+    if beams.full:
+        begin, end = begin % beams.count, end % beams.count
+    else:
+        narrow &= end < beams.count
+    first, last = (np.minimum(each // _BLOCK, blocks - 1) for each in (begin, end))
+    beyond = np.minimum(farthest[sensors, first], farthest[sensors, last]) * gap > 1.0 + _NEAR
+    return np.flatnonzero(~(narrow & beyond))
+
+
 def _in_turns(eyes: _Eyes, x: Array, y: Array) -> Array:
-    """Give the directions of points as seen by the sensors, in turns from their first beam."""
+    """Return the directions of points as seen by the sensors, in turns from their first beam."""
     turns: Array = np.arctan2(y, x)
     turns /= math.tau
     turns -= eyes.turn
@@ -312,7 +362,7 @@ def _in_turns(eyes: _Eyes, x: Array, y: Array) -> Array:
 
 
 def _spans(beams: Beams, eyes: _Eyes, low: Array, width: Array) -> _Spans:
-    """Give the beams that lie in intervals (from `low`, `width` wide, in turns)."""
+    """Return the beams that lie in intervals (from `low`, `width` wide, in turns)."""
     low = (low - np.floor(low)) * beams.period
     high, who, first = low + width * beams.period, None, eyes.first
     if not beams.full:  # some reach round to the first beams again

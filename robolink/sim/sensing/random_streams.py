@@ -7,11 +7,11 @@ import hashlib
 import numpy as np
 
 from robolink.sim.arrays import Array
-from robolink.sim.description import Lidar
+from robolink.sim.sensors import Lidar
 
 
 def stream(seed: int, robot: str, sensor: str) -> np.random.Generator:
-    """Give the random stream of one sensor of one robot; the same on every machine and in every process."""
+    """Return the random stream of one sensor of one robot; the same on every machine and in every process."""
     digest = hashlib.sha256(f"{seed}/{robot}/{sensor}".encode()).digest()
     return np.random.Generator(np.random.PCG64(int.from_bytes(digest[:16], "little")))
 
@@ -23,7 +23,7 @@ class LidarNoise:
         self._noise, self._dropout, self._random = lidar.noise, lidar.dropout, random
 
     def disturbed(self, ranges: Array) -> Array:
-        """Give the ranges as this scanner reads them; a lost beam is inf."""
+        """Return the ranges as this scanner reads them; a lost beam is inf."""
         if self._noise:
             ranges = ranges + self._noise * self._random.standard_normal(len(ranges))
         if self._dropout:

@@ -1,4 +1,4 @@
-"""The nearest point within a cone, exactly: what a sonar or an infrared sensor measures."""
+"""Sonar and infrared sensors: the exact distance to the nearest point within a cone."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import math
 import numpy as np
 
 from robolink.sim.arrays import Array
-from robolink.sim.description import Pose
+from robolink.sim.quantities import Pose
 
 
 def nearest_in_cone(sensor: Pose, fov: float, segments: Array, circles: Array) -> float:
-    """Give the distance in metres from a sensor to the nearest point of anything within `fov` degrees about ahead.
+    """Return the distance in metres from a sensor to the nearest point of anything within `fov` degrees about ahead.
 
     `segments` are columns x1, x2, y1, y2 and `circles` columns x, y, radius, in the world. inf if there is nothing.
     """
@@ -26,7 +26,7 @@ def _in_frame(sensor: Pose, x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def _nearest_of_segments(sensor: Pose, half: float, segments: Array) -> float:
-    """Cut the segments to what lies between the cone's edges, and take the point of the rest that is nearest."""
+    """Return the distance of the nearest point of the segments, clipped to the cone."""
     x1, y1 = _in_frame(sensor, segments[0], segments[2])
     x2, y2 = _in_frame(sensor, segments[1], segments[3])
     dx, dy = x2 - x1, y2 - y1
@@ -39,7 +39,7 @@ def _nearest_of_segments(sensor: Pose, half: float, segments: Array) -> float:
 
 
 def _part_in_cone(half: float, x1: Array, y1: Array, x2: Array, y2: Array) -> tuple[Array, Array]:
-    """Give from which share to which each segment lies in the cone, the common part of two half-planes."""
+    """Return the first and last share of each segment that lies in the cone, the intersection of two half-planes."""
     cos, sin = math.cos(half), math.sin(half)
     low, high = np.zeros(len(x1)), np.ones(len(x1))
     for side in (cos, -cos):
@@ -54,7 +54,7 @@ def _part_in_cone(half: float, x1: Array, y1: Array, x2: Array, y2: Array) -> tu
 
 
 def _nearest_of_circles(sensor: Pose, half: float, circles: Array) -> float:
-    """Take each circle's nearest point, or where the edge of the cone that is nearer to its middle meets it."""
+    """Return the distance of the nearest circle: to its nearest point, or to where the cone's nearer edge meets it."""
     (x, y), radius = _in_frame(sensor, circles[0], circles[1]), circles[2]
     straight = np.sqrt(x * x + y * y) - radius
     y = np.abs(y)

@@ -1,4 +1,4 @@
-"""What sensors can see in a world: the fixed shapes, and where the moving ones are now."""
+"""Scene of a world as sensors see it: the fixed shapes, and the present places of the moving ones."""
 
 from __future__ import annotations
 
@@ -9,17 +9,22 @@ from typing import NamedTuple
 import numpy as np
 import pymunk
 
-from robolink.sim.arrays import Place
+from robolink.sim.arrays import Array, Place
 from robolink.sim.description import Shape, WorldDescription
+from robolink.sim.physics.body_columns import BodyPlaces
 from robolink.sim.sensing.fixed import fixed_circles, fixed_reflectances, fixed_segments
 from robolink.sim.sensing.surroundings import FIXED, Circles, Edges, Surroundings, circles_of
 from robolink.sim.sensing.tiles import Tiles, columns
 
 
 class Scene:
-    """All shapes of a world; those that move are looked at anew when `step` has changed or `moved` was called."""
+    """All shapes of a world; those that move are updated when `step` has changed or `moved` was called.
 
-    def __init__(self, description: WorldDescription) -> None:
+    Their bodies are those of `space`.
+    """
+
+    def __init__(self, description: WorldDescription, space: pymunk.Space) -> None:
+        self._space = space
         self.fixed_segments, self.fixed_circles = fixed_segments(description), fixed_circles(description)
         of_segments, of_circles = fixed_reflectances(description)
         self._walls = Tiles(self.fixed_segments, of_segments)
@@ -28,50 +33,61 @@ class Scene:
         self._moving: dict[pymunk.Body, _Moving] = {}
         self._next_number = 0
         self.step, self._seen = 0, -1
+        self._bodies: BodyPlaces | None = None
+        self._rows: Array = np.empty((0, 3))
         self._places: dict[pymunk.Body, Place] = {}
-        self._surroundings = Surroundings(self._walls, self._standing)
+        self._surroundings: Surroundings | None = None
 
     def add(self, body: pymunk.Body, shape: Shape, reflectance: float = 1.0) -> None:
-        """Add something that moves."""
+        """Add a shape that moves."""
         self._moving[body] = _Moving(body, shape, reflectance, self._next_number)
         self._next_number += 1
         self._sort()
 
     def remove(self, body: pymunk.Body) -> None:
-        """Take away something that moves; raises `KeyError` if it isn't there."""
+        """Remove a shape that moves; raises `KeyError` if it is not there."""
         del self._moving[body]
         self._sort()
 
     def number(self, body: pymunk.Body) -> int:
-        """Give the number of what moves: a sensor that is told it doesn't see it. Raises `KeyError`."""
+        """Return the number of a moving shape, by which a sensor leaves out its own. Raises `KeyError`."""
         return self._moving[body].number
 
     def moved(self) -> None:
-        """Take note that something was moved other than by a step."""
+        """Note that something was moved other than by a step."""
         self._seen = -1
 
     def surroundings(self) -> Surroundings:
-        """Give all that can be seen now."""
-        if self._seen != self.step:
-            self._look()
+        """Return all that can be seen now."""
+        places = self.poses()
+        if self._surroundings is None:
+            self._surroundings = Surroundings(self._walls, self._discs.at(self._rows), self._polygons.at(places))
         return self._surroundings
 
-    def places(self) -> Mapping[pymunk.Body, Place]:
-        """Give where everything is now that moves."""
+    def poses(self) -> Mapping[pymunk.Body, Place]:
+        """Return the present place of each moving body."""
         if self._seen != self.step:
             self._look()
         return self._places
 
     def _look(self) -> None:
-        self._places = places = {body: (*body.position, body.angle) for body in self._moving}
-        self._surroundings = Surroundings(self._walls, self._discs.at(places), self._polygons.at(places))
-        self._seen = self.step
+        if self._bodies is None:
+            self._bodies = BodyPlaces(self._space, list(self._moving))
+        self._rows = self._bodies.read()
+        self._places = dict(zip(self._moving, map(_place, self._rows.tolist()), strict=True))
+        self._seen, self._surroundings = self.step, None
 
     def _sort(self) -> None:
         moving = list(self._moving.values())
-        self._discs = _Discs(self._standing, [each for each in moving if each.shape.circle is not None])
+        self._discs = _Discs(self._standing, moving)
         self._polygons = _Polygons([each for each in moving if each.shape.circle is None])
+        self._bodies = None
         self.moved()
+
+
+def _place(row: list[float]) -> Place:
+    x, y, angle = row
+    return x, y, angle
 
 
 class _Moving(NamedTuple):
@@ -82,10 +98,11 @@ class _Moving(NamedTuple):
 
 
 class _Discs:
-    """Fixed circles and those that move: all but where these are is known beforehand."""
+    """Fixed circles and those that move: all but the places of these is computed once."""
 
-    def __init__(self, fixed: Circles, moving: Sequence[_Moving] = ()) -> None:
-        self._bodies, self._first = [each.body for each in moving], len(fixed.x)
+    def __init__(self, fixed: Circles, all_moving: Sequence[_Moving] = ()) -> None:
+        self._which = [row for row, each in enumerate(all_moving) if each.shape.circle is not None]
+        self._first, moving = len(fixed.x), [all_moving[row] for row in self._which]
         own = Circles(
             np.zeros(len(moving)),
             np.zeros(len(moving)),
@@ -96,12 +113,12 @@ class _Discs:
         self._all = Circles(*(np.concatenate(both) for both in zip(fixed, own, strict=True)))
         self._centres = np.stack(self._all[:2])
 
-    def at(self, places: Mapping[pymunk.Body, Place]) -> Circles:
-        """Give all circles, with these places of those that move."""
-        if not self._bodies:
+    def at(self, rows: Array) -> Circles:
+        """Return all circles, with the bodies that move at these places (x, y, angle)."""
+        if not self._which:
             return self._all
         centres = self._centres.copy()
-        centres[:, self._first :] = np.array([places[body] for body in self._bodies])[:, :2].T
+        centres[:, self._first :] = rows[self._which, :2].T
         return Circles(centres[0], centres[1], *self._all[2:])
 
 
@@ -120,7 +137,7 @@ class _Polygons:
         self._number = np.repeat(np.array([each.number for each in moving], dtype=np.intp), counts)
 
     def at(self, places: Mapping[pymunk.Body, Place]) -> Edges | None:
-        """Give all edges, if there are any, with the bodies at these places."""
+        """Return all edges with the bodies at these places; None if there are none."""
         if not self._bodies:
             return None
         poses = [(x, y, math.cos(angle), math.sin(angle)) for x, y, angle in map(places.__getitem__, self._bodies)]

@@ -1,4 +1,4 @@
-"""Fixed segments by place: a sensor looks only at those that its reach meets, however large the map."""
+"""Spatial index of fixed segments, a cache by tiles: a sensor checks only those within its reach."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ X, Y, NORMAL, REFLECTANCE = slice(0, 2), slice(2, 4), slice(4, 7), 7
 """Rows of `columns`: x of both ends, y of both ends, the unit normal (x, y, and -x to turn it by), the reflectance."""
 
 _FEW = 64
-"""So many segments are looked at faster than chosen from."""
+"""Number of segments up to which checking all is faster than choosing."""
 
 _TILES_ACROSS = 6
-"""Tiles in the length of the reach: more of them fit closer and are left sooner."""
+"""Number of tiles in the length of the reach: more of them fit closer and are left sooner."""
 
 _KEPT = 1_000_000
-"""Columns in all tiles together that are remembered: 64 MB."""
+"""Most columns that are kept in all tiles together: 64 MB."""
 
 
 def columns(segments: Array, reflectances: Array) -> Array:
-    """Give segments (rows x1, y1, x2, y2) as columns of what a scanner needs to know of each."""
+    """Return segments (rows x1, y1, x2, y2) as columns with all that a scanner needs of each."""
     x1, y1, x2, y2 = segments.T
     dx, dy = x2 - x1, y2 - y1
     length = np.sqrt(dx * dx + dy * dy)
@@ -33,7 +33,7 @@ def columns(segments: Array, reflectances: Array) -> Array:
 
 
 class Tiles:
-    """Fixed segments, given by `segments` and `reflectances`; what is near a tile of the plane is found out once."""
+    """Fixed segments with `reflectances`; those near a tile of the plane are searched once."""
 
     def __init__(self, segments: Array, reflectances: Array) -> None:
         self._segments, self._columns = segments, columns(segments, reflectances)
@@ -44,7 +44,7 @@ class Tiles:
         self._count = 0
 
     def near(self, x: float, y: float, reach: float) -> Array:
-        """Give the columns of all segments within `reach` metres of a place, in their order, and some farther ones."""
+        """Return the columns of all segments within `reach` metres of a place, in order, and some farther ones."""
         if len(self._half) <= _FEW:
             return self._columns
         side = reach / _TILES_ACROSS

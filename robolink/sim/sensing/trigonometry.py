@@ -1,4 +1,4 @@
-"""Cosine and sine out of plain arithmetic: the same bits on every machine, whatever its numpy and processor.
+"""Cosine and sine by plain arithmetic: the same bits on every machine, whatever its numpy and processor.
 
 For tables that are made once; libraries' own functions are quicker, and differ in the last bit from each other.
 """
@@ -20,7 +20,7 @@ _COSINE = [(-1.0) ** n / math.factorial(2 * n) for n in range(9, -1, -1)]
 
 
 def cos_and_sin(angles: Array) -> tuple[Array, Array]:
-    """Give the cosines and sines of angles of up to some turns, within a unit or two of the last place."""
+    """Return the cosines and sines of angles of up to some turns, within a unit or two of the last place."""
     quarters = np.rint(angles / _QUARTER)
     rest = (angles - quarters * _QUARTER_HEAD - quarters * _QUARTER_TAIL) - quarters * _QUARTER_REST
     square = rest * rest

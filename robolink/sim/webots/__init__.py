@@ -1,4 +1,4 @@
-"""Worlds of Webots (.wbt) as worlds of this simulator: what of them is flat, and what their robots drive and sense.
+"""Import of Webots worlds (.wbt): a flat world with the robots, their drives and their sensors.
 
 description, notes = read("meu_mundo.wbt")
 """
@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from robolink import yamlfile
+from robolink.documents import yamlfile
 from robolink.sim.description import WorldDescription
 
 __all__ = ["WebotsWorld", "WorldWarning", "load", "read", "warnings_to"]
@@ -28,13 +28,13 @@ class WebotsWorld(NamedTuple):
     notes: tuple[str, ...]
 
     def warning(self, name: str | os.PathLike[str]) -> str:
-        """Give all notes as one text; '' when there are none."""
+        """Return all notes as one text; '' if there are none."""
         return f"{os.fspath(name)}: {'; '.join(self.notes)}" if self.notes else ""
 
 
 @contextlib.contextmanager
 def warnings_to(tell: Callable[[str], object]) -> Iterator[None]:
-    """Send to this function what loading a world inside of the block warns of, a text each."""
+    """Call `tell` with each warning, as text, that loading a world inside of the block gives."""
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always", WorldWarning)
         yield
@@ -43,7 +43,7 @@ def warnings_to(tell: Callable[[str], object]) -> Iterator[None]:
 
 
 def load(path: str | os.PathLike[str], text: str | None = None) -> WorldDescription:
-    """Read a world of Webots (or `text` in its place); what was left out is told in one `WorldWarning`.
+    """Read a world of Webots (or `text` in its place); one `WorldWarning` says what was left out.
 
     The errors are those of `read`.
     """

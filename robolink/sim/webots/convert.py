@@ -1,4 +1,4 @@
-"""Makes a world of what was found in one of Webots: it becomes flat, and every problem has its place in the file."""
+"""Converter from a Webots scene tree to a flat world; every problem has its place in the file."""
 
 from __future__ import annotations
 
@@ -16,38 +16,38 @@ from robolink.sim.description import Obstacle, Settings, Wall, WorldDescription
 from robolink.sim.webots.footprint import footprint, merged
 from robolink.sim.webots.geometry import ORIGIN, Placement
 from robolink.sim.webots.robots import Converted, robot
-from robolink.sim.webots.things import Found, Thing
-from robolink.sim.webots.vrml import Node
+from robolink.sim.webots.scene_tree import Found, Thing
+from robolink.sim.webots.vrml_node import Node
 
 FLAT = 0.02
-"""Metres: what is lower lies on the floor, and robots drive over it."""
+"""Height in metres below which things lie on the floor, and robots drive over them."""
 
 HEIGHT = 0.5
-"""Metres of height in which things count where no robot says it."""
+"""Default height in metres up to which things are obstacles, if there is no robot."""
 
 LOWEST_ROBOT = 0.05
-"""Metres: things count at least up to here."""
+"""Least height in metres up to which things are obstacles."""
 
 STEPS = (0.001, 0.1)
-"""Seconds that a step may take."""
+"""Shortest and longest step, in seconds."""
 
 ATTEMPTS = 3
 
 NAMED = 5
-"""So many things a note names."""
+"""Most things that a note names."""
 
 _OBSTACLE = r"\$\.obstacles\[(\d+)\]\.pose"
 
 
 class Standing(NamedTuple):
-    """A thing that is in the way, and where it comes from."""
+    """An obstacle, and the thing that it is made of."""
 
     obstacle: Obstacle
     thing: Thing
 
 
 def convert(nodes: list[Node], name: str) -> tuple[WorldDescription, tuple[str, ...]]:
-    """Make a world out of the nodes of a file called `name`; give it with what was left out or guessed.
+    """Return a world made from the nodes of a file called `name`, and notes of what was left out or guessed.
 
     Raises `DocumentError` with the place in the file.
     """
@@ -98,7 +98,7 @@ def _robots(found: Found, dt: float) -> list[Converted]:
 
 
 def _standing(thing: Thing, low: float, high: float, robots: Sequence[Placement]) -> Standing | None:
-    """Make what is in the way of a thing: None for what is above, below, or what a robot stands on."""
+    """Make the obstacle of a thing; None if it is too high or too low, or a robot stands on it."""
     outline = merged([each for part in thing.parts if (each := footprint(part, low, high))])
     if outline is None or (thing.mass is None and any(_bears(thing, each) for each in robots)):
         return None
@@ -109,7 +109,7 @@ def _standing(thing: Thing, low: float, high: float, robots: Sequence[Placement]
 
 
 def _bears(thing: Thing, robot: Placement) -> bool:
-    """Say whether a robot's origin is above a thing's top, within the box around it."""
+    """True if a robot's origin is above a thing's top, within the box around it."""
     x, y, z = map(float, robot.offset)
     for part in thing.parts:
         (west, south), (east, north) = part.points[:, :2].min(axis=0), part.points[:, :2].max(axis=0)
@@ -123,7 +123,7 @@ def _bears(thing: Thing, robot: Placement) -> bool:
 def _settled(
     description: WorldDescription, things: list[Standing], robots: Sequence[Node], floor: float, name: str
 ) -> tuple[WorldDescription, list[str]]:
-    """Leave out what stands on other things, and fix what could be pushed but starts inside of something."""
+    """Leave out things that stand on others, and fix those that could be pushed but start inside of something."""
     notes: list[str] = []
     for _ in range(ATTEMPTS):
         found = [each for each in problems(description, fixed_too=False) if not _is_fixed(each.path, things)]
@@ -139,7 +139,7 @@ def _settled(
 
 
 def _light(description: WorldDescription, things: list[Standing], robots: Sequence[Node]) -> Iterator[str]:
-    """Say what robots may push through walls, for it is so light; here that is no error."""
+    """Yield a note about things so light that robots may push them through walls; here that is no error."""
     found = [_origin(each.path, things, robots) for each in mass_problems(description.robots, description.obstacles)]
     names = [node.called for node in found if node is not None]
     if names:
@@ -148,7 +148,7 @@ def _light(description: WorldDescription, things: list[Standing], robots: Sequen
 
 
 def _is_fixed(path: str, things: list[Standing]) -> bool:
-    """Say whether a problem is the place of something fixed: walls may run into each other."""
+    """True if a problem is the place of something fixed: walls may run into each other."""
     match = re.fullmatch(_OBSTACLE, path)
     return match is not None and things[int(match[1])].obstacle.mass is None
 
@@ -167,7 +167,7 @@ def _moved(things: list[Standing], inside: set[int], floor: float) -> tuple[list
 
 
 def _placed(path: str, message: str, things: list[Standing], robots: Sequence[Node], name: str) -> DocumentError:
-    """Make an error of a problem of the description: at the node that it comes from."""
+    """Make an error from a problem of the description, at the node that it comes from."""
     message = re.sub(r"obstacles\[(\d+)\]", lambda match: things[int(match[1])].thing.node.called, message)
     message = re.sub(r"robots\[(\d+)\]", lambda match: robots[int(match[1])].called, message)
     message = re.sub(r"walls\[\d+\]", "the walls of the arena", message)
@@ -178,7 +178,7 @@ def _placed(path: str, message: str, things: list[Standing], robots: Sequence[No
 
 
 def _origin(path: str, things: list[Standing], robots: Sequence[Node]) -> Node | None:
-    """Give the node that a part of the description comes from."""
+    """Return the node that a part of the description comes from."""
     match = re.match(r"\$\.(robots|obstacles)\[(\d+)\]", path)
     if match is None:
         return None

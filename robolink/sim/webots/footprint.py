@@ -1,4 +1,4 @@
-"""What a flat world sees of solid geometry: the outline, from above, of what is between two heights."""
+"""Footprints of solid geometry: the outline from above of all that is between two heights."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from robolink.sim.arrays import Array
-from robolink.sim.description import FARTHEST, Point, Pose, Shape, signed_area
+from robolink.sim.description import Shape, signed_area
+from robolink.sim.quantities import FARTHEST, Point, Pose
 from robolink.sim.webots.geometry import RIM, Part, rounded
 
 FINE = 1e-4
-"""Metres by which an outline may be simplified."""
+"""Tolerance of a simplified outline, in metres."""
 
 
 class Footprint(NamedTuple):
@@ -23,7 +24,7 @@ class Footprint(NamedTuple):
     circle: tuple[float, float, float] | None = None
 
     def placed(self) -> tuple[Shape, Pose]:
-        """Give it as a shape about its own middle, and where that is."""
+        """Return it as a shape about its own middle, and the pose of that."""
         if self.circle is not None:
             x, y, radius = map(rounded, self.circle)
             return Shape(circle=max(radius, 0.001)), Pose(x, y)
@@ -34,7 +35,7 @@ class Footprint(NamedTuple):
         return self.about(Pose(x, y)), Pose(x, y)
 
     def about(self, origin: Pose) -> Shape:
-        """Give it as a shape about another point."""
+        """Return it as a shape about another point."""
         if self.circle is not None and math.hypot(self.circle[0] - origin.x, self.circle[1] - origin.y) < FINE:
             return Shape(circle=max(rounded(self.circle[2]), 0.001))
         corners = self.outline() - (origin.x, origin.y)
@@ -45,14 +46,14 @@ class Footprint(NamedTuple):
         return Shape(polygon=tuple((rounded(x), rounded(y)) for x, y in corners))
 
     def outline(self) -> Array:
-        """Give its corners; those of a circle are many."""
+        """Return its corners; those of a circle are many."""
         if self.circle is None:
             return self.corners
         x, y, radius = self.circle
         return RIM[:, :2] * radius + (x, y)
 
     def _rectangle(self) -> tuple[float, float, float] | None:
-        """Give length, width and heading of a rectangle; the heading is the one nearest to 0."""
+        """Return length, width and heading of a rectangle; the heading is the one nearest to 0."""
         if len(self.corners) != 4:
             return None
         first, second = self.corners[1] - self.corners[0], self.corners[2] - self.corners[1]
@@ -67,7 +68,7 @@ class Footprint(NamedTuple):
 
 
 def footprint(piece: Part, low: float, high: float) -> Footprint | None:
-    """Give the outline, seen from above, of what of a part is between two heights; None for nothing."""
+    """Return the outline, seen from above, of a part between two heights; None for nothing."""
     if piece.top <= low or piece.bottom >= high:
         return None
     if piece.radius:
@@ -79,7 +80,7 @@ def footprint(piece: Part, low: float, high: float) -> Footprint | None:
 
 
 def merged(footprints: Sequence[Footprint]) -> Footprint | None:
-    """Give one convex outline around several; a circle that holds all the others is it."""
+    """Return one convex outline around several: the circle among them that holds all others, or their hull."""
     if len(footprints) < 2:
         return footprints[0] if footprints else None
     corners = np.concatenate([each.outline() for each in footprints])
@@ -90,7 +91,7 @@ def merged(footprints: Sequence[Footprint]) -> Footprint | None:
 
 
 def _cut(points: Array, low: float, high: float) -> Array:
-    """Give the corners, from above, of what of a convex body is between two heights."""
+    """Return the corners, from above, of a convex body between two heights."""
     z = points[:, 2]
     found = [points[(z >= low) & (z <= high)]]
     for height in (low, high):
@@ -103,7 +104,7 @@ def _cut(points: Array, low: float, high: float) -> Array:
 
 
 def _hulled(points: Array) -> Footprint | None:
-    """Give the convex hull of points in the plane; None for what is thinner than a millimetre."""
+    """Return the convex hull of points in the plane; None if it is thinner than a millimetre."""
     near = np.clip(points, -FARTHEST / 2, FARTHEST / 2).tolist()
     ordered = sorted({(x, y) for x, y in near})
     corners = _simplified(_half(ordered) + _half(ordered[::-1]))
@@ -115,7 +116,7 @@ def _hulled(points: Array) -> Footprint | None:
 
 
 def _half(points: Sequence[Point]) -> list[Point]:
-    """Give one half of a hull, without its last point (Andrew's monotone chain)."""
+    """Return one half of a hull, without its last point (Andrew's monotone chain)."""
     found: list[Point] = []
     for point in points:
         while len(found) > 1 and _cross(found[-2], found[-1], point) <= 0.0:

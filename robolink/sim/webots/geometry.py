@@ -1,4 +1,4 @@
-"""Solid geometry in space: where nodes are, and the pieces that their shapes stand for."""
+"""Solid geometry in space: placements of nodes, and the parts that their shapes stand for."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from typing import NamedTuple
 import numpy as np
 
 from robolink.sim.arrays import Array
-from robolink.sim.description import FARTHEST, Pose
-from robolink.sim.webots.vrml import Node
+from robolink.sim.quantities import FARTHEST, Pose
+from robolink.sim.webots.vrml_node import Node
 
 LEVEL = 0.01
-"""Radians by which something may lean and still counts as upright: editors save angles with such errors."""
+"""Largest lean that counts as upright, in radians: editors save angles with such errors."""
 
 SIDES = 32
-"""Corners of a circle that is seen from elsewhere than from above."""
+"""Number of corners of a circle that is not seen from above."""
 
 MOST_POINTS = 500
-"""So many corners a mesh may have; what has more is made for the eye, not for collisions."""
+"""Most corners of a mesh; one with more is made for the eye, not for collisions."""
 
 _TURNS = np.linspace(0.0, math.tau, SIDES, endpoint=False)
 RIM = np.column_stack((np.cos(_TURNS), np.sin(_TURNS), np.zeros(SIDES)))
@@ -27,18 +27,18 @@ _CUBE = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (
 
 
 def rounded(value: float) -> float:
-    """Give a length or angle without the errors of a computation, and without a minus before 0."""
+    """Return a length or angle without rounding errors, and without a minus before 0."""
     return round(float(value), 9) + 0.0
 
 
 class Placement(NamedTuple):
-    """Where a node's own axes are: a point p of the node is at `matrix` p + `offset`."""
+    """An affine transformation to the world: a point p of a node is at `matrix` p + `offset`."""
 
     matrix: Array
     offset: Array
 
     def inside(self, node: Node, translation: Sequence[float] = (0.0, 0.0, 0.0)) -> Placement:
-        """Give the placement of what is inside of a node; `translation` is the default of that field."""
+        """Return the placement of a node's content; `translation` is the default of that field."""
         matrix = rotation(node) * np.array(node.lengths("scale", 1.0, 1.0, 1.0))
         offset = self.at(np.array(node.numbers("translation", *translation)))
         if not np.all(np.abs(offset) <= FARTHEST):
@@ -49,7 +49,7 @@ class Placement(NamedTuple):
         return Placement(matrix, offset)
 
     def at(self, points: Array) -> Array:
-        """Give where points of the node are."""
+        """Return the places of points of the node."""
         there: Array = points @ self.matrix.T + self.offset
         return there
 
@@ -64,13 +64,13 @@ ORIGIN = Placement(np.eye(3), np.zeros(3))
 
 
 def turned(angle: float) -> Placement:
-    """Give the placement of something at the origin that is turned about z, by so many radians."""
+    """Return the placement of something at the origin that is turned about z by `angle` radians."""
     cos, sin = math.cos(angle), math.sin(angle)
     return Placement(np.array([(cos, -sin, 0.0), (sin, cos, 0.0), (0.0, 0.0, 1.0)]), np.zeros(3))
 
 
 def rotation(node: Node) -> Array:
-    """Give the matrix of a node's rotation, an axis and an angle; an axis without length turns nothing."""
+    """Return the matrix of a node's rotation, an axis and an angle; an axis without length turns nothing."""
     x, y, z, angle = node.numbers("rotation", 0.0, 0.0, 1.0, 0.0)
     length = math.hypot(x, y, z)
     if length < 1e-12:
@@ -82,7 +82,7 @@ def rotation(node: Node) -> Array:
 
 
 def _levelled(matrix: Array) -> Array:
-    """Put axes that are nearly upright or nearly level exactly so."""
+    """Make axes that are nearly upright or nearly level exactly so."""
     limit = LEVEL * np.linalg.norm(matrix, axis=0)
     found: Array = matrix.copy()
     found[2, np.abs(matrix[2]) < limit] = 0.0
@@ -113,7 +113,7 @@ class Part(NamedTuple):
         return float(self.points[:, 2].max()) + (self.radius if self.ball else 0.0)
 
     def farthest(self, centre: Array, axis: Array) -> float:
-        """Give the distance of its farthest point from a line."""
+        """Return the distance of its farthest point from a line."""
         if self.ball:
             return self.radius + _from_line(self.points, centre, axis)
         if self.radius:
@@ -145,7 +145,7 @@ def box(sides: Sequence[float], placement: Placement, *, raised: bool = False) -
 
 
 def _upright(placement: Placement) -> float:
-    """Give the scale of what is round about z and stays so, seen from above; 0 for what does not."""
+    """Return the scale of a shape that is round about z and stays so, seen from above; 0 if it does not."""
     matrix = placement.matrix
     across, along = matrix[:2, :2], matrix[2, :2]
     scale = math.hypot(matrix[0, 0], matrix[1, 0])
@@ -155,7 +155,7 @@ def _upright(placement: Placement) -> float:
 
 
 def cylinder(radius: float, height: float, placement: Placement, volume: float) -> Part:
-    """Make what is round about the placement's z axis, `height` high."""
+    """Make a part that is round about the placement's z axis, `height` high."""
     if scale := _upright(placement):
         ends = placement.at(np.array([(0.0, 0.0, -height / 2), (0.0, 0.0, height / 2)]))
         return Part(ends, _scaled(volume, placement), radius * scale)

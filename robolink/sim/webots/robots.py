@@ -1,4 +1,4 @@
-"""A robot of Webots as this simulator has it: outline, limits, wheels and sensors."""
+"""Converter of Webots robots: outline, limits, wheels and sensors."""
 
 from __future__ import annotations
 
@@ -9,25 +9,27 @@ from typing import Literal, NamedTuple
 import msgspec
 import numpy as np
 
-from robolink.names import spelled, unlike
 from robolink.sim.checks.robots import robot_problems
-from robolink.sim.description import Drive, Encoders, GroundTruth, Odom, Pose, RobotDescription, Shape, Wheel
+from robolink.sim.description import Drive, GroundTruth, Odom, RobotDescription, Shape, Wheel
+from robolink.sim.quantities import Pose
+from robolink.sim.sensors import Encoders
 from robolink.sim.webots.footprint import Footprint, footprint, merged
 from robolink.sim.webots.geometry import ORIGIN, Part, Placement, turned
+from robolink.sim.webots.scene_tree import GROUPS, JOINTS, SOLIDS, Found, inside, mass
 from robolink.sim.webots.sensors import by_lookup_table, lacking, rate_near, sensors
-from robolink.sim.webots.things import GROUPS, JOINTS, SOLIDS, Found, inside, mass
-from robolink.sim.webots.vrml import Node
+from robolink.sim.webots.vrml_node import Node
 from robolink.sim.webots.wheels import SPEEDS, heading, listed, motors, resolutions, strangers, wheels
+from robolink.text.names import spelled, unlike
 
 NO_SHAPE = 0.1
-"""Metres: radius of a robot without any shape."""
+"""Radius of a robot without any shape, in metres."""
 
 NARROWEST = 0.01
-"""Metres that a robot's outline must go round its origin."""
+"""Least distance of a robot's outline from its origin, in metres."""
 
 
 class Converted(NamedTuple):
-    """A robot, its height in metres, and what to tell about it."""
+    """A converted robot, its height in metres, and notes about it."""
 
     description: RobotDescription
     height: float
@@ -35,7 +37,7 @@ class Converted(NamedTuple):
 
 
 class Pieces(NamedTuple):
-    """What a robot consists of, in its own frame."""
+    """Parts and nodes of a robot, in its own frame."""
 
     parts: list[Part]
     nodes: list[tuple[Node, Placement]]
@@ -48,14 +50,14 @@ class Pieces(NamedTuple):
 
     @property
     def height(self) -> float:
-        """From the lowest to the highest point."""
+        """Height from the lowest to the highest point, in metres."""
         return max((each.top for each in self.parts), default=0.0) - min(
             (each.bottom for each in self.parts), default=0.0
         )
 
     @property
     def devices(self) -> list[tuple[Node, Placement]]:
-        """Its sensors, and what else it carries."""
+        """Nodes of its sensors and other devices."""
         return [each for each in self.nodes if each[0].type not in JOINTS | GROUPS | {"Robot", "Solid", "Shape"}]
 
 
@@ -120,14 +122,14 @@ def _shape(outline: Footprint) -> Shape:
 
 
 def _mass(found: Found, node: Node, pieces: Pieces) -> float:
-    """Give the mass in kg of all that has physics; the default of this simulator where nothing has."""
+    """Return the mass in kg of all nodes with physics; the simulator's default if there are none."""
     solids = [(node, ORIGIN), *(each for each in pieces.nodes if each[0].type in SOLIDS)]
     total = sum(mass(each, list(found.parts(each, inner))) for each, inner in solids if each.nodes("physics"))
     return min(total, 100_000.0) or RobotDescription("robot", Pose(0.0, 0.0)).mass
 
 
 def _drive(wheels: Sequence[Wheel], shape: Shape, dt: float) -> Drive:
-    """Give the limits that the wheels set: the fastest of them, and turning on the spot."""
+    """Return the drive with the limits that the wheels set: the fastest of them, and turning on the spot."""
     reach = shape.inner_radius() / dt
     if not wheels:
         return _slow(Drive(v_max=min(Drive().v_max, reach)), shape, dt)
@@ -140,7 +142,7 @@ def _drive(wheels: Sequence[Wheel], shape: Shape, dt: float) -> Drive:
 
 
 def _slow(drive: Drive, shape: Shape, dt: float) -> Drive:
-    """Slow a robot down whose corners could pass through a wall in one step, in its driving and its turning alike."""
+    """Lower both speed limits of a robot whose corners could pass through a wall in one step."""
     inner = shape.inner_radius()
     farthest = (drive.v_max + drive.w_max * (shape.outer_radius() - inner)) * dt
     share = min(1.0, (1.0 - 1e-9) * inner / farthest)
@@ -152,7 +154,7 @@ def _limited(value: float) -> float:
 
 
 def _without_bad_wheels(description: RobotDescription, dt: float) -> tuple[RobotDescription, list[str]]:
-    """Let cmd_vel alone drive a robot whose wheels cannot."""
+    """Remove the wheels of a robot that they cannot drive; cmd_vel still can."""
     found = [each.message for each in robot_problems(description, dt) if each.path.startswith(".wheels")]
     if not found:
         return description, []
@@ -163,7 +165,7 @@ def _without_bad_wheels(description: RobotDescription, dt: float) -> tuple[Robot
 
 
 def _missing(description: RobotDescription, nodes: Sequence[Node]) -> Iterator[str]:
-    """Say what the robot has not."""
+    """Yield notes of what the robot lacks."""
     if not description.wheels:
         yield "no motor turns its wheels, only cmd_vel drives it"
     if left_out := lacking(nodes):

@@ -1,4 +1,4 @@
-"""A robot's sensors in a world of Webots as this simulator has them."""
+"""Converter of the sensors of a Webots robot."""
 
 from __future__ import annotations
 
@@ -6,31 +6,31 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Literal, NamedTuple
 
-from robolink.names import spelled, unlike
 from robolink.sim.checks.robots import TAKEN
-from robolink.sim.description import Bumper, Encoders, Imu, Lidar, RangeFinder, Sensor
+from robolink.sim.sensors import Bumper, Encoders, Imu, Lidar, RangeFinder, Sensor
 from robolink.sim.webots.geometry import Placement
-from robolink.sim.webots.vrml import Node
+from robolink.sim.webots.vrml_node import Node
+from robolink.text.names import spelled, unlike
 
 SCAN = "scan"
-"""The topic of a robot's only lidar."""
+"""Topic of a robot's only lidar."""
 
 NARROW = 1.0
-"""Degrees across which a distance sensor of a single ray sees."""
+"""Field of view of a distance sensor with a single ray, in degrees."""
 
 FULL_TURN = math.radians(359.5)
-"""A field of view from here on, such as 6.28, means all around."""
+"""Field of view, in radians, from which on a lidar is taken to see all round, such as 6.28."""
 
 TABLE = [0.0, 0.0, 0.0, 0.1, 1000.0, 0.0]
-"""Webots' default `lookupTable`: rows of a distance, what the sensor says then, and its noise."""
+"""Webots' default `lookupTable`: rows of a distance, the sensor's value there, and its noise."""
 
 INERTIAL = frozenset({"Accelerometer", "Gyro", "InertialUnit"})
 LACKING = frozenset({"Camera", "Compass", "GPS", "LightSensor", "Radar", "RangeFinder", "Receiver"})
-"""Sensors of Webots that this world has not."""
+"""Sensors of Webots that are not supported."""
 
 
 class Model(NamedTuple):
-    """A lidar that can be bought: name, beams, field of view in degrees, range in metres, noise in metres."""
+    """A lidar on the market: name, beams, field of view in degrees, range in metres, noise in metres."""
 
     name: str
     beams: int
@@ -46,18 +46,18 @@ LIDARS = {
     "RobotisLds01": Model("LDS-01", 360, 360.0, (0.12, 3.5), 0.0043),
     "SickLms291": Model("Sick LMS 291", 180, 180.0, (0.1, 80.0)),
 }
-"""Those of Webots' library that scan in a plane. Source: Webots' user guide, "Lidar Sensors"."""
+"""Lidars of Webots' library that scan in a plane. Source: Webots' user guide, "Lidar Sensors"."""
 
 
 def rate_near(wanted: float, dt: float) -> float:
-    """Give the rate in Hz that is nearest to the one wanted and a whole number of steps of `dt` seconds apart."""
+    """Return the rate in Hz nearest to the one wanted whose period is a whole number of steps of `dt` seconds."""
     return 1.0 / (max(1, round(1.0 / (wanted * dt))) * dt)
 
 
 def sensors(devices: Sequence[tuple[Node, Placement]], resolutions: Sequence[float], dt: float) -> tuple[Sensor, ...]:
-    """Make the sensors of a robot out of its devices; `resolutions` are those of its position sensors, in radians.
+    """Make the sensors of a robot from its devices; `resolutions` are those of its position sensors, in radians.
 
-    Exact ones need no encoders: the angles of all wheels are told anyway.
+    Exact ones need no encoders: the angles of all wheels are published anyway.
     """
     names = _Names(devices)
     found: list[Sensor] = [made for each in devices if (made := _sensor(*each, names, dt))]
@@ -71,12 +71,12 @@ def sensors(devices: Sequence[tuple[Node, Placement]], resolutions: Sequence[flo
 
 
 def lacking(nodes: Iterable[Node]) -> list[str]:
-    """Name the devices that this world has not."""
+    """Return the names of the devices that are not supported."""
     return [node.called for node in nodes if node.type in LACKING]
 
 
 class _Names:
-    """Gives each sensor a topic of its own; a robot's only lidar has `scan`."""
+    """Allocator of topic names: each sensor has its own; that of a robot's only lidar is `scan`."""
 
     def __init__(self, devices: Sequence[tuple[Node, Placement]]) -> None:
         self._taken = set(TAKEN)
@@ -142,7 +142,7 @@ def _bought_lidar(node: Node, model: Model, placement: Placement, names: _Names,
 
 
 def _range_finder(node: Node, placement: Placement, names: _Names, dt: float) -> RangeFinder:
-    """A distance sensor; it tells metres, up to the last distance of its `lookupTable`."""
+    """A distance sensor; it measures metres, up to the last distance of its `lookupTable`."""
     table = node.all_numbers("lookupTable") or TABLE
     if len(table) % 3 or not table[-3] > 0.0:
         raise node.error("expected rows of distance, value and noise, the last distance more than 0", "lookupTable")
@@ -171,7 +171,7 @@ def _bumper(node: Node, placement: Placement, names: _Names, dt: float) -> Bumpe
 
 
 def by_lookup_table(nodes: Iterable[Node]) -> list[str]:
-    """Name the distance sensors whose `lookupTable` gives something else than metres."""
+    """Return the names of distance sensors whose `lookupTable` has other values than metres."""
     found = []
     for node in nodes:
         table = (node.all_numbers("lookupTable") or TABLE) if node.type == "DistanceSensor" else []

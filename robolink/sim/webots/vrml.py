@@ -1,4 +1,4 @@
-"""Reads VRML as Webots writes its worlds: a text becomes nodes with fields; what they mean is said elsewhere.
+"""Parser of VRML as Webots writes its worlds: from text to nodes with fields, without their meaning.
 
 Source: ISO/IEC 14772-1 (VRML97), clause 5 and annex A, and Webots' reference manual on what its files have of it.
 """
@@ -7,31 +7,22 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
-from typing import NoReturn, TypeAlias
+from collections.abc import Iterator
+from typing import NoReturn
 
-from robolink.exceptions import DocumentError, nearest, shown
-from robolink.plainfile import size
-
-Value: TypeAlias = "float | str | bool | Node | None"
-
-DEEPEST = 60
-"""So many nodes may be inside of each other, those that USE brings in too."""
-
-MOST = 100_000
-"""So many nodes a world may have, each counted as often as it is used."""
+from robolink.exceptions import DocumentError, nearest
+from robolink.sim.webots.vrml_node import DEEPEST, MOST, Field, Node, Source, Value
+from robolink.system.plainfile import size
+from robolink.system.terminal import shown
 
 LONGEST = 6_000_000
-"""Characters that a world may have, and bytes."""
+"""Most characters, and bytes, of a world."""
 
 MOST_WORDS = 500_000
-"""Words, brackets and strings of a world; lists of nothing but numbers, as meshes are, count as one."""
-
-LARGEST = 1e12
-"""No number that means anything in a world is larger."""
+"""Most words, brackets and strings of a world; a list of only numbers, as of a mesh, counts as one."""
 
 FIRST_YEAR = 2022
-"""Webots' first year with z upwards; what older releases wrote means other directions."""
+"""First year of Webots with z upwards; older releases mean other directions."""
 
 _TOKEN = re.compile(
     r"""[\s,]+|\#[^\n]*
@@ -48,120 +39,8 @@ _NAME = re.compile(r"[^\d+\-'.][^']*")
 _HEADER = re.compile(r"#VRML_SIM\s+R(\d{4})\S*\s+utf8\b")
 
 
-class Source:
-    """The text of a world and its name; knows which line something stands in."""
-
-    def __init__(self, text: str, name: str) -> None:
-        self.text, self.name = text.removeprefix("\ufeff"), name
-
-    def error(self, offset: int, message: str) -> DocumentError:
-        """Make an error (to raise) about what stands at `offset`."""
-        line = self.text.count("\n", 0, offset) + 1
-        column = offset - self.text.rfind("\n", 0, offset)
-        return DocumentError(shown(message, 300), self.name, line, column)
-
-
-class Field:
-    """What a field of a node holds: one value or a list of them; a vector is so many numbers."""
-
-    __slots__ = ("offset", "values")
-
-    def __init__(self, values: Sequence[Value], offset: int) -> None:
-        self.values, self.offset = values, offset
-
-
-class Node:
-    """A node: its type, its fields, and the name that DEF gave it.
-
-    The readers of fields give `default` where the field is absent, and raise `DocumentError` at the field's place
-    where it holds something else than was asked for.
-    """
-
-    __slots__ = ("defined", "depth", "fields", "offset", "size", "source", "type")
-
-    def __init__(self, kind: str, fields: dict[str, Field], source: Source, offset: int) -> None:
-        self.type, self.fields, self.source, self.offset = kind, fields, source, offset
-        self.defined = ""
-        inner = [value for field in fields.values() for value in field.values if isinstance(value, Node)]
-        self.depth: int = 1 + max((each.depth for each in inner), default=0)
-        self.size: int = 1 + sum(each.size for each in inner)
-        if self.depth > DEEPEST:
-            raise self.error(f"more than {DEEPEST} nodes are inside of each other")
-        if self.size > MOST:
-            raise self.error(f"this has more than {MOST} nodes")
-
-    @property
-    def called(self) -> str:
-        """The node as a reader knows it: its type and name."""
-        field = self.fields.get("name")
-        name = field.values[0] if field and field.values else self.defined
-        return f"{self.type} '{name}'" if isinstance(name, str) and name else self.type
-
-    def error(self, message: str, field: str = "") -> DocumentError:
-        """Make an error (to raise) about this node, or about one of its fields."""
-        at = self.fields.get(field)
-        prefix = f"{self.type}.{field}: " if field else ""
-        return self.source.error(at.offset if at else self.offset, prefix + message)
-
-    def numbers(self, field: str, *default: float) -> tuple[float, ...]:
-        """Give as many numbers as the default has."""
-        found = self.all_numbers(field) if field in self.fields else list(default)
-        if len(found) != len(default):
-            raise self.error(f"expected {_counted(len(default), 'number')}, got {len(found)}", field)
-        return tuple(found)
-
-    def number(self, field: str, default: float) -> float:
-        """Give a number."""
-        return self.numbers(field, default)[0]
-
-    def lengths(self, field: str, *default: float) -> tuple[float, ...]:
-        """Give as many numbers as the default has, each more than 0."""
-        found = self.numbers(field, *default)
-        if min(found) <= 0.0:
-            raise self.error(f"expected more than 0, got {min(found):g}", field)
-        return found
-
-    def length(self, field: str, default: float) -> float:
-        """Give a number that is more than 0."""
-        return self.lengths(field, default)[0]
-
-    def all_numbers(self, field: str) -> list[float]:
-        """Give all the numbers of a field."""
-        values = self.fields[field].values if field in self.fields else ()
-        for value in values:
-            if not isinstance(value, float):
-                raise self.error(f"expected numbers, got {_worded(value)}", field)
-            if abs(value) > LARGEST:
-                raise self.error(f"expected at most {LARGEST:g}, got {value:g}", field)
-        return [value for value in values if isinstance(value, float)]
-
-    def text(self, field: str, default: str = "") -> str:
-        """Give a string; of several the first."""
-        return next(iter(self.texts(field)), default)
-
-    def texts(self, field: str) -> list[str]:
-        """Give all the strings of a field."""
-        values = self.fields[field].values if field in self.fields else ()
-        for value in values:
-            if not isinstance(value, str):
-                raise self.error(f"expected a string, got {_worded(value)}", field)
-        return [value for value in values if isinstance(value, str)]
-
-    def nodes(self, field: str) -> list[Node]:
-        """Give the nodes of a field; NULL is none."""
-        values = self.fields[field].values if field in self.fields else ()
-        for value in values:
-            if not isinstance(value, Node) and value is not None:
-                raise self.error(f"expected a node, got {_worded(value)}", field)
-        return [value for value in values if isinstance(value, Node)]
-
-    def node(self, field: str) -> Node | None:
-        """Give the only node of a field, or None."""
-        return next(iter(self.nodes(field)), None)
-
-
 def parse(text: str, name: str) -> list[Node]:
-    """Read the text of a world into its nodes; `name` is the file's, as errors spell it.
+    """Parse the text of a world into its nodes; `name` is the file's, for errors.
 
     Raises `DocumentError` with `file:line:column`.
     """
@@ -290,7 +169,7 @@ class _Parser:
         return self._word("a field") if name == "hidden" else name  # so Webots saves the state of joints
 
     def _values(self) -> list[Value]:
-        """Read what a field holds: a list, a run of numbers, or one value."""
+        """Read the values of a field: a list, a run of numbers, or one value."""
         if self._text == "[" and self._kind == "mark":
             found: list[Value] = [*self._plain_numbers()]
             self._next()
@@ -343,15 +222,3 @@ class _Parser:
             self._fail(f"'{shown(text, 40)}' is too large a number")
         self._next()
         return value
-
-
-def _worded(value: Value) -> str:
-    if isinstance(value, Node):
-        return f"a {value.type}"
-    if isinstance(value, bool):
-        return str(value).upper()
-    return "NULL" if value is None else f"'{shown(value, 40)}'" if isinstance(value, str) else f"{value:g}"
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}" if count == 1 else f"{count} {what}s"

@@ -1,4 +1,4 @@
-"""The wheels of a robot of Webots: joints that motors turn, and what is assumed where a world says too little."""
+"""Converter of the wheels of a Webots robot: joints with motors, and assumptions where a world says too little."""
 
 from __future__ import annotations
 
@@ -8,30 +8,31 @@ from typing import NamedTuple
 
 import numpy as np
 
-from robolink.names import unlike
 from robolink.sim.arrays import Array
-from robolink.sim.description import Pose, Wheel
+from robolink.sim.description import Wheel
+from robolink.sim.quantities import Pose
 from robolink.sim.webots.footprint import Footprint
 from robolink.sim.webots.geometry import LEVEL, Placement, rounded
-from robolink.sim.webots.things import JOINTS, Found
-from robolink.sim.webots.vrml import Node
+from robolink.sim.webots.scene_tree import JOINTS, Found
+from robolink.sim.webots.vrml_node import Node
+from robolink.text.names import unlike
 
 LEFT = ("left", "esq", "izq", "gauche", "links", "sinis")
 RIGHT = ("right", "dir", "der", "droit", "rechts", "dest")
-"""How names of motors begin to say a side: English, Portuguese, Spanish, French, German, Italian."""
+"""Beginnings of motor names for a side: English, Portuguese, Spanish, French, German, Italian."""
 
 MOTOR_SPEED = 10.0
-"""rad/s: Webots' default `maxVelocity` of a motor."""
+"""Webots' default `maxVelocity` of a motor, in rad/s."""
 
 HELD = frozenset({"Brake", "LinearMotor", "PositionSensor", "RotationalMotor"})
-"""What a joint has as its device."""
+"""Node types that may be the device of a joint."""
 
 RADII = (0.01, 0.25)
-"""Metres: a wheel that a world says nothing about has at least and at most this radius."""
+"""Least and greatest radius of a wheel that a world says nothing about, in metres."""
 
 SPEEDS = (0.001, 1000.0)
 SAME = 0.02
-"""Radians by which directions may differ and still count as one."""
+"""Angle up to which directions count as equal, in radians."""
 
 
 class Motor(NamedTuple):
@@ -44,7 +45,7 @@ class Motor(NamedTuple):
 
 
 def motors(found: Found, pieces: Iterable[tuple[Node, Placement]]) -> list[Motor]:
-    """Give the motors of hinges among the pieces of a robot."""
+    """Return the motors of hinges among the pieces of a robot."""
     return [
         _motor(found, device, joint, placement)
         for joint, placement in pieces
@@ -55,24 +56,24 @@ def motors(found: Found, pieces: Iterable[tuple[Node, Placement]]) -> list[Motor
 
 
 def devices(joint: Node) -> list[Node]:
-    """Give the motors and sensors of a joint."""
+    """Return the motors and sensors of a joint."""
     return [each for field in ("device", "device2") if field in joint.fields for each in joint.nodes(field)]
 
 
 def strangers(pieces: Iterable[tuple[Node, Placement]]) -> list[Node]:
-    """Give the devices of joints that are nothing that a joint can have: most are misspelt."""
+    """Return the devices of joints that no joint can have: most are misspelt."""
     held = [device for node, _ in pieces if node.type in JOINTS for device in devices(node)]
     return [each for each in held if each.type not in HELD]
 
 
 def resolutions(pieces: Iterable[tuple[Node, Placement]]) -> list[float]:
-    """Give the resolution in radians of each position sensor, -1 for exact ones."""
+    """Return the resolution in radians of each position sensor, -1 for exact ones."""
     sensed = [device for node, _ in pieces if node.type in JOINTS for device in devices(node)]
     return [each.number("resolution", -1.0) for each in sensed if each.type == "PositionSensor"]
 
 
 def wheels(found: Sequence[Motor], outline: Footprint) -> tuple[tuple[Wheel, ...], list[str]]:
-    """Give the wheels, those of joints that say nothing too, and what to tell about them."""
+    """Return the wheels, with those of joints without any geometry, and notes about them."""
     vague, notes = [each for each in found if each.is_vague], []
     if other := [each.name for each in found if each.wheel is None and not each.is_vague]:
         notes.append(f"left out, since it turns no wheel: {listed(other)}")
@@ -86,7 +87,7 @@ def wheels(found: Sequence[Motor], outline: Footprint) -> tuple[tuple[Wheel, ...
 
 
 def heading(wheels: Sequence[Wheel]) -> float:
-    """Give the direction, seen from the robot, that wheels roll to which are all parallel; 0 for others."""
+    """Return the direction in which parallel wheels roll, seen from the robot; 0 if they are not parallel."""
     if not wheels or all(abs(math.sin(each.at.theta)) < SAME for each in wheels):
         return 0.0
     first = wheels[0].at.theta
@@ -94,7 +95,7 @@ def heading(wheels: Sequence[Wheel]) -> float:
 
 
 def listed(names: Iterable[str]) -> str:
-    """Give names in quotes."""
+    """Return names in quotes."""
     return ", ".join(f"'{each}'" for each in names)
 
 
@@ -106,7 +107,7 @@ def _motor(found: Found, device: Node, joint: Node, placement: Placement) -> Mot
 
 
 def _wheel(found: Found, name: str, speed: float, joint: Node, placement: Placement) -> Wheel | None:
-    """Make the wheel that a joint turns: what has a shape and a level axis; it rolls to the right of its axis."""
+    """Make the wheel that a joint turns: a shape with a level axis; it rolls to the right of its axis."""
     end, parameters = joint.node("endPoint"), joint.node("jointParameters")
     along = np.array(parameters.numbers("axis", 1.0, 0.0, 0.0) if parameters else (1.0, 0.0, 0.0))
     axis = placement.matrix @ along
@@ -128,7 +129,7 @@ def _radius(found: Found, end: Node, inner: Placement, axis: Array) -> float:
 
 
 def _renamed(wheels: Sequence[Wheel]) -> Iterator[Wheel]:
-    """Yield the wheels, each motor with a name of its own."""
+    """Yield the wheels, each motor with a unique name."""
     taken: list[str] = []
     for wheel in wheels:
         taken.append(unlike(wheel.motor, taken))
@@ -136,7 +137,7 @@ def _renamed(wheels: Sequence[Wheel]) -> Iterator[Wheel]:
 
 
 def _assumed(motors: Sequence[Motor], outline: Footprint) -> list[Wheel]:
-    """Make wheels of motors of which only the name is known: at the sides of the body, as large as it is long."""
+    """Make wheels for motors of which only the name is known: at the sides of the body, as large as it is long."""
     corners = outline.outline()
     (back, right), (front, left) = corners.min(axis=0), corners.max(axis=0)
     radius = round(min(max(float(front - back) / 2, RADII[0]), RADII[1]), 3)
@@ -145,7 +146,7 @@ def _assumed(motors: Sequence[Motor], outline: Footprint) -> list[Wheel]:
 
 
 def _side(name: str, index: int) -> int:
-    """Say whether a motor is on the left, 1, or on the right, -1: by its name, else in turn."""
+    """Return the side of a motor, 1 left or -1 right: by its name, else in turn."""
     words = "".join(each if each.isalnum() else " " for each in name.lower()).split()
     for side, beginnings in ((1, LEFT), (-1, RIGHT)):
         if any(word.startswith(beginnings) or word == beginnings[0][0] for word in words):

@@ -1,5 +1,5 @@
-"""Programs as processes: started in a group of their own, kept on cores, stopped, and never left behind.
+"""Child processes: each in a process group of its own, with CPU affinity, and never left behind.
 
-`process` is one; it leaves the `terminal` as it was and may be kept on some cores (`affinity`). Should the supervisor
-be killed, a program that watches its `lifeline` ends by itself, and the `guardian` ends the others.
+`process` starts and stops one; it restores the `terminal` and may set the `affinity`. If the supervisor is killed,
+a program that watches its `lifeline` ends by itself, and the `guardian`, a watchdog process, kills the others.
 """

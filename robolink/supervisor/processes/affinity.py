@@ -1,4 +1,4 @@
-"""Keep a process on some of the machine's cores."""
+"""CPU affinity: binds a process to some of the machine's cores."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from pathlib import Path
 from robolink.exceptions import RobolinkError
 
 _MOST_CORES = 4096
-"""More than a system has that Linux is made for."""
+"""Upper bound of the number of cores that Linux supports."""
 
 
 class CoreError(RobolinkError, ValueError):
-    """A core was named that this process cannot use; the text says which there are."""
+    """A core was named that this process cannot use; the text lists the usable ones."""
 
 
 def usable_cores() -> list[int]:
-    """List the numbers of the cores that a process of ours may be kept on."""
+    """Return the numbers of the cores to which a child process can be bound."""
     if sys.platform != "linux":
         return list(range(os.cpu_count() or 1))
     found: list[int] = []
@@ -31,7 +31,7 @@ def usable_cores() -> list[int]:
 
 
 def check_cores(cores: Sequence[int]) -> None:
-    """Raise `CoreError` for a core that is not there, or for none at all."""
+    """Raise `CoreError` for a core that does not exist, or for an empty list."""
     usable = usable_cores()
     missing = [str(each) for each in sorted(set(cores)) if each not in usable]
     if missing:
@@ -42,9 +42,9 @@ def check_cores(cores: Sequence[int]) -> None:
 
 
 def set_affinity(pid: int, cores: Sequence[int]) -> str:
-    """Keep a process, and all that it starts from now on, on these cores; say why not, or ''.
+    """Bind a process, and all that it starts from now on, to these cores; return why that failed, or ''.
 
-    On macOS no process can be kept on a core.
+    macOS has no CPU affinity.
     """
     if sys.platform == "linux":
         why_not = _set_on_linux(pid, cores)
@@ -56,7 +56,7 @@ def set_affinity(pid: int, cores: Sequence[int]) -> str:
 
 
 def _look(found: list[int]) -> None:
-    """Ask for all cores; the kernel grants those there are, to this thread, whose end is the end of the matter."""
+    """Request all cores; the kernel grants those that exist, to this thread, which ends right after."""
     if sys.platform == "linux":
         with contextlib.suppress(OSError):  # some containers forbid even to ask
             os.sched_setaffinity(0, range(_MOST_CORES))
@@ -64,7 +64,7 @@ def _look(found: list[int]) -> None:
 
 
 def _set_on_linux(pid: int, cores: Sequence[int]) -> str:
-    """Do so for each thread: the call for a process moves its first one and what that starts afterwards."""
+    """Bind each thread: the call for a process only affects its first thread and what that starts afterwards."""
     if sys.platform == "linux":
         try:
             os.sched_setaffinity(pid, cores)
@@ -78,7 +78,7 @@ def _set_on_linux(pid: int, cores: Sequence[int]) -> str:
 
 
 def _set_on_windows(pid: int, cores: Sequence[int]) -> str:
-    """Do so for what it has started, too: the python.exe of a virtual environment starts the Python that works."""
+    """Bind its children too: the python.exe of a virtual environment starts the Python that does the work."""
     if sys.platform != "darwin":  # Linux has the call as well, for the tests
         import psutil
 
@@ -94,7 +94,7 @@ def _set_on_windows(pid: int, cores: Sequence[int]) -> str:
 
 
 def ranges(cores: Sequence[int]) -> str:
-    """Write numbers of cores for people.
+    """Format core numbers for people.
 
     >>> ranges([0, 1, 2, 3, 6])
     'cores 0-3, 6'

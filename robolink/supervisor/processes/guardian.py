@@ -1,8 +1,8 @@
-"""Kill process groups when the supervisor that runs them is itself killed.
+"""Watchdog process (guardian): kills the process groups of a supervisor that was itself killed.
 
 A lifeline only helps with programs that watch it. So, where there are process groups, the supervisor also
-starts this file as a small program, tells it through a pipe which groups there are, and when the pipe ends with
-groups left, this waits a moment for an orderly end and kills them. A process that was just being started when the
+starts this file as a small program and names the groups to it through a pipe. When the pipe ends with
+groups left, it waits a moment for an orderly end and kills them. A process that was just being started when the
 supervisor was killed is known by the mark of its lifeline, where the system shows environments (Linux).
 
 As that program this file runs by its path, in a Python that finds neither our package nor any other that is installed
@@ -22,15 +22,15 @@ from pathlib import Path
 from subprocess import DEVNULL, PIPE, Popen
 
 PATIENCE = 2.5
-"""Seconds; longer than a lifeline's, so that programs that watch theirs can end in order."""
+"""Time for an orderly end, in seconds: longer than a lifeline's, so that programs that watch theirs can end."""
 _BEGINNING = 0.2
-"""Seconds in which a process that was just being started is one of its own."""
+"""Time in seconds in which a process that was just being started appears with its own group."""
 _IN_ORDER = b".\n"
-"""What the supervisor says last, unless it is killed."""
+"""Last message of a supervisor that was not killed."""
 
 
 class Guardian:
-    """The supervisor's side; does nothing where there are no process groups (Windows).
+    """Supervisor's side of the watchdog; does nothing where there are no process groups (Windows).
 
     `leavings` are files that it removes when the supervisor has been killed.
     """
@@ -48,11 +48,11 @@ class Guardian:
             )
 
     def guard(self, group: int) -> None:
-        """From now on, kill this group should we be gone."""
+        """Add a group to those that are killed if the supervisor is gone."""
         self._tell(b"+%d\n" % group)
 
     def release(self, group: int) -> None:
-        """Forget a group that is no more."""
+        """Remove a group that has ended."""
         self._tell(b"-%d\n" % group)
 
     def close(self) -> None:
@@ -74,7 +74,7 @@ class Guardian:
 
 
 def remaining(lines: Iterable[bytes]) -> set[int]:
-    """Give the groups that are guarded after `+group` and `-group` lines; a line cut short does not count."""
+    """Return the groups that are guarded after `+group` and `-group` lines; a line cut short does not count."""
     groups: set[int] = set()
     for line in lines:
         if line.endswith(b"\n") and line != _IN_ORDER:
@@ -84,7 +84,7 @@ def remaining(lines: Iterable[bytes]) -> set[int]:
 
 
 def remove(leavings: Iterable[str]) -> None:
-    """Remove files, as far as they are there."""
+    """Remove files, as far as they exist."""
     for each in leavings:
         with contextlib.suppress(OSError):
             Path(each).unlink()
@@ -106,7 +106,7 @@ def kill_after(groups: Iterable[int], patience: float, mark: str = "") -> None:
 
 
 def marked(mark: str) -> set[int]:
-    """Give the groups of the processes that were started with a lifeline of this mark, as far as the system tells."""
+    """Return the groups of the processes whose lifeline has this mark, as far as the system shows it."""
     groups: set[int] = set()
     for path in Path("/proc").glob("[0-9]*/environ") if mark else ():
         try:
@@ -119,7 +119,7 @@ def marked(mark: str) -> set[int]:
 
 
 def signal_group(group: int, number: int) -> bool:
-    """Send a signal (0: none) to a process group; say whether there is one."""
+    """Send a signal (0: none) to a process group; return False if it does not exist."""
     if sys.platform != "win32":
         try:
             os.killpg(group, number)
@@ -129,7 +129,7 @@ def signal_group(group: int, number: int) -> bool:
 
 
 def is_alive(group: int) -> bool:
-    """Whether a process group has a process that is more than a zombie, which nobody may ever collect."""
+    """True if a process group has a process that is no zombie (nobody may ever collect those)."""
     if not signal_group(group, 0):
         return False
     stats = [_stat(each) for each in Path("/proc").glob("[0-9]*/stat")]
@@ -137,7 +137,7 @@ def is_alive(group: int) -> bool:
 
 
 def _stat(path: Path) -> list[str]:
-    """Give the fields of a /proc/PID/stat behind the command: state, parent, group ...; none if it has gone."""
+    """Return the fields of a /proc/PID/stat behind the command: state, parent, group ...; none if it has gone."""
     try:
         return path.read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
     except OSError:

@@ -1,4 +1,4 @@
-"""Let a process notice that the one that started it is gone: an inherited pipe that then ends.
+"""Lifeline: an inherited pipe as liveness signal, by which a child notices that its parent is gone.
 
 The parent holds the writing end of a pipe and never writes; its children read. However the parent dies, the
 kernel closes its end, and the read returns. That works alike on Linux, macOS and Windows.
@@ -18,36 +18,37 @@ VARIABLE = "ROBOLINK_LIFELINE"
 
 
 class Lifeline:
-    """The parent's side: give `options()` to the `Popen` of every child."""
+    """Parent's side of the pipe: pass `options()` to the `Popen` of every child."""
 
     def __init__(self) -> None:
-        self._reading, self._writing = os.pipe()
+        self.reading, self._writing = os.pipe()
+        """File descriptor of the end that children read."""
         self.mark = os.urandom(8).hex()
-        """What only the environment of our children has, for all to see: see `guardian`."""
+        """Random mark in the environment of this parent's children; the guardian finds them by it."""
 
     def options(self) -> tuple[dict[str, str], dict[str, Any]]:
-        """Give what a child needs: environment variables, and keyword arguments of `Popen`."""
+        """Return the environment variables of a child, and the keyword arguments for its `Popen`."""
         if sys.platform == "win32":
             import msvcrt
             import subprocess
 
-            handle = msvcrt.get_osfhandle(self._reading)
+            handle = msvcrt.get_osfhandle(self.reading)
             os.set_handle_inheritable(handle, True)
             startup = subprocess.STARTUPINFO(lpAttributeList={"handle_list": [handle]})
             options: dict[str, Any] = {"startupinfo": startup}
         else:
-            handle = self._reading
+            handle = self.reading
             options = {"pass_fds": (handle,)}
         return {VARIABLE: f"{handle}:{self.mark}"}, options
 
     def close(self) -> None:
-        """Let go: children that are still there take it as our end."""
+        """Close the pipe: children that still run take it as the parent's end."""
         os.close(self._writing)
-        os.close(self._reading)
+        os.close(self.reading)
 
 
 def watch_lifeline(patience: float = 2.0) -> bool:
-    """Stop this process when its launcher is gone; say whether there is a launcher to watch.
+    """Stop this process when its launcher is gone; return True if there is a launcher to watch.
 
     It then gets a SIGINT, for an orderly end, and `patience` seconds later it is killed with all of its
     process group. Call it once, in a program's main thread, early: a Ctrl-C that its launcher held back comes now.
@@ -63,7 +64,7 @@ def watch_lifeline(patience: float = 2.0) -> bool:
 
 
 def _inherited(variable: str) -> int | None:
-    """Turn the variable into a file descriptor of ours, if it still stands for the pipe."""
+    """Return the pipe's file descriptor from the variable, if it is still that pipe; else None."""
     try:
         reading = _descriptor(int(variable.partition(":")[0]))
         if not stat.S_ISFIFO(os.fstat(reading).st_mode):
@@ -94,7 +95,7 @@ def _watch(reading: int, patience: float) -> None:
 
 
 def _interrupt() -> None:
-    """Send the main thread what Ctrl-C would, so that even a wait of its is cut short."""
+    """Interrupt the main thread as Ctrl-C does, even while it waits."""
     if sys.platform == "win32":
         import _thread
 

@@ -1,4 +1,4 @@
-"""Run one program in a process group of its own: start it, read its lines, ask it to stop."""
+"""One child process in a process group of its own: start it, read its lines, stop it."""
 
 from __future__ import annotations
 
@@ -11,36 +11,45 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
 from robolink.exceptions import RobolinkError
+from robolink.supervisor.processes.fork_server import Forked, ForkServer
 from robolink.supervisor.processes.guardian import is_alive, signal_group
 from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.supervisor.processes.terminal import Terminal
 from robolink.supervisor.rules import Rules, Step
 
 _LONGEST_LINE = 1 << 20
-"""Bytes; a longer line is printed in pieces."""
+"""Longest line, in bytes; a longer one is printed in pieces."""
 _LAST_WORDS = 1.0
-"""Seconds that the output of a process may go on behind its end, in the pipe or from its own children."""
+"""Longest wait for output after a process has ended, in seconds: in the pipe or from its own children."""
 _LEFT_BEHIND = 1.0
-"""Seconds that processes have which outlive the one that started them, between SIGTERM and SIGKILL."""
+"""Time between SIGTERM and SIGKILL for processes that outlive the one that started them, in seconds."""
 
 
 class ProcessStartError(RobolinkError, OSError):
-    """A program cannot be started; the text names it and says why."""
+    """A program cannot be started; the text names it and the reason."""
 
 
 @dataclass(frozen=True)
 class Process:
-    """What to run: a command, under a name; `env` is added to our own environment.
+    """Description of a child process.
 
-    An `interactive` process reads our standard input, the others what `input` holds. `rules` say what its end means,
-    `cpu` on which cores (from 0) it may run; none means on all. A Ctrl-C waits for one that `holds_interrupts` until
-    it calls `watch_lifeline`: nobody wants to read from which import Python was torn.
+    Args:
+        name: Unique name, shown before its lines.
+        argv: The command and its arguments.
+        env: Variables that are added to this process's environment.
+        cwd: Its working directory; None for this process's.
+        interactive: True if it reads this process's standard input; the others read `input`.
+        input: Bytes on its standard input.
+        rules: Restart rules and the meaning of its end.
+        cpu: Numbers of the cores (from 0) on which it may run; empty for all.
+        holds_interrupts: True if a Ctrl-C waits until it calls `watch_lifeline`, so that no traceback shows from
+            which import Python was torn.
     """
 
     name: str
@@ -55,23 +64,20 @@ class Process:
 
 
 class Child:
-    """A process that was started, with everything that it starts in turn: its process group."""
+    """A running process with its whole process group.
 
-    def __init__(self, process: Process, lifeline: Lifeline) -> None:
-        variables, options = lifeline.options()
+    Args:
+        process: Its description.
+        lifeline: Pipe by which it notices the end of this process.
+        server: Fork server that starts it if it can; None starts it directly.
+    """
+
+    def __init__(self, process: Process, lifeline: Lifeline, server: ForkServer | None = None) -> None:
         self._terminal = Terminal() if process.interactive else None
         try:
             with _standard_input(process) as stdin, _interrupts_held(process.holds_interrupts):
-                self._popen = subprocess.Popen(
-                    list(process.argv),
-                    env={**_plain_output(), **process.env, **variables},
-                    cwd=process.cwd,
-                    stdin=stdin,
-                    stdout=subprocess.PIPE,
-                    stderr=subprocess.STDOUT,
-                    **options,
-                    **_own_group(),
-                )
+                forked = None if server is None else _forked(process, stdin, lifeline, server)
+                self._popen: Forked | subprocess.Popen[bytes] = forked or _started(process, stdin, lifeline)
         except (OSError, ValueError) as error:
             reason = _why(error, process.argv[0])
             raise ProcessStartError(f"cannot start {process.name} ({process.argv[0]}): {reason}") from None
@@ -80,9 +86,9 @@ class Child:
         self._has_ended = False
 
     def watch(self, on_line: Callable[[str, bytes], None], on_exit: Callable[[str, int], None]) -> None:
-        """Call `on_line` with each line, then `on_exit` with the return code, on threads of our own.
+        """Call `on_line` with each line, then `on_exit` with the return code, on background threads.
 
-        At its exit nothing is left of its process group either, nor is it ever asked again: the number may be
+        At its exit nothing is left of its process group either, nor is it ever signalled again: the id may be
         another's by then.
         """
         output = self._popen.stdout
@@ -92,7 +98,7 @@ class Child:
         threading.Thread(target=self._wait, args=(reader, on_exit), daemon=True).start()
 
     def ask(self, step: Step) -> None:
-        """Ask the process group to stop, the harder the later the step; one that was paused cannot obey: it goes on."""
+        """Send the signal of a step to the process group; a paused one is resumed, since it could not obey."""
         if self._has_ended:
             return
         if sys.platform != "win32":
@@ -105,17 +111,17 @@ class Child:
             self._popen.terminate()
 
     def pause(self) -> None:
-        """Hold the process group where it stands."""
+        """Pause the process group (SIGSTOP)."""
         if sys.platform != "win32" and not self._has_ended:
             signal_group(self.group, signal.SIGSTOP)
 
     def resume(self) -> None:
-        """Let a paused process group go on."""
+        """Resume a paused process group."""
         if sys.platform != "win32" and not self._has_ended:
             signal_group(self.group, signal.SIGCONT)
 
     def is_left(self) -> bool:
-        """Whether the process, or another of its group, still runs."""
+        """True if the process, or another of its group, still runs."""
         return not self._has_ended and is_alive(self.group)
 
     def _read(self, output: IO[bytes], on_line: Callable[[str, bytes], None]) -> None:
@@ -133,8 +139,33 @@ class Child:
         on_exit(self.name, returncode)
 
 
+def _started(process: Process, stdin: IO[bytes] | int | None, lifeline: Lifeline) -> subprocess.Popen[bytes]:
+    variables, options = lifeline.options()
+    return subprocess.Popen(
+        list(process.argv),
+        env={**_plain_output(), **process.env, **variables},
+        cwd=process.cwd,
+        stdin=stdin,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        **options,
+        **_own_group(),
+    )
+
+
+def _forked(process: Process, stdin: IO[bytes] | int | None, lifeline: Lifeline, server: ForkServer) -> Forked | None:
+    """Return the process as the server has forked it; None if it cannot, or may not."""
+    if process.cwd is not None or process.interactive or not process.holds_interrupts:
+        return None
+    if not server.can_become(process.argv, process.env):
+        return None
+    with ExitStack() as stack:
+        file = stack.enter_context(Path(os.devnull).open("rb")) if stdin is None or isinstance(stdin, int) else stdin
+        return server.fork(process.argv, process.env, file.fileno(), lifeline, _plain_output())
+
+
 def _why(error: OSError | ValueError, program: str) -> str:
-    """Say why a program cannot be started; of a script that is there, systems only say that something is not."""
+    """Return why a program cannot be started; of a script, systems do not say that its interpreter is missing."""
     why = error.errno if isinstance(error, OSError) and error.filename == program else None
     if why in (errno.ENOEXEC, errno.ENOENT) and Path(program).is_file():
         return "its first line names no program that runs it, as '#!/bin/sh' does (with a line end of Unix)"
@@ -144,7 +175,7 @@ def _why(error: OSError | ValueError, program: str) -> str:
 
 
 def _end_rest(group: int) -> None:
-    """End what a process that has just ended left in its group; while there is any, its number is no other's."""
+    """Stop the rest of the group of a process that has just ended; until then its id cannot be reused."""
     if sys.platform != "win32" and signal_group(group, signal.SIGTERM):
         deadline = time.monotonic() + _LEFT_BEHIND
         while is_alive(group):
@@ -156,7 +187,7 @@ def _end_rest(group: int) -> None:
 
 @contextmanager
 def _standard_input(process: Process) -> Iterator[IO[bytes] | int | None]:
-    """Give what a process reads: a file without a name rather than a pipe, for which somebody would have to wait."""
+    """Yield a process's standard input: an unnamed file, since writing to a pipe might block."""
     if not process.input:
         yield None if process.interactive else subprocess.DEVNULL
         return
@@ -168,7 +199,7 @@ def _standard_input(process: Process) -> Iterator[IO[bytes] | int | None]:
 
 @contextmanager
 def _interrupts_held(wanted: bool) -> Iterator[None]:
-    """Have what is started meanwhile begin with SIGINT blocked, which it inherits; ours waits as long."""
+    """Block SIGINT while the block runs: a process that is started then inherits that; our own waits as long."""
     if not wanted or sys.platform == "win32":
         yield
         return
@@ -180,7 +211,7 @@ def _interrupts_held(wanted: bool) -> Iterator[None]:
 
 
 def _plain_output() -> dict[str, str]:
-    """Give our environment, with which Python prints each line at once, and in UTF-8, as consoles take it.
+    """Return this process's environment, with Python's output unbuffered and in UTF-8.
 
     On Windows it would write to a pipe in the country's own letters. Elsewhere a terminal may want other than UTF-8.
     """
@@ -189,7 +220,7 @@ def _plain_output() -> dict[str, str]:
 
 
 def _own_group() -> dict[str, Any]:
-    """Keep our Ctrl-C away from the process, so that it gets one, from us, and its children with it.
+    """Return the `Popen` options that keep the terminal's Ctrl-C away from the process: the supervisor sends it one.
 
     On POSIX that is a session of its own, not only a group: such a process may even read our terminal, for
     which a background group would be stopped (SIGTTIN).

@@ -1,4 +1,4 @@
-"""Put a terminal back as it was: a program that takes keys one by one may be killed before it does so itself."""
+"""Terminal settings, saved and restored: a program that reads single keys may be killed before it restores them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 
 class Terminal:
-    """How the terminal behind our standard input is set now, for `put_back`; nothing where there is none."""
+    """Snapshot of the settings of the terminal at standard input, for `put_back`; empty where there is none."""
 
     def __init__(self) -> None:
         self._found: list[Any] | None = None
@@ -19,7 +19,7 @@ class Terminal:
             self._found = termios.tcgetattr(0)
 
     def put_back(self) -> None:
-        """Set it so again, unless it is another job's now, as after `bg`: the shell then sees to it."""
+        """Restore the settings, unless the terminal is another job's now, as after `bg`: then the shell does it."""
         if sys.platform != "win32" and self._found is not None:
             import termios
 

@@ -1,4 +1,4 @@
-"""How a robot moves and where it is: inertial sensors, joints and satellite fixes.
+"""Motion and position of a robot: inertial sensors, joints and satellite fixes.
 
 Covariances are 3 x 3 matrices, row by row; all zeros mean that the covariance is unknown.
 """
@@ -12,7 +12,7 @@ from robolink.message import Message, Sequence, Size, float64, int8, string, uin
 
 
 class Imu(Message):
-    """What an inertial measurement unit feels along the header's axes: orientation, rad/s and m/s².
+    """Measurement of an inertial measurement unit along the header's axes: orientation, rad/s and m/s².
 
     A covariance that begins with -1 says that its quantity is not measured.
     """
@@ -63,7 +63,7 @@ class MultiDOFJointState(Message):
 
 
 class NavSatStatus(Message):
-    """Whether a satellite receiver has a fix (`status` at least STATUS_FIX), and from which systems.
+    """Status of a satellite receiver: it has a fix if `status` is at least STATUS_FIX, from the systems of `service`.
 
     `service` adds up the SERVICE codes of the systems in use.
     """
@@ -105,7 +105,7 @@ class NavSatFix(Message):
 
 
 class TimeReference(Message):
-    """What another clock, named `source`, showed at the system time ``header.stamp``."""
+    """Time of another clock, named `source`, at the system time ``header.stamp``."""
 
     header: Header
     time_ref: Time

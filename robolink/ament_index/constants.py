@@ -1,4 +1,0 @@
-"""Where ROS 2 keeps its index of what is installed."""
-
-RESOURCE_INDEX_SUBFOLDER = "share/ament_index/resource_index"
-AMENT_PREFIX_PATH_ENV_VAR = "AMENT_PREFIX_PATH"

@@ -1,0 +1,1 @@
+"""Command-line arguments of a ROS program: remappings, parameter overrides and files, log levels."""

@@ -1,0 +1,93 @@
+"""Undeclared parameters: warnings of those that were given to a program and that no node of it declares.
+
+Most are misspelt, and ROS 2 keeps silent about them. The section `/**` of a file is for any node: no warning.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Protocol
+
+from robolink.exceptions import ExternalShutdownException, closest, nearest
+from robolink.logging import get_logger
+
+if TYPE_CHECKING:
+    from robolink.arguments.command_line import Arguments
+    from robolink.arguments.overrides import Override
+    from robolink.impl.rcutils_logger import RcutilsLogger
+
+ALIKE = 0.75
+"""Least similarity of a given name and a declared one (difflib's ratio) for a warning before the end."""
+
+
+class OverriddenNode(Protocol):
+    """Node whose declared parameters are compared with the overrides given to it."""
+
+    _arguments_: Arguments
+    _declared_so_far_: set[str]
+
+    def get_fully_qualified_name(self) -> str:
+        """Return namespace and name."""
+
+    def get_logger(self) -> RcutilsLogger:
+        """Return the logger that carries the node's name."""
+
+
+class GivenParameters:
+    """Parameters of a context's command line that its nodes have not declared so far.
+
+    When nodes begin to spin, it warns only of a name that is nearly that of a parameter which was declared and not
+    given: another may still be declared, as by a lifecycle node when it is configured. The rest follows at the end.
+
+    Nodes that share a process may each have a command line of its own: what one is given is none of the others'.
+    """
+
+    def __init__(self) -> None:
+        self._open: dict[int, tuple[Override, str]] = {}
+        self._seen: dict[int, Override] = {}
+        self._declared: set[str] = set()
+
+    def expect(self, node: OverriddenNode, overrides: Iterable[Override]) -> None:
+        """Note what is given to a new node."""
+        full_name = node.get_fully_qualified_name()
+        for each in {(each.pattern, each.name): each for each in overrides}.values():
+            if id(each) not in self._seen and each.is_meant_for(full_name):
+                self._seen[id(each)] = each
+                self._open[id(each)] = each, node.get_logger().name
+
+    def look(self, node: OverriddenNode) -> None:
+        """Note what a node has declared by now; at its end, at the latest."""
+        if not self._open:
+            return
+        full_name, declared = node.get_fully_qualified_name(), node._declared_so_far_
+        self._declared |= declared
+        for each in node._arguments_.parameter_overrides:
+            if each.name in declared and each.is_for(full_name):
+                self._open.pop(id(each), None)
+
+    def warn_of_typos(self, nodes: Iterable[OverriddenNode]) -> None:
+        """Warn, once, of names that are nearly those of parameters that the nodes have."""
+        if not self._open:
+            return
+        for node in nodes:
+            self.look(node)
+        names = self._declared - {each.name for each in self._seen.values()}
+        for key, (each, logger) in list(self._open.items()):
+            near = closest(each.name, names, ALIKE)
+            if near:
+                del self._open[key]
+                _warn(each, logger, f"no node has declared it so far (did you mean '{near}'?)")
+
+    def warn_of_rest(self) -> None:
+        """Warn of all that no node has declared: this is the end. An error that ends the program says enough."""
+        error = sys.exc_info()[1]
+        if isinstance(error, Exception) and not isinstance(error, ExternalShutdownException):
+            return
+        for each, logger in self._open.values():
+            _warn(each, logger, f"no node declared it{nearest(each.name, self._declared)}")
+        self._open.clear()
+
+
+def _warn(override: Override, logger: str, what: str) -> None:
+    get_logger(logger).warning(f"parameter '{override.name}' was given, but {what}")

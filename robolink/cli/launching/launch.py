@@ -1,0 +1,279 @@
+"""robolink launch: run a system of nodes that a file describes, look at it without running it, ask a running one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+
+import typer
+import typer.core
+
+from robolink.cli.launching.completion import launch_words
+from robolink.cli.launching.launch_arguments import ASSIGN, LaunchFile, launch_file
+from robolink.cli.shared.layout import aligned
+from robolink.cli.shared.options import GRAPH_FORMATS, choice, seconds
+from robolink.cli.shared.output import say, tell
+
+if TYPE_CHECKING:
+    from robolink.launch.reading.entry import Entry
+
+BY_DATE = "rosbag2_DATE"
+"""Value of a `--record` without a folder."""
+
+VALUED = ("--duration", "--workspace", "--graph")
+"""Options whose next word is their value."""
+
+app = typer.Typer()
+
+
+class LaunchCommand(typer.core.TyperCommand):
+    """A command whose `--graph` and `--record` may go without a value."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse the arguments, a bare `--graph` or `--record` with its default value."""
+        left: list[str] = super().parse_args(ctx, with_folder(spelled_out(args)))
+        names = [each for each in ctx.params.get("words") or [] if ASSIGN not in each]
+        behind = next((args[index + 1] for index, each in enumerate(args[:-1]) if each == "--graph"), "")
+        if behind in names[1:]:  # the first is the launch file
+            ctx.fail(f"--graph draws {' or '.join(GRAPH_FORMATS)}, not '{behind}'")
+        return left
+
+
+def spelled_out(args: Sequence[str]) -> list[str]:
+    """Return the arguments with the default format behind each `--graph` that has none."""
+    result: list[str] = []
+    for index, each in enumerate(args):
+        is_bare = each == "--graph" and "".join(args[index + 1 : index + 2]) not in GRAPH_FORMATS
+        result.append(f"{each}={GRAPH_FORMATS[0]}" if is_bare else each)
+    return result
+
+
+def with_folder(args: Sequence[str]) -> list[str]:
+    """Return the arguments with the default folder for a `--record` that has none.
+
+    The word behind it is its folder if a launch file was named before, and that word is no option and no argument.
+    """
+    result: list[str] = []
+    is_value = has_file = False
+    for index, each in enumerate(args):
+        if each == "--record":
+            behind = "".join(args[index + 1 : index + 2])
+            is_value = has_file and bool(behind) and not behind.startswith("-") and ASSIGN not in behind
+            result.append(each if is_value else f"{each}={BY_DATE}")
+            continue
+        has_file |= not (is_value or each.startswith("-") or ASSIGN in each)
+        is_value = each in VALUED
+        result.append(each)
+    return result
+
+
+class Options(NamedTuple):
+    """Options of `launch`, besides the launch file."""
+
+    duration: float | None
+    workspace: str | None
+    json: bool
+    top: bool
+    watch: bool
+    view: bool
+    record: str | None
+
+
+@app.command(cls=LaunchCommand)
+def launch(
+    ctx: typer.Context,
+    words: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="FILE [ARG:=VALUE]...",
+            help="A launch file, by name, by path, or by package and name; and its arguments.",
+            autocompletion=launch_words,
+            show_default=False,
+        ),
+    ] = None,
+    duration: Annotated[float | None, seconds("--duration", "End after so many seconds.")] = None,
+    workspace: Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Where to look first.")] = "",
+    show_list: Annotated[bool, typer.Option("--list", help="List the launch files that there are.")] = False,
+    show_args: Annotated[
+        bool, typer.Option("--show-args", "-s", help="List the arguments of a launch file, and start nothing.")
+    ] = False,
+    validate: Annotated[
+        bool, typer.Option("--validate", help="Find mistakes: make each node, but start nothing.")
+    ] = False,
+    graph: Annotated[str, choice("--graph", GRAPH_FORMATS, "Draw nodes and topics as text, and start nothing")] = "",
+    json: Annotated[
+        bool, typer.Option("--json", help="Print objects of JSON, one a line: events, or what is asked.")
+    ] = False,
+    status: Annotated[bool, typer.Option("--status", help="Show what runs in other shells.")] = False,
+    top: Annotated[
+        bool, typer.Option("--top", help="Show CPU and memory of each node; without a file, of what runs elsewhere.")
+    ] = False,
+    watch: Annotated[bool, typer.Option("--watch", help="Start a node again when its file is saved.")] = False,
+    view: Annotated[bool, typer.Option("--view", help="Show the system in the browser (robolink view).")] = False,
+    record: Annotated[
+        str | None, typer.Option("--record", metavar="[FOLDER]", help="Record all that is published into a bag.")
+    ] = None,
+) -> None:
+    """Run a system of nodes until the first of them ends, Ctrl-C, or for a while: `launch follow --duration 60`.
+
+    `launch stop [NAME] [NODE]` and `launch restart [NAME] NODE` are for what runs in another shell; --status shows the
+    names. A launch file that is called stop or restart is launched by its path.
+    """
+    given = words or []
+    options = Options(duration, workspace or None, json, top, watch, view, record)
+    if show_list:
+        _list(options.workspace)
+    elif status or given[:1] in (["stop"], ["restart"]) or (top and not given):
+        _ask(ctx, given, options, status)
+    elif not given:
+        ctx.fail("launch what? --list shows what there is")
+    else:
+        asked = launch_file(ctx, given, options.workspace)
+        if show_args:
+            _show_arguments(asked, json)
+        elif validate:
+            raise typer.Exit(_validate(asked, options))
+        elif graph:
+            _draw(asked, options, graph)
+        else:
+            raise typer.Exit(_run(ctx, asked, options))
+
+
+def _list(workspace: str | None) -> None:
+    from robolink.workspace import list_launches, purpose_of
+
+    for line in aligned([(each.stem, purpose_of(each)) for each in list_launches(workspace=workspace)]):
+        say(line)
+
+
+def _ask(ctx: typer.Context, words: Sequence[str], options: Options, status: bool) -> None:
+    """Query or control the launchers that run in other shells."""
+    from robolink.cli.launching import launchers
+
+    what, *rest = words or [""]
+    if rest and (status or options.top):
+        ctx.fail("--status and --top take one NAME, or none")
+    if options.top:
+        launchers.top(what, json=options.json)
+    elif status:
+        launchers.status(what, json=options.json)
+    elif what == "restart" and 1 <= len(rest) <= 2:
+        launchers.restart(rest[-1], *rest[:-1])
+    elif what == "stop" and len(rest) <= 1:
+        launchers.stop(*rest)
+    elif what == "stop" and len(rest) == 2:
+        launchers.stop_one(rest[1], rest[0])
+    else:
+        ctx.fail("ask what? stop [NAME] [NODE] or restart [NAME] NODE, with the names that --status shows")
+
+
+def _show_arguments(asked: LaunchFile, as_json: bool) -> None:
+    from robolink.launch.reading.arguments import arguments_of
+
+    found = arguments_of(asked.path)
+    if as_json:
+        import msgspec
+
+        say(msgspec.json.encode(found).decode())
+        return
+    if not found:
+        say(f"{asked.path.stem} has no arguments")
+    rows = []
+    for each in found:
+        must = "must be given" if each.default is None else f"default: {each.default}"
+        choices = f"; one of {', '.join(each.choices)}" if each.choices else ""
+        description = f"{each.description} " if each.description else ""
+        rows.append((each.name, f"{description}({must}{choices})"))
+    for line in aligned(rows):
+        say(line)
+
+
+def _validate(asked: LaunchFile, options: Options) -> int:
+    from robolink.documents.limits import first_mistakes
+    from robolink.launch.looking.validate import Report, found, validate
+    from robolink.launch.reading.entries import read_with_mistakes
+
+    entries, mistakes = read_with_mistakes(asked.path, asked.given, workspace=options.workspace)
+    report = Report(mistakes, ["no node was looked into: that comes when its file is right"])
+    if not mistakes:
+        report = validate(entries)
+        report = Report(first_mistakes(report.mistakes), report.notes)
+    if options.json:
+        import msgspec
+
+        told = {"mistakes": [found(each) for each in report.mistakes], "notes": report.notes}
+        say(msgspec.json.encode(told).decode())
+        return 1 if report.mistakes else 0
+    for note in report.notes:
+        tell(f"robolink: {note}")
+    for mistake in report.mistakes:
+        say(str(mistake))
+    if not report.mistakes:
+        say(f"no mistake found in {asked.path}")
+    return 1 if report.mistakes else 0
+
+
+def _draw(asked: LaunchFile, options: Options, format_: str) -> None:
+    from robolink.launch.looking.graph import drawn
+    from robolink.launch.looking.look import looks_of
+    from robolink.launch.reading.entries import read_launch_file
+
+    entries = read_launch_file(asked.path, asked.given, workspace=options.workspace)
+    looks = looks_of(entries)
+    for each in entries:
+        look = looks.get(each.name)
+        if look is not None and (look.error or look.unseen):
+            tell(f"robolink: {each.name} is drawn as far as it was made: {look.error or look.unseen}")
+    say(drawn(entries, looks, format_).removesuffix("\n"))
+
+
+def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
+    from robolink.launch.reading.entries import read_launch_file
+    from robolink.launch.reading.record import record_of
+    from robolink.supervisor import watch_lifeline
+
+    watch_lifeline()  # a launcher that another one launched ends with it
+    entries = read_launch_file(asked.path, asked.given, workspace=options.workspace)
+    if not entries:
+        tell(f"robolink: {asked.path}: `if` and `unless` leave nothing to start")
+        return 0
+    from robolink.launch.command import launch
+
+    record = record_of(asked.path, asked.given) if options.record is None else options.record
+    _join_network(entries)
+    return launch(
+        entries,
+        asked.path,
+        duration=options.duration,
+        on_event=_event_printer() if options.json else None,
+        watches=options.watch,
+        shows_figures=options.top,
+        shows_view=options.view,
+        record="" if record == BY_DATE else record,
+    )
+
+
+def _join_network(entries: Sequence[Entry]) -> None:
+    """Put this process and all that it starts on the system's network; raises TransportError if there is none."""
+    import os
+
+    from robolink.launch.planning import NETWORK, network_of
+    from robolink.networks.asked import ALIASES, NAMES, domain_id
+
+    os.environ.update(network_of(entries, os.environ))  # not in each node's `env`, with which none can be forked
+    if os.environ.get(NETWORK, "localhost") not in (*NAMES, *ALIASES):
+        from robolink.transport import network
+
+        network.plan(None, domain_id(os.environ), os.environ)  # one line here, and not one of each node
+
+
+def _event_printer() -> Callable[[Any], None]:
+    import sys
+
+    import msgspec
+
+    from robolink.supervisor.reporting.writer import Writer
+    from robolink.system.terminal import fit
+
+    writer = Writer(sys.stdout)
+    return lambda event: writer.write(fit(msgspec.json.encode(event).decode()).encode() + b"\n")

@@ -1,0 +1,88 @@
+"""Shared process: several nodes with one session and one executor, but each with arguments of its own.
+
+They share what Python has once a process: modules (two nodes of one file share what stands outside
+of their class), the working directory, and the environment.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from robolink.cli.running_nodes import runner
+from robolink.cli.shared.output import tell
+from robolink.exceptions import ExternalShutdownException, RobolinkError
+from robolink.launch.shared_process import Member
+from robolink.workspace import NodeLoadError, NodeSource, find_node, load_node
+from robolink.workspace.node_factory import make_node
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+    from robolink.node import Node
+
+
+def run(members: Sequence[Member]) -> int:
+    """Run nodes until their context ends, and return the exit code, which is that of `robolink run`.
+
+    They end together: with the first callback that raises, with `shutdown`, Ctrl-C or SIGTERM.
+    """
+    sources = [find_node(each.node) for each in members]
+    if sources:
+        runner.settle(sources[0], None)
+    runner.take_names()
+    runner.pass_over_imports()
+    terminated = runner.prepare()
+    return runner.outcome(lambda: _spin(members, sources), terminated)
+
+
+def _spin(members: Sequence[Member], sources: Sequence[NodeSource]) -> None:
+    import robolink
+    from robolink.arguments.command_line import Arguments
+
+    with (
+        robolink.init(args=[]) as begun,
+        contextlib.suppress(KeyboardInterrupt, ExternalShutdownException),
+        contextlib.ExitStack() as stack,
+    ):
+        executor = robolink.get_global_executor()  # what a node gets that spins itself
+        for member, source in zip(members, sources, strict=True):
+            node = make(member, source, begun.context)
+            stack.callback(node.destroy_node)
+            executor.add_node(node)
+        # Which node would make another one later, in a callback, cannot be told: that one gets no arguments.
+        begun.context.arguments, sys.argv = Arguments(), sys.argv[:1]
+        executor.spin()
+
+
+def make(member: Member, source: NodeSource, context: Context) -> Node:
+    """Make a node with the command line that it would have alone.
+
+    Raises NodeLoadError, which begins with the node's name, for errors of robolink. Those of the user's code pass,
+    after a line on standard error with that name.
+    """
+    from robolink.arguments.command_line import parse_arguments
+    from robolink.logging import set_logger_level
+
+    sys.argv = [str(source.path or source.name), *member.args]
+    try:
+        context.arguments = parse_arguments(sys.argv)
+        node = make_node(_node_class(source))
+    except ExternalShutdownException:
+        raise
+    except RobolinkError as error:
+        raise NodeLoadError(f"{member.name}: {error}").with_traceback(error.__traceback__) from None
+    except Exception:
+        tell(f"robolink: {member.name} raised while it was made:")
+        raise
+    for name, level in context.arguments.log_levels:
+        set_logger_level(name or node.get_logger().name, level)
+    return node
+
+
+def _node_class(source: NodeSource) -> type[Node]:
+    found = load_node(source)
+    if not isinstance(found, type):
+        raise NodeLoadError(f"{source.spec} is no Node class, and needs a process of its own: leave `process` out")
+    return found

@@ -1,0 +1,141 @@
+"""Single keys from the terminal, without Enter and echo: for commands that are steered while they run."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import sys
+import time
+from collections.abc import Callable, Iterator
+
+Read = Callable[[float], str]
+"""Function that waits up to so many seconds for a key, and returns its name; '' if none came."""
+
+_NAMES = {
+    "[A": "up",
+    "[B": "down",
+    "[C": "right",
+    "[D": "left",
+    "[H": "home",
+    "[F": "end",
+    "[5~": "pageup",
+    "[6~": "pagedown",
+    "\r": "enter",
+    "\n": "enter",
+    "\x1b": "escape",
+    "\x7f": "backspace",
+    "\b": "backspace",
+    "\t": "tab",
+    "\xe0H": "up",
+    "\xe0P": "down",
+    "\xe0M": "right",
+    "\xe0K": "left",
+    "\xe0G": "home",
+    "\xe0O": "end",
+    "\xe0I": "pageup",
+    "\xe0Q": "pagedown",
+}
+"""Names of keys that are no letters, by what a terminal sends, without the escape character, and Windows' console."""
+
+_KEY = re.compile(r"\x1b[\[O](?P<special>[0-9;]*[A-Za-z~])|(?P<windows>[\x00\xe0].)|(?P<plain>.)", re.DOTALL)
+
+_WINDOWS_LOOK = 0.02
+"""Interval between two looks at Windows' console, in seconds: it cannot be waited for together with a timeout."""
+
+
+def split_keys(text: str) -> list[str]:
+    """Return the names of the keys in what a terminal has sent: a character, or a word such as `up` or `enter`.
+
+    >>> split_keys("q\\x1b[A \\r")
+    ['q', 'up', ' ', 'enter']
+    """
+    found = []
+    for match in _KEY.finditer(text):
+        special, plain = match["special"], match["plain"]
+        name = _NAMES.get(f"[{special}", "") if special else _NAMES.get(match["windows"] or plain, plain or "")
+        if name:
+            found.append(name)
+    return found
+
+
+@contextlib.contextmanager
+def keys() -> Iterator[Read]:
+    """Switch the terminal to single keys (cbreak) for the block, and restore it afterwards.
+
+    Where standard input is no terminal, or another job's, the function that is yielded only waits.
+    """
+    waiting: list[str] = []
+
+    def read(timeout: float) -> str:
+        if not waiting:
+            waiting.extend(split_keys(typed(timeout)))
+        return waiting.pop(0) if waiting else ""
+
+    with _opened() as typed:
+        yield read
+
+
+@contextlib.contextmanager
+def _opened() -> Iterator[Callable[[float], str]]:
+    """Open the terminal for single keys; yield the function that waits for what is typed."""
+    if not sys.stdin or not sys.stdin.isatty():
+        yield _nothing
+    elif sys.platform == "win32":
+        yield _typed_on_windows
+    else:
+        import termios
+        import tty
+
+        terminal = sys.stdin.fileno()
+        if _is_in_background(terminal):
+            yield _nothing
+            return
+        before = termios.tcgetattr(terminal)
+        tty.setcbreak(terminal)
+        try:
+            yield lambda timeout: _typed(terminal, timeout)
+        finally:
+            with contextlib.suppress(termios.error, OSError):  # the terminal is gone
+                termios.tcsetattr(terminal, termios.TCSADRAIN, before)
+
+
+def _nothing(timeout: float) -> str:
+    time.sleep(max(0.0, timeout))
+    return ""
+
+
+def _typed(terminal: int, timeout: float) -> str:
+    import select
+
+    if not select.select([terminal], [], [], max(0.0, timeout))[0]:
+        return ""
+    try:
+        data = os.read(terminal, 1024)
+    except OSError:  # it is gone
+        data = b""
+    if not data:
+        return _nothing(timeout)
+    return data.decode(errors="replace")
+
+
+def _typed_on_windows(timeout: float) -> str:
+    text = ""
+    if sys.platform == "win32":
+        import msvcrt
+
+        deadline = time.monotonic() + timeout
+        while not msvcrt.kbhit() and time.monotonic() < deadline:
+            time.sleep(_WINDOWS_LOOK)
+        # An arrow is two: the second waits in a buffer into which `kbhit` looks for `getch`, not for `getwch`.
+        while msvcrt.kbhit():
+            text += msvcrt.getch().decode("latin-1")
+    return text
+
+
+def _is_in_background(terminal: int) -> bool:
+    """True if the shell has put this process into the background, where it may not touch the terminal."""
+    if sys.platform != "win32":
+        with contextlib.suppress(OSError):  # it is not the terminal that controls this process
+            return os.tcgetpgrp(terminal) != os.getpgrp()
+    return False

@@ -1,0 +1,44 @@
+"""Factories of options that several commands take: seconds, and one of a few names."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import typer
+
+LONGEST_WAIT = 1e9
+"""Upper bound of any duration, in seconds (about 31 years)."""
+
+
+def seconds(flag: str, text: str, *, short: str = "") -> Any:
+    """Return an option that takes a duration of 0 to LONGEST_WAIT seconds; `short` is a flag, too."""
+
+    def check(value: float | None) -> float | None:
+        if value is not None and not (math.isfinite(value) and 0 <= value <= LONGEST_WAIT):
+            raise typer.BadParameter(f"expected 0 to {LONGEST_WAIT:g} seconds, got {value:g}")
+        return value
+
+    flags = (flag, short) if short else (flag,)
+    return typer.Option(*flags, metavar="S", help=text, callback=check)
+
+
+GRAPH_FORMATS = ["mermaid", "dot"]
+"""Formats of a graph as text: Mermaid for Markdown, DOT for Graphviz."""
+
+
+def choice(flag: str, choices: list[str], text: str, *, short: str = "") -> Any:
+    """Return an option that takes one of these names; the error for another one lists them; `short` is a flag, too."""
+
+    def check(value: str) -> str:
+        if value and value not in choices:
+            from robolink.exceptions import nearest
+
+            close = nearest(value[:100], choices)
+            raise typer.BadParameter(f"'{value[:100]}' is none of {', '.join(choices)}{close}")
+        return value
+
+    flags = (flag, short) if short else (flag,)
+    return typer.Option(
+        *flags, metavar="NAME", help=f"{text}: {', '.join(choices)}.", callback=check, autocompletion=lambda: choices
+    )

@@ -1,0 +1,38 @@
+"""robolink top: what nodes use and what topics carry, again and again. Here are the arguments."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+app = typer.Typer()
+
+
+@app.command("top")
+def top(
+    once: Annotated[bool, typer.Option("--once", help="Measure for one interval, print that, and end.")] = False,
+    every: Annotated[float, typer.Option("--every", "-e", min=0.1, help="Interval in seconds.")] = 1.0,
+    sort: Annotated[
+        str, typer.Option("--sort", "-s", help="Order: name, cpu, memory, rate, bandwidth, age or lost.")
+    ] = "name",
+    filter_: Annotated[
+        str, typer.Option("--filter", "-f", metavar="TEXT", help="Only nodes and topics with this in name or type.")
+    ] = "",
+    show_all: Annotated[bool, typer.Option("--all", "-a", help="Also names that begin with _.")] = False,
+    no_traffic: Annotated[
+        bool, typer.Option("--no-traffic", help="Subscribe to nothing: no rates, bandwidths, ages and losses.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="A JSON object on a line for each interval.")] = False,
+) -> None:
+    """Show nodes with CPU and memory, topics with rate, bandwidth, age and loss, until q or Ctrl-C."""
+    from robolink.cli.top import run
+    from robolink.cli.top.table import ORDERS, View
+    from robolink.exceptions import nearest
+
+    if sort not in ORDERS:
+        raise typer.BadParameter(
+            f"no order named '{sort}'{nearest(sort, ORDERS)}: {', '.join(ORDERS)}", param_hint="--sort"
+        )
+    view = View(order=sort, filter=filter_, hidden=show_all)
+    run.top(view, every, once=once, json=as_json, with_traffic=not no_traffic)

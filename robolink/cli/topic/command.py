@@ -1,0 +1,179 @@
+"""robolink topic: see and send what nodes publish. Here are the arguments; each verb's file does the work."""
+
+from __future__ import annotations
+
+import sys
+
+import typer
+
+from robolink.cli.topic import options as opt
+from robolink.cli.topic import qos_options as qos
+
+app = typer.Typer(no_args_is_help=True, help="See and send what nodes publish.")
+
+
+@app.command("list")
+def list_topics(
+    types: opt.ShowTypes = False,
+    count: opt.Count = False,
+    verbose: opt.Verbose = False,
+    hidden: opt.Hidden = False,
+    as_json: opt.AsJson = False,
+) -> None:
+    """List the topics that are published or subscribed to."""
+    from robolink.cli.topic import listing
+
+    listing.list_topics(types=types, count=count, verbose=verbose, hidden=hidden, json=as_json)
+
+
+@app.command("info")
+def show_info(
+    topic: opt.Topic,
+    verbose: opt.Verbose = False,
+    as_json: opt.AsJson = False,
+) -> None:
+    """Show a topic's type and who uses it."""
+    from robolink.cli.topic import listing
+
+    listing.show_info(topic, verbose=verbose, json=as_json)
+
+
+@app.command("type")
+def show_type(topic: opt.Topic, as_json: opt.AsJson = False) -> None:
+    """Show a topic's type."""
+    from robolink.cli.topic import listing
+
+    listing.show_type(topic, json=as_json)
+
+
+@app.command("find")
+def find(
+    type_: opt.Type,
+    count: opt.Count = False,
+    hidden: opt.Hidden = False,
+    as_json: opt.AsJson = False,
+) -> None:
+    """List the topics of a type."""
+    from robolink.cli.topic import listing
+
+    listing.find_topics(type_, count=count, hidden=hidden, json=as_json)
+
+
+@app.command("hz")
+def hz(
+    topics: opt.Topics,
+    window: int = opt.window(10_000),
+    filter_: opt.Filter = "",
+    wall_time: opt.WallTime = False,
+    sim_time: opt.SimTime = False,
+    as_json: opt.AsJson = False,
+) -> None:
+    """Show how often messages come, once a second."""
+    from robolink.cli.topic import meters
+
+    meters.hz(topics, meters.Flags(window, as_json, sim_time and not wall_time), filter_)
+
+
+@app.command("bw")
+def bw(
+    topics: opt.Topics,
+    window: int = opt.window(100, least=2),
+    sim_time: opt.SimTime = False,
+    as_json: opt.AsJson = False,
+) -> None:
+    """Show how many bytes come, once a second."""
+    from robolink.cli.topic import meters
+
+    meters.bw(topics, meters.Flags(window, as_json, sim_time))
+
+
+@app.command("delay")
+def delay(
+    topic: opt.Topic, window: int = opt.window(10_000), sim_time: opt.SimTime = False, as_json: opt.AsJson = False
+) -> None:
+    """Show how long after the stamp in their header messages come, once a second."""
+    from robolink.cli.topic import meters
+
+    meters.delay(topic, meters.Flags(window, as_json, sim_time))
+
+
+@app.command("echo")
+def echo_messages(
+    ctx: typer.Context,
+    topic: opt.Topic,
+    type_: opt.TypeOfTopic = "",
+    once: opt.OneMessage = False,
+    timeout: opt.Timeout = None,
+    field: opt.Field = "",
+    filter_: opt.Filter = "",
+    csv: opt.Csv = False,
+    as_json: opt.AsJson = False,
+    raw: opt.Raw = False,
+    info: opt.MessageInfo = False,
+    full_length: opt.FullLength = False,
+    length: opt.Length = 128,
+    no_arr: opt.NoArr = False,
+    no_str: opt.NoStr = False,
+    flow: opt.Flow = False,
+    clear: opt.Clear = False,
+    image: opt.AsImage = False,
+    no_lost: opt.NoLost = False,
+    node_name: opt.NodeName = "",
+    qos_profile: qos.Profile = "",
+    qos_depth: qos.Depth = None,
+    qos_history: qos.History = "",
+    qos_reliability: qos.Reliability = "",
+    qos_durability: qos.Durability = "",
+    qos_liveliness: qos.Liveliness = "",
+    qos_lease: qos.Lease = None,
+) -> None:
+    """Show what is published on a topic, until Ctrl-C."""
+    from robolink.cli.shared.show import Style
+    from robolink.cli.topic.echo import Format, Wish, run
+
+    opt.refuse_together(ctx, {"--csv": csv, "--json": as_json, "--raw": raw, "--image": image})
+    opt.refuse_together(ctx, {"--raw": raw, "--field or --filter": field or filter_})
+    if image:
+        from robolink.cli.topic.picture import check_terminal
+
+        check_terminal(sys.stdout.isatty())
+    flags = qos.flags_of(ctx.params)
+    style = Style(None if full_length else length, not no_arr, not no_str, flow)
+    wish = Wish(type_, once, timeout, filter_, not no_lost, node_name, flags)
+    run(topic, wish, Format(field, style, as_json, csv, raw, info, clear or image, image))
+
+
+@app.command("pub")
+def publish(
+    ctx: typer.Context,
+    topic: opt.Topic,
+    type_: opt.TypeOrValues = "",
+    values: opt.Values = None,
+    stdin: opt.Stdin = False,
+    once: opt.PublishOnce = False,
+    rate: opt.Rate = 1.0,
+    times: opt.Times = 0,
+    wait: opt.Wait = None,
+    max_wait: opt.MaxWait = None,
+    keep_alive: opt.KeepAlive = 0.1,
+    print_every: opt.PrintEvery = 1,
+    node_name: opt.NodeName = "",
+    sim_time: opt.SimTime = False,
+    qos_profile: qos.Profile = "",
+    qos_depth: qos.Depth = None,
+    qos_history: qos.History = "",
+    qos_reliability: qos.Reliability = "",
+    qos_durability: qos.Durability = "",
+    qos_liveliness: qos.Liveliness = "",
+    qos_lease: qos.Lease = None,
+) -> None:
+    """Publish messages on a topic, until Ctrl-C. `header: auto` and `stamp: now` become the time of sending."""
+    from robolink.cli.topic.pub import Wish, run
+
+    if values is None and opt.are_values(type_):
+        type_, values = "", type_
+    opt.refuse_together(ctx, {"--stdin": stdin, "VALUES": values is not None})
+    opt.refuse_together(ctx, {"--once": once, "--times": times})
+    flags = qos.flags_of(ctx.params)
+    wish = Wish(rate, 1 if once else times, wait, max_wait, keep_alive, print_every, node_name, flags, sim_time)
+    run(topic, type_, None if stdin else values or "{}", wish)

@@ -1,0 +1,107 @@
+"""Packages by name, and their folders."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import warnings
+from pathlib import Path
+
+from robolink.companions.ament_index.constants import RESOURCE_INDEX_SUBFOLDER
+from robolink.companions.ament_index.search_paths import get_search_paths
+from robolink.exceptions import MessageError, NotFoundError
+from robolink.interfaces import KINDS
+from robolink.interfaces._standard import STANDARD
+from robolink.workspace.find import find_package, list_packages
+
+_NAME = re.compile(r"[a-zA-Z0-9][a-zA-Z0-9_-]+", re.ASCII)
+
+
+class PackageNotFoundError(NotFoundError, KeyError):
+    """There is no package of this name; the text has the nearest name and the folders that were searched."""
+
+    __str__ = Exception.__str__  # KeyError shows its text in quotes
+
+
+class PackageNameError(MessageError):
+    """A text that cannot be a package's name."""
+
+
+def get_packages_with_prefixes() -> dict[str, str]:
+    """Return all packages: name to prefix (see `get_package_prefix`)."""
+    folders = {**_standard(), **list_packages()}
+    return {**_installed(), **{name: str(folder) for name, folder in folders.items()}}
+
+
+def get_package_prefix(package_name: str) -> str:
+    """Return the folder into which the package `package_name` is installed; its own folder if it was never built.
+
+    Raises PackageNotFoundError (a KeyError), and PackageNameError (a ValueError) for an invalid name.
+    """
+    folder = _folder(package_name)
+    return str(folder) if folder is not None else _installed()[package_name]
+
+
+def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
+    """Return the folder of a package's files: the package's own (see `robolink.companions.ament_index`).
+
+    Of a package that was built and installed it is PREFIX/share/NAME.
+
+    Args:
+        package_name: Name of the package.
+        print_warning: True warns if the folder of an installed package does not exist.
+
+    Raises:
+        PackageNotFoundError: (a KeyError) if there is no such package.
+        PackageNameError: (a ValueError) if the name is invalid.
+    """
+    folder = _folder(package_name)
+    if folder is not None:
+        return str(folder)
+    path = Path(_installed()[package_name]) / "share" / package_name
+    if print_warning and not path.exists():
+        warnings.warn(f"the share directory of {package_name}, {path}, does not exist", stacklevel=2)
+    return str(path)
+
+
+def get_package_share_path(package_name: str, print_warning: bool = True) -> Path:
+    """Return the folder of a package's files as a Path; see `get_package_share_directory`.
+
+    Args:
+        package_name: Name of the package.
+        print_warning: True warns if the folder of an installed package does not exist.
+    """
+    return Path(get_package_share_directory(package_name, print_warning))
+
+
+def _folder(name: str) -> Path | None:
+    """Return the folder of a package that was not installed; None for one that was. Raises if there is none."""
+    if _NAME.fullmatch(name) is None:
+        raise PackageNameError(f"'{name}' is not a valid package name")
+    found = find_package(name) or _standard().get(name)
+    if found is None and name not in _installed():
+        where = [str(each) for each in dict.fromkeys(list_packages().values())][:3]
+        raise PackageNotFoundError(
+            "package", name, get_packages_with_prefixes(), ", ".join([*where, *get_search_paths()])
+        )
+    return found
+
+
+def _standard() -> dict[str, Path]:
+    """Return the packages of types that come with robolink, each with the folder of its module."""
+    spec = importlib.util.find_spec("robolink.interfaces")
+    assert spec is not None
+    folder = Path(str(spec.origin)).parent
+    return {package: folder / package for kind in KINDS for package in STANDARD[kind]}
+
+
+def _installed() -> dict[str, str]:
+    """Return the packages in ROS 2's index: name to prefix."""
+    found: dict[str, str] = {}
+    for prefix in get_search_paths():
+        index = Path(prefix) / RESOURCE_INDEX_SUBFOLDER / "packages"
+        if index.is_dir():
+            for each in sorted(index.iterdir()):
+                if each.is_file() and not each.name.startswith("."):
+                    found.setdefault(each.name, prefix)
+    return found

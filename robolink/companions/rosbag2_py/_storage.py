@@ -1,0 +1,329 @@
+"""Options, filters and metadata of rosbag2_py, as plain data that programs fill in and read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from enum import IntEnum
+from pathlib import Path
+from typing import Any
+
+from robolink.bag import information, metadata
+from robolink.bag.topic import BagError, BagTopic
+from robolink.companions.rosbag2_py._qos import (
+    Duration,
+    QoS,
+    convert_rclcpp_qos_to_rclpy_qos,
+    profiles_of,
+    rmw_qos_durability_policy_t,
+    rmw_qos_history_policy_t,
+    rmw_qos_liveliness_policy_t,
+    rmw_qos_reliability_policy_t,
+    to_rclcpp_qos_vector,
+)
+from robolink.duration import Duration as Span
+from robolink.time import Time
+
+__all__ = [
+    "BagMetadata",
+    "ConverterOptions",
+    "Duration",
+    "FileInformation",
+    "MessageDefinition",
+    "MetadataIo",
+    "QoS",
+    "ReadOrder",
+    "ReadOrderSortBy",
+    "StorageFilter",
+    "StorageOptions",
+    "TopicInformation",
+    "TopicMetadata",
+    "convert_rclcpp_qos_to_rclpy_qos",
+    "get_default_storage_id",
+    "rmw_qos_durability_policy_t",
+    "rmw_qos_history_policy_t",
+    "rmw_qos_liveliness_policy_t",
+    "rmw_qos_reliability_policy_t",
+    "to_rclcpp_qos_vector",
+]
+
+
+@dataclass
+class ConverterOptions:
+    """Serialization formats of the messages of a bag and of the program: cdr, or '' for that."""
+
+    input_serialization_format: str = ""
+    output_serialization_format: str = ""
+
+
+@dataclass
+class StorageOptions:
+    """Options of a bag that is read or written.
+
+    Args:
+        uri: Its folder, or one storage file.
+        storage_id: mcap or sqlite3; '' is mcap for writing, and whatever it is for reading.
+        max_bagfile_size: Size of a file, in bytes, at which the next begins; 0 is never.
+        max_bagfile_duration: Recorded time of a file, in seconds, at which the next begins; 0 is never.
+        max_cache_size: Largest size of a snapshot, in bytes; 0 is 100 MiB.
+        storage_preset_profile: zstd_fast or zstd_small compress the chunks of an MCAP.
+        storage_config_uri: YAML file of the MCAP storage, of which `compression` has an effect.
+        snapshot_mode: True to write only what `take_snapshot` finds in the cache.
+        start_time_ns: Time of the first message to read; -1 is any.
+        end_time_ns: Time of the last message to read; -1 is any.
+        custom_data: Texts for metadata.yaml.
+    """
+
+    uri: str = ""
+    storage_id: str = ""
+    max_bagfile_size: int = 0
+    max_bagfile_duration: int = 0
+    max_cache_size: int = 0
+    storage_preset_profile: str = ""
+    storage_config_uri: str = ""
+    snapshot_mode: bool = False
+    start_time_ns: int = -1
+    end_time_ns: int = -1
+    custom_data: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass
+class StorageFilter:
+    """Topics that a reader yields: all, if nothing is listed and no expression given.
+
+    Args:
+        topics: Names of topics.
+        services_events: Names of topics of services' events.
+        regex: Expression that a whole name must match.
+        exclude_topics: Names of topics to leave out.
+        exclude_service_events: Names of topics of services' events to leave out.
+        regex_to_exclude: Expression of whole names to leave out.
+        topics_regex: Name of `regex` in Humble and Iron.
+        topics_regex_to_exclude: Name of `regex_to_exclude` in Humble and Iron.
+    """
+
+    topics: list[str] = field(default_factory=list)
+    services_events: list[str] = field(default_factory=list)
+    regex: str = ""
+    exclude_topics: list[str] = field(default_factory=list)
+    exclude_service_events: list[str] = field(default_factory=list)
+    regex_to_exclude: str = ""
+    topics_regex: str = ""
+    topics_regex_to_exclude: str = ""
+
+
+@dataclass
+class MessageDefinition:
+    """Definition of a type as text, with its encoding (ros2msg, ros2idl) and its hash."""
+
+    topic_type: str
+    encoding: str
+    encoded_message_definition: str
+    type_hash: str
+
+
+class TopicMetadata:
+    """Topic of a bag. The number may be left out, as in Humble: `TopicMetadata("/a", "std_msgs/msg/String", "cdr")`.
+
+    Args:
+        id: Number of the topic, which readers and writers give out themselves.
+        name: Its name.
+        type: Its type, such as std_msgs/msg/String.
+        serialization_format: cdr.
+        offered_qos_profiles: Profiles that publishers offered, or Humble's YAML text of them.
+        type_description_hash: Hash of the type; '' is found out where the type is known.
+    """
+
+    def __init__(self, *given: Any, **named: Any) -> None:
+        order = ("id", "name", "type", "serialization_format", "offered_qos_profiles", "type_description_hash")
+        names = order if given and isinstance(given[0], int) else order[1:]
+        if len(given) > len(names):
+            raise TypeError(f"TopicMetadata takes at most {len(names)} arguments, {len(given)} given")
+        values = dict(zip(names, given, strict=False))
+        for name in named:
+            if name not in order:
+                raise TypeError(f"TopicMetadata has no argument '{name}'")
+            if name in values:
+                raise TypeError(f"TopicMetadata got '{name}' twice")
+        values |= named
+        if lacking := [each for each in order[1:4] if each not in values]:
+            raise TypeError(f"TopicMetadata lacks {', '.join(lacking)}")
+        self.id: int = values.get("id", 0)
+        self.name: str = values["name"]
+        self.type: str = values["type"]
+        self.serialization_format: str = values["serialization_format"]
+        self.offered_qos_profiles: Any = values.get("offered_qos_profiles") or []
+        self.type_description_hash: str = values.get("type_description_hash", "")
+
+    def equals(self, other: TopicMetadata) -> bool:
+        """Return whether all but the numbers are the same."""
+        return topic_of(self) == topic_of(other)
+
+    def __repr__(self) -> str:
+        return f"TopicMetadata(id={self.id}, name={self.name!r}, type={self.type!r})"
+
+
+@dataclass
+class TopicInformation:
+    """Topic with its number of messages."""
+
+    topic_metadata: TopicMetadata
+    message_count: int
+
+
+@dataclass
+class FileInformation:
+    """File of a bag: path, times and number of messages."""
+
+    path: str
+    starting_time: Time
+    duration: Span
+    message_count: int
+
+
+@dataclass
+class BagMetadata:
+    """Metadata of a bag; `bag_size` is in bytes. Its text is that of `ros2 bag info`."""
+
+    version: int = metadata.VERSION
+    bag_size: int = 0
+    storage_identifier: str = ""
+    relative_file_paths: list[str] = field(default_factory=list)
+    files: list[FileInformation] = field(default_factory=list)
+    duration: Span = field(default_factory=Span)
+    starting_time: Time = field(default_factory=Time)
+    message_count: int = 0
+    topics_with_message_count: list[TopicInformation] = field(default_factory=list)
+    compression_format: str = ""
+    compression_mode: str = ""
+    custom_data: dict[str, str] = field(default_factory=dict)
+    ros_distro: str = ""
+
+    def __repr__(self) -> str:
+        return information.info_text(metadata_from(self))
+
+
+class ReadOrderSortBy(IntEnum):
+    """Time by which a reader sorts; files are read in the order of their messages' times of reception, too."""
+
+    ReceivedTimestamp = 0
+    PublishedTimestamp = 1
+    File = 2
+
+
+@dataclass
+class ReadOrder:
+    """Order of reading."""
+
+    sort_by: ReadOrderSortBy = ReadOrderSortBy.ReceivedTimestamp
+    reverse: bool = False
+
+
+class MetadataIo:
+    """Reader and writer of metadata.yaml."""
+
+    def write_metadata(self, uri: str, metadata_: BagMetadata) -> None:
+        """Write the metadata.yaml of a bag's folder, as version 8."""
+        metadata.write_metadata(Path(uri), metadata_from(metadata_))
+
+    def read_metadata(self, uri: str) -> BagMetadata:
+        """Read the metadata.yaml of a bag's folder. Raises BagError (a RuntimeError) if it cannot be read."""
+        folder = Path(uri)
+        found = metadata.read_metadata(folder)
+        found.bag_size = sum(each.stat().st_size for each in folder.iterdir() if each.is_file())
+        return metadata_to(found)
+
+    def metadata_file_exists(self, uri: str) -> bool:
+        """Return whether a folder has a metadata.yaml."""
+        return (Path(uri) / metadata.FILE_NAME).is_file()
+
+    def serialize_metadata(self, metadata_: BagMetadata) -> str:
+        """Return metadata as YAML."""
+        return metadata.spell_metadata(metadata_from(metadata_))
+
+    def deserialize_metadata(self, serialized_metadata: str) -> BagMetadata:
+        """Return the metadata of a YAML text. Raises BagError (a RuntimeError) if it is none."""
+        return metadata_to(metadata.parse_metadata(serialized_metadata))
+
+
+def get_default_storage_id() -> str:
+    """Return the storage that is written unless another one is asked for."""
+    return "mcap"
+
+
+def topic_of(topic: TopicMetadata) -> BagTopic:
+    """Return a topic as `robolink.bag` has it."""
+    if not topic.name or not topic.type:
+        raise BagError("a topic of a bag needs a name and a type")
+    return BagTopic(
+        topic.name,
+        topic.type,
+        topic.serialization_format or "cdr",
+        topic.type_description_hash,
+        profiles_of(topic.offered_qos_profiles),
+    )
+
+
+def topics_to(topics: Iterable[BagTopic]) -> list[TopicMetadata]:
+    """Return topics as rosbag2_py has them, numbered from 1."""
+    return [
+        TopicMetadata(
+            number,
+            each.name,
+            each.type_name,
+            each.serialization_format,
+            [QoS.of(profile) for profile in each.offered_qos],
+            each.type_hash,
+        )
+        for number, each in enumerate(topics, start=1)
+    ]
+
+
+def metadata_to(found: metadata.BagMetadata) -> BagMetadata:
+    """Return metadata as rosbag2_py has it."""
+    topics = topics_to(topic for topic, _ in found.topics_with_message_count)
+    counts = [count for _, count in found.topics_with_message_count]
+    return BagMetadata(
+        found.version,
+        found.bag_size,
+        found.storage_identifier,
+        list(found.relative_file_paths),
+        [
+            FileInformation(
+                each.path, Time(nanoseconds=each.starting_time), Span(nanoseconds=each.duration), each.message_count
+            )
+            for each in found.files
+        ],
+        Span(nanoseconds=found.duration),
+        Time(nanoseconds=found.starting_time),
+        found.message_count,
+        [TopicInformation(topic, count) for topic, count in zip(topics, counts, strict=True)],
+        found.compression_format,
+        found.compression_mode,
+        dict(found.custom_data),
+        found.ros_distro,
+    )
+
+
+def metadata_from(given: BagMetadata) -> metadata.BagMetadata:
+    """Return metadata as `robolink.bag` has it."""
+    return metadata.BagMetadata(
+        given.version,
+        given.bag_size,
+        given.storage_identifier,
+        list(given.relative_file_paths),
+        [
+            metadata.FileInformation(
+                each.path, each.starting_time.nanoseconds, each.duration.nanoseconds, each.message_count
+            )
+            for each in given.files
+        ],
+        given.duration.nanoseconds,
+        given.starting_time.nanoseconds,
+        given.message_count,
+        [(topic_of(each.topic_metadata), each.message_count) for each in given.topics_with_message_count],
+        given.compression_format,
+        given.compression_mode,
+        dict(given.custom_data),
+        given.ros_distro,
+    )

@@ -1,0 +1,33 @@
+"""Messages and their types at run time: the API of ROS 2's rosidl_runtime_py."""
+
+from robolink.companions.rosidl_runtime.convert import (
+    get_message_slot_types,
+    message_to_csv,
+    message_to_ordereddict,
+    message_to_yaml,
+)
+from robolink.companions.rosidl_runtime.get_interfaces import (
+    get_action_interfaces,
+    get_interface_packages,
+    get_interface_path,
+    get_interfaces,
+    get_message_interfaces,
+    get_service_interfaces,
+)
+from robolink.companions.rosidl_runtime.import_message import import_message_from_namespaced_type
+from robolink.companions.rosidl_runtime.set_message import set_message_fields
+
+__all__ = [
+    "get_action_interfaces",
+    "get_interface_packages",
+    "get_interface_path",
+    "get_interfaces",
+    "get_message_interfaces",
+    "get_message_slot_types",
+    "get_service_interfaces",
+    "import_message_from_namespaced_type",
+    "message_to_csv",
+    "message_to_ordereddict",
+    "message_to_yaml",
+    "set_message_fields",
+]

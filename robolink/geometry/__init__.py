@@ -1,0 +1,1 @@
+"""Geometry as pure functions: poses in the plane; rotations as matrices, angles and quaternions."""

@@ -1,0 +1,182 @@
+"""Driver of single-threaded executors in a host, which runs their callbacks in turn, without switching threads.
+
+The host runs the executor of a program of Node classes until the program ends. It runs a script's executor as long as
+the script spins it: the script's thread waits meanwhile, and goes on with the outcome of the spinning.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from heapq import heappush
+from typing import Any, cast
+
+from robolink.executors import SingleThreadedExecutor
+from robolink.host.participants import CALLBACKS, HostedInbox, Job, ProgramLike, Runner
+from robolink.running.defaults import here
+from robolink.running.entity import NOTHING, Entity
+from robolink.running.ready_queue import reserve
+from robolink.running.waiting import POLL_NS
+
+
+class HostDriver:
+    """Runs the callbacks of one executor: the host may run one while its inbox `is_free`."""
+
+    def __init__(self, executor: SingleThreadedExecutor, program: ProgramLike) -> None:
+        self.program = program
+        self.inbox = cast(HostedInbox, executor.inbox)
+        self._executor, self._context = executor, executor.context
+        self._queue, self._run = executor._queue_, executor.run
+        self._ready, self._blocked = self._queue.ready, self._queue.blocked
+        self._queue.timekeeper = self
+        self._queue.schedule = self.schedule  # type: ignore[method-assign] # in place of a method that would only call it
+        self._defaults, self._env = program.defaults, program.env
+        self.inbox.run = self.step  # type: ignore[method-assign] # in place of a method that would only call it
+        self._scheduler = program.host.scheduler
+        self._view, self._host_time, self._time = self._scheduler.view, self._scheduler.time, executor.context.time
+        self._heap, self._next_serial = self._scheduler.heap, self._scheduler.serial.__next__
+        self.is_lent = False
+        """True while somebody spins the executor, or its program's nodes are made."""
+        self._stepper: Runner | None = None
+        self._spinner: Runner | None = None
+        self._stop: Callable[[], bool] | None = None
+        self._outcome: BaseException | None = None
+        self._has_ended = False
+
+    # What code of the program sees
+
+    def runs_here(self) -> bool:
+        """True if the calling thread is in a callback."""
+        return self._stepper is not None and self._stepper is self._scheduler.runner()
+
+    def schedule(self, timer: Any, left: int) -> None:
+        """Make a timer ready in `left` nanoseconds of the program's steady time."""
+        if left <= 0 and timer._period == 0:
+            left = POLL_NS  # as often as possible is every millisecond: else time would stand still
+        time = self._time
+        due = self._host_time._now + left if time is self._host_time else time.on_base(time.steady() + left)
+        heappush(self._heap, (due, CALLBACKS, self._next_serial(), timer.version, timer))
+
+    def postpone(self, entity: Entity) -> None:
+        """Make an entity ready again in a moment."""
+        self._scheduler.at(self._scheduler.time.now() + POLL_NS, Job(self.program, lambda: self._queue.post(entity)))
+
+    # Being spun
+
+    def release(self) -> None:
+        """Start running callbacks, until the program ends: its nodes are made."""
+        self.is_lent = self.inbox.is_free = True
+        self.inbox.wake()
+
+    def withdraw(self) -> None:
+        """Run no more callbacks."""
+        self.is_lent = self.inbox.is_free = False
+
+    def spin(self, deadline: int | None, stop: Callable[[], bool] | None) -> bool:
+        """Wait while the host runs callbacks, until `stop()` or the deadline; False at once within another spinning."""
+        if self.is_lent or self._stepper is not None:
+            return False
+        self._spinner, self._stop, self._outcome, self._has_ended = self._scheduler.runner(), stop, None, False
+        try:
+            self._wait_while_lent(deadline)
+        finally:
+            self.withdraw()
+            self._spinner = self._stop = None
+        if not self._rests():  # the time is over, but not the callback that is under way
+            self._scheduler.wait(holds=self._rests)
+        self._raise_outcome()
+        return True
+
+    def _rests(self) -> bool:
+        return self._stepper is None
+
+    def _raise_outcome(self) -> None:
+        outcome, self._outcome = self._outcome, None
+        if outcome is not None:
+            raise outcome
+
+    def _wait_while_lent(self, deadline: int | None) -> None:
+        time = self._context.time
+        until = None if deadline is None else time.on_base(deadline)
+        while not self._has_ended and (deadline is None or time.steady() < deadline):
+            if self._stop is not None and self._stop():
+                return
+            if not self._context.ok() or self._executor._is_shutdown:
+                if not self._executor._is_shutdown:
+                    self._executor.check_end()
+                return
+            self.is_lent, self.inbox.is_free = True, self._stepper is None
+            self.inbox.wake()
+            self._scheduler.wait(until=until)
+
+    # Running
+
+    def step(self, runner: Runner) -> None:
+        """Run one callback, if one is ready; as short as can be, since every callback of every program comes here."""
+        if runner.defaults is not self._defaults:
+            runner.program, runner.defaults = self.program, self._defaults
+            here.defaults = self._defaults
+            if self._view.env is not self._env:
+                self._view.show(self.program)
+        if self._blocked or self._queue.pollables:
+            self._look_around()
+        ready = self._ready
+        while ready:  # as `ReadyQueue.take` does, without its lock: nobody else runs
+            entity = ready.popleft()
+            group = entity.gate
+            acquire = group._acquire_
+            if not (reserve(group, entity) if acquire is None else acquire(False)):
+                self._blocked.append(entity)
+            elif (taken := entity.take()) is not NOTHING:
+                break
+            else:
+                group.ending_execution(entity)
+        else:
+            self._check_end()
+            return
+        inbox, run = self.inbox, self._run
+        inbox.is_free, self._stepper = False, runner
+        try:
+            run(entity, taken)
+        except BaseException as error:  # noqa: BLE001 - whoever spins meets it
+            self._stepper = None
+            self._end(error)
+            return
+        self._stepper = None
+        if (self._stop is not None or not self._context._ok or self._executor._is_shutdown) and self._is_at_end():
+            self._end()
+            return
+        inbox.is_free = self.is_lent
+        if not inbox.queued and (ready or self._blocked):
+            inbox.wake()
+
+    def _look_around(self) -> None:
+        """Ask the polled entities, and let what its group kept back try again."""
+        self._queue.poll()
+        self._queue.unblock()
+
+    def _check_end(self) -> None:
+        """Let the spinning thread go if, with nothing ready, it is to end."""
+        if self._is_at_end():
+            self._let_go()
+
+    def _is_at_end(self) -> bool:
+        if not self._context._ok or self._executor._is_shutdown:
+            return True
+        return self._stop is not None and self._stop()
+
+    def _end(self, error: BaseException | None = None) -> None:
+        """End the spinning after a callback, with the exception that it raised."""
+        if self.program.driver is self:
+            self.withdraw()
+            self.program.end(error)
+        else:
+            self._outcome, self._has_ended = error, True
+            self._let_go()
+
+    def _let_go(self) -> None:
+        """Wake the thread that spins, to check if it goes on."""
+        self.inbox.is_free = False
+        if self.program.driver is self:
+            self._end()
+        elif self._spinner is not None and self._spinner.wait is not None:
+            self._scheduler.due.append(self._spinner.wait)

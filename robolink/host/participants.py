@@ -1,0 +1,355 @@
+"""Participants of a host's scheduler: threads that wait, jobs, the mailboxes of executors; and Protocols of the rest.
+
+A Protocol says what those below need of a program, of its host and of the scheduler, so that no two modules of this
+room import each other.
+"""
+
+from __future__ import annotations
+
+import _thread
+import itertools
+import random
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from types import ModuleType
+from typing import Any, Protocol
+
+from robolink.exceptions import RobolinkError
+from robolink.running.defaults import Defaults, use_defaults
+from robolink.running.inbox import Inbox
+from robolink.running.timebase import TimeBase, VirtualTime
+from robolink.transport.base import Transport
+
+ACTS, CALLBACKS, OUTSIDE = 0, 1, 2
+"""Ranks of what is due at one moment; whoever runs the host from outside comes when all else is done."""
+
+
+class Killed(BaseException):
+    """Raised in code of a killed program, wherever it waits, to unwind it."""
+
+
+class HostError(RobolinkError, RuntimeError):
+    """A host cannot go on; its text names the program that keeps it from doing so."""
+
+
+class HostLike(Protocol):
+    """Host as seen by what its programs live in."""
+
+    @property
+    def scheduler(self) -> SchedulerLike:
+        """The scheduler of all its programs."""
+
+    @property
+    def connect(self) -> Callable[[str], Transport]:
+        """Opens the network session of a program, by its name."""
+
+    def note_real_time(self, program: ProgramLike, what: str, place: str) -> None:
+        """Record a use of real time, once."""
+
+
+class DriverLike(Protocol):
+    """Driver of an executor as seen by whoever wakes it."""
+
+    inbox: HostedInbox
+
+
+class ProgramLike(Protocol):
+    """Program as seen by the scheduler, the patches and its platform."""
+
+    name: str
+    argv: list[str]
+    env: dict[str, str]
+    time: TimeBase
+    chance: random.Random
+    """Generator of its entropy."""
+    defaults: Defaults
+    main_module: ModuleType | None
+    """Its ``__main__``, if it is a script."""
+    handlers: dict[int, Any]
+    """Its handlers of signals, by number."""
+    contexts: list[Any]
+    has_begun: bool
+    has_waited: bool
+
+    @property
+    def host(self) -> HostLike:
+        """The host that runs it."""
+
+    @property
+    def driver(self) -> DriverLike | None:
+        """The driver of its Node classes' executor."""
+
+    @property
+    def wishes(self) -> Mapping[str, Any]:
+        """The host's wishes for parameters of its nodes."""
+
+    @property
+    def is_over(self) -> bool:
+        """True once it has ended, in whatever way."""
+
+    def begin(self) -> None:
+        """Make its nodes, or run its script."""
+
+    def interrupt(self) -> None:
+        """Ask it to end, as Ctrl-C does."""
+
+    def end(self, error: BaseException | None = None) -> None:
+        """End it in order, because of this error."""
+
+    def give_up(self, error: BaseException) -> None:
+        """Count it as crashed, since code of it does not go on."""
+
+
+class ViewLike(Protocol):
+    """View of the process that is shown to the program whose turn it is."""
+
+    shown: ProgramLike | None
+    env: dict[str, str]
+
+    def show(self, program: ProgramLike | None) -> None:
+        """Show what is this program's, or the process's own."""
+
+
+class SchedulerLike(Protocol):
+    """Scheduler as seen by those who wait in it."""
+
+    due: deque[Any]
+    heap: list[tuple[int, int, int, int, Any]]
+    serial: itertools.count[int]
+    runners: Runners
+    outside: Runner
+    defaults: Defaults
+    time: VirtualTime
+
+    @property
+    def view(self) -> ViewLike:
+        """View of the process that programs have."""
+
+    def at(self, time_ns: int, thing: Any) -> None:
+        """Run a job, or end a wait, at a moment of the host's time."""
+
+    def runner(self) -> Runner | None:
+        """Return the calling thread, if it takes turns."""
+
+    def wait(
+        self, inbox: HostedInbox | None = None, holds: Callable[[], bool] | None = None, until: int | None = None
+    ) -> None:
+        """Let all others go on until something arrives, `holds()`, or the host's time is `until`."""
+
+    def leave(self, me: Runner) -> None:
+        """Hand on for good: this thread ends."""
+
+
+class Turn(Protocol):
+    """A task of a thread of the host."""
+
+    def run(self, runner: Runner) -> None:
+        """Do it, in this thread."""
+
+
+class Job:
+    """A function to be called for a program, or for the host itself."""
+
+    version = 0
+
+    def __init__(self, program: ProgramLike | None, act: Callable[[], object]) -> None:
+        self.program, self.act = program, act
+
+    def run(self, runner: Runner) -> None:
+        """Call it."""
+        runner.enter(self.program)
+        self.act()
+
+
+class Wait:
+    """Wait of a thread: at an inbox, for a condition, for a moment, or for whichever of these comes first."""
+
+    __slots__ = ("error", "holds", "inbox", "runner", "version")
+
+    def __init__(self, runner: Runner, inbox: HostedInbox | None, holds: Callable[[], bool] | None) -> None:
+        self.runner, self.inbox, self.holds = runner, inbox, holds
+        self.version = 0
+        """1 once it is over."""
+        self.error: BaseException | None = None
+        """Exception to raise where it waits."""
+
+    def is_over(self) -> bool:
+        """Return True if the condition holds, or evaluating it failed."""
+        try:
+            return self.holds is not None and self.holds()
+        except BaseException as error:  # noqa: BLE001 - it is raised where it was waited for
+            self.error = error
+            return True
+
+
+class Runner:
+    """Thread that takes turns: it runs when the scheduler resumes it."""
+
+    def __init__(self, scheduler: SchedulerLike, program: ProgramLike | None = None) -> None:
+        self.scheduler, self.program = scheduler, program
+        self.turn: Turn | None = None
+        """Task to do when it is resumed."""
+        self.wait: Wait | None = None
+        self.thread: threading.Thread | None = None
+        """The thread itself; None for whoever runs the host."""
+        self.is_host = False
+        """True for the host's worker threads, each of which is a program's main thread, in turn."""
+        self.free = False
+        """True while it runs beside the scheduled thread: the host knows nothing of it, or cannot stop it."""
+        self.killed = False
+        self.is_real = False
+        """True while it waits by Python's own means, for something that comes at once."""
+        self.is_daemon = False
+        """True for a daemon thread of a program."""
+        self.is_idle = False
+        """True while it waits for work, in a pool."""
+        self.is_done = False
+        """True once the program's thread has ended."""
+        self.defaults: Defaults | None = None
+        self._resumed = _thread.allocate_lock()
+        self._resumed.acquire()
+        self.resume, self.park = self._resumed.release, self._resumed.acquire
+
+    def enter(self, program: ProgramLike | None, *, shows: bool = True) -> None:
+        """Run this program's code from now on; `shows`: with its view of the process."""
+        defaults = self.scheduler.defaults if program is None else program.defaults
+        if self.defaults is not defaults:
+            self.program, self.defaults = program, defaults
+            use_defaults(defaults)
+        if shows and self.scheduler.view.shown is not program:
+            self.scheduler.view.show(program)
+
+
+class Runners:
+    """Registry of the threads that take turns, but for the one that runs the host."""
+
+    def __init__(self) -> None:
+        self._all: list[Runner] = []
+        self._here = threading.local()
+
+    def __iter__(self) -> Iterator[Runner]:
+        return iter(self._all)
+
+    def add(self, runner: Runner) -> None:
+        """Register a thread."""
+        self._all.append(runner)
+
+    def remove(self, runner: Runner) -> None:
+        """Remove a thread, which takes turns no more."""
+        self._all.remove(runner)
+
+    def belong(self, runner: Runner) -> None:
+        """Register the calling thread as this runner."""
+        self._here.runner = runner
+
+    def here(self) -> Runner | None:
+        """Return the calling thread, if it is registered."""
+        found: Runner | None = getattr(self._here, "runner", None)
+        return found
+
+    def is_hosts(self) -> bool:
+        """Return True in one of the host's worker threads, each of which is a program's main one in turn."""
+        runner = self.here()
+        return runner is not None and runner.is_host
+
+    def waiting(self, program: ProgramLike) -> list[Runner]:
+        """Return the threads in which code of a program waits."""
+        return [each for each in self._all if each.program is program and each.wait is not None]
+
+
+class _Place:
+    """Place where a target's sink delivers: the inbox of its executor; None while no executor has it."""
+
+    __slots__ = ("inbox",)
+
+    def __init__(self, inbox: HostedInbox | None) -> None:
+        self.inbox = inbox
+
+
+class HostedInbox(Inbox):
+    """Inbox of an executor in a host: what arrives is delivered at once, and schedules the executor."""
+
+    def __init__(self, due: deque[Any]) -> None:
+        self.lock = threading.RLock()
+        self.is_free = False
+        """True while the host may run a callback of the executor: somebody spins it, and no callback is under way."""
+        self.waiter: Wait | None = None
+        """The wait of the thread that waits here, and runs the callbacks itself."""
+        self.queued = 0
+        """Number of turns of this inbox that are due."""
+        self.empty = _nothing_waits
+        self._due = due
+        self._place: HostedInbox | None = self
+
+    def sink(self, target: Any) -> Any:
+        """Return the sink of a target: a function in Python, since no foreign thread calls it."""
+        place = _Place(self._place)
+        if target.straight and target.mailbox.depth:
+            sink = _straight_sink(target, place, self._due.append)
+        else:
+            sink = _sink(target, place, self._due.append)
+        sink.place = place  # type: ignore[attr-defined]
+        return sink
+
+    def take_over(self, sink: Any) -> None:
+        """Redirect an existing sink here."""
+        sink.place.inbox = self._place
+
+    def wake(self) -> None:
+        """Schedule the executor, or the thread that waits here."""
+        self.queued += 1
+        self._due.append(self)
+
+    def sweep(self) -> None:
+        """Do nothing: all has been delivered."""
+
+    clear = sweep
+
+    def run(self, runner: Runner) -> None:
+        """Run one callback of the executor, if the host runs them."""
+
+
+class ParkedInbox(HostedInbox):
+    """Inbox of entities without an executor: what arrives stays in their mailboxes."""
+
+    def __init__(self, due: deque[Any]) -> None:
+        super().__init__(due)
+        self._place = None
+
+    def wake(self) -> None:
+        """Do nothing: nobody waits here."""
+
+
+def _sink(target: Any, place: _Place, schedule: Callable[[HostedInbox], None]) -> Callable[[Any], None]:
+    def arrive(content: Any) -> None:
+        target.deliver(content)
+        inbox = place.inbox
+        if inbox is not None:
+            inbox.queued += 1
+            schedule(inbox)
+
+    return arrive
+
+
+def _straight_sink(target: Any, place: _Place, schedule: Callable[[HostedInbox], None]) -> Callable[[Any], None]:
+    """Return the sink of a target with a plain mailbox: `Receiver.deliver` written out, as every message comes here."""
+    mailbox, waiting, depth = target.mailbox, target.mailbox.waiting, target.mailbox.depth
+    keep = waiting.append
+
+    def arrive(content: Any) -> None:
+        if len(waiting) == depth:
+            mailbox.dropped += 1
+        elif (queue := target._queue_) is not None:
+            queue.ready.append(target)
+        keep(content)
+        inbox = place.inbox
+        if inbox is not None:
+            inbox.queued += 1
+            schedule(inbox)
+
+    return arrive
+
+
+def _nothing_waits() -> bool:
+    return True

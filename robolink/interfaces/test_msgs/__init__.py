@@ -1,1 +1,0 @@
-"""ROS 2's test_msgs: types that have one of everything, for tests."""

@@ -1,0 +1,141 @@
+"""Protocols of the node as its own services see it: whom they serve with, whose parameters they read and set."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from robolink.callback_groups import CallbackGroup
+    from robolink.client import Client
+    from robolink.impl.rcutils_logger import RcutilsLogger
+    from robolink.interfaces.rcl_interfaces.msg import (
+        ListParametersResult,
+        ParameterDescriptor,
+        SetParametersResult,
+    )
+    from robolink.parameter import Parameter
+    from robolink.parameters.callbacks import OnSetCallback
+    from robolink.publisher import Publisher
+    from robolink.qos import QoSProfile
+    from robolink.running.ports import ContextLike
+    from robolink.service import Service
+    from robolink.subscription import Subscription
+    from robolink.waitable import Waitable
+
+
+class ServingNode(Protocol):
+    """Node as seen by a service of its own."""
+
+    @property
+    def context(self) -> ContextLike:
+        """The context that it lives in."""
+
+    def get_logger(self) -> RcutilsLogger:
+        """Return the logger that carries the node's name."""
+
+    def create_service(
+        self,
+        srv_type: type[Any],
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        *,
+        qos_profile: QoSProfile = ...,
+        callback_group: CallbackGroup | None = None,
+    ) -> Service:
+        """Make a service."""
+
+    def destroy_service(self, service: Service) -> bool:
+        """Undeclare a service."""
+
+
+class DeclaringNode(ServingNode, Protocol):
+    """Node as seen by a part that declares a parameter of its own."""
+
+    def has_parameter(self, name: str) -> bool:
+        """True if it is declared."""
+
+    def declare_parameter(self, name: str, value: Any, descriptor: ParameterDescriptor | None = None) -> Parameter[Any]:
+        """Declare a parameter."""
+
+    def get_parameter(self, name: str) -> Parameter[Any]:
+        """Return a parameter."""
+
+
+class TypedNode(DeclaringNode, Protocol):
+    """Node as seen by the service that describes the types of all it has."""
+
+    @property
+    def publishers(self) -> Iterator[Publisher[Any]]:
+        """Its publishers."""
+
+    @property
+    def subscriptions(self) -> Iterator[Subscription[Any]]:
+        """Its subscriptions."""
+
+    @property
+    def services(self) -> Iterator[Service]:
+        """Its services."""
+
+    @property
+    def clients(self) -> Iterator[Client]:
+        """Its clients."""
+
+    @property
+    def waitables(self) -> Iterator[Waitable]:
+        """Its actions."""
+
+
+class TimedNode(DeclaringNode, Protocol):
+    """Node as seen by its time source."""
+
+    def create_subscription(
+        self,
+        msg_type: type[Any],
+        topic: str,
+        callback: Callable[..., Any],
+        qos_profile: QoSProfile,
+        *,
+        callback_group: CallbackGroup | None = None,
+    ) -> Subscription[Any]:
+        """Make a subscription."""
+
+    def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
+        """Undeclare a subscription."""
+
+    def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
+        """Ask this callback before parameters are set."""
+
+    def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
+        """Ask it no more."""
+
+
+class ParameterNode(ServingNode, Protocol):
+    """Node as seen by the services of its parameters."""
+
+    _allow_undeclared_parameters: bool
+    _pre_set_parameters_callbacks: list[Any]
+
+    def has_parameter(self, name: str) -> bool:
+        """True if it is declared."""
+
+    def get_parameters(self, names: list[str]) -> list[Parameter[Any]]:
+        """Return parameters."""
+
+    def get_parameter_or(self, name: str, alternative_value: Parameter[Any] | None = None) -> Parameter[Any]:
+        """Return a parameter, or another one where there is none."""
+
+    def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter[Any]]:
+        """Return the parameters below a prefix."""
+
+    def get_parameter_types(self, names: list[str]) -> list[Parameter.Type]:
+        """Return the types of parameters."""
+
+    def describe_parameters(self, names: list[str]) -> list[ParameterDescriptor]:
+        """Return the descriptors of parameters."""
+
+    def list_parameters(self, prefixes: list[str], depth: int) -> ListParametersResult:
+        """Return the names of parameters."""
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter[Any]]) -> SetParametersResult:
+        """Set all or none."""

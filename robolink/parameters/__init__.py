@@ -1,0 +1,1 @@
+"""Rules for parameters: ranges, callbacks that judge a change, and descriptors."""

@@ -1,0 +1,187 @@
+"""Entity: the base of all that an executor runs, subscriptions, services, timers and the rest."""
+
+from __future__ import annotations
+
+import functools
+import weakref
+from typing import TYPE_CHECKING, Any
+
+from robolink.callback_groups import CallbackGroup, ReentrantCallbackGroup
+from robolink.running.destroyable import Destroyable
+from robolink.running.inbox import Inbox, Mailbox
+from robolink.running.ready_queue import NOTHING as NOTHING
+from robolink.running.ready_queue import ReadyQueue
+
+if TYPE_CHECKING:
+    from robolink.running.ports import ContextLike, Loop, NodeLike
+
+ANY_TIME = ReentrantCallbackGroup()
+
+
+class Entity(Destroyable):
+    """Base of what executors run: it becomes ready, is taken, and then executed. At most one executor has it at a time.
+
+    `callback_group` is the group of its callback; None lets it run at any time.
+    """
+
+    serves = False
+    """True if it goes on while a callback waits for an answer: services and clients do."""
+
+    quick = False
+    """True if no user's code is in it, so that an executor need not run it in a thread."""
+
+    is_gated = True
+    """False if its group need not be waited for."""
+
+    gate: CallbackGroup = ANY_TIME
+    """Group that decides when it may run: its callback group if it `is_gated`. Executors read it for each callback."""
+
+    def __init__(self, callback_group: CallbackGroup | None = None) -> None:
+        self.callback_group = callback_group or ANY_TIME
+        self.executor: Loop | None = None
+        self._queue_: ReadyQueue[Any] | None = None
+        """Ready queue of its executor."""
+        self._node: weakref.ReferenceType[NodeLike] | None = None
+        if callback_group is not None:
+            callback_group.add_entity(self)
+
+    @property
+    def callback_group(self) -> CallbackGroup:
+        """Group of its callback; another one may be set, as in rclpy."""
+        return self._callback_group
+
+    @callback_group.setter
+    def callback_group(self, group: CallbackGroup) -> None:
+        self._callback_group = group
+        if self.is_gated:
+            self.gate = group
+
+    @property
+    def origin(self) -> Entity:
+        """Entity whose callback is executed: another one for the parts of a callback that is a coroutine."""
+        return self
+
+    @property
+    def node(self) -> NodeLike | None:
+        """Node that has it, if one has."""
+        return None if self._node is None else self._node()
+
+    @node.setter
+    def node(self, node: NodeLike) -> None:
+        self._node = weakref.ref(node)
+
+    @property
+    def _used_in_(self) -> ContextLike | None:
+        node = self.node
+        return None if node is None else node.context
+
+    def attach(self, executor: Loop, queued: int = 0) -> None:
+        """Belong to this `executor` from now on; it is `queued` times in its ready queue already."""
+        self.executor, self._queue_ = executor, executor._queue_
+
+    def detach(self) -> None:
+        """Belong to no executor."""
+        self.executor = self._queue_ = None
+
+    def take(self) -> Any:
+        """Return what is to be executed, or NOTHING; called under the inbox's lock."""
+        raise NotImplementedError
+
+    def execute(self, taken: Any) -> Any:
+        """Run the user's callback with what was `taken`; a coroutine that it returns is run by the executor."""
+        raise NotImplementedError
+
+
+class PolledEntity(Entity):
+    """Entity that is polled: its executor asks it, before each look at what is ready, if it is ready too."""
+
+    waits = False
+    """True if it was found ready and waits its turn."""
+
+    def is_ready(self) -> bool:
+        """True if there is something to execute; called by the thread that spins."""
+        raise NotImplementedError
+
+    def attach(self, executor: Loop, queued: int = 0) -> None:
+        """Belong to this executor, which polls it."""
+        super().attach(executor, queued)
+        self.waits = queued > 0
+        executor._queue_.add_pollable(self)
+
+    def detach(self) -> None:
+        """Belong to no executor; nothing polls it then."""
+        queue = self._queue_
+        if queue is not None:
+            queue.remove_pollable(self)
+        super().detach()
+
+
+class Receiver(Entity):
+    """Entity that a transport delivers to: it has a mailbox, and a sink that leads to the executor's inbox.
+
+    Args:
+        parking: Inbox of the context, for what arrives while no executor has it.
+        depth: Largest number of arrivals that wait; 0 is any number.
+        callback_group: Group of its callback; None lets it run at any time.
+    """
+
+    straight = False
+
+    gives_way = False
+    """True if what arrives waits until all else that is ready has had its turn."""
+
+    def __init__(self, parking: Inbox, depth: int, callback_group: CallbackGroup | None = None) -> None:
+        super().__init__(callback_group)
+        self._parking = parking
+        self.mailbox = Mailbox(depth)
+        self.sink: functools.partial[Any] = parking.sink(self)
+        self._gave_way = 0
+
+    def attach(self, executor: Loop, queued: int = 0) -> None:
+        """Belong to this `executor`, which holds its lock: what arrives goes to its inbox, what waited is ready."""
+        queue = executor._queue_
+        self._move(self._parking, queue.inbox)
+        super().attach(executor, queued)
+        queue.ready.extend([self] * (len(self.mailbox) - queued))
+
+    def detach(self) -> None:
+        """Belong to no executor: what arrives waits in the context's inbox."""
+        queue = self._queue_
+        if queue is not None:
+            with queue.lock:
+                self._move(queue.inbox, self._parking)
+                super().detach()
+
+    def _move(self, before: Inbox, after: Inbox) -> None:
+        # Both locks, so that nothing is delivered or taken meanwhile; the executor's always first.
+        with self._parking.lock:
+            self.redirect(after)
+            before.clear()  # nothing of ours stays behind
+
+    def redirect(self, inbox: Inbox) -> None:
+        """Redirect what comes from now on to this `inbox`."""
+        inbox.take_over(self.sink)
+
+    def deliver(self, arrived: Any) -> None:
+        """Keep what `arrived`, and make it ready once more if that is one more than before."""
+        mailbox = self.mailbox
+        if mailbox.depth:
+            if not mailbox.put(arrived):
+                return
+        else:
+            mailbox.waiting.append(arrived)
+        if self._queue_ is not None:
+            self._queue_.ready.append(self)
+
+    def take(self) -> Any:
+        """Return the oldest of what waits, or NOTHING."""
+        waiting = self.mailbox.waiting
+        if self.gives_way:
+            queue = self._queue_
+            if queue is not None and queue.ready and self._gave_way < len(waiting):
+                self._gave_way += 1
+                queue.ready.append(self)
+                return NOTHING
+        if self._gave_way:
+            self._gave_way -= 1
+        return waiting.popleft() if waiting else NOTHING

@@ -1,0 +1,225 @@
+"""Draws worlds with matplotlib: into axes of one's own, or into a picture file.
+
+    draw_world(axes, load_world("configs/worlds/lab.yaml"))
+    save_world(load_world("configs/worlds/lab.yaml"), Path("lab.png"))
+
+matplotlib is an optional part: `pip install matplotlib`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from robolink.exceptions import RobolinkError
+from robolink.geometry.plane import Area, Pose, placed_on
+from robolink.sim.description import MapWalls, Obstacle, RobotDescription, Shape, WorldDescription
+from robolink.sim.quantities import Point
+from robolink.sim.sensors import Bumper, Looking
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.patches import Patch
+
+FORMATS = (".png", ".svg", ".pdf")
+
+# Okabe and Ito's colours, which people who see few colours can tell apart.
+WALL, ROBOT, TOUCH = "#222222", "#009E73", "#E69F00"
+KINDS = {"fixed": "#A8A8A8", "can be pushed": "#E69F00", "moves by itself": "#56B4E9"}
+"""Colours of obstacles by kind."""
+
+_INCH = 100.0
+"""Resolution of a picture, in pixels to an inch."""
+
+_NARROWEST = 2.5
+"""Least size of a picture in both directions, in inches."""
+
+_LEAST_RADII = 10.0
+"""Least size of the drawn area in both directions, in radii of the largest robot."""
+
+_NOWHERE = ((0.0,), (0.0,))
+"""Place of an empty world: x and y."""
+
+_NAMED = 30
+"""Most robots whose names are written beside them."""
+
+
+class DrawingError(RobolinkError, ValueError):
+    """A picture that cannot be drawn; the text says why, and what to do."""
+
+
+def check_picture(path: Path) -> None:
+    """Raise `DrawingError` if no picture can be drawn into such a file, or if matplotlib is not installed."""
+    if path.suffix.lower() not in FORMATS:
+        raise DrawingError(f"'{path.name}' is no picture that can be drawn: end its name in {', '.join(FORMATS)}")
+    try:
+        import matplotlib as _  # noqa: F401
+    except ImportError:
+        raise DrawingError("drawing needs matplotlib, which is not installed: pip install matplotlib") from None
+
+
+def save_world(description: WorldDescription, path: Path, size: int = 1000) -> None:
+    """Draw a world into a picture file; no window is opened.
+
+    Args:
+        description: The world.
+        path: The file: .png, .svg or .pdf.
+        size: Length of the picture's longer side, in pixels (or hundredths of an inch).
+
+    Raises:
+        DrawingError: if it is another kind of file, or matplotlib is not installed.
+        OSError: if the file cannot be written.
+    """
+    check_picture(path)
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=_figure_size(description, size / _INCH), dpi=_INCH, layout="constrained")
+    axes = figure.add_subplot()
+    kinds = draw_world(axes, description)
+    axes.set_title(description.world.name)
+    if len(kinds) > 1:
+        figure.legend(handles=kinds, loc="outside lower center", ncols=len(kinds), frameon=False)
+    figure.savefig(path)
+
+
+def draw_world(axes: Axes, description: WorldDescription) -> list[Patch]:
+    """Draw a world at its start: walls, obstacles and their paths, robots with their headings and sensors.
+
+    One metre is as long in both directions.
+
+    Args:
+        axes: The axes of matplotlib to draw into.
+        description: The world.
+
+    Returns:
+        Handles for a legend: one for each kind of obstacle that there is.
+    """
+    from matplotlib.patches import Patch
+
+    _draw_walls(axes, description)
+    for obstacle in description.obstacles:
+        _draw_obstacle(axes, obstacle)
+    for robot in description.robots:
+        _draw_robot(axes, robot, named=len(description.robots) <= _NAMED)
+    area = _extent(description)
+    axes.update_datalim([area[:2], area[2:]])
+    axes.set_aspect("equal")
+    axes.autoscale_view()
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
+    axes.set_axisbelow(True)
+    axes.grid(color="#E5E5E5", linewidth=0.6)
+    kinds = {_kind(each) for each in description.obstacles}
+    return [Patch(facecolor=KINDS[kind], edgecolor=WALL, label=kind) for kind in KINDS if kind in kinds]
+
+
+def _draw_walls(axes: Axes, description: WorldDescription) -> None:
+    from matplotlib.collections import LineCollection
+
+    for wall in description.walls:
+        width = 1.0 if isinstance(wall, MapWalls) else 2.0
+        lines = LineCollection(wall.segments(), colors=WALL, linewidths=width, capstyle="round", zorder=3)
+        axes.add_collection(lines, autolim=True)
+
+
+def _kind(obstacle: Obstacle) -> str:
+    if obstacle.path is not None:
+        return "moves by itself"
+    return "fixed" if obstacle.mass is None else "can be pushed"
+
+
+def _draw_obstacle(axes: Axes, obstacle: Obstacle) -> None:
+    if obstacle.path is not None:
+        points = [*obstacle.path, obstacle.path[0]] if obstacle.closed else obstacle.path
+        axes.plot(
+            *zip(*points, strict=True), linestyle=(0, (5, 4)), color=KINDS[_kind(obstacle)], linewidth=1.2, zorder=2
+        )
+    style = {"facecolor": KINDS[_kind(obstacle)], "edgecolor": WALL, "linewidth": 0.8, "zorder": 4}
+    axes.add_patch(_outline(obstacle, obstacle.start.place, style))
+
+
+def _draw_robot(axes: Axes, robot: RobotDescription, *, named: bool) -> None:
+    for sensor in robot.sensors:
+        if isinstance(sensor, Looking):
+            _draw_view(axes, robot, sensor)
+    style = {"facecolor": ROBOT, "edgecolor": WALL, "linewidth": 0.8, "zorder": 6}
+    parts = [_outline(robot.shape, robot.pose.place, style)]
+    for wheel in robot.wheels:
+        tyre = Shape(box=(2 * wheel.radius, max(wheel.radius / 2, 0.005)))
+        parts.append(_outline(tyre, placed_on(robot.pose.place, wheel.at.place), {"facecolor": WALL, "zorder": 7}))
+    for part in parts:
+        axes.add_patch(part)
+    front = robot.shape.circle or max(x for x, _ in robot.shape.corners())
+    nose = placed_on(robot.pose.place, Pose(front))
+    axes.plot([robot.pose.x, nose.x], [robot.pose.y, nose.y], color="white", linewidth=1.6, zorder=8)
+    if named:
+        _write_name(axes, robot.name, parts)
+
+
+def _write_name(axes: Axes, name: str, parts: Sequence[Patch]) -> None:
+    """Write a robot's name below all its parts, readable on whatever lies there."""
+    from matplotlib.patheffects import withStroke
+    from matplotlib.transforms import Bbox
+
+    box = Bbox.union([each.get_path().transformed(each.get_patch_transform()).get_extents() for each in parts])
+    written = axes.annotate(
+        name,
+        ((box.x0 + box.x1) / 2, box.y0),
+        (0, -3),
+        textcoords="offset points",
+        ha="center",
+        va="top",
+        zorder=9,
+        size=8,
+        color=WALL,
+    )
+    written.set_path_effects([withStroke(linewidth=2, foreground="white")])
+
+
+def _draw_view(axes: Axes, robot: RobotDescription, sensor: Looking) -> None:
+    """Draw the sector of a sensor's view, not to its full range: that would be the whole picture."""
+    from matplotlib.patches import Wedge
+
+    reach, feels = robot.shape.outer_radius(), isinstance(sensor, Bumper)
+    x, y, theta = placed_on(robot.pose.place, Pose() if sensor.mount is None else sensor.mount.place)
+    radius = 1.15 * reach if feels else min(getattr(sensor, "range", (0.0, math.inf))[1], 1.5 * reach + 0.4)
+    first, color = math.degrees(theta) + sensor.right, TOUCH if feels else ROBOT
+    axes.add_patch(Wedge((x, y), radius, first, first + sensor.fov, color=color, alpha=0.15, linewidth=0, zorder=1))
+
+
+def _outline(shape: Shape, pose: Pose, style: dict[str, Any]) -> Patch:
+    """Make the outline of a shape at a pose."""
+    from matplotlib.patches import Circle, Polygon
+
+    if shape.circle is not None:
+        return Circle((pose.x, pose.y), shape.circle, **style)
+    return Polygon([placed_on(pose, Pose(x, y))[:2] for x, y in shape.corners()], closed=True, **style)
+
+
+def _figure_size(description: WorldDescription, longer: float) -> Point:
+    """Return a figure's width and height in inches: the world fills it, with room for labels."""
+    area = _extent(description)
+    scale = longer / max(area.width, area.height)
+    return max(area.width * scale, _NARROWEST), max(area.height * scale, _NARROWEST)
+
+
+def _extent(description: WorldDescription) -> Area:
+    """Return the bounding box of a world, so large that no robot fills it."""
+    points = [point for wall in description.walls for segment in wall.segments() for point in segment]
+    points += [(each.start.x, each.start.y) for each in description.obstacles]
+    points += [point for each in description.obstacles for point in each.path or ()]
+    points += [(each.pose.x, each.pose.y) for each in description.robots]
+    least = _LEAST_RADII * max((each.shape.outer_radius() for each in description.robots), default=0.1)
+    (x_min, x_max), (y_min, y_max) = (
+        _widened(each, least) for each in (zip(*points, strict=True) if points else _NOWHERE)
+    )
+    return Area(x_min, y_min, x_max, y_max)
+
+
+def _widened(values: Sequence[float], least: float) -> tuple[float, float]:
+    """Return the least and the greatest of some values, moved apart until they are `least` from each other."""
+    low, high = min(values), max(values)
+    more = max(0.0, least - (high - low)) / 2
+    return low - more, high + more

@@ -1,0 +1,177 @@
+"""Sensors as a world file describes them: a Struct for each kind, and the table `SENSORS` of all kinds.
+
+How to add one: "Add a sensor" in docs/development/recipes.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Literal, TypeAlias
+
+from msgspec import Meta, Struct
+
+from robolink.sim.quantities import Length, Pose, Rate, Share
+
+Deviation: TypeAlias = Annotated[float, Meta(ge=0.0, le=100.0)]
+Nearest: TypeAlias = Annotated[float, Meta(ge=0.0, le=10_000.0)]
+Bearing: TypeAlias = Annotated[float, Meta(ge=-360.0, le=360.0)]
+
+
+class Sensor:
+    """Base class of all sensors; a sensor's first key is its kind, and the value of that key its topic.
+
+    A key's meaning, for editors, is the `description` of its `Meta`, or that of its name in `schema.MEANINGS`.
+    """
+
+    __slots__ = ()
+    __struct_fields__: ClassVar[tuple[str, ...]]
+    rate: float
+
+    @property
+    def kind(self) -> str:
+        """The kind of sensor, as a world file spells it: `lidar`, `imu` ..."""
+        return self.__struct_fields__[0]
+
+    @property
+    def topic(self) -> str:
+        """The topic that the sensor publishes on."""
+        return str(getattr(self, self.kind))
+
+    @property
+    def mount(self) -> Pose | None:
+        """The sensor's pose on the robot; None for a sensor that has no place of its own."""
+        return getattr(self, "offset", None)
+
+    @property
+    def has_frame(self) -> bool:
+        """True if a reading is made in a frame: the sensor's own if it has a `mount`, else the robot's base_link."""
+        return True
+
+    def problems(self, wheels: int) -> Iterator[tuple[str, str]]:
+        """Yield each mistake that types cannot express: its key ('' for the whole sensor), and the reason.
+
+        `wheels` is the number of the robot's wheels.
+        """
+        return iter(())
+
+
+class Looking(Sensor):
+    """Base class of sensors that see or feel in a sector, `fov` degrees wide."""
+
+    __slots__ = ()
+    fov: float
+
+    @property
+    def right(self) -> float:
+        """The right end of the sector, in degrees from ahead: `start`, by default half of `fov` to the right."""
+        start: float | None = getattr(self, "start", None)
+        return -self.fov / 2 if start is None else start
+
+
+class Bumper(Looking, Struct, frozen=True, forbid_unknown_fields=True):
+    """A contact sensor on the topic `bumper`: true if something touches the robot within its sector.
+
+    The sector is `fov` degrees wide and begins at `start`, its right end (by default half of `fov` to the right).
+    """
+
+    bumper: str
+    rate: Rate = 10.0
+    fov: Annotated[
+        float, Meta(ge=0.01, le=360.0, description="Degrees of the sector that feels; 360 is all round.")
+    ] = 360.0
+    start: Bearing | None = None
+
+
+class ImuNoise(Struct, frozen=True, forbid_unknown_fields=True):
+    """Standard deviations of a reading: turning in rad/s, acceleration in m/s²."""
+
+    gyro: Annotated[Deviation, Meta(description="Standard deviation in rad/s.")] = 0.0
+    accel: Annotated[Deviation, Meta(description="Standard deviation in m/s².")] = 0.0
+
+
+class Imu(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
+    """An inertial measurement unit on the topic `imu`: heading, turning speed, acceleration, in the robot's frame."""
+
+    imu: str
+    rate: Rate = 50.0
+    noise: Annotated[ImuNoise, Meta(description="Standard deviations of a reading.")] = ImuNoise()
+
+
+class RangeFinder(Looking, Struct, frozen=True, forbid_unknown_fields=True):
+    """A sonar or infrared sensor on the topic `range_finder`: the distance to the nearest thing within its cone.
+
+    `fov` is in degrees, `range` is [nearest, farthest] in metres, `noise` a standard deviation in metres, `offset`
+    its pose on the robot.
+    """
+
+    range_finder: str
+    rate: Rate = 10.0
+    fov: Annotated[float, Meta(ge=0.01, le=180.0)] = 15.0
+    range: tuple[Nearest, Length] = (0.02, 4.0)
+    noise: Deviation = 0.0
+    offset: Pose = Pose(0.0, 0.0, 0.0)
+    radiation: Annotated[Literal["ultrasound", "infrared"], Meta(description="Kind of radiation.")] = "ultrasound"
+
+    def problems(self, wheels: int) -> Iterator[tuple[str, str]]:
+        """Yield the mistake of an empty range."""
+        return _range_problems(self.range)
+
+
+class Encoders(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
+    """Wheel encoders on the topic `encoders`: how far each wheel has turned, in whole `ticks` (0: exactly)."""
+
+    encoders: str
+    rate: Rate = 50.0
+    ticks: Annotated[int, Meta(ge=0, le=10_000_000, description="Ticks per turn; 0 is exact.")] = 0
+
+    @property
+    def has_frame(self) -> bool:
+        """False: the joints of wheels are in no frame."""
+        return False
+
+    def problems(self, wheels: int) -> Iterator[tuple[str, str]]:
+        """Yield the mistake of encoders on a robot without wheels."""
+        if not wheels:
+            yield "", "encoders count the turns of wheels, and this robot has no 'wheels'"
+
+
+class Lidar(Looking, Struct, frozen=True, forbid_unknown_fields=True):
+    """A planar laser scanner that publishes on the topic `lidar`.
+
+    `fov` and `start` (the first beam; by default half of `fov` to the right) are in degrees, `range` is
+    [nearest, farthest] in metres, `noise` a standard deviation in metres, `dropout` the share of beams that get
+    no return, `offset` its pose on the robot. A full circle has a beam each 360/beams degrees, so that none is
+    doubled; a smaller field of view has a beam at both ends. With `intensities` a scan also tells how much light
+    came back: the reflectance of what was hit, times the cosine of the angle at which the beam met it.
+    """
+
+    lidar: str
+    rate: Rate = 10.0
+    beams: Annotated[int, Meta(ge=2, le=100_000, description="Number of beams of a scan.")] = 360
+    fov: Annotated[float, Meta(ge=0.01, le=360.0)] = 360.0
+    start: Bearing | None = None
+    range: tuple[Nearest, Length] = (0.12, 12.0)
+    noise: Deviation = 0.0
+    dropout: Annotated[Share, Meta(description="Share of beams without a return.")] = 0.0
+    offset: Pose = Pose(0.0, 0.0, 0.0)
+    intensities: Annotated[bool, Meta(description="True: scans have intensities.")] = False
+
+    def problems(self, wheels: int) -> Iterator[tuple[str, str]]:
+        """Yield the mistake of an empty range."""
+        return _range_problems(self.range)
+
+
+def _range_problems(limits: tuple[float, float]) -> Iterator[tuple[str, str]]:
+    near, far = limits
+    if near >= far:
+        yield "range", f"the nearest, {near:g} m, must be less than the farthest, {far:g} m"
+
+
+SENSORS: dict[str, type[Sensor]] = {
+    each.__struct_fields__[0]: each for each in (Lidar, Bumper, Imu, RangeFinder, Encoders)
+}
+"""Sensor classes by kind, the key that names it in a world file.
+
+Each has an entry in two more tables, by its class: `DEVICES` in sim/sensing/devices.py and `SENSOR_MESSAGES` in
+world_node/messages.py. tests/world_node/test_sensor_tables.py names the one that is missing.
+"""

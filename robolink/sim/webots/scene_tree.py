@@ -1,0 +1,216 @@
+"""Visitor of a Webots scene tree: collects solid things, arenas, robots, and unknown nodes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from robolink.sim.description import MOST_OBSTACLES, MOST_ROBOTS
+from robolink.sim.quantities import FARTHEST
+from robolink.sim.webots.geometry import Part, Placement, box, part
+from robolink.sim.webots.sensors import LIDARS
+from robolink.sim.webots.vrml_node import Node
+
+DENSITY = 1000.0
+"""Default density of a solid with physics, in kg/m³, as in Webots."""
+
+LIGHTEST, HEAVIEST = 0.001, 100_000.0
+"""Least and greatest mass of a thing, in kg."""
+
+CIRCLE_SIDES = 48
+"""Default number of walls of a round arena, as in Webots."""
+
+GROUPS = frozenset({"Billboard", "Group", "Pose", "Slot", "Transform"})
+JOINTS = frozenset({"BallJoint", "Hinge2Joint", "HingeJoint", "SliderJoint"})
+DEVICES = frozenset(
+    {"Accelerometer", "Altimeter", "Camera", "Compass", "Connector", "Display", "DistanceSensor", "Emitter", "GPS"}
+    | {"Gyro", "InertialUnit", "LED", "Lidar", "LightSensor", "Pen", "Radar", "RangeFinder", "Receiver", "Speaker"}
+    | {"TouchSensor", "VacuumGripper"}
+)
+SOLIDS = DEVICES | {"Charger", "Robot", "Solid", "Track", "TrackWheel"}
+IGNORED = frozenset(
+    {"Background", "DirectionalLight", "Floor", "Fluid", "Fog", "Muscle", "PointLight", "Propeller", "Skin"}
+    | {"SolidReference", "SpotLight", "TexturedBackground", "TexturedBackgroundLight", "Viewpoint", "WorldInfo"}
+)
+"""Node types that make no difference to a flat world."""
+
+CENTRED_BOXES = {"CardboardBox": 0.6, "SolidBox": 2.0, "WoodenBox": 0.6}
+"""Boxes of Webots' library about their own middle, and their default size."""
+
+STANDING_BOXES = {"Wall": (1.0, 0.2, 2.4), "Window": (0.8, 0.2, 2.4)}
+"""Boxes of Webots' library that stand on their own origin."""
+
+RAISED = {"CardboardBox": (0.0, 0.0, 0.3), "WoodenBox": (0.0, 0.0, 0.3)}
+"""Default translations of boxes that are not at the origin."""
+
+
+class Thing(NamedTuple):
+    """Something solid: its pieces, its mass in kg (None: it never moves), and the node that it comes from."""
+
+    parts: list[Part]
+    mass: float | None
+    node: Node
+
+
+class Arena(NamedTuple):
+    """Walls around a floor: the corners of their inner faces in the plane, and their node."""
+
+    corners: list[tuple[float, float]]
+    height: tuple[float, float]
+    node: Node
+
+
+class Found:
+    """The content of a world; `unknown` counts, by type, the nodes that are not supported."""
+
+    def __init__(self, nodes: list[Node], world: Placement) -> None:
+        self.things: list[Thing] = []
+        self.arenas: list[Arena] = []
+        self.robots: list[tuple[Node, Placement]] = []
+        self.floors: list[float] = []
+        self.unknown: dict[str, int] = {}
+        self.information = next((node for node in nodes if node.type == "WorldInfo"), None)
+        for node in nodes:
+            self._visit(node, world)
+
+    def _visit(self, node: Node, outer: Placement) -> None:
+        if len(self.things) > MOST_OBSTACLES or len(self.robots) > MOST_ROBOTS:
+            most = f"{MOST_OBSTACLES:,} solids" if len(self.things) > MOST_OBSTACLES else f"{MOST_ROBOTS:,} robots"
+            raise node.error(f"more than {most}: the world is too large")
+        if node.type == "Robot":
+            self.robots.append((node, outer.inside(node)))
+        elif node.type in _LIBRARY:
+            _LIBRARY[node.type](self, node, outer.inside(node, RAISED.get(node.type, (0.0, 0.0, 0.0))))
+        elif node.type in SOLIDS:
+            self._solid(node, outer.inside(node))
+        elif node.type == "Shape":
+            self.things += [Thing([each], None, node) for each in self.parts(node, outer)]
+        elif node.type in GROUPS | JOINTS:
+            for child, placement in contents(node, inside(node, outer)):
+                self._visit(child, placement)
+        else:
+            self.note_unknown(node)
+
+    def _solid(self, node: Node, inner: Placement) -> None:
+        """Add a solid; what is fixed to one that moves belongs to it."""
+        if node.node("physics"):
+            parts = list(self.parts(node, inner, nested=True))
+            self.things.append(Thing(parts, mass(node, parts), node))
+            return
+        self.things += [Thing([each], None, node) for each in self.parts(node, inner)]
+        for child, placement in contents(node, inner):
+            if child.type != "Shape":
+                self._visit(child, placement)
+
+    def parts(self, node: Node, inner: Placement, *, nested: bool = False) -> Iterator[Part]:
+        """Yield the pieces of a node whose own axes are at `inner`; with `nested` those of the solids in it too.
+
+        What a solid collides with, its `boundingObject`, counts; where there is none what one sees of it.
+        """
+        bounds = node.nodes("boundingObject") if node.type in SOLIDS else []
+        for each in bounds or ([node] if node.type == "Shape" else []):
+            yield from self._pieces(each, inner)
+        for child, placement in contents(node, inner):
+            if child.type == "Shape":
+                yield from () if bounds else self._pieces(child, placement)
+            elif nested and child.type in SOLIDS:
+                yield from self.parts(child, placement.inside(child), nested=True)
+            elif nested:
+                self.note_unknown(child)
+
+    def _pieces(self, node: Node, outer: Placement) -> Iterator[Part]:
+        """Yield the pieces of shapes, of bare geometries, and of groups of them."""
+        if node.type in GROUPS:
+            for child, placement in contents(node, inside(node, outer)):
+                yield from self._pieces(child, placement)
+        elif node.type == "Shape":
+            for geometry in node.nodes("geometry"):
+                yield from self._pieces(geometry, outer)
+        elif node.type not in IGNORED:
+            try:
+                piece = part(node, outer)
+            except KeyError as error:
+                self.note_unknown(node, str(error.args[0]))
+            else:
+                yield from () if piece is None else (piece,)
+
+    def note_unknown(self, node: Node, name: str = "") -> None:
+        """Count a node that is not supported."""
+        if node.type not in IGNORED and node.type not in LIDARS:
+            name = name or node.type
+            self.unknown[name] = self.unknown.get(name, 0) + 1
+
+
+def inside(node: Node, outer: Placement) -> Placement:
+    """Return the placement of a node's own axes; a joint or slot has none of its own."""
+    return outer if node.type in JOINTS or node.type == "Slot" else outer.inside(node)
+
+
+def contents(node: Node, inner: Placement) -> Iterator[tuple[Node, Placement]]:
+    """Yield the content of a node whose own axes are at `inner`, through groups and joints, each with its placement."""
+    for field in ("children", "endPoint"):
+        for child in node.nodes(field) if field in node.fields else ():
+            if child.type in GROUPS | JOINTS:
+                yield from contents(child, inside(child, inner))
+            else:
+                yield child, inner
+
+
+def mass(node: Node, parts: list[Part]) -> float:
+    """Return the mass in kg that a solid's physics states, or that follows from its volume."""
+    physics = node.node("physics")
+    stated = physics.number("mass", -1.0) if physics else -1.0
+    density = physics.number("density", DENSITY) if physics else DENSITY
+    volume = sum(each.volume for each in parts)
+    found = stated if stated > 0.0 else volume * (density if density > 0.0 else DENSITY)
+    return min(max(found, LIGHTEST), HEAVIEST)
+
+
+def _centred_box(found: Found, node: Node, inner: Placement) -> None:
+    side = CENTRED_BOXES[node.type]
+    piece = box(node.lengths("size", side, side, side), inner)
+    physics = "mass" in node.fields and node.number("mass", 0.0) > 0.0
+    weight = node.number("mass", 0.0) if physics else mass(node, [piece]) if node.nodes("physics") else None
+    found.things.append(Thing([piece], weight and min(max(weight, LIGHTEST), HEAVIEST), node))
+
+
+def _standing_box(found: Found, node: Node, inner: Placement) -> None:
+    sides = node.lengths("size", *STANDING_BOXES[node.type])
+    found.things.append(Thing([box(sides, inner, raised=True)], None, node))
+
+
+def _floor(found: Found, node: Node, inner: Placement) -> None:
+    found.floors.append(float(inner.offset[2]))
+
+
+def _rectangle_arena(found: Found, node: Node, inner: Placement) -> None:
+    x, y = (side / 2 for side in node.lengths("floorSize", 1.0, 1.0))
+    _arena(found, node, inner, [(x, y), (-x, y), (-x, -y), (x, -y)])
+
+
+def _circle_arena(found: Found, node: Node, inner: Placement) -> None:
+    radius, sides = node.length("radius", 1.0), int(node.number("subdivision", CIRCLE_SIDES))
+    sides = min(max(sides, 3), 360)
+    turns = [math.tau * each / sides for each in range(sides)]
+    _arena(found, node, inner, [(radius * math.cos(turn), radius * math.sin(turn)) for turn in turns])
+
+
+def _arena(found: Found, node: Node, inner: Placement, corners: list[tuple[float, float]]) -> None:
+    placed = [inner.matrix @ (x, y, 0.0) + inner.offset for x, y in corners]
+    if max(abs(float(each)) for corner in placed for each in corner) > FARTHEST:
+        raise node.error(f"this reaches beyond {FARTHEST / 1000:g} km")
+    floor = float(inner.offset[2])
+    found.floors.append(floor)
+    height = (floor, floor + node.length("wallHeight", 0.1))
+    found.arenas.append(Arena([(float(x), float(y)) for x, y, _ in placed], height, node))
+
+
+_LIBRARY: dict[str, Callable[[Found, Node, Placement], None]] = {
+    **dict.fromkeys(CENTRED_BOXES, _centred_box),
+    **dict.fromkeys(STANDING_BOXES, _standing_box),
+    "CircleArena": _circle_arena,
+    "Floor": _floor,
+    "RectangleArena": _rectangle_arena,
+}
+"""The PROTOs of Webots' library whose geometry is plain."""

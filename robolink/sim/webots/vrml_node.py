@@ -1,0 +1,144 @@
+"""Nodes of a VRML file: their fields by type, and errors with their place in the file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TypeAlias
+
+from robolink.exceptions import DocumentError
+from robolink.system.terminal import shown
+
+Value: TypeAlias = "float | str | bool | Node | None"
+
+DEEPEST = 60
+"""Deepest nesting of nodes, with those that USE brings in."""
+
+MOST = 100_000
+"""Most nodes of a world, each counted as often as it is used."""
+
+LARGEST = 1e12
+"""Largest absolute value of a number."""
+
+
+class Source:
+    """The text of a world and its name; finds line and column of a place."""
+
+    def __init__(self, text: str, name: str) -> None:
+        self.text, self.name = text.removeprefix("\ufeff"), name
+
+    def error(self, offset: int, message: str) -> DocumentError:
+        """Make an error, to raise, about the text at `offset`."""
+        line = self.text.count("\n", 0, offset) + 1
+        column = offset - self.text.rfind("\n", 0, offset)
+        return DocumentError(shown(message, 300), self.name, line, column)
+
+
+class Field:
+    """The values of a node's field: one or a list; a vector is its numbers."""
+
+    __slots__ = ("offset", "values")
+
+    def __init__(self, values: Sequence[Value], offset: int) -> None:
+        self.values, self.offset = values, offset
+
+
+class Node:
+    """A node: its type, its fields, and the name that DEF gave it.
+
+    The readers of fields give `default` where the field is absent, and raise `DocumentError` at the field's place
+    where it holds something else than was asked for.
+    """
+
+    __slots__ = ("defined", "depth", "fields", "offset", "size", "source", "type")
+
+    def __init__(self, kind: str, fields: dict[str, Field], source: Source, offset: int) -> None:
+        self.type, self.fields, self.source, self.offset = kind, fields, source, offset
+        self.defined = ""
+        inner = [value for field in fields.values() for value in field.values if isinstance(value, Node)]
+        self.depth: int = 1 + max((each.depth for each in inner), default=0)
+        self.size: int = 1 + sum(each.size for each in inner)
+        if self.depth > DEEPEST:
+            raise self.error(f"more than {DEEPEST} nodes are inside of each other")
+        if self.size > MOST:
+            raise self.error(f"this has more than {MOST} nodes")
+
+    @property
+    def called(self) -> str:
+        """The node for a message: its type and name."""
+        field = self.fields.get("name")
+        name = field.values[0] if field and field.values else self.defined
+        return f"{self.type} '{name}'" if isinstance(name, str) and name else self.type
+
+    def error(self, message: str, field: str = "") -> DocumentError:
+        """Make an error (to raise) about this node, or about one of its fields."""
+        at = self.fields.get(field)
+        prefix = f"{self.type}.{field}: " if field else ""
+        return self.source.error(at.offset if at else self.offset, prefix + message)
+
+    def numbers(self, field: str, *default: float) -> tuple[float, ...]:
+        """Return as many numbers as the default has."""
+        found = self.all_numbers(field) if field in self.fields else list(default)
+        if len(found) != len(default):
+            raise self.error(f"expected {_counted(len(default), 'number')}, got {len(found)}", field)
+        return tuple(found)
+
+    def number(self, field: str, default: float) -> float:
+        """Return a number."""
+        return self.numbers(field, default)[0]
+
+    def lengths(self, field: str, *default: float) -> tuple[float, ...]:
+        """Return as many numbers as the default has, each more than 0."""
+        found = self.numbers(field, *default)
+        if min(found) <= 0.0:
+            raise self.error(f"expected more than 0, got {min(found):g}", field)
+        return found
+
+    def length(self, field: str, default: float) -> float:
+        """Return a number that is more than 0."""
+        return self.lengths(field, default)[0]
+
+    def all_numbers(self, field: str) -> list[float]:
+        """Return all the numbers of a field."""
+        values = self.fields[field].values if field in self.fields else ()
+        for value in values:
+            if not isinstance(value, float):
+                raise self.error(f"expected numbers, got {_worded(value)}", field)
+            if abs(value) > LARGEST:
+                raise self.error(f"expected at most {LARGEST:g}, got {value:g}", field)
+        return [value for value in values if isinstance(value, float)]
+
+    def text(self, field: str, default: str = "") -> str:
+        """Return a string; of several the first."""
+        return next(iter(self.texts(field)), default)
+
+    def texts(self, field: str) -> list[str]:
+        """Return all the strings of a field."""
+        values = self.fields[field].values if field in self.fields else ()
+        for value in values:
+            if not isinstance(value, str):
+                raise self.error(f"expected a string, got {_worded(value)}", field)
+        return [value for value in values if isinstance(value, str)]
+
+    def nodes(self, field: str) -> list[Node]:
+        """Return the nodes of a field; NULL is none."""
+        values = self.fields[field].values if field in self.fields else ()
+        for value in values:
+            if not isinstance(value, Node) and value is not None:
+                raise self.error(f"expected a node, got {_worded(value)}", field)
+        return [value for value in values if isinstance(value, Node)]
+
+    def node(self, field: str) -> Node | None:
+        """Return the only node of a field, or None."""
+        return next(iter(self.nodes(field)), None)
+
+
+def _worded(value: Value) -> str:
+    if isinstance(value, Node):
+        return f"a {value.type}"
+    if isinstance(value, bool):
+        return str(value).upper()
+    return "NULL" if value is None else f"'{shown(value, 40)}'" if isinstance(value, str) else f"{value:g}"
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"

@@ -1,0 +1,71 @@
+r"""Terminal escaping: makes untrusted text safe to print, without control sequences.
+
+Characters that move the cursor, colour, ring, or change the text's direction become escape sequences that Python,
+YAML (in double quotes) and JSON (but for ``\x1b``, which JSON's writers never leave) read back as the same character.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+
+_UNFIT = "\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u206f\ud800-\udfff"
+"""Unsafe characters: C0 without tab and line feed, DEL, C1, text direction, line separators, lone surrogates."""
+
+_OF_LINES = f"[{_UNFIT}]"
+_OF_A_LINE = f"[\t\n{_UNFIT}]"
+_BUT_COLOURS = rf"(\x1b\[[0-9;:]{{0,40}}m)|[{_UNFIT}]"
+
+
+@functools.cache
+def _compiled(pattern: str) -> re.Pattern[str]:  # on first use: it takes longer than the rest of this file
+    return re.compile(pattern)
+
+
+_SHORT = {"\t": "\\t", "\n": "\\n", "\r": "\\r"}
+
+
+def fit(text: str, *, lines: bool = True, colours: bool = False) -> str:
+    r"""Return `text` with escapes in place of control characters, safe for a terminal.
+
+    With `lines`, tabs and line feeds stay; without, it is one line. With `colours`, colour sequences (SGR) stay too.
+    Safe text stays as it is, so that nothing is lost by doing it twice.
+
+    >>> fit("a\x1b[2Jb")
+    'a\\x1b[2Jb'
+    """
+    if colours:
+        return _compiled(_BUT_COLOURS).sub(lambda match: match[1] or escaped(match[0]), text)
+    return _compiled(_OF_LINES if lines else _OF_A_LINE).sub(lambda match: escaped(match[0]), text)
+
+
+def is_fit(text: str) -> bool:
+    """True if `fit` leaves these lines as they are."""
+    return _compiled(_OF_LINES).search(text) is None
+
+
+def shown(text: str, longest: int = 100) -> str:
+    """Return `text` for an error message: on one line, visible characters only, at most `longest` of them."""
+    part = text if len(text) <= longest else text[: longest - 3] + "..."
+    return part if part.isprintable() else "".join(each if each.isprintable() else escaped(each) for each in part)
+
+
+def quoted(text: str, *, also: str = "") -> str:
+    r"""Return `text` in double quotes, with escapes that Python, YAML and rosidl read back; `also` of these characters.
+
+    >>> print(quoted('say "hi"\n'))
+    "say \"hi\"\n"
+    """
+    plain = (
+        f"\\{each}" if each in '"\\' else each if each.isprintable() and each not in also else escaped(each)
+        for each in text
+    )
+    return f'"{"".join(plain)}"'
+
+
+def escaped(char: str) -> str:
+    r"""Return the escape sequence of one character: ``\n``, ``\x1b``, ``\u202e``, ``\U000e0001``."""
+    code = ord(char)
+    if code < 0x7F:
+        return _SHORT.get(char) or f"\\x{code:02x}"
+    return f"\\u{code:04x}" if code <= 0xFFFF else f"\\U{code:08x}"

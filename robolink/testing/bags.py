@@ -1,0 +1,171 @@
+"""Bags of a system under test: recorded of it, and played into it."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable, Collection
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from robolink.bag.definition import message_definition
+from robolink.bag.metadata import ROS_DISTRO
+from robolink.bag.topic import BagError, BagTopic
+from robolink.bag.writer import BagWriter
+from robolink.exceptions import OverwrittenError, RobolinkError, WireError
+from robolink.interfaces import find_announced
+from robolink.logging import get_logger
+from robolink.wire import NO_HASH, unpack_attachment
+
+if TYPE_CHECKING:
+    from robolink.bag.metadata import BagMetadata
+    from robolink.message import Message
+    from robolink.testing.recorder import Recorder, Topic
+
+MOST_WAITING = 1000
+"""Messages in virtual time after which they are written."""
+PERIOD = 0.05
+"""Seconds in real time after which they are written."""
+
+
+class BagRecording:
+    """Recording of a system into a bag; nobody in the system sees that there is a listener.
+
+    Times are the system's. Made by `System.record`.
+
+    Args:
+        path: Folder of the bag, which must not be there yet.
+        recorder: Recorder of the system.
+        now: Function that returns the time that a message is noted with, in ns.
+        class_of: Function that returns the class of a topic, None if nobody knows it.
+        topics: Full names of the topics to record; None is all.
+        in_real_time: True where messages come on threads of the network: one of its own then writes them.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        recorder: Recorder,
+        now: Callable[[], int],
+        class_of: Callable[[Topic], type[Message] | None],
+        topics: Collection[str] | None = None,
+        *,
+        in_real_time: bool = False,
+    ) -> None:
+        self.path = path
+        """Folder of the bag."""
+        self._bag, self._recorder = BagWriter(path, ros_distro=ROS_DISTRO), recorder
+        self._now, self._class_of, self._topics = now, class_of, topics
+        self._numbers: dict[str, int] = {}
+        self._types: dict[str, str] = {}
+        self._told: set[str] = set()
+        self._waiting: deque[tuple[Topic, int, Any]] = deque()
+        self._metadata: BagMetadata | None = None
+        self._failure: Exception | None = None
+        self._lock = threading.RLock()
+        self._ends = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="robolink test bag", daemon=True)
+        if in_real_time:
+            self._thread.start()
+        recorder.follow_topics(self._follow)
+
+    @property
+    def messages(self) -> int:
+        """Number of messages so far."""
+        with self._lock:
+            self._write()
+            return self._bag.message_count
+
+    def stop(self) -> BagMetadata:
+        """End the recording, and return the bag's metadata. Safe to call twice.
+
+        Raises BagError (a ValueError) if the bag could not be written to its end, as on a full disk.
+        """
+        self._ends.set()
+        if self._thread.is_alive():
+            self._thread.join()
+        with self._lock:
+            if self._metadata is None:
+                self._write()
+                self._metadata = self._closed()
+        if self._failure is not None:
+            raise BagError(f"{self.path} ends early: {self._failure}") from self._failure
+        return self._metadata
+
+    def __enter__(self) -> BagRecording:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    def _follow(self, topic: Topic) -> None:
+        if self._metadata is None and (self._topics is None or topic.name in self._topics):
+            self._recorder.arrivals(topic, lambda arrived: self._note(topic, arrived))
+
+    def _note(self, topic: Topic, arrived: Any) -> None:
+        if self._ends.is_set():
+            return
+        self._waiting.append((topic, self._now(), arrived))
+        if len(self._waiting) >= MOST_WAITING and not self._thread.is_alive():
+            self._write()
+
+    def _run(self) -> None:
+        """Write what has come, and show it, until the end."""
+        while not self._ends.wait(PERIOD):
+            with self._lock:
+                self._write()
+                self._try(self._bag.tick)
+
+    def _write(self) -> None:
+        with self._lock:
+            while self._waiting:
+                each = self._waiting.popleft()
+                if self._metadata is None and self._failure is None:
+                    self._write_one(*each)
+
+    def _write_one(self, topic: Topic, at: int, arrived: Any) -> None:
+        if self._is_other(topic):
+            return
+        try:
+            sample = self._recorder.sample_of(arrived)
+        except OverwrittenError:  # a large one came too late: its place was used again
+            return
+        sent, sequence = at, 0
+        with suppress(WireError):
+            attachment = unpack_attachment(sample.attachment)
+            sent, sequence = attachment.timestamp, attachment.sequence
+        number = self._numbers[topic.name]
+        self._try(lambda: self._bag.write(number, max(0, at), max(0, sent), sequence, bytes(sample.payload)))
+
+    def _is_other(self, topic: Topic) -> bool:
+        """Add a topic to the bag; return whether it is there in another type: a bag has one for each."""
+        known = self._types.setdefault(topic.name, topic.key)
+        if known != topic.key:
+            if topic.key not in self._told:
+                self._told.add(topic.key)
+                get_logger("bag").warning(f"topic '{topic.name}': a second type, {topic.type_name}, is not recorded")
+            return True
+        if topic.name not in self._numbers:
+            self._try(lambda: self._numbers.setdefault(topic.name, self._bag.add_topic(self._described(topic))))
+        return topic.name not in self._numbers
+
+    def _closed(self) -> BagMetadata:
+        self._try(self._bag.close)
+        return self._bag.close()
+
+    def _try(self, act: Callable[[], object]) -> None:
+        """Act on the bag; what fails ends the recording, and not the system."""
+        try:
+            act()
+        except (BagError, OSError) as error:
+            self._failure = self._failure or error
+
+    def _described(self, topic: Topic) -> BagTopic:
+        cls: Any = self._class_of(topic)
+        if cls is None:
+            with suppress(RobolinkError):
+                cls = find_announced(topic.type_name)
+        stated = "" if topic.type_hash == NO_HASH else topic.type_hash
+        text = "" if cls is None else message_definition(cls)
+        return BagTopic(topic.name, topic.type_name, "cdr", stated, (topic.token.qos,), text)

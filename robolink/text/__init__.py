@@ -1,0 +1,1 @@
+"""Text helpers: rules of ROS names, suggestions for misspelt names, tracebacks."""

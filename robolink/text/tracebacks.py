@@ -1,0 +1,123 @@
+"""Formatting of tracebacks, with suggestions for misspelt names where Python itself has none."""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+import linecache
+import re
+import traceback
+from collections.abc import Iterable, Iterator
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from robolink.exceptions import RobolinkError, closest
+
+if TYPE_CHECKING:
+    import ast
+
+
+def formatted(error: BaseException, trace: TracebackType | None = None) -> str:
+    """Return an exception and its traceback as text, from `trace` on (default: all), without a final newline."""
+    text = "".join(traceback.format_exception(type(error), error, trace or error.__traceback__)).rstrip()
+    return text if "Did you mean" in text.rpartition("\n")[2] else text + suggestion(error)
+
+
+def suggestion(error: BaseException) -> str:
+    """Return a suggestion for a misspelt name or field of a message; '' if nothing is near.
+
+    Python 3.10 and 3.11 have them for names only where the interpreter itself prints the exception.
+    """
+    field = misspelt_field(error)
+    if field:
+        return field
+    name = getattr(error, "name", None)
+    if not isinstance(name, str) or isinstance(error, RobolinkError):
+        return ""
+    known: Iterable[str] = ()
+    if isinstance(error, NameError):
+        known = _names_at(error.__traceback__)
+    elif isinstance(error, AttributeError):
+        fields = getattr(type(error.obj), "__ros_fields__", None)
+        if fields:
+            return _did_you_mean(name, fields) or f" (only {', '.join(fields)})"
+        with contextlib.suppress(Exception):  # somebody's __dir__
+            known = dir(error.obj)
+    return _did_you_mean(name, (each for each in known if isinstance(each, str) and each != name))
+
+
+def _did_you_mean(name: str, known: Iterable[str]) -> str:
+    close = closest(name, known)
+    return f". Did you mean: '{close}'?" if close else ""
+
+
+def _names_at(trace: TracebackType | None) -> list[str]:
+    last = _last(trace)
+    return [] if last is None else [*last.tb_frame.f_locals, *last.tb_frame.f_globals, *last.tb_frame.f_builtins]
+
+
+def _last(trace: TracebackType | None) -> TracebackType | None:
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    return trace
+
+
+# --- Fields of messages -----------------------------------------------------------------------------------------------
+
+_UNKNOWN_FIELD = re.compile(r"(Unexpected keyword argument|'\w+' object has no attribute) '(\w+)'")
+
+
+def misspelt_field(error: BaseException) -> str:
+    """Return a suggestion for the field in `String(dta=...)` or `twist.liner = 3`; '' for other errors.
+
+    Messages are made and changed by C, which a look at each field would slow down several times over. So which message
+    it was is read from the line that failed.
+    """
+    found = _UNKNOWN_FIELD.fullmatch(str(error)) if isinstance(error, (TypeError, AttributeError)) else None
+    last = _last(error.__traceback__)
+    if found is None or last is None:
+        return ""
+    with contextlib.suppress(Exception):  # a source that is gone, or has changed; anybody's attributes
+        for node in _statement(last):
+            fields = getattr(_meant(node, found[2], last), "__ros_fields__", None)
+            if fields:
+                return _did_you_mean(found[2], fields)
+    return ""
+
+
+def _statement(trace: TracebackType) -> Iterator[ast.AST]:
+    """Yield the syntax nodes of the smallest statement around the line that failed."""
+    import ast  # late: most programs have no such error
+
+    tree = ast.parse("".join(linecache.getlines(trace.tb_frame.f_code.co_filename, trace.tb_frame.f_globals)))
+    line = trace.tb_lineno
+    around = [each for each in ast.walk(tree) if isinstance(each, ast.stmt) and each.lineno <= line <= _end(each)]
+    yield from ast.walk(min(around, key=lambda each: _end(each) - each.lineno))
+
+
+def _end(node: ast.stmt) -> int:
+    return node.end_lineno or node.lineno
+
+
+def _meant(node: ast.AST, name: str, trace: TracebackType) -> Any:
+    """Return the class or message of which this part of a statement names a field `name`; None if it names none."""
+    import ast
+
+    if isinstance(node, ast.Call) and name in [each.arg for each in node.keywords]:
+        return _value(node.func, trace)
+    if isinstance(node, ast.Attribute) and node.attr == name:
+        return _value(node.value, trace)
+    return None
+
+
+def _value(node: ast.expr, trace: TracebackType) -> Any:
+    """Return the value of a dotted name, without calling any code of the user's."""
+    import ast
+
+    if isinstance(node, ast.Name):
+        return {**trace.tb_frame.f_globals, **trace.tb_frame.f_locals}[node.id]
+    if isinstance(node, ast.Attribute):
+        owner = _value(node.value, trace)
+        is_message = hasattr(type(owner), "__ros_fields__")
+        return getattr(owner, node.attr) if is_message else inspect.getattr_static(owner, node.attr)
+    return None

@@ -1,0 +1,41 @@
+"""Construction of a node from its class, with an error that explains why a class cannot be constructed."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from robolink.workspace.load import NodeLoadError
+
+if TYPE_CHECKING:
+    from robolink.node import Node
+
+
+def make_node(node_class: Callable[[], Node]) -> Node:
+    """Return a new node. Raises NodeLoadError for a class that needs arguments, or does not construct its base."""
+    check_needs_nothing(node_class)
+    node = node_class()
+    if not hasattr(node, "_owner_"):
+        name = type(node).__name__
+        raise NodeLoadError(f"{name}.__init__ must call super().__init__('{name.lower()}') before all else")
+    return node
+
+
+def check_needs_nothing(found: Callable[[], Any]) -> None:
+    """Raise NodeLoadError for a class or function that needs arguments: nobody is there to give them."""
+    try:
+        needed = [
+            each.name
+            for each in inspect.signature(found).parameters.values()
+            if each.default is each.empty and each.kind not in (each.VAR_POSITIONAL, each.VAR_KEYWORD)
+        ]
+    except (TypeError, ValueError):  # a signature that Python cannot tell
+        return
+    if needed:
+        name, listed = getattr(found, "__name__", str(found)), ", ".join(f"'{each}'" for each in needed)
+        if isinstance(found, type):
+            name, otherwise = f"{name}.__init__", ", or write a main() that makes the node"
+        else:
+            name, otherwise = f"{name}()", f", as in {name}({needed[0]}=None)"
+        raise NodeLoadError(f"{name} needs {listed}: give a default value{otherwise}")

@@ -1,0 +1,156 @@
+"""Converters from a simulated robot's readings and poses to messages: pure functions."""
+
+from __future__ import annotations
+
+import math
+from array import array
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from robolink.interfaces.builtin_interfaces.msg import Time
+from robolink.interfaces.geometry_msgs.msg import (
+    Point,
+    PoseWithCovariance,
+    Quaternion,
+    Transform,
+    TransformStamped,
+    Twist,
+    TwistWithCovariance,
+    Vector3,
+)
+from robolink.interfaces.geometry_msgs.msg import Pose as PoseMessage
+from robolink.interfaces.nav_msgs.msg import Odometry
+from robolink.interfaces.sensor_msgs.msg import Imu as ImuMessage
+from robolink.interfaces.sensor_msgs.msg import JointState, LaserScan, Range
+from robolink.interfaces.std_msgs.msg import Bool, Header
+from robolink.message import Message
+from robolink.sim import Inertia, Pose, Scan, Velocity, WheelState
+from robolink.sim.description import GRAVITY
+from robolink.sim.sensors import Bumper, Encoders, Imu, Lidar, RangeFinder, Sensor
+from robolink.world_node.uncertainty import Covariance
+
+NANOSECONDS = 1_000_000_000
+NOTHING_SAID: Covariance = np.zeros(36)
+"""An unknown covariance, as ROS reads zeros."""
+
+
+def sensor_type(sensor: Sensor) -> type[Message]:
+    """Return the type of message that a sensor publishes."""
+    return SENSOR_MESSAGES[type(sensor)][0]
+
+
+def sensor_message(sensor: Sensor, value: Any, header: Header) -> Message:
+    """Make the message of a sensor's measurement, of its `sensor_type`."""
+    return SENSOR_MESSAGES[type(sensor)][1](value, header, sensor)
+
+
+def time_message(nanoseconds: int) -> Time:
+    """Make the message of a time."""
+    return Time(sec=nanoseconds // NANOSECONDS, nanosec=nanoseconds % NANOSECONDS)
+
+
+def scan_message(scan: Scan, header: Header, sensor: Lidar) -> LaserScan:
+    """Make the message of a scan; all its beams are of one instant, and the next comes after the lidar's period."""
+    return LaserScan(
+        header=header,
+        angle_min=scan.angle_min,
+        angle_max=scan.angle_max,
+        angle_increment=scan.angle_increment,
+        scan_time=1.0 / sensor.rate,
+        range_min=scan.range_min,
+        range_max=scan.range_max,
+        ranges=_floats(scan.ranges),
+        intensities=_floats(scan.intensities) if scan.intensities is not None else array("f"),
+    )
+
+
+def _floats(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> array[float]:
+    return array("f", values.astype(np.float32).tobytes())
+
+
+def odometry_message(
+    header: Header,
+    child: str,
+    pose: Pose,
+    twist: Velocity,
+    of_pose: Covariance = NOTHING_SAID,
+    of_twist: Covariance = NOTHING_SAID,
+) -> Odometry:
+    """Make the message of a pose in the header's frame, and of the speeds in the frame `child`, which is there.
+
+    `of_pose` and `of_twist` are their 6 x 6 covariances by rows: of x, y, z and the turns about them.
+    """
+    v, w, sideways = twist
+    there = PoseMessage(position=Point(x=pose.x, y=pose.y), orientation=facing(pose.theta))
+    speeds = Twist(linear=Vector3(x=v, y=sideways), angular=Vector3(z=w))
+    return Odometry(
+        header=header,
+        child_frame_id=child,
+        pose=PoseWithCovariance(pose=there, covariance=of_pose),
+        twist=TwistWithCovariance(twist=speeds, covariance=of_twist),
+    )
+
+
+def imu_message(inertia: Inertia, header: Header, sensor: Imu) -> ImuMessage:
+    """Make the message of an inertial unit that lies flat: like a real one it feels the floor carry it, along z."""
+    noise = sensor.noise
+    return ImuMessage(
+        header=header,
+        orientation=facing(inertia.heading),
+        angular_velocity=Vector3(z=inertia.turning),
+        angular_velocity_covariance=np.diag((0.0, 0.0, noise.gyro**2)).ravel(),
+        linear_acceleration=Vector3(x=inertia.ax, y=inertia.ay, z=GRAVITY),
+        linear_acceleration_covariance=np.diag((noise.accel**2, noise.accel**2, 0.0)).ravel(),
+    )
+
+
+def range_message(distance: float, header: Header, sensor: RangeFinder) -> Range:
+    """Make the message of a sonar or infrared sensor; inf is nothing near, -inf something too near (REP 117)."""
+    low, high = sensor.range
+    return Range(
+        header=header,
+        radiation_type=Range.INFRARED if sensor.radiation == "infrared" else Range.ULTRASOUND,
+        field_of_view=math.radians(sensor.fov),
+        min_range=low,
+        max_range=high,
+        range=distance,
+        variance=sensor.noise**2,
+    )
+
+
+def joint_state_message(wheels: Sequence[WheelState], header: Header, sensor: Encoders | None = None) -> JointState:
+    """Make the message of the angles of wheels, in radians, and their speeds, in rad/s."""
+    return JointState(
+        header=header,
+        name=[each.motor for each in wheels],
+        position=[each.position for each in wheels],
+        velocity=[each.speed for each in wheels],
+    )
+
+
+def bumper_message(touched: bool, header: Header, sensor: Bumper) -> Bool:
+    """Make the message of a bumper, true if it was touched; it has no header."""
+    return Bool(data=touched)
+
+
+def transform_message(header: Header, child: str, pose: Pose) -> TransformStamped:
+    """Make the transform of a frame that stands at a pose in the header's frame."""
+    there = Transform(translation=Vector3(x=pose.x, y=pose.y), rotation=facing(pose.theta))
+    return TransformStamped(header=header, child_frame_id=child, transform=there)
+
+
+def facing(theta: float) -> Quaternion:
+    """Return the rotation by `theta` radians about z."""
+    return Quaternion(z=math.sin(theta / 2), w=math.cos(theta / 2))
+
+
+SENSOR_MESSAGES: dict[type[Sensor], tuple[type[Message], Callable[[Any, Header, Any], Message]]] = {
+    Lidar: (LaserScan, scan_message),
+    Bumper: (Bool, bumper_message),
+    Imu: (ImuMessage, imu_message),
+    RangeFinder: (Range, range_message),
+    Encoders: (JointState, joint_state_message),
+}
+"""Message type and converter by the class of the sensor: one for each entry of `robolink.sim.sensors.SENSORS`."""

@@ -1,0 +1,148 @@
+"""Publishers of one simulated robot: sensors, odometry and ground truth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from robolink.geometry import plane
+from robolink.geometry.plane import placed_on
+from robolink.interfaces.builtin_interfaces.msg import Time
+from robolink.interfaces.geometry_msgs.msg import TransformStamped
+from robolink.interfaces.nav_msgs.msg import Odometry
+from robolink.interfaces.sensor_msgs.msg import JointState
+from robolink.interfaces.std_msgs.msg import Header
+from robolink.node import Node
+from robolink.publisher import Publisher
+from robolink.sim import Pose, Robot, Scan
+from robolink.sim.checks.robots import tells_joints
+from robolink.sim.description import OdomNoise, steps_between
+from robolink.sim.sensors import Lidar, Sensor
+from robolink.world_node.messages import (
+    joint_state_message,
+    sensor_message,
+    sensor_type,
+    transform_message,
+)
+from robolink.world_node.prepared import PreparedOdometry, PreparedScan, PreparedTransform, Stamp, packed_pose
+from robolink.world_node.robot_commands import RobotCommands
+from robolink.world_node.uncertainty import Uncertainty
+
+MAP = "map"
+"""Frame of the world itself."""
+
+
+class RobotTopics:
+    """The topics of one robot; `prefix` goes before their names and those of the robot's frames.
+
+    Wheels without encoders are published on joint_states, with the odometry, as they truly turn.
+    """
+
+    def __init__(self, node: Node, robot: Robot, prefix: str) -> None:
+        description = robot.description
+        self.odom_frame, self.base_frame = f"{prefix}odom", f"{prefix}base_link"
+        self.commands = RobotCommands(node, robot, prefix)
+        self._node, self._prefix = node, prefix
+        self._publishers: list[Publisher[Any]] = []
+        self._scans: dict[str, PreparedScan] = {}
+        self._on_map = PreparedOdometry(MAP, self.base_frame)
+        self._on_odom = PreparedOdometry(self.odom_frame, self.base_frame)
+        self._transform = PreparedTransform(self.odom_frame, self.base_frame)
+        self._odom = self._publisher(Odometry, "odom")
+        self._truth = self._publisher(Odometry, "ground_truth")
+        self._sensors = {
+            each.topic: (self._publisher(sensor_type(each), each.topic), self._frame_of(each))
+            for each in description.sensors
+        }
+        self._joints = self._publisher(JointState, "joint_states") if tells_joints(description) else None
+        self._odom_steps = steps_between(description.odom.rate, robot.dt)
+        self._truth_steps = steps_between(description.ground_truth.rate, robot.dt)
+        self.follow(robot)
+
+    def follow(self, robot: Robot) -> None:
+        """Publish this robot from now on: the same one after a reset of the world."""
+        self.robot = robot
+        self.commands.follow(robot)
+        noise = robot.description.odom.noise
+        self._uncertainty = None if noise == OdomNoise() else Uncertainty(noise, robot.dt)
+        self._contacts = 0
+        self.place_odometry()
+
+    def place_odometry(self) -> None:
+        """Place the odometry's frame on the map so that the robot stands where it is now."""
+        truth, believed = self.robot.pose, self.robot.odometry
+        turn = truth.theta - believed.theta
+        x, y, _ = placed_on(plane.Pose(theta=turn), believed.place)
+        self._odom_on_map = Pose(truth.x - x, truth.y - y, turn)
+
+    def publish_reading(self, sensor: Sensor, value: Any, stamp: Stamp) -> None:
+        """Publish a sensor's measurement."""
+        publisher, frame = self._sensors[sensor.topic]
+        if isinstance(sensor, Lidar):
+            publisher.publish(self._prepared_scan(sensor, value, frame).payload(stamp, value))
+        else:
+            publisher.publish(sensor_message(sensor, value, Header(stamp=stamp.message, frame_id=frame)))
+
+    def _prepared_scan(self, lidar: Lidar, scan: Scan, frame: str) -> PreparedScan:
+        found = self._scans.get(lidar.topic)
+        if found is None:
+            found = self._scans[lidar.topic] = PreparedScan(scan, frame, lidar)
+        return found
+
+    @property
+    def state_steps(self) -> int:
+        """Number of steps at whose multiples odometry or ground truth may be due."""
+        return math.gcd(self._truth_steps, self._odom_steps)
+
+    def publish_state(self, step: int, stamp: Stamp) -> tuple[PreparedTransform, bytes] | None:
+        """Publish odometry and ground truth if due at a step; return the transform of the odometry, or None."""
+        if step % self._truth_steps == 0:
+            pose = packed_pose(self.robot.pose)
+            self._truth.publish(self._on_map.payload(stamp, pose, self.robot.twist))
+        if step % self._odom_steps:
+            return None
+        if self._joints is not None:
+            self._joints.publish(joint_state_message(self.robot.wheels, Header(stamp=stamp.message)))
+        return self._transform, self._publish_odometry(stamp)
+
+    def _publish_odometry(self, stamp: Stamp) -> bytes:
+        believed, twist, sure = self.robot.odometry, self.robot.odometry_twist, self._uncertainty
+        pose = packed_pose(believed)
+        if sure is None:
+            payload = self._on_odom.payload(stamp, pose, twist)
+        else:
+            sure.advance(believed, twist, self._odom_steps)
+            payload = self._on_odom.payload(stamp, pose, twist, sure.of_pose(), sure.of_twist(twist))
+        self._odom.publish(payload)
+        return pose
+
+    def static_transforms(self, stamp: Time, *, on_map: bool) -> Iterator[TransformStamped]:
+        """Yield the transforms of the sensors on the robot and, with `on_map`, of its odometry on the map."""
+        if on_map:
+            yield transform_message(Header(stamp=stamp, frame_id=MAP), self.odom_frame, self._odom_on_map)
+        for each in self.robot.description.sensors:
+            if each.mount is not None:
+                header = Header(stamp=stamp, frame_id=self.base_frame)
+                yield transform_message(header, self._frame_of(each), each.mount)
+
+    def touched(self) -> bool:
+        """Return True if the robot has run into something since the last call."""
+        before, self._contacts = self._contacts, self.robot.contacts
+        return self._contacts > before
+
+    def close(self) -> None:
+        """Destroy the publishers and subscriptions."""
+        self.commands.close()
+        for each in self._publishers:
+            self._node.destroy_publisher(each)
+
+    def _publisher(self, message: type[Any], topic: str) -> Publisher[Any]:
+        self._publishers.append(self._node.create_publisher(message, f"{self._prefix}{topic}", 10))
+        return self._publishers[-1]
+
+    def _frame_of(self, sensor: Sensor) -> str:
+        """Return a sensor's frame: its own if it has a mount, else base_link; '' for encoders."""
+        if sensor.mount is not None:
+            return f"{self._prefix}base_{sensor.topic}"
+        return self.base_frame if sensor.has_frame else ""

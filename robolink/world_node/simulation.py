@@ -1,0 +1,158 @@
+"""Simulation node core: a world and the topics of its robots; it can be changed while it runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from robolink.exceptions import NotFoundError
+from robolink.interfaces.rosgraph_msgs.msg import Clock
+from robolink.interfaces.tf2_msgs.msg import TFMessage
+from robolink.node import Node
+from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.sim import Pose, Reading, Robot, World, WorldDescription
+from robolink.sim.description import RobotDescription
+from robolink.system.terminal import shown
+from robolink.world_node.messages import time_message
+from robolink.world_node.prepared import Stamp, transforms_payload
+from robolink.world_node.robot_commands import RobotCommands
+from robolink.world_node.robot_topics import RobotTopics
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Simulation:
+    """A world whose steps are published by a node.
+
+    The topics of the world file's only robot are in the node's namespace; of several each has its own, and so has
+    each spawned one.
+
+    Args:
+        node: The node that publishes.
+        description: The world.
+        epoch: First stamp, in nanoseconds.
+        publish_clock: True: publish the simulated time on /clock.
+        publish_map: True: publish the transforms from the frame `map` to those of odometry.
+        seed: Seed of all noise; None: the description's.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        description: WorldDescription,
+        epoch: int,
+        *,
+        publish_clock: bool = False,
+        publish_map: bool = True,
+        seed: int | None = None,
+    ) -> None:
+        self.description, self.world = description, World(description, seed=seed)
+        self.robots: dict[str, RobotTopics] = {}
+        self._wheeled: list[RobotCommands] = []
+        self._contacts, self._state_steps = 0, 1
+        self._node, self._epoch, self._publish_map, self._seed = node, epoch, publish_map, seed
+        self._clock = node.create_publisher(Clock, "/clock", 10) if publish_clock else None
+        self._tf = node.create_publisher(TFMessage, "/tf", 100)
+        self._tf_static = node.create_publisher(TFMessage, "/tf_static", LATCHED)
+        self._only = description.robots[0].name if len(description.robots) == 1 else None
+        self._open_topics()
+
+    @property
+    def now(self) -> int:
+        """The time of stamps, in nanoseconds: it only grows."""
+        return self._epoch + self.world.time_ns
+
+    def step(self) -> None:
+        """Make one step, and publish all that is due after it."""
+        world = self.world
+        for each in self._wheeled:
+            each.step()
+        world.step()
+        step, readings = world.steps, world.readings()
+        if self._clock is not None or readings or step % self._state_steps == 0:
+            self._publish(step, readings)
+        if world.contacts != self._contacts:
+            self._contacts = world.contacts
+            self._warn_of_contacts()
+
+    def _publish(self, step: int, readings: Sequence[Reading]) -> None:
+        stamp = Stamp.of(self.now)
+        if self._clock is not None:
+            self._clock.publish(stamp.beginning)  # a Clock is nothing but a stamp
+        for robot, sensor, value in readings:
+            self.robots[robot.name].publish_reading(sensor, value, stamp)
+        if step % self._state_steps == 0:
+            moved = [each.publish_state(step, stamp) for each in self.robots.values()]
+            if transforms := [found for found in moved if found is not None]:
+                self._tf.publish(transforms_payload(stamp, transforms))
+
+    def reset(self) -> None:
+        """Reset the world: every robot of the world file is where it started, others are gone; time goes on."""
+        self._epoch, self.world, self._contacts = self.now, World(self.description, seed=self._seed), 0
+        self._open_topics()
+
+    def spawn(self, robot: RobotDescription) -> None:
+        """Add a robot to the world. Raises WorldError if it would be inside something."""
+        self.world.spawn(robot)
+        self._open_topics()
+
+    def delete(self, name: str) -> None:
+        """Remove a robot from the world. Raises NotFoundError."""
+        self.robot(name)
+        self.world.delete(name)
+        self._open_topics()
+
+    def teleport(self, name: str, pose: Pose) -> None:
+        """Put a robot elsewhere. Raises NotFoundError, and WorldError if it would be inside something."""
+        self.robot(name).robot.teleport(pose)
+        self.robots[name].place_odometry()
+        self._publish_static()
+
+    def robot(self, name: str) -> RobotTopics:
+        """Return the topics of a robot. Raises NotFoundError with the nearest name."""
+        if name not in self.robots:
+            raise NotFoundError("robot", shown(name), self.robots)
+        return self.robots[name]
+
+    @property
+    def refused(self) -> int:
+        """Number of commands that were refused."""
+        return sum(topics.commands.refused for topics in self.robots.values())
+
+    def _open_topics(self) -> None:
+        """Create the topics of each robot of the world, and destroy all others."""
+        robots = self.world.robots
+        kept = {
+            name: topics
+            for name, topics in self.robots.items()
+            if name in robots and robots[name].description == topics.robot.description
+        }
+        for name, topics in self.robots.items():
+            if name not in kept:
+                topics.close()
+            elif topics.robot is not robots[name]:
+                topics.follow(robots[name])
+        self.robots = {name: kept.get(name) or self._topics(robot) for name, robot in robots.items()}
+        self._state_steps = math.gcd(*(topics.state_steps for topics in self.robots.values())) or 1
+        self._wheeled = [topics.commands for topics in self.robots.values() if topics.commands.motors]
+        self._publish_static()
+
+    def _topics(self, robot: Robot) -> RobotTopics:
+        return RobotTopics(self._node, robot, "" if robot.name == self._only else f"{robot.name}/")
+
+    def _warn_of_contacts(self) -> None:
+        for topics in self.robots.values():
+            if topics.touched():
+                name, pose = topics.robot.name, topics.robot.pose
+                self._node.get_logger().warning(
+                    f"{name} ran into something at ({pose.x:.2f}, {pose.y:.2f})", throttle_duration_sec=1.0
+                )
+
+    def _publish_static(self) -> None:
+        stamp = time_message(self.now)
+        found = [
+            each
+            for topics in self.robots.values()
+            for each in topics.static_transforms(stamp, on_map=self._publish_map)
+        ]
+        self._tf_static.publish(TFMessage(transforms=found))

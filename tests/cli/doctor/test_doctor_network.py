@@ -1,0 +1,91 @@
+"""robolink network: the facts of doctor in a few lines."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from robolink.cli.doctor import network as command
+from robolink.cli.doctor.facts import Facts, Seen, Settings
+from robolink.cli.main import main
+from robolink.networks.port_probe import ROUTER, Port
+from robolink.transport.reach import Link, Reach
+from robolink.wire import NodeToken
+
+LAN = Reach("peer", ("tcp/127.0.0.1:7447",), ("tcp/0.0.0.0:17447", "tcp/0.0.0.0:0"), "224.0.0.224:17447")
+HERE = Link("peer", "tcp/127.0.0.1:5000", "tcp/127.0.0.1:17447", "aa")
+ROUTED = Link("router", "tcp/127.0.0.1:5001", "tcp/127.0.0.1:7447", "bb")
+FAR = Link("peer", "tcp/10.0.0.1:5002", "tcp/10.0.0.2:33333", "cc")
+
+
+def said(facts: Facts) -> list[str]:
+    return command.lines(command.describe(facts))
+
+
+def test_whom_it_has_found_and_how() -> None:
+    token = NodeToken(0, "cc", "0", "0", "far", "/")
+    settings = Settings(network="lan", asked_by="ROBOLINK_NETWORK")
+    assert said(Facts(settings=settings, reach=LAN, seen=Seen("ee", (token,), links=(HERE, ROUTED, FAR)))) == [
+        "network   lan (asked for by ROBOLINK_NETWORK), domain 0",
+        "meets     the local network (multicast 224.0.0.224:17447)",
+        "listens   tcp/0.0.0.0:17447, tcp/0.0.0.0:0",
+        "goes to   multicast 224.0.0.224:17447, tcp/127.0.0.1:7447",
+        "found     3 sessions, 1 node",
+        "          peer at tcp/127.0.0.1:17447: the domain's port",
+        "          router at tcp/127.0.0.1:7447: the router on this machine",
+        "          peer at tcp/10.0.0.2:33333: multicast or gossip",
+    ]
+
+
+def test_a_word_when_nobody_answers() -> None:
+    found = said(Facts(settings=Settings(network="lan"), reach=LAN))
+    assert found[4] == "found     0 sessions, 0 nodes"
+    assert found[5].startswith("WARN      network lan: no other machine has answered")
+    assert "say --network HOST, that machine's name" in found[5]
+
+
+def test_a_router_that_listens_everywhere_is_told_and_how_to_close_it() -> None:
+    facts = Facts(
+        reach=Reach("peer", interfaces=("lo",)),
+        ports={7447: Port(7447, ROUTER)},
+        router_open_at=("10.0.0.5",),
+    )
+    (line,) = [each for each in said(facts) if each.startswith("WARN")]
+    assert "also listens at 10.0.0.5: through it other machines hear and command your nodes" in line
+    assert "robolink's router: without --listen" in line
+
+
+def test_wrong_settings_are_failures() -> None:
+    assert said(Facts(settings=Settings(errors=("ROBOLINK_NETWORK: nobody answers",))))[-1] == (
+        "FAIL      ROBOLINK_NETWORK: nobody answers"
+    )
+
+
+def test_foreign_text_is_one_plain_line() -> None:
+    found = said(Facts(settings=Settings(network="evil\x1b[2J\nforged")))
+    assert all("\n" not in each and "\x1b" not in each for each in found)
+
+
+def test_json(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    facts = Facts(settings=Settings(network="lan"), reach=LAN, seen=Seen(links=(FAR,)))
+    monkeypatch.setattr("robolink.cli.doctor.gathering.gather", lambda: facts)
+    assert main(["network", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["network"], found["multicast"], found["nodes"]) == ("lan", "224.0.0.224:17447", 0)
+    assert found["links"] == [
+        {
+            "role": "peer",
+            "address": "tcp/10.0.0.2:33333",
+            "session": "cc",
+            "found": "multicast or gossip",
+            "certificate": "",
+        }
+    ]
+
+
+def test_with_security_each_link_has_a_name() -> None:
+    keyed = Link("peer", "tls/10.0.0.1:5002", "tls/10.0.0.2:33333", "cc", "/student7")
+    assert said(Facts(settings=Settings(network="lan"), reach=LAN, seen=Seen(links=(keyed,))))[5] == (
+        "          peer at tls/10.0.0.2:33333: multicast or gossip, with the certificate of /student7"
+    )

@@ -1,0 +1,156 @@
+"""What somebody types who knows ros2: commands, programs and flags that robolink has under another name, or not."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from robolink.cli.main import main
+from robolink.cli.root import COMMANDS, OF_ROS2
+from robolink.launch.reading.entries import read_launch_file
+from robolink.workspace.ros_programs import PACKAGES, PROGRAMS, RosProgramError, ros_program_error
+
+Captured = pytest.CaptureFixture[str]
+ADVICE = [*OF_ROS2.values(), *PROGRAMS.values(), *PACKAGES.values()]
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A workspace of ROS 2's kind, with a package, which is the working directory."""
+    package = tmp_path / "src" / "turtles"
+    (package / "turtles").mkdir(parents=True)
+    (package / "package.xml").write_text("<package format='3'><name>turtles</name></package>")
+    (package / "turtles" / "swim.py").write_text("import sys\n\nprint(sys.argv[1:])\n")
+    monkeypatch.delenv("ROBOLINK_WORKSPACE", raising=False)
+    monkeypatch.chdir(tmp_path)
+    return package
+
+
+@pytest.mark.parametrize("command", ["pkg", "component", "daemon", "multicast"])
+def test_a_command_that_only_ros2_has_says_what_to_do_instead(command: str, capsys: Captured) -> None:
+    assert main([command, "list"]) == 2
+    err = capsys.readouterr().err
+    assert err == f"robolink: ros2's '{command}' is not here: {OF_ROS2[command]} (see 'robolink --help')\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "instead"),
+    [
+        (["rviz2", "rviz2"], "'robolink plot'"),
+        (["rviz2"], "'robolink plot'"),
+        (["demo_nodes_py", "talker"], "'robolink pub /chatter String"),
+        (["demo_nodes_cpp", "listener"], "'robolink topic echo /chatter'"),
+        (["tf2_ros", "tf2_echo", "map", "odom"], "'robolink tf echo SOURCE_FRAME TARGET_FRAME'"),
+        (["tf2-tools", "view_frames"], "'robolink tf tree'"),
+        (["turtlesim", "turtlesim_node"], "'robolink run world'"),
+    ],
+)
+def test_a_program_of_ros_2s_own_says_what_does_the_same(words: list[str], instead: str, capsys: Captured) -> None:
+    assert main(["run", *words]) == 1
+    err = capsys.readouterr().err
+    assert err.startswith(f"robolink: {' '.join(words[:2])} is ROS 2's own and not here: ")
+    assert (instead in err, err.count("\n"), "/src" in err) == (True, 1, False)
+
+
+def test_a_launch_file_is_told_the_same(tmp_path: Path) -> None:
+    file = tmp_path / "view.yaml"
+    file.write_text("nodes:\n  - node: rviz2 rviz2\n")
+    with pytest.raises(Exception, match=r"view\.yaml:2:11.*rviz2 rviz2 is ROS 2's own and not here: "):
+        read_launch_file(file)
+
+
+def test_a_package_of_ones_own_goes_first(elsewhere: Path, capsys: Captured) -> None:
+    elsewhere.joinpath("package.xml").write_text("<package format='3'><name>turtlesim</name></package>")
+    elsewhere.joinpath("turtles").rename(elsewhere / "turtlesim")
+    assert main(["run", "turtlesim", "swm"]) == 1
+    assert capsys.readouterr().err == (
+        "robolink: no executable named 'swm' in package turtlesim (did you mean 'swim'?)\n"
+    )
+
+
+def test_what_nobody_knows_is_no_program_of_ros_2() -> None:
+    assert ros_program_error("pkg_a", "talker") is None
+    assert isinstance(ros_program_error("tf2_ros", "x"), RosProgramError)
+
+
+@pytest.mark.parametrize("advice", [each for each in ADVICE if "'robolink " in each or "docs/" in each])
+def test_what_is_advised_is_there(advice: str, capsys: Captured) -> None:
+    commands, pages = re.findall(r"'robolink ([^']+)'", advice), re.findall(r"docs/\w+\.md", advice)
+    assert commands or pages, "it advises nothing that can be looked for"
+    for command in commands:
+        words = [each for each in shlex.split(command) if each.isalpha() and each.islower()]
+        verbs = 2 if words[0] in {"plot", "tf", "topic", "world"} else 1
+        assert main([*words[:verbs], "--help"]) == 0
+        if words[:1] == ["run"] and words[1:] and words[1] != "--list":
+            main(["run", "--list"])
+            assert re.search(rf"^{words[1]} ", capsys.readouterr().out, re.MULTILINE)
+        for flag in re.findall(r"--\w+", command):
+            main([*words[:verbs], "--help"])
+            assert flag in capsys.readouterr().out
+    for page in pages:
+        assert (DOCS.parent / page).is_file()
+
+
+# --- -h ---------------------------------------------------------------------------------------------------------------
+
+
+def verbs() -> list[list[str]]:
+    """Every command, and every noun's verbs."""
+    import typer.main
+
+    from robolink.cli.root import Root, app
+
+    root = typer.main.get_command(app)
+    assert isinstance(root, Root)
+    found: list[list[str]] = [[]]
+    for name in COMMANDS:
+        if not COMMANDS[name].hidden:
+            command = root.get_command(None, name)
+            found += [[name], *([name, verb] for verb in getattr(command, "commands", {}))]
+    return found
+
+
+@pytest.mark.parametrize("words", verbs(), ids=" ".join)
+def test_h_is_help_everywhere(words: list[str], capsys: Captured) -> None:
+    assert main([*words, "--help"]) == 0
+    long = capsys.readouterr().out
+    assert main([*words, "-h"]) == 0
+    assert capsys.readouterr() == (long, "")
+    assert "-h, --help" in long
+
+
+@pytest.mark.processes
+def test_h_behind_a_program_is_the_programs(capsys: Captured) -> None:
+    from tests.support.commands import Command
+
+    with Command(0, "run", "src/turtles/turtles/swim.py", "-h", "more") as program:
+        program.wait_for("['-h', 'more']")
+        assert program.end() == 0
+
+
+# --- launch -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("verb", ["launch", "simulate"])
+@pytest.mark.parametrize(
+    ("files", "report"),
+    [
+        (["a.launch.yaml", "b.yaml", "c.launch.py"], "say which of its launch files, a.launch.yaml or b.yaml"),
+        (["c.launch.py", "README.md"], "has of its own only c.launch.py, and robolink launches YAML"),
+        ([], "has none, robolink launches YAML"),
+    ],
+)
+def test_a_package_alone_is_told_which_launch_files_it_has(
+    verb: str, files: list[str], report: str, elsewhere: Path, capsys: Captured
+) -> None:
+    (elsewhere / "launch").mkdir()
+    for each in files:
+        (elsewhere / "launch" / each).touch()
+    assert main([verb, "turtles"]) == 1
+    err = capsys.readouterr().err
+    assert (err.count("\n"), report in err) == (1, True)
+    assert err.startswith("robolink: turtles is a package")

@@ -1,0 +1,67 @@
+"""docs/simulate.md: its example ends as it says, its faults file is one, and it knows every option and key."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+import typer.main
+
+from robolink.cli.launching.simulate import app
+from robolink.cli.main import main
+from robolink.faults.description import ClockFault, Crash, MessageFault, Partition
+from robolink.faults.file import check_nodes, read_faults
+from robolink.launch import read_launch_file
+from robolink.simulate import simulate
+from robolink.workspace import find_faults, find_launch
+from tests.support.simulations import workspace
+
+PAGE = (Path(__file__).parents[2] / "docs" / "simulate.md").read_text(encoding="utf-8")
+
+
+def test_its_faults_file_is_one_for_follow(tmp_path: Path) -> None:
+    [text] = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
+    (tmp_path / "faults.yaml").write_text(text, encoding="utf-8")
+    document = read_faults(tmp_path / "faults.yaml")
+    check_nodes(document, [each.name for each in read_launch_file(find_launch("follow"))])
+
+
+def test_its_example_prints_such_lines(capsys: pytest.CaptureFixture[str]) -> None:
+    _, *example = PAGE.partition("```console\n")[2].partition("```")[0].splitlines()
+    assert main(["simulate", "follow", "--duration", "2"]) == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert {_shape(each) for each in example} - {"..."} <= {_shape(each) for each in printed}
+
+
+def _shape(line: str) -> str:
+    """Give a line without its numbers, spaces and hash."""
+    return re.sub(r"-?\d[\d.]*| {2,}", "", re.sub(r"^hash .*", "hash", line))
+
+
+def test_it_has_every_option() -> None:
+    command: Any = typer.main.get_command(app)
+    known = {name for each in command.params for name in each.opts if name.startswith("--")}
+    said = set(re.findall(r"^\| `(--[a-z-]+)", PAGE, re.MULTILINE))
+    assert said <= known
+    assert {each for each in known - said if "completion" not in each} == {"--workspace"}
+
+
+def test_it_has_every_key() -> None:
+    kinds: list[type[msgspec.Struct]] = [MessageFault, Partition, Crash, ClockFault]
+    keys = {each.encode_name for kind in kinds for each in msgspec.structs.fields(kind)}
+    assert {each for each in keys if not re.search(rf"\b{each}\b(:|`)", PAGE)} == set()
+
+
+@pytest.mark.parametrize("faults", ["rough", "radio"])
+@pytest.mark.parametrize("system", ["follow", "wander", "lab", "goto", "square", "walker", "first_nodes", "talk"])
+def test_the_faults_that_come_along_fit_any_system(system: str, faults: str, tmp_path: Path) -> None:
+    workspace(tmp_path)
+    entries = read_launch_file(tmp_path / "configs/talk.yaml" if system == "talk" else find_launch(system))
+    document = read_faults(find_faults(faults))
+    check_nodes(document, [each.name for each in entries])
+    result = simulate(entries, duration=21.0, seed=1, faults=document.value)
+    assert result.failures == []
+    assert system == "walker" or sum(each.lost + each.late for each in result.faults) > 0  # it has one node

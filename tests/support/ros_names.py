@@ -1,0 +1,55 @@
+"""ROS 2's module names for tests of robolink.compat: those that are imported, and what an import raises."""
+
+from __future__ import annotations
+
+import functools
+import sys
+
+import pytest
+
+import robolink
+from robolink.interfaces._standard import STANDARD
+
+MODE = "ROBOLINK_COMPAT"
+
+COMPANIONS = [
+    "rclpy",
+    "tf2_ros",
+    "tf2_py",
+    "tf2_geometry_msgs",
+    "tf2_sensor_msgs",
+    "tf_transformations",
+    "message_filters",
+    "sensor_msgs_py",
+    "rosidl_runtime_py",
+    "ament_index_python",
+    "cv_bridge",
+]
+
+
+def is_ros(name: str) -> bool:
+    """Return whether a module is there through robolink.compat or these tests, or is a part of it."""
+    top = name.partition(".")[0]
+    packages = {package for types in STANDARD.values() for package in types}
+    return name.startswith("robolink.compat") or top in {*packages, *COMPANIONS}
+
+
+def forget() -> None:
+    for name in filter(is_ros, list(sys.modules)):
+        del sys.modules[name]
+    vars(robolink).pop("compat", None)
+    for module in [each for name, each in sys.modules.items() if name.startswith("robolink.")]:
+        asked = vars(module).get("__getattr__")
+        if isinstance(asked, functools.partial):  # with robolink's own at the end, if there is one
+            vars(module).update(__getattr__=asked.args[-1])
+            if asked.args[-1] is None:
+                del vars(module)["__getattr__"]
+
+
+def raised(code: str) -> Exception:
+    with pytest.raises((ImportError, AttributeError)) as caught:
+        exec(code, {})
+    return caught.value
+
+
+VERSION = "robolink " + robolink.__version__

@@ -1,0 +1,49 @@
+"""Large messages between processes: none is ever another one's data, and what is missing is counted."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from robolink.transport.shared_pools import MOST_POOLS
+from tests.support import large_messages
+from tests.support.large_messages import freeze, pass_on, restart, tight
+
+pytestmark = [
+    pytest.mark.processes,
+    pytest.mark.skipif(sys.platform != "linux", reason="shared memory is used on Linux only, and SIGSTOP is POSIX'"),
+]
+needs_room = pytest.mark.skipif(
+    bool(large_messages.no_room()), reason=f"no shared memory here: {large_messages.no_room()}"
+)
+
+
+@needs_room
+def test_without_the_check_a_receiver_that_stood_still_gets_other_messages_data() -> None:
+    """If this fails, Zenoh may have mended it: then the check can go."""
+    assert freeze(kind="all", freezes=10, busy=0.02, unchecked=True, until_wrong=True).wrong > 0
+
+
+@needs_room
+@pytest.mark.parametrize("kind", ["depth", "all", "latched"])
+def test_a_receiver_that_stood_still_gets_no_other_messages_data(kind: str) -> None:
+    found = freeze(kind=kind, freezes=1, busy=0.02)
+    assert found.fine, found
+
+
+@needs_room
+def test_a_receiver_that_may_not_lock_memory_gets_everything() -> None:
+    roomy, tight_one = pass_on(receivers=[(), tight()], messages=20)
+    assert roomy.fine
+    assert tight_one.fine
+    assert roomy.locked > 16_000 > tight_one.locked  # one of them shares memory, the other does not
+    assert (roomy.received, tight_one.received) == (20, 20)
+
+
+@needs_room
+def test_restarts_of_publishers_do_not_fill_memory() -> None:
+    half, full, over, more = restart(times=2 * MOST_POOLS, every=MOST_POOLS // 2, messages=2, environ={})
+    assert [each.received for each in (half, full, over, more)] == [8, 16, 24, 32]
+    assert half.locked < full.locked  # so it would go on
+    assert more.locked == over.locked  # a few came in the second before the limit was noticed, and then none

@@ -1,0 +1,101 @@
+"""Generator of the README's picture of the page: a simulated robot, seen by `robolink view` in headless Chromium.
+
+Usage: python tools/view_picture.py docs/view.png [--system wander] [--seconds 30] [--theme dark]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+from tests.support.browser import Browser, chromium  # noqa: E402
+from tests.support.domains import free_domain  # noqa: E402
+
+CELL = dict[str, Any]
+
+
+def cell(panel: str, height: float, **options: Any) -> CELL:
+    """A panel of the layout."""
+    return {"id": panel, "height": height, "options": options}
+
+
+COMMAND = {"topic": "/cmd_vel"}
+PLOT = [COMMAND | {"path": "linear.x"}, COMMAND | {"path": "angular.z", "axis": 1}]
+LAYOUT = {
+    "columns": [
+        {"width": 62, "cells": [cell("world", 100)]},
+        {"width": 38, "cells": [cell("topics", 60, topic="/cmd_vel"), cell("plot", 40, series=PLOT, seconds=30)]},
+    ]
+}
+
+
+def main() -> None:
+    """Take the picture that the command line asks for."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("file", type=Path)
+    parser.add_argument("--system", default="wander", help="launch file")
+    parser.add_argument("--seconds", type=float, default=30.0, help="seconds that the robot drives")
+    parser.add_argument("--theme", default="dark", choices=["dark", "light"])
+    parser.add_argument("--width", type=int, default=1280)
+    parser.add_argument("--height", type=int, default=720)
+    parser.add_argument("--language", default="en", choices=["en", "pt"])
+    asked = parser.parse_args()
+    if chromium is None:
+        sys.exit("chromium is not installed: apt-get install chromium")
+    with started(asked.system) as address, Browser(asked.width, asked.height) as browser:
+        take(browser, address, asked)
+
+
+@contextmanager
+def started(system: str) -> Iterator[str]:
+    """Launch a system with its page; the address of the page."""
+    command = [sys.executable, "-m", "robolink", "launch", system, "--view"]
+    with free_domain() as domain:
+        process = subprocess.Popen(
+            command,
+            env=dict(os.environ, ROS_DOMAIN_ID=str(domain), DISPLAY="", BROWSER="true"),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            cwd=ROOT,
+        )
+        try:
+            assert process.stdout is not None
+            yield next(word for line in process.stdout for word in line.split() if word.startswith("http://"))
+        finally:
+            process.terminate()
+            process.communicate(timeout=20)
+
+
+def take(browser: Browser, address: str, asked: argparse.Namespace) -> None:
+    """Open the page as somebody left it, let the robot drive, and take a picture."""
+    remembered = {"layout": LAYOUT, "settings": {"theme": asked.theme, "language": asked.language}}
+    source = "".join(
+        f"localStorage.setItem('robolink.{name}', {json.dumps(json.dumps(value))});"
+        for name, value in remembered.items()
+    )
+    browser.call("Page.addScriptToEvaluateOnNewDocument", source=source)
+    browser.open(address)
+    browser.wait("globalThis.robolink?.layout?.isReady && robolink.topics.get('/cmd_vel')?.view")
+    for branch in ("linear", "angular"):
+        browser.click(f".tree [data-path={branch}]")
+    browser.move((640.0, 18.0))
+    time.sleep(asked.seconds)
+    browser.screenshot(asked.file)
+    if browser.problems:
+        sys.exit(f"the page's console: {browser.problems[:3]}")
+
+
+if __name__ == "__main__":
+    main()
