@@ -1,0 +1,1 @@
+"""Bags: recorded topics in files that ROS 2's tools read and write."""

@@ -1,0 +1,149 @@
+"""Blocks of messages in a file that is read: its chunks, and runs of messages outside of any chunk."""
+
+from __future__ import annotations
+
+import struct
+import threading
+import zlib
+from collections.abc import Container
+from pathlib import Path
+from typing import NamedTuple
+
+from robolink.bag.mcap.compression import unpack
+from robolink.bag.mcap.records import (
+    CHUNK,
+    MESSAGE,
+    MESSAGE_HEAD,
+    OPENING,
+    Attachment,
+    Buffer,
+    Channel,
+    Malformed,
+    Message,
+    Schema,
+    Statistics,
+    read_chunk_head,
+)
+
+_opening = struct.Struct("<BQ")
+_head = struct.Struct("<BQHIQQ")
+_new_message = tuple.__new__
+
+
+class Block(NamedTuple):
+    """Place of messages in a file, and what is known of them."""
+
+    at: int
+    length: int
+    first: int
+    """First log time in nanoseconds."""
+    last: int
+    channels: frozenset[int] | None = None
+    """Ids of the channels of its messages; None if they are not known."""
+    is_chunk: bool = True
+    compression: str = ""
+    size: int = 0
+    """Size of the chunk's data in bytes, when it is unpacked."""
+    data: Buffer | None = None
+    """Its message records, if they were read already."""
+
+
+class Catalog:
+    """All that is known of a file's contents, without its messages."""
+
+    def __init__(self) -> None:
+        self.profile = self.library = ""
+        self.schemas: dict[int, Schema] = {}
+        self.channels: dict[int, Channel] = {}
+        self.statistics = Statistics(0, {}, 0, 0)
+        self.blocks: list[Block] = []
+        self.metadata: list[tuple[str, dict[str, str]]] = []
+        self.attachments: list[Attachment] = []
+        self.problems: list[str] = []
+        self.is_whole = True
+
+
+class Source:
+    """A file that is read at any place.
+
+    Args:
+        path: Path of the file. Raises OSError if it cannot be opened.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file = path.open("rb", buffering=1 << 16)
+        self._lock = threading.Lock()
+        self.measure()
+
+    def measure(self) -> None:
+        """Ask for the file's size, which changes while it is written."""
+        self.size = self._file.seek(0, 2)
+
+    def read(self, at: int, length: int) -> bytes:
+        """Return bytes of the file, as many as there are. Raises OSError."""
+        with self._lock:  # a place and what is read there belong together, and chunks are read ahead
+            self._file.seek(at)
+            return self._file.read(max(0, min(length, self.size - at)))
+
+    def opening(self, at: int) -> tuple[int, int]:
+        """Return the opcode of the record at a place, and its content's length. Raises Malformed at the end."""
+        content = self.read(at, OPENING)
+        if len(content) < OPENING:
+            raise Malformed("the file ends within a record")
+        opcode, length = _opening.unpack(content)
+        return opcode, length
+
+    def content(self, at: int, length: int) -> bytes:
+        """Return the content of the record at a place. Raises Malformed if it is cut."""
+        found = self.read(at + OPENING, length)
+        if len(found) < length:
+            raise Malformed("the file ends within a record")
+        return found
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+def load(source: Source, block: Block) -> Buffer:
+    """Return the records of a block. Raises Malformed if its chunk is broken, or another one than is looked for."""
+    if block.data is not None:
+        return block.data
+    content = source.read(block.at, block.length)
+    if len(content) < block.length:
+        raise Malformed("it is cut")
+    if not block.is_chunk:
+        return content
+    opcode, length = _opening.unpack_from(content)
+    if opcode != CHUNK or length != block.length - OPENING:
+        raise Malformed("there is no chunk where the index has one")
+    view = memoryview(content)  # its parts are no copies
+    head = read_chunk_head(view[OPENING:])
+    if (head.first, head.last, head.size, head.compression) != (*block[2:4], block.size, block.compression):
+        raise Malformed("it is another chunk than the index has there")
+    return chunk_data(view[head.head : head.head + head.packed], head.compression, head.size, head.crc)
+
+
+def chunk_data(packed: Buffer, compression: str, size: int, crc: int) -> Buffer:
+    """Return a chunk's records. Raises Malformed if they do not unpack or differ from their CRC."""
+    data = unpack(compression, packed, size)
+    if crc and zlib.crc32(data) != crc:
+        raise Malformed("its CRC differs")
+    return data
+
+
+def messages_of(data: Buffer, wanted: Container[int], low: int, high: int) -> list[Message]:
+    """Return the messages among records, of these channels and with a log time from `low` to before `high` (ns)."""
+    found: list[Message] = []
+    view = memoryview(data)
+    at, end = 0, len(data)
+    take, unpack_head, new = found.append, _head.unpack_from, _new_message
+    while at + OPENING + MESSAGE_HEAD <= end:
+        opcode, length, channel, sequence, log_time, publish_time = unpack_head(data, at)
+        stop = at + OPENING + length
+        if stop > end:
+            break
+        if opcode == MESSAGE and channel in wanted and low <= log_time < high and length >= MESSAGE_HEAD:
+            take(new(Message, (channel, sequence, log_time, publish_time, view[at + 31 : stop])))
+        at = stop
+    return found

@@ -1,0 +1,117 @@
+"""Remote control of a player: rosbag2's services in the player's node."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robolink.bag.playing.settings import PlayError
+from robolink.interfaces.rosbag2_interfaces.srv import (
+    Burst,
+    GetRate,
+    IsPaused,
+    Pause,
+    Play,
+    PlayNext,
+    Resume,
+    Seek,
+    SetRate,
+    Stop,
+    TogglePaused,
+)
+
+if TYPE_CHECKING:
+    from robolink.bag.playing.playback import Playback
+    from robolink.node import Node
+
+
+class PlayerServices:
+    """Services of a player.
+
+    They are `~/play`, `~/pause`, `~/resume`, `~/toggle_paused`, `~/is_paused`, `~/play_next`, `~/burst`, `~/seek`,
+    `~/set_rate`, `~/get_rate` and `~/stop`.
+
+    Args:
+        node: Node that serves them; an executor has to spin it.
+        playback: What they steer.
+    """
+
+    def __init__(self, node: Node, playback: Playback) -> None:
+        self._node, self._playback = node, playback
+        self._made = [
+            node.create_service(Play, "~/play", self._play),
+            node.create_service(Pause, "~/pause", self._pause),
+            node.create_service(Resume, "~/resume", self._resume),
+            node.create_service(TogglePaused, "~/toggle_paused", self._toggle),
+            node.create_service(IsPaused, "~/is_paused", self._is_paused),
+            node.create_service(PlayNext, "~/play_next", self._play_next),
+            node.create_service(Burst, "~/burst", self._burst),
+            node.create_service(Seek, "~/seek", self._seek),
+            node.create_service(SetRate, "~/set_rate", self._set_rate),
+            node.create_service(GetRate, "~/get_rate", self._get_rate),
+            node.create_service(Stop, "~/stop", self._stop),
+        ]
+
+    def destroy(self) -> None:
+        """End the services."""
+        for each in self._made:
+            each.destroy()
+
+    def _play(self, request: Any, response: Any) -> Any:
+        length, until = _nanoseconds(request.playback_duration), _nanoseconds(request.playback_until_timestamp)
+        # Zero is what a request has where nobody filled it in: then there is no end, as with a negative value.
+        response.success = self._playback.begin_at(
+            max(0, _nanoseconds(request.start_offset)) / 1e9,
+            length / 1e9 if length > 0 else None,
+            until if until > 0 else None,
+        )
+        return response
+
+    def _pause(self, _: Any, response: Any) -> Any:
+        self._playback.pause()
+        return response
+
+    def _resume(self, _: Any, response: Any) -> Any:
+        self._playback.resume()
+        return response
+
+    def _toggle(self, _: Any, response: Any) -> Any:
+        self._playback.toggle_paused()
+        return response
+
+    def _is_paused(self, _: Any, response: Any) -> Any:
+        response.paused = self._playback.is_paused
+        return response
+
+    def _play_next(self, _: Any, response: Any) -> Any:
+        response.success = self._playback.play_next()
+        return response
+
+    def _burst(self, request: Any, response: Any) -> Any:
+        response.actually_burst = self._playback.burst(request.num_messages)
+        return response
+
+    def _seek(self, request: Any, response: Any) -> Any:
+        response.success = self._playback.seek(_nanoseconds(request.time))
+        return response
+
+    def _set_rate(self, request: Any, response: Any) -> Any:
+        try:
+            self._playback.set_rate(request.rate)
+        except PlayError as error:
+            self._node.get_logger().warning(str(error))
+            response.success = False
+        else:
+            response.success = True
+        return response
+
+    def _get_rate(self, _: Any, response: Any) -> Any:
+        response.rate = self._playback.rate
+        return response
+
+    def _stop(self, _: Any, response: Any) -> Any:
+        self._playback.stop()
+        return response
+
+
+def _nanoseconds(stamp: Any) -> int:
+    return int(stamp.sec) * 10**9 + int(stamp.nanosec)

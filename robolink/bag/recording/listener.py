@@ -1,0 +1,189 @@
+"""Listener to the topics of a selection: subscribes where the graph hears of a publisher, and never looks again.
+
+A subscription needs no type: what is not installed is recorded as well, in bytes. All of it is best effort, since a
+recorder must not slow down whoever publishes; a topic that somebody latches is listened to with transient local, so
+that what was published before is recorded too.
+"""
+
+from __future__ import annotations
+
+import functools
+import threading
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from robolink.bag.recording.settings import RecordSettings
+from robolink.bag.recording.topics import RecordedTopic
+from robolink.bag.selection import Selection
+from robolink.exceptions import RobolinkError, TransportClosedError
+from robolink.graph.graph import EVERY
+from robolink.graph.listening import ALL_BEST_EFFORT, keys_of, listen
+from robolink.message import type_hash, type_name
+from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from robolink.running.timed_arrivals import ArrivalType
+from robolink.wire import NO_HASH, EndpointKind, EndpointToken
+
+if TYPE_CHECKING:
+    from robolink.node import Node
+    from robolink.transport.base import Handle
+
+LATCHED = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Listener:
+    """Subscriptions of a node to all topics of a selection, those that come later included.
+
+    Args:
+        node: Node whose subscriptions they are.
+        selection: Topics to listen to.
+        settings: What else decides: profiles, discovery, topics without publishers or subscriptions.
+        arrival: Class of arrivals (`timed_arrival`), whose targets will be `RecordedTopic`s.
+        on_topic: Called once for each topic, before its first message, on a thread of the network: it must not wait.
+        warn: Called with what is worth a warning.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        selection: Selection,
+        settings: RecordSettings,
+        arrival: ArrivalType,
+        on_topic: Callable[[RecordedTopic], object],
+        warn: Callable[[str], object],
+    ) -> None:
+        self.topics: dict[str, RecordedTopic] = {}
+        """Topics by name: a bag has one type for each."""
+        self._node, self._selection, self._settings = node, selection, settings
+        self._arrival, self._on_topic, self._warn = arrival, on_topic, warn
+        self._clock = node.context.time.now
+        self._lock = threading.RLock()
+        self._handles: dict[str, list[Handle]] = {}
+        self._following: list[Handle] = []
+        self._other_types: set[tuple[str, str, str]] = set()
+        self._leaves: dict[str, list[tuple[bytes, EndpointToken]]] = {}
+        """Publishers of topics that nobody subscribes to, while those are to be left out."""
+        self._closed = False
+
+    def start(self) -> None:
+        """Listen to what is there, and to what comes unless discovery is off."""
+        graph = self._node.context.graph
+        self._hear_static()
+        graph.endpoints(EndpointKind.PUBLISHER)  # waits until what was there before is known
+        if self._settings.include_unpublished or self._settings.ignore_leaf_topics:
+            self._following.append(graph.follow(EVERY, EndpointKind.SUBSCRIPTION, self._on_subscription))
+        self._following.append(graph.follow(EVERY, EndpointKind.PUBLISHER, self._on_publisher))
+        if self._settings.no_discovery:
+            self._stop_following()
+
+    def close(self) -> None:
+        """End all subscriptions. Safe to call twice."""
+        self._stop_following()
+        with self._lock:
+            self._closed = True
+            handles = [each for handles in self._handles.values() for each in handles]
+            self._handles.clear()
+        for each in handles:
+            each.close()
+
+    def _stop_following(self) -> None:
+        for each in self._following:
+            each.close()
+        self._following.clear()
+
+    def _hear_static(self) -> None:
+        owner, session = self._node._owner_, self._node.context.transport.session_id
+        for name, cls in self._settings.static_topics.items():
+            kind = type_name(cls)
+            if self._selection.takes(name, kind):
+                token = EndpointToken(
+                    self._node.context.get_domain_id(),
+                    session,
+                    owner.node_id,
+                    "",
+                    EndpointKind.PUBLISHER,
+                    owner.enclave,
+                    owner.namespace,
+                    owner.node_name,
+                    name,
+                    kind,
+                    type_hash(cls),
+                    ALL_BEST_EFFORT,
+                )
+                with self._lock:
+                    self._hear(None, token)
+
+    def _on_publisher(self, gid: bytes, token: EndpointToken, alive: bool) -> None:
+        if not alive or not self._selection.takes(token.name, token.type_name):
+            return
+        with self._lock:
+            if self._settings.ignore_leaf_topics and not self._has_subscriptions(token.name):
+                self._leaves.setdefault(token.name, []).append((gid, token))
+            else:
+                self._hear(gid, token)
+
+    def _on_subscription(self, gid: bytes, token: EndpointToken, alive: bool) -> None:
+        if not alive or self._is_own(token) or not self._selection.takes(token.name, token.type_name):
+            return
+        with self._lock:
+            for waiting in self._leaves.pop(token.name, ()):
+                self._hear(*waiting)
+            if self._settings.include_unpublished and token.name not in self.topics:
+                self._hear(None, token)
+
+    def _has_subscriptions(self, name: str) -> bool:
+        found = self._node.context.graph.endpoints(EndpointKind.SUBSCRIPTION, name=name)
+        return any(not self._is_own(each) for each in found)
+
+    def _is_own(self, token: EndpointToken) -> bool:
+        owner = self._node._owner_
+        return (token.session, token.node_id) == (self._node.context.transport.session_id, owner.node_id)
+
+    def _hear(self, gid: bytes | None, token: EndpointToken) -> None:
+        """Listen to a publisher; without a gid, to whoever will publish to a subscription."""
+        if self._closed:
+            return
+        topic = self.topics.get(token.name)
+        is_new = topic is None
+        if topic is None:
+            topic = self.topics[token.name] = RecordedTopic(token, self._clock())
+        elif not topic.token.understands(token):
+            self._refuse(topic, token)
+            return
+        if gid is not None:
+            topic.offered[gid] = token.qos
+        if is_new:
+            self._on_topic(topic)
+        try:
+            self._subscribe(topic, token)
+        except TransportClosedError:  # the session ends just now
+            return
+        except RobolinkError as error:
+            self._warn(f"cannot subscribe to topic '{token.name}': {error}")
+
+    def _subscribe(self, topic: RecordedTopic, token: EndpointToken) -> None:
+        """Listen to keys that are new; and listen anew where somebody latches what was not latched before."""
+        profile = self._settings.qos_overrides.get(topic.name) or (LATCHED if topic.is_latched else ALL_BEST_EFFORT)
+        keys = {each for each in keys_of(token) if topic.keys.get(each) != profile}
+        if not keys:
+            return
+        before = [self._handles.pop(each) for each in keys if each in self._handles]
+        topic.comes_twice |= bool(topic.keys)
+        first = min(keys)
+        self._handles[first] = listen(self._node._owner_, token, keys, profile, functools.partial(self._arrival, topic))
+        topic.keys.update(dict.fromkeys(keys, profile))
+        for handles in before:
+            for each in handles:
+                each.close()
+
+    def _refuse(self, topic: RecordedTopic, token: EndpointToken) -> None:
+        """Warn, once, of a second type of a topic."""
+        other = (token.name, token.type_name, token.type_hash)
+        if other in self._other_types:
+            return
+        self._other_types.add(other)
+        same = token.type_name == topic.type_name and NO_HASH not in (token.type_hash, topic.token.type_hash)
+        kind = f"another {token.type_name}" if same else token.type_name
+        self._warn(
+            f"topic '{token.name}' is recorded as {topic.type_name}: what {token.full_node_name} publishes there as"
+            f" {kind} is left out"
+        )

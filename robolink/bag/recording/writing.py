@@ -1,0 +1,222 @@
+"""Writer thread of a recording: takes messages from the cache, writes them, and does what is asked in between.
+
+Only this thread touches the bag. When the disk is full, or another error of the file comes up, it closes the bag with
+what is good and ends.
+"""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+from collections.abc import Callable, Iterable
+from concurrent.futures import Future
+from pathlib import Path
+from typing import Any, Protocol
+
+from robolink.bag.recording.cache import OVERHEAD, Cache, size_of
+from robolink.bag.recording.topics import Arrived, RecordedTopic
+from robolink.bag.topic import BagTopic
+from robolink.exceptions import RobolinkError
+from robolink.wire import NO_HASH
+
+TICK = 0.05
+"""Time in seconds between two looks of the bag at what is due."""
+
+PERIOD = 1.0
+"""Time in seconds between two looks at what is to be told."""
+
+
+class WritableBag(Protocol):
+    """Bag that is being written: a `BagWriter`."""
+
+    on_split: Callable[[Path, Path], object]
+
+    def add_topic(self, topic: BagTopic) -> int:
+        """Add a topic; return its number."""
+
+    def write(self, topic: int, log_time: int, publish_time: int, sequence: int, data: bytes | memoryview) -> None:
+        """Write a message."""
+
+    def tick(self) -> None:
+        """Show what is due."""
+
+    def split(self) -> None:
+        """Close the file and begin the next one."""
+
+    def close(self) -> Any:
+        """Close it, and return its metadata."""
+
+
+class Writing:
+    """Thread that writes a bag.
+
+    Args:
+        bag: Bag, open.
+        cache: Cache of the messages.
+        now: Function that returns the time for messages that are repeated, in ns.
+        on_split: Called with the paths of the file that was closed and of the next one.
+        on_error: Called once when the bag can no longer be written, with the reason in one line.
+        every_second: Called about once a second.
+    """
+
+    def __init__(
+        self,
+        bag: WritableBag,
+        cache: Cache,
+        now: Callable[[], int],
+        on_split: Callable[[Path, Path], object],
+        on_error: Callable[[str], object],
+        every_second: Callable[[], object],
+    ) -> None:
+        self.topics: list[RecordedTopic] = []
+        """Topics of the bag, in their order."""
+        self.messages = self.bytes = 0
+        """Number of messages in the bag, and their bytes."""
+        self.metadata: Any = None
+        """Result of the bag's `close`."""
+        self._bag, self._cache, self._now = bag, cache, now
+        self._on_split, self._on_error, self._every_second = on_split, on_error, every_second
+        self._commands: queue.SimpleQueue[tuple[Callable[[], object], Future[Any]]] = queue.SimpleQueue()
+        self._has_split = self._closes = self._failed = False
+        self._second = time.monotonic()
+        self._thread = threading.Thread(target=self._run, name="robolink bag writer", daemon=True)
+        bag.on_split = self._note_split
+
+    def start(self) -> None:
+        """Start the thread."""
+        self._thread.start()
+
+    def do(self, command: Callable[[], object]) -> Future[Any]:
+        """Call `command()` on the thread, between two messages; the future has its result."""
+        future: Future[Any] = Future()
+        self._commands.put((command, future))
+        self._cache.wake()
+        return future
+
+    def close(self) -> None:
+        """Write what the cache has, close the bag and end the thread."""
+        self._closes = True
+        self._cache.wake()
+        self._thread.join()
+
+    # On the thread
+
+    def add_topic(self, topic: RecordedTopic, text: str) -> None:
+        """Add a topic whose type is known now, and write what has waited for that."""
+        type_hash = "" if topic.token.type_hash == NO_HASH else topic.token.type_hash
+        described = BagTopic(topic.name, topic.type_name, "cdr", type_hash, topic.profiles, text)
+        topic.number = self._bag.add_topic(described)
+        self.topics.append(topic)
+        waiting, topic.pending = topic.pending, []
+        self._write(waiting)
+
+    def write_again(self, messages: Iterable[Arrived], now: int) -> None:
+        """Write messages that are kept of latched topics, at the time `now`."""
+        for each in messages:
+            if each.topic.number >= 0:
+                self._bag.write(each.topic.number, now, each.publish_time, each.sequence, each.data)
+                self._count(each)
+
+    def write_snapshot(self, messages: list[Arrived]) -> None:
+        """Write what a snapshot has, into a file of its own."""
+        if self.messages:
+            self._bag.split()
+        if messages:
+            self._repeat(messages[0].log_time, {id(each) for each in messages})
+        self._write(messages)
+
+    def split(self) -> None:
+        """Close the file and begin the next one."""
+        self._bag.split()
+        self._repeat_if_split(self._now())
+
+    def _run(self) -> None:
+        try:
+            while not self._closes:
+                self._step()
+            while self._step():
+                pass
+        except Exception as error:  # noqa: BLE001 - whatever it is, it is told, and what is recorded is closed
+            self._fail(error)
+        try:
+            self.metadata = self._bag.close()
+        except Exception as error:  # noqa: BLE001
+            self._fail(error)
+
+    def _step(self) -> bool:
+        """Write what there is, and do what is asked; return whether there was anything."""
+        batch = self._cache.take(0.0 if self._closes else TICK)
+        self._write(batch)
+        commanded = self._obey()
+        self._bag.tick()
+        if time.monotonic() - self._second >= PERIOD:
+            self._second = time.monotonic()
+            self._every_second()
+        return bool(batch) or commanded
+
+    def _write(self, messages: list[Arrived]) -> None:
+        write, tick = self._bag.write, self._bag.tick
+        count = size = pending = 0
+        for each in messages:
+            topic, log_time, publish_time, sequence, data = each
+            if topic.number < 0:
+                topic.pending.append(each)
+                pending += len(data) + OVERHEAD
+                continue
+            write(topic.number, log_time, publish_time, sequence & 0xFFFFFFFF, data)
+            count += 1
+            size += len(data)
+            if self._has_split:
+                self._repeat_if_split(log_time)
+            if not count & 63:
+                tick()
+        if messages:
+            self.messages += count
+            self.bytes += size
+            self._cache.release(size_of(messages) - pending)
+
+    def _count(self, message: Arrived) -> None:
+        self.messages += 1
+        self.bytes += len(message.data)
+
+    def _repeat_if_split(self, now: int) -> None:
+        if self._has_split:
+            self._has_split = False
+            self._repeat(now, set())
+
+    def _repeat(self, now: int, but: set[int]) -> None:
+        """Begin a file with the last messages of the topics that are repeated."""
+        for topic in self.topics:
+            self.write_again([each for each in list(topic.kept or ()) if id(each) not in but], now)
+
+    def _obey(self) -> bool:
+        did = False
+        while not self._commands.empty():
+            command, future = self._commands.get()
+            did = True
+            try:
+                future.set_result(command())
+            except Exception as error:
+                future.set_exception(error)
+                raise
+        return did
+
+    def _fail(self, error: Exception) -> None:
+        if not self._failed:
+            self._failed = True
+            self._on_error(reason_of(error))
+        while not self._commands.empty():
+            self._commands.get()[1].set_exception(error)
+
+    def _note_split(self, closed: Path, opened: Path) -> None:
+        self._has_split = True
+        self._on_split(closed, opened)
+
+
+def reason_of(error: Exception) -> str:
+    """Return why a bag cannot be written, in one line."""
+    if isinstance(error, OSError) and error.strerror:
+        place = f"{error.filename}: " if error.filename else ""
+        return f"{place}{error.strerror}"
+    return str(error) if isinstance(error, RobolinkError) else f"{type(error).__name__}: {error}"

@@ -1,0 +1,108 @@
+"""Reindexing of bags: files of a killed recorder are made whole, and metadata.yaml is made anew from what they hold."""
+
+from __future__ import annotations
+
+import contextlib
+import sqlite3
+from collections.abc import Callable
+from pathlib import Path
+
+from robolink.bag import mcap
+from robolink.bag.folder import storage_files
+from robolink.bag.metadata import FILE_NAME, BagMetadata, read_metadata, write_metadata
+from robolink.bag.reader import open_bag
+from robolink.bag.topic import BagError
+
+_END, _PART = 32 << 20, 64 << 10
+"""Bytes at the end of a file that are looked at for a hole, and the smallest hole that counts."""
+
+Told = Callable[[str], object]
+"""Function that is called with a line about what was done."""
+
+
+def reindex(path: str | Path, tell: Told = lambda line: None) -> BagMetadata:
+    """Mend a bag in its place, and return its metadata.
+
+    What metadata.yaml alone knows (custom data, the distribution, how the files are compressed) is kept if it can be
+    read. A file that cannot be read at all stays as it is, and is told.
+
+    Args:
+        path: Folder of the bag, or one storage file, which alone is then made whole.
+        tell: Called with each line about what was done.
+
+    Raises:
+        BagError: if there is no bag, or nothing of it can be read.
+        OSError: if it cannot be written.
+    """
+    folder = Path(path)
+    files = storage_files(folder) if folder.is_dir() else [folder]
+    if not files:
+        raise BagError(f"{folder} is no bag: there is no .mcap and no .db3 file in it")
+    for each in files:
+        _mend(each, tell)
+    if not folder.is_dir():
+        with open_bag(folder) as bag:
+            return bag.metadata
+    metadata = _described(folder, tell)
+    write_metadata(folder, metadata)
+    return metadata
+
+
+def _described(folder: Path, tell: Told) -> BagMetadata:
+    """Return metadata of the files that are in a folder, whatever its metadata.yaml names."""
+    old = None
+    with contextlib.suppress(BagError):
+        old = read_metadata(folder) if (folder / FILE_NAME).exists() else None
+    with open_bag(folder, ignores_metadata=True) as bag:
+        for problem in bag.problems:
+            tell(problem)
+        metadata = bag.metadata
+    if old is not None:
+        metadata.custom_data = old.custom_data or metadata.custom_data
+        metadata.ros_distro = old.ros_distro or metadata.ros_distro
+        metadata.compression_mode = old.compression_mode or metadata.compression_mode
+        metadata.compression_format = old.compression_format or metadata.compression_format
+    return metadata
+
+
+def _mend(path: Path, tell: Told) -> None:
+    try:
+        with path.open("rb") as file:
+            head = file.read(16)
+    except OSError as error:
+        raise BagError(f"{path} cannot be read: {error.strerror}") from None
+    if head.startswith(b"\x89MCAP"):
+        _mend_mcap(path, tell)
+    elif head.startswith(b"SQLite format 3\0"):
+        _mend_sqlite(path)
+
+
+def _mend_mcap(path: Path, tell: Told) -> None:
+    """Make an MCAP file whole, and give back the room that a killed recorder had reserved in it."""
+    try:
+        with mcap.open_mcap(path) as reader:
+            needs_it = not reader.is_whole or bool(reader.problems)
+        if not (needs_it or _has_hole(path)):
+            return
+        report = mcap.reindex(path)
+    except mcap.McapError as error:
+        tell(str(error))
+        return
+    for problem in report.problems:
+        tell(f"{path}: {problem}")
+    tell(f"{path}: {report.messages} messages, {report.size_before} bytes before and {report.size_after} now")
+
+
+def _has_hole(path: Path) -> bool:
+    """True if the end of a file has a part of zeros: room for what a recorder would have written."""
+    with path.open("rb") as file:
+        file.seek(max(0, path.stat().st_size - _END))
+        return any(not any(part) for part in iter(lambda: file.read(_PART), b""))
+
+
+def _mend_sqlite(path: Path) -> None:
+    """Let sqlite3 finish what the log of a killed writer holds."""
+    if not any(path.with_name(path.name + each).exists() for each in ("-wal", "-journal")):
+        return
+    with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(path)) as database:
+        database.execute("PRAGMA journal_mode = DELETE")

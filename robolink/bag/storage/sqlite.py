@@ -1,0 +1,281 @@
+"""Storage in sqlite3 databases (.db3), the default of rosbag2 until Humble: schemas 1 to 4."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sqlite3
+import time
+from collections.abc import Collection, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from robolink.bag.metadata import ROS_DISTRO, BagMetadata, parse_metadata, spell_metadata
+from robolink.bag.offered_qos import profiles_or_none, text_of
+from robolink.bag.storage.base import StorageReader, StorageWriter, Written
+from robolink.bag.topic import BagError, BagMessage, BagTopic
+
+MAGIC = b"SQLite format 3\0"
+SCHEMA_VERSION = 4
+
+_SCHEMA = """
+CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL);
+CREATE TABLE metadata(id INTEGER PRIMARY KEY, metadata_version INTEGER NOT NULL, metadata TEXT NOT NULL);
+CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,
+    serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL, type_description_hash TEXT NOT NULL);
+CREATE TABLE message_definitions(id INTEGER PRIMARY KEY, topic_type TEXT NOT NULL, encoding TEXT NOT NULL,
+    encoded_message_definition TEXT NOT NULL, type_description_hash TEXT NOT NULL);
+CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL,
+    data BLOB NOT NULL);
+CREATE INDEX timestamp_idx ON messages (timestamp ASC);
+"""
+_COMMIT_AFTER = 0.25
+"""Longest time, in seconds, after which written messages are committed."""
+
+
+class SqliteReader(StorageReader):
+    """Reader of a .db3 file. Raises BagError if it is no database of a bag, or a damaged one."""
+
+    identifier = "sqlite3"
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        self._strange = 0
+        self._database = _opened(path)
+        try:
+            self._read_summary()
+        except BagError:
+            self.close()
+            raise
+
+    def _read_summary(self) -> None:
+        with self._errors():
+            columns = {row[1] for row in self._database.execute("PRAGMA table_info(topics)")}
+            tables = {row[0] for row in self._database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
+            if not {"topics", "messages"} <= tables:
+                raise BagError(
+                    f"{self.path} is a sqlite3 database, but no bag: it lacks the tables topics and messages"
+                )
+            definitions = self._definitions() if "message_definitions" in tables else {}
+            query = ", ".join(_column(columns, name) for name in _COLUMNS)
+            rows = self._database.execute(f"SELECT id, {query} FROM topics ORDER BY id").fetchall()
+            self._ids = [row[0] for row in rows]
+            self.topics = [_topic(row, definitions) for row in rows]
+            self.message_count = self._number("SELECT MAX(id) FROM messages")
+            self.start_time, self.end_time = self._time("MIN"), self._time("MAX")
+            self.metadata = self._metadata() if "metadata" in tables else None
+
+    def _definitions(self) -> dict[str, tuple[str, str]]:
+        query = "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
+        return {str(row[0]): (str(row[1]), str(row[2])) for row in self._database.execute(query)}
+
+    def _metadata(self) -> BagMetadata | None:
+        row = self._database.execute("SELECT metadata FROM metadata ORDER BY id DESC LIMIT 1").fetchone()
+        with contextlib.suppress(BagError):  # a copy: what counts is metadata.yaml, and the messages
+            return parse_metadata(str(row[0])) if row else None
+        return None
+
+    def _number(self, query: str) -> int:
+        found = self._database.execute(query).fetchone()[0]
+        return found if isinstance(found, int) else 0
+
+    def _time(self, which: str) -> int:
+        """Return the first (MIN) or the last (MAX) time; the usual way takes it from the end of an index."""
+        query = f"SELECT {which}(timestamp) FROM messages"
+        found = self._database.execute(query).fetchone()[0]
+        return found if isinstance(found, int) else self._number(f"{query} WHERE typeof(timestamp) = 'integer'")
+
+    @property
+    def problems(self) -> list[str]:
+        """One line if rows were found that have no time, or no bytes."""
+        return [f"{self.path}: {self._strange} rows are no messages: they are left out"] if self._strange else []
+
+    def counts(self) -> list[int]:
+        """Return the number of messages of each of `topics`, which reads the whole file."""
+        with self._errors():
+            found = dict(self._database.execute("SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id"))
+        return [int(found.get(each, 0)) for each in self._ids]
+
+    def messages(
+        self, topics: Collection[str] | None, start: int | None, end: int | None, *, reverse: bool = False
+    ) -> Iterator[BagMessage]:
+        """Yield messages in the order of their times; sqlite3 knows only the time at which one was received."""
+        names = {id_: each.name for id_, each in zip(self._ids, self.topics, strict=True)}
+        wanted = {id_: name for id_, name in names.items() if topics is None or name in topics}
+        conditions, values = ["1"], list[int]()
+        for condition, value in (("timestamp >= ?", start), ("timestamp < ?", end)):
+            if value is not None:
+                conditions.append(condition)
+                values.append(max(-(2**63), min(value, 2**63 - 1)))
+        order = "DESC" if reverse else "ASC"
+        query = (
+            f"SELECT topic_id, timestamp, data FROM messages WHERE {' AND '.join(conditions)}"
+            f" ORDER BY timestamp {order}, id {order}"
+        )
+        strange = 0
+        with self._errors():
+            for id_, stamp, data in self._database.execute(query, values):
+                if (name := wanted.get(id_)) is None:
+                    continue
+                if type(data) is bytes and type(stamp) is int:
+                    yield BagMessage(name, data, stamp, stamp)
+                else:
+                    strange += 1
+                    self._strange = max(self._strange, strange)
+
+    def close(self) -> None:
+        """Close the database."""
+        self._database.close()
+
+    @contextlib.contextmanager
+    def _errors(self) -> Iterator[None]:
+        try:
+            yield
+        except (sqlite3.Error, OverflowError, ValueError) as error:
+            if isinstance(error, BagError):
+                raise
+            raise BagError(f"{self.path} is damaged: {error}") from None
+
+
+class SqliteWriter(StorageWriter):
+    """Writer of a .db3 file, which readers find whole after each `flush`, whatever happens later."""
+
+    identifier = "sqlite3"
+    ending = ".db3"
+
+    def __init__(self, path: Path) -> None:
+        if path.exists():
+            raise BagError(f"{path} exists already")
+        self._path, self._database = path, _created(path)
+        self._types: set[str] = set()
+        self._size = 0
+        self._counts: dict[int, int] = {}
+        self._first = self._last = 0
+        self._committed = time.monotonic()
+
+    @property
+    def size(self) -> int:
+        """Bytes of messages so far, with what each row costs."""
+        return self._size
+
+    @property
+    def written(self) -> Written:
+        """Messages that were written so far."""
+        return Written(list(self._counts.values()), self._first, self._last)
+
+    def add_topic(self, topic: BagTopic) -> int:
+        """Add a topic, and return its number."""
+        self._begin()
+        row = (topic.name, topic.type_name, topic.serialization_format, text_of(topic.offered_qos), topic.type_hash)
+        added = self._run(
+            "INSERT INTO topics(name, type, serialization_format, offered_qos_profiles, type_description_hash)"
+            " VALUES (?, ?, ?, ?, ?)",
+            row,
+        )
+        if topic.message_definition and topic.type_name not in self._types:
+            self._types.add(topic.type_name)
+            self._run(
+                "INSERT INTO message_definitions(topic_type, encoding, encoded_message_definition,"
+                " type_description_hash) VALUES (?, ?, ?, ?)",
+                (topic.type_name, topic.definition_encoding, topic.message_definition, topic.type_hash),
+            )
+        assert added.lastrowid is not None
+        self._counts[added.lastrowid] = 0
+        return added.lastrowid
+
+    def write(self, topic: int, log_time: int, publish_time: int, sequence: int, data: bytes | memoryview) -> None:
+        """Write a message; sqlite3 keeps its log time alone."""
+        self._begin()
+        self._run("INSERT INTO messages(topic_id, timestamp, data) VALUES (?, ?, ?)", (topic, log_time, data))
+        if not self._size:
+            self._first = self._last = log_time
+        elif log_time > self._last:
+            self._last = log_time
+        elif log_time < self._first:
+            self._first = log_time
+        self._counts[topic] += 1
+        self._size += len(data) + 32
+
+    def tick(self) -> None:
+        """Commit what was written, if it is time."""
+        if time.monotonic() - self._committed >= _COMMIT_AFTER:
+            self.flush()
+
+    def flush(self) -> None:
+        """Commit what was written."""
+        self._committed = time.monotonic()
+        if self._database.in_transaction:
+            self._run("COMMIT")
+
+    def close(self, metadata: BagMetadata | None) -> None:
+        """Close the database, with a copy of the bag's metadata; one file is left."""
+        try:
+            if metadata is not None:
+                self._begin()
+                self._run(
+                    "INSERT INTO metadata(metadata_version, metadata) VALUES (?, ?)",
+                    (metadata.version, spell_metadata(metadata)),
+                )
+            self.flush()
+            self._run("PRAGMA journal_mode = DELETE")
+        finally:
+            self._database.close()
+
+    def _begin(self) -> None:
+        if not self._database.in_transaction:
+            self._run("BEGIN")
+
+    def _run(self, query: str, values: Sequence[Any] = ()) -> sqlite3.Cursor:
+        try:
+            return self._database.execute(query, values)
+        except (sqlite3.Error, OverflowError) as error:
+            raise BagError(f"{self._path} cannot be written: {error}") from None
+
+
+_COLUMNS = ("name", "type", "serialization_format", "offered_qos_profiles", "type_description_hash")
+
+
+def _created(path: Path) -> sqlite3.Connection:
+    """Make a database with the tables of a bag. Raises BagError if it cannot be made."""
+    distro = os.environ.get("ROS_DISTRO", ROS_DISTRO)
+    try:
+        database = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
+        database.execute("PRAGMA journal_mode = WAL")
+        database.execute("PRAGMA synchronous = NORMAL")
+        database.executescript(_SCHEMA)
+        database.execute("INSERT INTO schema VALUES (?, ?)", (SCHEMA_VERSION, distro))
+    except sqlite3.Error as error:
+        raise BagError(f"{path} cannot be made: {error}") from None
+    return database
+
+
+def _column(columns: set[str], name: str) -> str:
+    return name if name in columns else "''"
+
+
+def _topic(row: tuple[Any, ...], definitions: dict[str, tuple[str, str]]) -> BagTopic:
+    _, name, type_name, format_, qos, type_hash = (str(each or "") for each in row)
+    encoding, text = definitions.get(type_name, ("ros2msg", ""))
+    return BagTopic(name, type_name, format_, type_hash, profiles_or_none(qos), text, encoding if text else "ros2msg")
+
+
+def _opened(path: Path) -> sqlite3.Connection:
+    """Open a database to read, also one on a disk that is read-only or beside the log of a writer that was killed."""
+    last = ""
+    for way in ("mode=ro", "immutable=1"):
+        database = None
+        try:
+            database = sqlite3.connect(f"{path.resolve().as_uri()}?{way}", uri=True, check_same_thread=False)
+            database.text_factory = _text
+            database.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()
+        except sqlite3.Error as error:
+            if database is not None:
+                database.close()
+            last = str(error)
+        else:
+            return database
+    raise BagError(f"{path} is damaged: {last}")
+
+
+def _text(raw: bytes) -> str:
+    return raw.decode("utf-8", "replace")

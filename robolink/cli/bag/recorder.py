@@ -1,0 +1,124 @@
+"""Run of `robolink bag record`: a node with rosbag2's services, keys, a progress line, and an end in order."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from robolink.bag.background_spin import BackgroundSpin
+from robolink.bag.recording import RecordSettings
+from robolink.bag.recording.served import ServedRecording
+from robolink.bag.selection import Selection
+from robolink.cli.bag.progress_line import ProgressLine
+from robolink.cli.bag.recording_lines import as_data, progress, summary
+from robolink.cli.shared.keys import keys
+from robolink.cli.shared.output import complain, say, say_json
+from robolink.cli.shared.session import opened
+from robolink.logging import LoggingSeverity
+from robolink.node import Node
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+
+LOOK = 0.2
+"""Time in seconds from one look at what has ended the recording to the next."""
+
+SHOW = 0.5
+"""Time in seconds from one progress line to the next."""
+
+
+class Wish(NamedTuple):
+    """Options of `bag record`, besides those of the recording."""
+
+    node_name: str = "rosbag2_recorder"
+    log_level: str = "info"
+    keys: bool = True
+    json: bool = False
+
+
+def run(path: str | Path, selection: Selection, settings: RecordSettings, wish: Wish) -> int:
+    """Record until Ctrl-C, SIGTERM, the service `~/stop`, or until the bag can no longer be written; return the code.
+
+    Raises BagError (a ValueError) if the bag cannot be made, SelectionError if nothing is selected.
+    """
+    with opened() as context, ProgressLine() as line:
+        command = _Command(context, path, selection, settings, wish)
+        try:
+            command.run(line)
+        except KeyboardInterrupt:  # the usual end; SIGTERM comes as one, too
+            pass
+        finally:
+            command.end(line)
+        return command.told()
+
+
+class _Command:
+    """One run of the command."""
+
+    def __init__(
+        self, context: Context, path: str | Path, selection: Selection, settings: RecordSettings, wish: Wish
+    ) -> None:
+        self._context, self._wish, self._settings = context, wish, settings
+        self._node = Node(wish.node_name, context=context, start_parameter_services=False)
+        self._logger = self._node.get_logger()
+        self._logger.set_level(LoggingSeverity[wish.log_level.upper()])
+        self._served = ServedRecording(self._node, path, selection, settings)
+        self._recording = self._served.recording
+
+    def run(self, line: ProgressLine) -> None:
+        """Record until something ends it."""
+        steered = keys() if self._wish.keys else contextlib.nullcontext(_wait)
+        with BackgroundSpin(self._node), steered as read:
+            self._served.start()
+            self._greet()
+            before, shown_at = self._recording.figures(), 0.0
+            while not self._is_over():
+                self._obey(read(LOOK))
+                if time.monotonic() - shown_at >= SHOW:
+                    shown_at, now = time.monotonic(), self._recording.figures()
+                    line.show(progress(now, before))
+                    before = now
+
+    def end(self, line: ProgressLine) -> None:
+        """Close the bag."""
+        line.clear()
+        if self._recording.has_started:
+            self._recording.stop()
+            self._logger.info("Recording stopped")
+
+    def told(self) -> int:
+        """Print how it went, and return the exit code."""
+        figures = self._recording.figures()
+        if self._wish.json:
+            say_json(as_data(figures))
+        else:
+            for each in summary(figures):
+                say(each)
+        return complain(f"the recording has ended: {figures.error}") if figures.error else 0
+
+    def _is_over(self) -> bool:
+        return not self._context.ok() or self._served.is_over
+
+    def _greet(self) -> None:
+        if self._wish.keys:
+            self._logger.info("Press SPACE for pausing/resuming")
+        if not self._settings.use_sim_time:
+            self._logger.info("Listening for topics...")
+        if self._settings.start_paused:
+            self._logger.info("Wait for recording: Press SPACE to start.")
+        elif not (self._settings.snapshot_mode or self._settings.use_sim_time):
+            self._logger.info("Recording...")
+
+    def _obey(self, key: str) -> None:
+        if key == " ":
+            self._recording.toggle_paused()
+        elif key == "s" and self._settings.snapshot_mode:
+            taken = self._recording.snapshot()
+            self._logger.info("Snapshot written" if taken else "There is nothing to write yet")
+
+
+def _wait(seconds: float) -> str:
+    time.sleep(seconds)
+    return ""
