@@ -1,0 +1,99 @@
+"""robolink view: a page in the browser that shows a running system, and Foxglove's protocol on the same port."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from robolink.cli.shared.output import say, tell
+
+if TYPE_CHECKING:
+    from robolink.view.server import Settings, View
+
+app = typer.Typer(help="Show a running system, or a bag, in the browser.")
+
+
+@app.command("view")
+def view(
+    port: Annotated[
+        int | None, typer.Option("--port", metavar="PORT", min=0, max=65535, help="Default 8765, or the next free one.")
+    ] = None,
+    host: Annotated[
+        str, typer.Option("--host", metavar="ADDRESS", help="Where to listen; 0.0.0.0 opens it to the network.")
+    ] = "127.0.0.1",
+    browser: Annotated[bool, typer.Option(help="Open the page in the browser.")] = True,
+    read_only: Annotated[bool, typer.Option("--read-only", help="Nobody may publish, call or set anything.")] = False,
+    bag: Annotated[
+        Path | None, typer.Option("--bag", metavar="FILE", help="Show this bag instead of a running system.")
+    ] = None,
+    token: Annotated[
+        str, typer.Option("--token", metavar="TEXT", help="Secret in the address; by default a new one each time.")
+    ] = "",
+) -> None:
+    """Show a running system, or a bag, in the browser: the world from above, topics, plots, images, logs, parameters.
+
+    Foxglove, Lichtblick and PlotJuggler connect to the same port, by ws://localhost:8765.
+    """
+    from robolink.view.server import Settings
+
+    _end_with_the_terminal()
+    settings = Settings(host, port, token, read_only)
+    if bag is not None:
+        _show_bag(bag, settings, browser)
+    else:
+        _show_system(settings, browser)
+
+
+def _show_system(settings: Settings, browser: bool) -> None:
+    from robolink.cli.shared.session import node_of, opened
+    from robolink.view.server import View
+    from robolink.view.sources.live import LiveSource
+
+    with opened() as context, View(LiveSource(node_of(context)), settings) as server:
+        _announce(server, browser)
+        context.graph.wait_for(lambda: not context.ok(), None)
+
+
+def _show_bag(path: Path, settings: Settings, browser: bool) -> None:
+    from robolink.bag.reader import open_bag
+    from robolink.cli.shared.session import opened
+    from robolink.view.server import View
+    from robolink.view.sources.bag import BagSource
+
+    with open_bag(path) as bag, opened() as context, View(BagSource(bag), settings) as server:
+        _announce(server, browser)
+        context.graph.wait_for(lambda: not context.ok(), None)
+
+
+def _end_with_the_terminal() -> None:
+    """Take the terminal's end for Ctrl-C's sibling SIGTERM: a server that is just gone stops no robot."""
+    import signal
+    import sys
+
+    if sys.platform != "win32" and signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:
+        signal.signal(signal.SIGHUP, lambda number, frame: signal.raise_signal(signal.SIGTERM))
+
+
+def _announce(server: View, browser: bool) -> None:
+    say(f"robolink view: {server.address}")
+    if server.exposed:
+        import socket
+
+        others = f"http://{socket.gethostname()}:{server.port}/?{server.address.partition('?')[2]}"
+        tell(f"others on the network open {others}: whoever has the token can drive the robots")
+        tell("the connection is not encrypted: who listens on the network can read the token (docs/view.md)")
+    if browser:
+        _open(server.address)
+
+
+def _open(address: str) -> None:
+    import os
+    import sys
+    import webbrowser
+
+    has_display = sys.platform in ("win32", "darwin") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    if has_display and webbrowser.open(address):
+        return
+    tell("no browser here: open the address above")

@@ -1,0 +1,57 @@
+// DOM helpers: elements made without HTML text, so that nothing of the network is ever parsed as HTML.
+
+/** Element of a tag; properties are set, `on...` are listeners, `class`, `role`, `aria-*` and `data-*` attributes. */
+export function h(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (value === undefined || value === null) continue;
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else if (name in element && name !== "list") element[name] = value;
+    else element.setAttribute(name === "class" ? "class" : name, value);
+  }
+  element.append(...children.filter((child) => child !== null && child !== undefined && child !== false));
+  return element;
+}
+
+/** Button with a text or a symbol; `label` is its name for screen readers and its tooltip. */
+export function button(text, label, onclick, properties = {}) {
+  return h("button", { type: "button", title: label ?? "", "aria-label": label ?? text, onclick, ...properties }, text);
+}
+
+/** Set of listeners by name: `on(name, listener)` returns a function that takes it away. */
+export class Emitter {
+  constructor() { this._listeners = new Map(); }
+
+  on(name, listener) {
+    if (!this._listeners.has(name)) this._listeners.set(name, new Set());
+    this._listeners.get(name).add(listener);
+    return () => this._listeners.get(name).delete(listener);
+  }
+
+  emit(name, ...values) {
+    for (const listener of [...(this._listeners.get(name) ?? [])]) listener(...values);
+  }
+}
+
+/** Number in few characters: 1234567 is "1.23M". */
+export function brief(value, digits = 3) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  const size = Math.abs(value);
+  for (const [limit, letter] of [[1e9, "G"], [1e6, "M"], [1e3, "k"]]) {
+    if (size >= limit) return `${Number((value / limit).toPrecision(digits))}${letter}`;
+  }
+  return `${Number(value.toPrecision(digits))}`;
+}
+
+/** True where keys write text: shortcuts leave them alone. */
+export function isTyping(target) {
+  if (target instanceof HTMLInputElement) return !/^(range|checkbox|radio|button|color)$/.test(target.type);
+  return target instanceof HTMLElement && (target.isContentEditable || /^(TEXTAREA|SELECT)$/.test(target.tagName));
+}
+
+export function download(name, content, type = "application/octet-stream") {
+  const blob = content instanceof Blob ? content : new Blob([content], { type });
+  const address = URL.createObjectURL(blob);
+  h("a", { href: address, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(address), 10_000);
+}

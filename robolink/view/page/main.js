@@ -1,0 +1,209 @@
+// Entry of the page: the connection, what panels share (`app`), header, STOP, shortcuts and the loop of frames.
+
+import { Connection } from "./connection.js";
+import { button, Emitter, h, isTyping } from "./dom.js";
+import { Layout, PANELS } from "./layout.js";
+import { addRecordButton } from "./recording.js";
+import { Frames } from "./tf.js";
+import { Timeline } from "./timeline.js";
+import { Topics } from "./topics.js";
+import { addWords, choose, words } from "./words.js";
+
+const STOP_SECONDS = 1, STOP_PERIOD = 50;
+const TWISTS = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"];
+const SETTINGS = "robolink.settings";
+
+/** What is remembered by the browser beside the layout. */
+const settings = { theme: "", language: "" };
+try {
+  Object.assign(settings, JSON.parse(localStorage.getItem(SETTINGS) ?? "{}"));
+} catch { /* nonsense is forgotten */ }
+choose(settings.language);
+
+/** Everything that a panel may use: see "Add a panel" in docs/development/recipes.md. */
+class App extends Emitter {
+  constructor() {
+    super();
+    const token = new URLSearchParams(location.search).get("token");
+    this.connection = new Connection(`${location.origin.replace(/^http/, "ws")}/ws${token ? `?token=${encodeURIComponent(token)}` : ""}`);
+    this.time = { live: true, at: 0 };
+    this.store = new Topics(this.connection, this.time);
+    this.topics = this.store.map;
+    this.tf = new Frames(this.time);
+    this.settings = settings;
+    this.words = words;
+    this.addWords = addWords;
+    this.work = 0;
+  }
+
+  /** Subscribe to a topic: see Topics.listen. */
+  listen(name, options) { return this.store.listen(name, options); }
+
+  /** Time that the page shows, in milliseconds. */
+  get now() { return this.time.live ? this.clock() : this.time.at; }
+
+  /** Time of what arrives, in milliseconds: the system's, or that of the bag that is played. */
+  clock() { return this.timeline?.bagTime ?? performance.timeOrigin + performance.now(); }
+
+  /** Tell the person something for some seconds. */
+  tell(text, isError = false) {
+    const note = h("p", { class: isError ? "note error" : "note", role: isError ? "alert" : "status" }, text);
+    this.notes.append(note);
+    setTimeout(() => note.remove(), isError ? 8000 : 4000);
+    while (this.notes.children.length > 4) this.notes.firstChild.remove();
+  }
+
+  /** Forget what was received: a bag was moved to another place, or another system runs. */
+  forget() {
+    this.tf.clear();
+    this.store.forget();
+  }
+
+  /** Remember layout, options and settings. */
+  remember() {
+    this.layout.save();
+    localStorage.setItem(SETTINGS, JSON.stringify(settings));
+  }
+
+  /** Topics that drive robots, with their types: also those that nobody publishes yet. */
+  drivable() {
+    const found = new Map();
+    for (const topic of this.topics.values()) if (TWISTS.includes(topic.type) && /(^|\/|_)cmd_vel($|\/|_)/.test(topic.name)) found.set(topic.name, topic.type);
+    return found;
+  }
+
+  /** Stop all robots: zeros for a second. Event: stop. */
+  stop() {
+    this.emit("stop");
+    const robots = this.drivable();
+    this.tell(robots.size ? words("stop.sent", { topics: [...robots.keys()].join(", ") }) : words("stop.none"), !robots.size);
+    const end = performance.now() + STOP_SECONDS * 1000;
+    const send = () => {
+      for (const [name, type] of robots) this.connection.publish(name, type, {});
+      if (performance.now() < end) setTimeout(send, STOP_PERIOD);
+    };
+    send();
+  }
+}
+
+const app = new App();
+globalThis.robolink = app; // for people who look with the browser's tools, and for tests
+
+function showTheme() {
+  if (settings.theme) document.documentElement.dataset.theme = settings.theme;
+  else delete document.documentElement.dataset.theme;
+  app.emit("theme");
+}
+
+/** Colours of the style sheet, which canvases use too. */
+app.colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+/** True while the page is light. */
+app.isLight = () => (settings.theme ? settings.theme === "light" : matchMedia("(prefers-color-scheme: light)").matches);
+
+function turnTheme() {
+  settings.theme = app.isLight() ? "dark" : "light";
+  showTheme();
+  app.remember();
+}
+
+function turnLanguage() {
+  settings.language = choose(settings.language) === "en" ? "pt" : "en";
+  choose(settings.language);
+  app.remember();
+  buildHeader();
+  app.timeline.build();
+  app.layout.rebuild();
+}
+
+function buildHeader() {
+  document.documentElement.lang = choose(settings.language);
+  const state = h("span", { id: "state", role: "status" });
+  const menu = h("select", { id: "add", "aria-label": words("add"), title: words("add"), onchange: () => {
+    if (menu.value === "reset") app.layout.reset();
+    else app.layout.add(menu.value);
+    menu.value = "";
+  } }, h("option", { value: "" }, "+"), ...PANELS.map((id) => h("option", { value: id }, words(`panel.${id}`))), h("option", { value: "reset" }, words("layout.reset")));
+  const stop = button(words("stop"), words("stop.title"), () => app.stop(), { id: "stop" });
+  document.getElementById("header").replaceChildren(
+    h("h1", {}, "robolink"), state, h("span", { id: "tools" }), h("span", { class: "gap" }), h("span", { id: "speed", class: "dim" }),
+    menu, button("◐", words("theme"), turnTheme, { id: "theme" }),
+    button(words("language"), null, turnLanguage, { id: "language" }), button("?", words("help"), help, { id: "help" }), stop);
+  app.emit("header", document.getElementById("tools"));
+  showState();
+}
+
+function showState() {
+  const state = document.getElementById("state"), { connection } = app;
+  const readOnly = connection.isReadOnly;
+  state.textContent = connection.isOpen ? (readOnly ? words("read-only") : words("connected")) : words(app.lost ? "lost" : "connecting");
+  state.title = readOnly ? words("read-only.why") : "";
+  state.className = connection.isOpen ? (readOnly ? "warn" : "good") : "bad";
+  const stop = document.getElementById("stop");
+  stop.disabled = !connection.isOpen || readOnly;
+  stop.title = readOnly ? words("read-only.why") : words("stop.title");
+}
+
+const SHORTCUTS = ["space", "?", "p", "l", "t", "1…9", "esc", "←↑→↓", "+ -", "f", "g", "i"];
+const SHORTCUT_WORDS = { "1…9": "digit", "←↑→↓": "arrows", "+ -": "zoom" };
+
+function help() {
+  const dialog = h("dialog", { class: "help", onclose: () => dialog.remove() }, h("h2", {}, words("shortcuts")),
+    h("dl", {}, ...SHORTCUTS.flatMap((key) => [h("dt", {}, h("kbd", {}, key)), h("dd", {}, words(`key.${SHORTCUT_WORDS[key] ?? key}`))])),
+    h("form", { method: "dialog" }, h("button", {}, words("close"))));
+  document.body.append(dialog);
+  dialog.showModal();
+}
+
+function shortcut(event) {
+  if (isTyping(event.target) || event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
+  const acts = { "?": help, t: turnTheme, p: () => app.timeline.toggle(), l: () => app.timeline.goLive(), " ": () => !app.connection.isReadOnly && app.stop() };
+  const act = /^[1-9]$/.test(event.key) ? () => app.layout.focus(Number(event.key) - 1) : acts[event.key];
+  if (!act || (event.key === " " && event.target instanceof HTMLButtonElement)) return;
+  event.preventDefault();
+  if (!event.repeat || event.key === " ") act();
+}
+
+/** Figures that the page measures of itself: frames in the last second, and milliseconds of work in each. */
+const stamps = [];
+function frame(now) {
+  requestAnimationFrame(frame);
+  const start = performance.now();
+  app.connection.painted();
+  app.tf.frame(app.clock());
+  app.layout.frame(now);
+  app.timeline.frame(now);
+  app.work = performance.now() - start;
+  stamps.push(now);
+  while (stamps[0] < now - 1000) stamps.shift();
+  app.emit("frame", now, app.work);
+}
+
+function begin() {
+  const { connection } = app;
+  app.notes = h("div", { id: "notes", "aria-live": "polite" });
+  document.body.append(app.notes);
+  showTheme();
+  addRecordButton(app);
+  app.timeline = new Timeline(document.getElementById("timeline"), app);
+  buildHeader();
+  app.layout = new Layout(document.getElementById("panels"), app);
+  app.on("pick", (topic, path) => { if (!app.layout.has("plot")) app.layout.add("plot", { series: [{ topic, path }] }); });
+  for (const [name, stays] of [["/tf", false], ["/tf_static", true]]) {
+    app.listen(name, { every: (view, time, topic) => { const message = topic.decode(view); if (message?.transforms) app.tf.add(message, stays ? Infinity : time); } });
+  }
+  connection.on("info", showState);
+  connection.on("close", (before) => { app.lost ||= Boolean(before); showState(); });
+  connection.on("open", () => {
+    if (app.lost) app.forget();
+    app.lost = false;
+  });
+  connection.on("status", ({ level, message }) => { if (level > 0) app.tell(message, level > 1); });
+  addEventListener("keydown", shortcut);
+  addEventListener("pagehide", () => app.remember());
+  setInterval(() => { document.getElementById("speed").textContent = `${stamps.length} ${words("frames")}/s`; }, 1000);
+  connection.open();
+  requestAnimationFrame(frame);
+}
+
+begin();

@@ -1,0 +1,218 @@
+// World panel: the world from above, with maps, robots, lidar, paths and markers; goal and initial pose by click.
+
+import { button, h, isTyping } from "../dom.js";
+import { degrees } from "./world_layers.js";
+import { Scene } from "./world_scene.js";
+import { View } from "./world_view.js";
+
+const OVERLAYS = ["grid", "trails", "tf", "names"];
+const TOOLS = {
+  goal: { key: "g", type: "geometry_msgs/msg/PoseStamped", name: "goal_pose", text: "goal" },
+  initial: { key: "i", type: "geometry_msgs/msg/PoseWithCovarianceStamped", name: "initialpose", text: "pose" },
+};
+const COVARIANCE = new Array(36).fill(0);
+COVARIANCE[0] = COVARIANCE[7] = 0.25; // as rviz has it
+COVARIANCE[35] = 0.0685;
+
+class World {
+  constructor(element, app, options) {
+    this.app = app;
+    this.words = app.words;
+    this.followed = options.follow ?? "";
+    this.tool = null;
+    this.canvas = h("canvas", { class: "world", tabIndex: 0, role: "application", "aria-label": this.words("panel.world") });
+    this.status = h("output", { class: "status" });
+    this.note = h("p", { class: "hint" });
+    element.append(this.canvas, this._toolbar(), this._layerList(), this.note, this.status);
+    this.view = new View(this.canvas, this._pointerTool());
+    this.view.onpan = () => this._follow("");
+    if (options.view) {
+      this.view.look(...options.view);
+      this.view.auto = false;
+    }
+    this.scene = new Scene(app, this.view, new Set(options.off ?? []));
+    this.offs = [app.store.on("change", () => this.scene.follow()), app.on("theme", () => this.scene.theme()), app.store.on("forget", () => this.scene.forget())];
+    this.scene.follow();
+    this.keys = (event) => this._key(event);
+    element.closest(".panel").addEventListener("keydown", this.keys);
+    this.element = element;
+  }
+
+  /** The fixed frame that was chosen, or "". */
+  get fixed() { return this.app.settings.fixed ?? ""; }
+
+  save() {
+    const { x, y, scale, auto } = this.view;
+    return { follow: this.followed, off: [...this.scene.off], view: auto ? undefined : [x, y, scale] };
+  }
+
+  close() {
+    for (const off of this.offs) off();
+    this.element.closest(".panel")?.removeEventListener("keydown", this.keys);
+    this.scene.close();
+  }
+
+  frame(now) {
+    if (!(now - this.slow < 500)) {
+      this.slow = now;
+      this._slowly();
+    }
+    const fresh = this.scene.take();
+    const robot = this.followed && this.scene.robots().find(({ name }) => name === this.followed);
+    if (robot) this.view.look(robot.pose.x, robot.pose.y);
+    if (fresh || this.view.changed || this.scene.groundChanged || this.scene.wanted) this.scene.draw(now);
+    if (this.view.pointer && now - (this.hovered ?? 0) > 100) this._hover(now);
+  }
+
+  /** What need not be done in each frame: menus, the note, and the fit until somebody moves the view. */
+  _slowly() {
+    const names = this.app.tf.names(), { scene } = this;
+    this._choices(this.fixedMenu, ["", ...names], this.fixed, (name) => name || `(${this.app.tf.fixed})`);
+    this._choices(this.followMenu, ["", ...scene.robots().map(({ name }) => name)], this.followed, (name) => name || "–");
+    this._chooseFixed(names);
+    this._layers();
+    scene.settle();
+    this.note.textContent = scene.layers.size || names.length
+      ? (scene.loose.size ? this.words("world.unconnected", { frame: this.app.tf.fixed, frames: [...scene.loose].map((name) => name || "''").join(", ") }) : "") : this.words("world.none");
+    if (!this.view.auto) return;
+    const box = scene.bounds(), [left, top] = this.view.toWorld(0, 0), [right, bottom] = this.view.toWorld(this.canvas.clientWidth, this.canvas.clientHeight);
+    if (box && (!this.fitted || box[0] < left || box[1] < bottom || box[2] > right || box[3] > top)) this.view.fit(box);
+    this.fitted ||= Boolean(box);
+  }
+
+  /** The fixed frame: what was chosen, or map, world, odom, or the first root. */
+  _chooseFixed(names) {
+    const { tf } = this.app;
+    const wanted = this.fixed || ["map", "world", "odom"].find((name) => names.includes(name)) || (names.length ? tf.root(names[0]) : "map");
+    if (wanted === tf.fixed) return;
+    tf.fixed = wanted;
+    tf.clearCache();
+    tf.version += 1;
+    this.scene.groundChanged = true;
+  }
+
+  _choices(menu, names, chosen, text) {
+    const key = names.join("\n") + text("");
+    if (menu.dataset.key === key || document.activeElement === menu) return;
+    menu.dataset.key = key;
+    menu.replaceChildren(...names.map((name) => h("option", { value: name, selected: name === chosen }, text(name))));
+  }
+
+  _follow(name) {
+    if (this.followed === name) return;
+    this.followed = name;
+    this.followMenu.value = name;
+    if (name) this.view.auto = false;
+    this.app.remember();
+  }
+
+  fit() {
+    const box = this.scene.bounds();
+    this._follow("");
+    this.view.auto = true;
+    if (box) this.view.fit(box);
+  }
+
+  _toolbar() {
+    const { words } = this;
+    this.fixedMenu = h("select", { title: words("world.fixed"), "aria-label": words("world.fixed"), class: "fixed", onchange: () => {
+      this.app.settings.fixed = this.fixedMenu.value; // one for all panels: they share the tree of frames
+      this.slow = undefined;
+      this.app.remember();
+    } });
+    this.followMenu = h("select", { title: words("world.follow"), "aria-label": words("world.follow"), class: "follow", onchange: () => this._follow(this.followMenu.value) });
+    this.toolButtons = Object.fromEntries(Object.entries(TOOLS).map(([name, { text }]) => [name, button(words(`world.tool.${text}`), words(`world.${name}`), () => this._use(name), { class: `tool-${name}`, ariaPressed: "false" })]));
+    this.target = h("select", { class: "target", hidden: true, "aria-label": words("panel.topics") });
+    return h("div", { class: "toolbar" },
+      button(words("world.tool.fit"), words("world.fit"), () => this.fit(), { class: "fit" }), button("+", words("world.zoomin"), () => this.view.zoom(1.25)), button("−", words("world.zoomout"), () => this.view.zoom(0.8)),
+      button("☰", words("world.layers"), () => { this.list.hidden = !this.list.hidden; this._layers(); }, { class: "layers-button" }),
+      h("label", {}, `${words("world.follow")} `, this.followMenu), h("label", {}, `${words("world.fixed")} `, this.fixedMenu),
+      ...Object.values(this.toolButtons), this.target);
+  }
+
+  _layerList() {
+    this.list = h("div", { class: "layers", hidden: true, role: "group", "aria-label": this.words("world.layers") });
+    return this.list;
+  }
+
+  _layers() {
+    if (this.list.hidden) return;
+    const { scene } = this, key = [...scene.layers.keys()].join("\n");
+    if (this.list.dataset.key === key && this.list.children.length) return;
+    this.list.dataset.key = key;
+    const row = (name, text, colour, type) => {
+      const box = h("input", { type: "checkbox", checked: scene.shows(name), value: name, onchange: () => {
+        scene.show(name, box.checked);
+        this.app.remember();
+      } });
+      const swatch = h("span", { class: "swatch" });
+      if (colour) swatch.style.background = colour;
+      return h("label", { title: type ?? "" }, box, swatch, text);
+    };
+    this.list.replaceChildren(...OVERLAYS.map((name) => row(name, this.words(`world.${name}`))),
+      ...[...scene.layers].sort(([a], [b]) => (a < b ? -1 : 1)).map(([name, { layer, topic }]) => row(name, name, layer.colour, topic.type)));
+  }
+
+  _hover(now) {
+    this.hovered = now;
+    const [x, y] = this.view.pointer;
+    this.status.textContent = [`x ${x.toFixed(2)}  y ${y.toFixed(2)}`, ...this.scene.hover(this.view.pointer)].join("  ·  ");
+  }
+
+  _key(event) {
+    if (isTyping(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
+    const acts = { f: () => this.fit(), g: () => this._use("goal"), i: () => this._use("initial"), Escape: () => this._use(null) };
+    if (!acts[event.key]) return;
+    event.preventDefault();
+    acts[event.key]();
+  }
+
+  /** Take a tool in the hand, or put it away. */
+  _use(name) {
+    const { connection } = this.app;
+    if (name && connection.isReadOnly) return this.app.tell(this.words("read-only.why"), true);
+    this.tool = name === this.tool ? null : name;
+    for (const [each, element] of Object.entries(this.toolButtons)) element.ariaPressed = String(each === this.tool);
+    this.canvas.classList.toggle("aiming", Boolean(this.tool));
+    this.status.textContent = this.tool ? this.words("world.tool") : "";
+    this.scene.wanted = null;
+    this.scene.dirty = true;
+    this._targets();
+    return undefined;
+  }
+
+  /** Topics that the tool may publish to: those that somebody subscribes to, first. */
+  _targets() {
+    const tool = TOOLS[this.tool], { types } = this.app.connection.graph;
+    const found = tool ? [...types].filter(([name, type]) => type === tool.type && name.split("/").pop() === tool.name).map(([name]) => name) : [];
+    const names = found.length ? found.sort() : tool ? [`/${tool.name}`] : [];
+    this.target.replaceChildren(...names.map((name) => h("option", { value: name }, name)));
+    this.target.hidden = names.length < 2;
+  }
+
+  _pointerTool() {
+    const world = this;
+    return {
+      get active() { return world.tool !== null; },
+      begin: ([x, y]) => { this.scene.wanted = { x, y, yaw: 0 }; },
+      drag: ([x, y], far) => {
+        const { wanted } = this.scene;
+        if (wanted && far) wanted.yaw = Math.atan2(y - wanted.y, x - wanted.x);
+      },
+      end: () => this._send(),
+    };
+  }
+
+  _send() {
+    const { x, y, yaw } = this.scene.wanted, { type } = TOOLS[this.tool], topic = this.target.value, { fixed } = this.app.tf;
+    const at = this.app.clock(), sec = Math.floor(at / 1000);
+    const header = { stamp: { sec, nanosec: Math.floor((at - sec * 1000) * 1e6) }, frame_id: fixed };
+    const pose = { position: { x, y, z: 0 }, orientation: { x: 0, y: 0, z: Math.sin(yaw / 2), w: Math.cos(yaw / 2) } };
+    const sent = this.app.connection.publish(topic, type, { header, pose: this.tool === "initial" ? { pose, covariance: COVARIANCE } : pose });
+    if (sent) this.app.tell(this.words("world.sent", { topic, x: x.toFixed(2), y: y.toFixed(2), degrees: degrees(yaw).slice(0, -1), frame: fixed }));
+    else this.app.tell(this.words("lost"), true);
+    this._use(null);
+  }
+}
+
+export const panel = { id: "world", create: (element, app, options) => new World(element, app, options) };

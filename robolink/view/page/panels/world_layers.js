@@ -1,0 +1,328 @@
+// Layers of the world panel: one class for each kind of message, by what it draws.
+//
+// A layer has `update(message, scene)`, called with each new message, and any of: ground(context, scene) drawn only
+// when it changes, pixels(scene), draw(context, scene), bounds() -> [left, bottom, right, top], hover(x, y, reach, scene).
+
+import { compose, inverse, poseOf, rotate, yawOf } from "../tf.js";
+import { Markers } from "./world_markers.js";
+import { pixel } from "./world_pixels.js";
+import { around } from "./world_view.js";
+
+const MOST_POINTS = 120_000;
+const TRAIL_POINTS = 400;
+const ELLIPSE = 2; // standard deviations
+
+/** Axes of a pose seen from above: [x, y, xx, xy, yx, yy]. */
+function seen(pose) {
+  const x = rotate(pose, 1, 0, 0), y = rotate(pose, 0, 1, 0);
+  return [pose.x, pose.y, x[0], x[1], y[0], y[1]];
+}
+
+class Layer {
+  constructor(topic, colour) {
+    this.topic = topic;
+    this.colour = colour;
+    this.pixel = pixel(colour);
+  }
+
+  update(message) { this.message = message; }
+
+  /** Pose of the message's frame: as it was when the message came, or as soon as it is known. */
+  frame(scene) { return scene.pose(this.message.header.frame_id); }
+
+  bounds() { return null; }
+
+  hover() { return null; }
+}
+
+class Scan extends Layer {
+  update(message, scene) {
+    super.update(message);
+    this.pose = null;
+    this.place(scene);
+  }
+
+  place(scene) { // a scan stays where it was measured while its robot drives on
+    const found = scene.known(this.message.header.frame_id);
+    if (found) this.turn = seen(this.pose = found);
+    else this.turn = seen(scene.pose(this.message.header.frame_id));
+  }
+
+  pixels(scene) {
+    if (!this.pose) this.place(scene);
+    scene.pixels.beams(this.message, this.turn, this.pixel);
+  }
+
+  bounds() {
+    const { ranges, angle_min: start, angle_increment: step, range_min: least, range_max: most } = this.message;
+    const [px, py, xx, xy, yx, yy] = this.turn, ends = [{ x: px, y: py }];
+    const every = Math.ceil(ranges.length / 45); // enough to fit the view
+    ranges.forEach((range, i) => {
+      if (i % every) return;
+      const cos = range * Math.cos(start + i * step), sin = range * Math.sin(start + i * step);
+      if (range >= least && range <= most) ends.push({ x: px + cos * xx + sin * yx, y: py + cos * xy + sin * yy });
+    });
+    return around(ends);
+  }
+
+  hover(x, y, reach) {
+    const { ranges, angle_min: start, angle_increment: step, range_min: least, range_max: most } = this.message;
+    const [px, py, xx, xy, yx, yy] = this.turn;
+    for (let i = 0; i < ranges.length; i++) {
+      const range = ranges[i];
+      if (!(range >= least && range <= most)) continue;
+      const cos = Math.cos(start + i * step), sin = Math.sin(start + i * step);
+      if (Math.hypot(px + range * (cos * xx + sin * yx) - x, py + range * (cos * xy + sin * yy) - y) < reach) return `${range.toFixed(3)} m (${i})`;
+    }
+    return null;
+  }
+}
+
+class Cloud extends Layer {
+  update(message, scene) {
+    super.update(message);
+    const read = message.points ? plainPoints(message) : cloudPoints(message);
+    const pose = this.frame(scene);
+    const { count, at, tint } = read;
+    this.count = count;
+    this.places = new Float32Array(2 * count);
+    this.colours = new Uint32Array(count);
+    for (let i = 0; i < count; i++) {
+      const [x, y, z] = at(i), p = rotate(pose, x, y, z);
+      this.places[2 * i] = pose.x + p[0];
+      this.places[2 * i + 1] = pose.y + p[1];
+      this.colours[i] = tint?.(i) ?? byHeight(pose.z + p[2]);
+    }
+  }
+
+  pixels(scene) { scene.pixels.points(this.places, this.count, this.colours); }
+
+  hover(x, y, reach) {
+    for (let i = 0; i < this.count; i++) {
+      if (Math.hypot(this.places[2 * i] - x, this.places[2 * i + 1] - y) < reach) return `${this.count} points`;
+    }
+    return null;
+  }
+}
+
+function plainPoints({ points }) {
+  return { count: Math.min(points.length, MOST_POINTS), at: (i) => [points[i].x, points[i].y, points[i].z] };
+}
+
+function cloudPoints({ fields, data, point_step: step, row_step: row, width, height, is_bigendian: big }) {
+  const offsets = Object.fromEntries(fields.map((each) => [each.name, each]));
+  const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
+  const get = (field) => (field?.datatype === 8 ? (at) => view.getFloat64(at + field.offset, !big) : (at) => view.getFloat32(at + field.offset, !big));
+  if (!offsets.x || !offsets.y) return { count: 0 };
+  const x = get(offsets.x), y = get(offsets.y), z = offsets.z ? get(offsets.z) : () => 0;
+  const all = Math.min(width * height, Math.floor(data.length / Math.max(1, step)));
+  const stride = Math.max(1, Math.ceil(all / MOST_POINTS));
+  const place = (i) => Math.floor((i * stride) / width) * row + ((i * stride) % width) * step;
+  const rgb = offsets.rgb ?? offsets.rgba;
+  const tint = rgb && ((i) => {
+    const at = place(i) + rgb.offset;
+    return (0xff000000 | (view.getUint8(at) << 16) | (view.getUint8(at + 1) << 8) | view.getUint8(at + 2)) >>> 0;
+  });
+  const at = (i) => { const from = place(i); return [x(from), y(from), z(from)]; };
+  return { count: Math.floor(all / stride), at, tint };
+}
+
+function byHeight(z) { // from blue at the floor to red at two metres
+  const t = Math.max(0, Math.min(1, z / 2)), r = 255 * Math.min(1, 2 * t), b = 255 * Math.min(1, 2 - 2 * t), g = 255 - Math.abs(r - b) * 0.5;
+  return (0xff000000 | (b << 16) | (g << 8) | r) >>> 0;
+}
+
+class Grid extends Layer {
+  update(message, scene) {
+    super.update(message);
+    const { width, height } = message.info;
+    this.canvas = document.createElement("canvas");
+    this.canvas.width = Math.max(1, width);
+    this.canvas.height = Math.max(1, height);
+    const context = this.canvas.getContext("2d"), image = context.createImageData(this.canvas.width, this.canvas.height);
+    const colours = /costmap/.test(this.topic.name) ? scene.costs : scene.occupancy, pixels = new Uint32Array(image.data.buffer), { data } = message;
+    for (let i = 0; i < data.length; i++) pixels[i] = colours[data[i] & 0xff];
+    context.putImageData(image, 0, 0);
+    scene.groundChanged = true;
+  }
+
+  _corner(scene) { return compose(this.frame(scene), poseOf(this.message.info.origin)); }
+
+  ground(context, scene) {
+    const { view } = scene, { resolution } = this.message.info, [x, y, xx, xy, yx, yy] = seen(this._corner(scene)), s = view.scale * resolution;
+    context.save();
+    context.imageSmoothingEnabled = s < 1;
+    context.setTransform(xx * s, -xy * s, yx * s, -yy * s, view.toX(x), view.toY(y));
+    context.drawImage(this.canvas, 0, 0);
+    context.restore();
+  }
+
+  bounds(scene) {
+    const { width, height, resolution } = this.message.info, corner = this._corner(scene);
+    return around([[0, 0], [1, 0], [0, 1], [1, 1]].map(([a, b]) => {
+      const p = rotate(corner, a * width * resolution, b * height * resolution, 0);
+      return { x: corner.x + p[0], y: corner.y + p[1] };
+    }));
+  }
+
+  hover(x, y, _, scene) {
+    const { width, height, resolution } = this.message.info;
+    const back = inverse(this._corner(scene)), p = rotate(back, x, y, 0);
+    const column = Math.floor((back.x + p[0]) / resolution), row = Math.floor((back.y + p[1]) / resolution);
+    return column >= 0 && row >= 0 && column < width && row < height ? `${this.message.data[row * width + column]} (${column}, ${row})` : null;
+  }
+}
+
+class Odometry extends Layer {
+  update(message, scene) {
+    super.update(message);
+    const pose = compose(this.frame(scene), poseOf(message.pose.pose)), trail = (this.trail ??= []);
+    if (this.root !== scene.frames.fixed) trail.length = 0; // measured in another frame
+    this.root = scene.frames.fixed;
+    const last = trail[trail.length - 1];
+    if (!last || Math.hypot(pose.x - last.x, pose.y - last.y) > scene.trailStep) {
+      if (last && scene.trails) scene.pixels.groundLine(last.x, last.y, pose.x, pose.y, this.pixel);
+      trail.push({ x: pose.x, y: pose.y });
+      if (trail.length > TRAIL_POINTS) this.trail = trail.filter((_, i) => i % 2 === 0);
+    }
+    this.pose = pose;
+    scene.odometry.set(message.child_frame_id || this.topic.name, this);
+  }
+
+  forget() { this.trail = []; }
+
+  groundPixels(scene) {
+    if (!scene.trails) return;
+    const { trail } = this;
+    for (let i = 1; i < trail.length; i++) scene.pixels.groundLine(trail[i - 1].x, trail[i - 1].y, trail[i].x, trail[i].y, this.pixel);
+  }
+
+  bounds() { return around([this.pose]); }
+
+  hover(x, y, reach) {
+    const { linear, angular } = this.message.twist.twist;
+    return Math.hypot(this.pose.x - x, this.pose.y - y) < reach * 2 ? `${linear.x.toFixed(2)} m/s, ${angular.z.toFixed(2)} rad/s` : null;
+  }
+}
+
+/** Layer of points that are joined, filled or marked, in the frame of the header. */
+class Outline extends Layer {
+  update(message) {
+    super.update(message);
+    const { poses, polygon, point } = message;
+    this.places = poses ? poses.map((each) => each.pose.position) : polygon ? polygon.points : [point];
+  }
+
+  _points(scene) {
+    const pose = this.frame(scene);
+    return this.places.map(({ x, y, z }) => {
+      const p = rotate(pose, x, y, z);
+      return { x: pose.x + p[0], y: pose.y + p[1] };
+    });
+  }
+
+  draw(context, scene) {
+    const points = this._points(scene), { view } = scene;
+    context.strokeStyle = context.fillStyle = this.colour;
+    context.lineWidth = 2;
+    context.beginPath();
+    if (points.length === 1) context.arc(view.toX(points[0].x), view.toY(points[0].y), 4, 0, 2 * Math.PI);
+    else for (const { x, y } of points) context.lineTo(view.toX(x), view.toY(y));
+    if (this.message.polygon) context.closePath();
+    context.stroke();
+  }
+
+  bounds(scene) { return around(this._points(scene)); }
+
+  hover(x, y, reach, scene) {
+    return this._points(scene).some((each) => Math.hypot(each.x - x, each.y - y) < reach) ? `${this.places.length} points` : null;
+  }
+}
+
+/** Layer of poses: arrows, and the ellipse of a covariance. */
+class Poses extends Layer {
+  _poses(scene) {
+    const { message } = this, frame = this.frame(scene);
+    const list = message.poses ?? [message.pose.pose ?? message.pose];
+    return list.map((each) => compose(frame, poseOf(each)));
+  }
+
+  draw(context, scene) {
+    const { view } = scene, length = Math.max(0.3 * view.scale, 12);
+    context.strokeStyle = this.colour;
+    context.lineWidth = this.message.poses ? 1 : 3;
+    context.beginPath();
+    for (const pose of this._poses(scene)) arrow(context, view.toX(pose.x), view.toY(pose.y), yawOf(pose), this.message.poses ? length / 2 : length);
+    context.stroke();
+    const { covariance } = this.message.pose ?? {};
+    if (covariance) this._ellipse(context, scene, covariance);
+  }
+
+  _ellipse(context, scene, covariance) {
+    const [a, b, d] = [covariance[0], covariance[1], covariance[7]];
+    const middle = (a + d) / 2, rest = Math.hypot((a - d) / 2, b);
+    if (!(middle - rest > 0)) return;
+    const { view } = scene, [pose] = this._poses(scene), turn = yawOf(this.frame(scene));
+    context.beginPath();
+    context.ellipse(view.toX(pose.x), view.toY(pose.y), ELLIPSE * Math.sqrt(middle + rest) * view.scale, ELLIPSE * Math.sqrt(middle - rest) * view.scale,
+      -(turn + Math.atan2(2 * b, a - d) / 2), 0, 2 * Math.PI);
+    context.lineWidth = 1;
+    context.stroke();
+  }
+
+  bounds(scene) { return around(this._poses(scene)); }
+
+  hover(x, y, reach, scene) {
+    const found = this._poses(scene).find((each) => Math.hypot(each.x - x, each.y - y) < reach);
+    return found ? `(${found.x.toFixed(2)}, ${found.y.toFixed(2)}, ${degrees(yawOf(found))})` : null;
+  }
+}
+
+class Cone extends Layer {
+  draw(context, scene) {
+    const { view } = scene, { range, field_of_view: angle } = this.message, pose = this.frame(scene), yaw = yawOf(pose);
+    if (!Number.isFinite(range)) return;
+    context.fillStyle = `${this.colour}55`;
+    context.beginPath();
+    context.moveTo(view.toX(pose.x), view.toY(pose.y));
+    context.arc(view.toX(pose.x), view.toY(pose.y), range * view.scale, -yaw - angle / 2, -yaw + angle / 2);
+    context.fill();
+  }
+
+  hover(x, y, reach, scene) {
+    const pose = this.frame(scene);
+    return Math.hypot(pose.x - x, pose.y - y) < reach ? `${this.message.range.toFixed(3)} m` : null;
+  }
+}
+
+/** Add an arrow to a path: where it begins in pixels, heading in radians, length in pixels. */
+export function arrow(context, x, y, yaw, length) {
+  const ex = x + length * Math.cos(yaw), ey = y - length * Math.sin(yaw), head = length * 0.3;
+  context.moveTo(x, y);
+  context.lineTo(ex, ey);
+  for (const side of [2.6, -2.6]) {
+    context.moveTo(ex, ey);
+    context.lineTo(ex + head * Math.cos(yaw + side), ey - head * Math.sin(yaw + side));
+  }
+}
+
+/** Angle as a text. */
+export function degrees(angle) { return `${((angle * 180) / Math.PI).toFixed(0)}°`; }
+
+/** Class of layer by type; `rate` is how often at most messages are needed (Hz). */
+export const KINDS = {
+  "nav_msgs/msg/OccupancyGrid": { make: Grid, rate: 2, order: 0 },
+  "sensor_msgs/msg/LaserScan": { make: Scan, rate: 0, order: 1 },
+  "sensor_msgs/msg/PointCloud2": { make: Cloud, rate: 10, order: 1 },
+  "sensor_msgs/msg/PointCloud": { make: Cloud, rate: 10, order: 1 },
+  "sensor_msgs/msg/Range": { make: Cone, rate: 20, order: 2 },
+  "nav_msgs/msg/Odometry": { make: Odometry, rate: 0, order: 2 },
+  "nav_msgs/msg/Path": { make: Outline, rate: 10, order: 3 },
+  "geometry_msgs/msg/PolygonStamped": { make: Outline, rate: 20, order: 3 },
+  "geometry_msgs/msg/PointStamped": { make: Outline, rate: 20, order: 3 },
+  "geometry_msgs/msg/PoseStamped": { make: Poses, rate: 20, order: 3 },
+  "geometry_msgs/msg/PoseWithCovarianceStamped": { make: Poses, rate: 20, order: 3 },
+  "geometry_msgs/msg/PoseArray": { make: Poses, rate: 10, order: 3 },
+  "visualization_msgs/msg/Marker": { make: Markers, rate: 0, order: 4, every: true },
+  "visualization_msgs/msg/MarkerArray": { make: Markers, rate: 0, order: 4, every: true },
+};

@@ -1,0 +1,93 @@
+// Pixel layer of the world panel: beams, points and trails, written into one image a frame.
+
+/** Colour "#rrggbb" as one pixel of an ImageData. */
+export function pixel(colour) {
+  const value = parseInt(colour.slice(1), 16);
+  return (0xff000000 | ((value & 0xff) << 16) | (value & 0xff00) | (value >> 16)) >>> 0;
+}
+
+export class Pixels {
+  constructor(view) {
+    this.view = view;
+    this.canvas = document.createElement("canvas");
+    this.context = this.canvas.getContext("2d", { alpha: false, willReadFrequently: true });
+    this.width = this.height = 0;
+    this.bold = false; // beams are nine pixels each, instead of four
+  }
+
+  /** Follow the size of the view's canvas; true if it changed. */
+  resize() {
+    const { width, height } = this.view.canvas;
+    if (width === this.width && height === this.height) return false;
+    this.width = this.canvas.width = width;
+    this.height = this.canvas.height = height;
+    this.image = this.context.createImageData(width, height);
+    this.pixels = new Uint32Array(this.image.data.buffer);
+    this.ground = new Uint32Array(this.pixels.length);
+    return true;
+  }
+
+  /** Take what was drawn into `context` as the ground that each frame begins with. */
+  keepGround() {
+    this.ground.set(new Uint32Array(this.context.getImageData(0, 0, this.width, this.height).data.buffer));
+  }
+
+  begin() { this.pixels.set(this.ground); }
+
+  /** Draw a sequence of points [x0, y0, x1, y1 ...] in metres; with a colour for each. */
+  points(places, count, colours) {
+    const { view, width, height, pixels } = this, { scale } = view;
+    const left = width / 2 - view.x * scale, top = height / 2 + view.y * scale;
+    for (let i = 0; i < count; i++) {
+      const x = (left + places[2 * i] * scale) | 0, y = (top - places[2 * i + 1] * scale) | 0;
+      if (x < 1 || y < 1 || x >= width || y >= height) continue;
+      const at = y * width + x, colour = colours[i];
+      pixels[at] = pixels[at - 1] = pixels[at - width] = pixels[at - width - 1] = colour;
+    }
+  }
+
+  /** Draw the ends of a scan's beams. `turn` is [x, y, xx, xy, yx, yy]: the sensor's place and its axes. */
+  beams(scan, [px, py, xx, xy, yx, yy], colour) {
+    const { view, width, height, pixels, bold } = this, { scale } = view, { ranges, range_min: least, range_max: most } = scan;
+    const left = width / 2 + (px - view.x) * scale, top = height / 2 - (py - view.y) * scale;
+    const stepCos = Math.cos(scan.angle_increment), stepSin = Math.sin(scan.angle_increment);
+    let cos = Math.cos(scan.angle_min), sin = Math.sin(scan.angle_min);
+    for (let i = 0; i < ranges.length; i++) {
+      const range = ranges[i];
+      if (range >= least && range <= most) {
+        const far = range * scale;
+        const x = (left + far * (cos * xx + sin * yx)) | 0, y = (top - far * (cos * xy + sin * yy)) | 0;
+        if (x > 0 && y > 0 && x < width && y < height) {
+          const at = y * width + x;
+          pixels[at] = pixels[at - 1] = pixels[at - width] = pixels[at - width - 1] = colour;
+          if (bold) pixels[at + 1] = pixels[at + width] = pixels[at + width + 1] = pixels[at + width - 1] = pixels[at - width + 1] = colour;
+        }
+      }
+      const next = cos * stepCos - sin * stepSin;
+      sin = sin * stepCos + cos * stepSin;
+      cos = next;
+    }
+  }
+
+  /** Draw a line into the ground, between two places in metres. */
+  groundLine(x0, y0, x1, y1, colour) {
+    const { view } = this;
+    this.line(view.toX(x0), view.toY(y0), view.toX(x1), view.toY(y1), colour, this.ground, 1);
+  }
+
+  /** Draw a line between two places in pixels, one or two pixels wide, into the picture or the ground. */
+  line(ax, ay, bx, by, colour, pixels = this.pixels, wide = 2) {
+    const { width, height } = this;
+    if (Math.max(ax, bx) < 0 || Math.max(ay, by) < 0 || Math.min(ax, bx) >= width || Math.min(ay, by) >= height) return;
+    const steps = Math.min(4096, Math.max(1, Math.ceil(Math.max(Math.abs(bx - ax), Math.abs(by - ay)))));
+    const dx = (bx - ax) / steps, dy = (by - ay) / steps;
+    for (let i = 0, x = ax, y = ay; i <= steps; i++, x += dx, y += dy) {
+      if (x < 1 || y < 1 || x >= width || y >= height) continue;
+      const at = (y | 0) * width + (x | 0);
+      pixels[at] = colour;
+      if (wide > 1) pixels[at - 1] = pixels[at - width] = colour;
+    }
+  }
+
+  end() { this.context.putImageData(this.image, 0, 0); }
+}

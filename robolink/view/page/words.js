@@ -1,0 +1,87 @@
+// Words of the page in English and Portuguese. A panel's own are added with `addWords`.
+
+const WORDS = {
+  en: {
+    "language": "Português", "connecting": "connecting…", "connected": "connected", "lost": "connection lost: trying again",
+    "read-only": "read-only", "read-only.why": "this page was opened without the token: it may look, but not act",
+    "stop": "STOP", "stop.title": "Stop all robots: zeros on every cmd_vel (space)", "stop.sent": "zeros sent to {topics}",
+    "stop.none": "no cmd_vel topic is known", "theme": "dark or light", "help": "shortcuts (?)", "close": "close",
+    "add": "add panel", "layout.reset": "default layout", "panel.bigger": "whole page", "panel.move": "move",
+    "panel.remove": "remove panel", "panel.world": "World", "panel.topics": "Topics", "panel.plot": "Plot", "panel.log": "Log", "panel.teleop": "Teleop",
+    "panel.services": "Services", "panel.parameters": "Parameters", "panel.images": "Images", "panel.graph": "Graph", "panel.actions": "Actions", "frames": "frames",
+    "empty": "no panels: add one with +", "loading": "loading…",
+    "live": "live", "live.title": "back to now (l)", "pause": "pause (p)", "play": "play (p)", "timeline": "time",
+    "timeline.memory": "last minute: {bytes} of {most}", "ago": "{seconds} s ago", "speed": "speed",
+    "shortcuts": "Shortcuts",
+    "key.space": "stop all robots", "key.?": "this list", "key.p": "pause or go on", "key.l": "back to now",
+    "key.digit": "to the panel of this number", "key.t": "dark or light", "key.esc": "close; end a tool",
+    "key.arrows": "world: move; timeline: step", "key.zoom": "world: zoom in, out", "key.f": "world: fit all",
+    "key.g": "world: goal pose", "key.i": "world: initial pose",
+    "world.fit": "fit all (f)", "world.follow": "follow", "world.follow.none": "follow nothing", "world.layers": "layers",
+    "world.fixed": "fixed frame", "world.goal": "goal pose (g)", "world.initial": "initial pose (i)",
+    "world.tool": "click, and drag to set the heading", "world.sent": "{topic}: x {x}, y {y}, {degrees}° in {frame}",
+    "world.unconnected": "not connected to {frame}, drawn at its origin: {frames}", "world.none": "nothing to show yet",
+    "world.tf": "tf frames", "world.trails": "trails", "world.grid": "grid", "world.names": "names",
+    "world.tool.fit": "fit", "world.tool.goal": "goal", "world.tool.pose": "pose", "world.zoomin": "zoom in (+)", "world.zoomout": "zoom out (-)",
+    "topics.filter": "filter", "topics.topic": "topic", "topics.type": "type", "topics.rate": "Hz",
+    "topics.bandwidth": "B/s", "topics.age": "age", "topics.publishers": "pub", "topics.subscriptions": "sub",
+    "topics.none": "no topics", "topics.waiting": "no message yet", "topics.back": "back to the list",
+    "topics.count": "{count} topics", "tree.more": "{count} more", "tree.drag": "drag to a plot",
+  },
+  pt: {
+    "language": "English", "connecting": "conectando…", "connected": "conectado", "lost": "conexão perdida: tentando de novo",
+    "read-only": "só leitura", "read-only.why": "esta página foi aberta sem o token: pode olhar, mas não agir",
+    "stop": "PARAR", "stop.title": "Parar todos os robôs: zeros em cada cmd_vel (espaço)", "stop.sent": "zeros enviados para {topics}",
+    "stop.none": "nenhum tópico cmd_vel conhecido", "theme": "escuro ou claro", "help": "atalhos (?)", "close": "fechar",
+    "add": "adicionar painel", "layout.reset": "layout padrão", "panel.bigger": "página inteira", "panel.move": "mover",
+    "panel.remove": "remover painel", "panel.world": "Mundo", "panel.topics": "Tópicos", "panel.plot": "Gráfico", "panel.log": "Registro", "panel.teleop": "Teleoperação",
+    "panel.services": "Serviços", "panel.parameters": "Parâmetros", "panel.images": "Imagens", "panel.graph": "Grafo", "panel.actions": "Ações", "frames": "quadros",
+    "empty": "nenhum painel: adicione um com +", "loading": "carregando…",
+    "live": "ao vivo", "live.title": "voltar ao agora (l)", "pause": "pausar (p)", "play": "continuar (p)", "timeline": "tempo",
+    "timeline.memory": "último minuto: {bytes} de {most}", "ago": "há {seconds} s", "speed": "velocidade",
+    "shortcuts": "Atalhos",
+    "key.space": "parar todos os robôs", "key.?": "esta lista", "key.p": "pausar ou continuar", "key.l": "voltar ao agora",
+    "key.digit": "ir ao painel deste número", "key.t": "escuro ou claro", "key.esc": "fechar; encerrar a ferramenta",
+    "key.arrows": "mundo: mover; tempo: passo", "key.zoom": "mundo: aproximar, afastar", "key.f": "mundo: mostrar tudo",
+    "key.g": "mundo: pose de destino", "key.i": "mundo: pose inicial",
+    "world.fit": "mostrar tudo (f)", "world.follow": "seguir", "world.follow.none": "não seguir", "world.layers": "camadas",
+    "world.fixed": "referencial fixo", "world.goal": "pose de destino (g)", "world.initial": "pose inicial (i)",
+    "world.tool": "clique, e arraste para dar a direção", "world.sent": "{topic}: x {x}, y {y}, {degrees}° em {frame}",
+    "world.unconnected": "sem ligação com {frame}, desenhado na origem: {frames}", "world.none": "nada para mostrar ainda",
+    "world.tf": "referenciais tf", "world.trails": "rastros", "world.grid": "grade", "world.names": "nomes",
+    "world.tool.fit": "tudo", "world.tool.goal": "destino", "world.tool.pose": "pose", "world.zoomin": "aproximar (+)", "world.zoomout": "afastar (-)",
+    "topics.filter": "filtrar", "topics.topic": "tópico", "topics.type": "tipo", "topics.rate": "Hz",
+    "topics.bandwidth": "B/s", "topics.age": "idade", "topics.publishers": "pub", "topics.subscriptions": "sub",
+    "topics.none": "nenhum tópico", "topics.waiting": "nenhuma mensagem ainda", "topics.back": "voltar à lista",
+    "topics.count": "{count} tópicos", "tree.more": "mais {count}", "tree.drag": "arraste para um gráfico",
+  },
+};
+
+let language = "en";
+
+/** Add a panel's words: {en: {key: text}, pt: {key: text}}. */
+export function addWords(more) { for (const name of Object.keys(WORDS)) Object.assign(WORDS[name], more[name]); }
+
+/** Add a panel's words under a name: {key: [English, Portuguese]}. */
+export function addPairs(name, pairs) {
+  for (const [key, [en, pt]] of Object.entries(pairs)) {
+    WORDS.en[`${name}.${key}`] = en;
+    WORDS.pt[`${name}.${key}`] = pt;
+  }
+}
+
+/** Choose the language: "en" or "pt"; anything else is what the browser asks for. */
+export function choose(wanted) {
+  const told = wanted || (globalThis.navigator?.languages ?? []).find((each) => /^(en|pt)/.test(each)) || "en";
+  language = told.startsWith("pt") ? "pt" : "en";
+  return language;
+}
+
+/** Text of a key with {names} filled in; the key itself where there is no text. */
+export function words(key, values = {}) {
+  const text = WORDS[language][key] ?? WORDS.en[key] ?? key;
+  return text.replace(/\{(\w+)\}/g, (_, name) => values[name] ?? "");
+}
+
+/** Languages and their texts, for the test that none is missing. */
+export { WORDS };

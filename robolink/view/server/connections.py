@@ -1,0 +1,103 @@
+"""Connection graph for clients: which node publishes, subscribes to and serves what, and what has changed of it."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from robolink.graph.graph import Graph
+from robolink.view.protocol import answers
+from robolink.view.server.listener import Listener
+from robolink.view.sources.live import LiveSource
+from robolink.wire import EndpointKind
+
+Place = tuple[str, str]
+"""Name of a topic or service, and its type."""
+
+
+class Picture(NamedTuple):
+    """The graph at a moment: the nodes at each end of each topic and service, and all nodes."""
+
+    published: dict[Place, list[str]]
+    subscribed: dict[Place, list[str]]
+    served: dict[Place, list[str]]
+    nodes: list[str]
+
+
+NOTHING = Picture({}, {}, {}, [])
+
+
+def picture_of(graph: Graph, own: str) -> Picture:
+    """Return what the graph looks like; what the node `own` subscribes to is left out, since that is what is viewed."""
+    ends: dict[EndpointKind, dict[Place, set[str]]] = {kind: {} for kind in EndpointKind}
+    for each in graph.endpoints(*EndpointKind):
+        if each.full_node_name != own or each.kind is EndpointKind.PUBLISHER:
+            ends[each.kind].setdefault((each.name, each.type_name), set()).add(each.full_node_name)
+    sides = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION, EndpointKind.SERVICE)
+    published, subscribed, served = ({place: sorted(of) for place, of in ends[side].items()} for side in sides)
+    nodes = sorted({each.full_node_name for each in graph.nodes()} - {own})
+    return Picture(published, subscribed, served, nodes)
+
+
+def change(before: Picture, now: Picture, *, all_of_it: bool) -> dict[str, Any] | None:
+    """Return the fields of `connectionGraphUpdate` that lead from one picture to another; None if nothing changed.
+
+    With `all_of_it` they have the types and the nodes, which are robolink's own.
+    """
+    if before == now:
+        return None
+    gone = (before.published.keys() | before.subscribed.keys()) - now.published.keys() - now.subscribed.keys()
+    left = {name for name, _ in now.published} | {name for name, _ in now.subscribed}
+    fields: dict[str, Any] = {
+        "publishedTopics": _changed(before.published, now.published, "publisherIds", all_of_it),
+        "subscribedTopics": _changed(before.subscribed, now.subscribed, "subscriberIds", all_of_it),
+        "advertisedServices": _changed(before.served, now.served, "providerIds", all_of_it),
+        "removedTopics": sorted({name for name, _ in gone} - left),
+        "removedServices": sorted({name for name, _ in before.served.keys() - now.served.keys()}),
+    }
+    return fields | {"nodes": now.nodes} if all_of_it else fields
+
+
+def _changed(
+    before: dict[Place, list[str]], now: dict[Place, list[str]], key: str, typed: bool
+) -> list[dict[str, Any]]:
+    """Return the entries that differ; one whose last node has gone stays, with none."""
+    changed: dict[Place, list[str]] = {place: [] for place in before if place not in now}
+    changed |= {place: nodes for place, nodes in now.items() if before.get(place) != nodes}
+    return [{"name": name, key: nodes} | ({"type": kind} if typed else {}) for (name, kind), nodes in changed.items()]
+
+
+class Connections:
+    """The graph for all clients that want it.
+
+    Args:
+        system: System whose graph it is.
+    """
+
+    def __init__(self, system: LiveSource) -> None:
+        self._system = system
+        self._followers: dict[Listener, Picture] = {}
+        system.followers.append(self._look)
+
+    def follow(self, client: Listener) -> None:
+        """Send a client the graph, and its changes from now on."""
+        self._followers[client] = NOTHING
+        self._tell(client, self._picture())
+
+    def part(self, client: Listener) -> None:
+        """Send a client no more of it."""
+        self._followers.pop(client, None)
+
+    def _look(self) -> None:
+        if self._followers:
+            picture = self._picture()
+            for client in list(self._followers):
+                self._tell(client, picture)
+
+    def _picture(self) -> Picture:
+        return picture_of(self._system.context.graph, self._system.node.get_fully_qualified_name())
+
+    def _tell(self, client: Listener, picture: Picture) -> None:
+        fields = change(self._followers[client], picture, all_of_it=client.is_page)
+        self._followers[client] = picture
+        if fields is not None:
+            client.say(answers.text("connectionGraphUpdate", **fields))

@@ -1,0 +1,133 @@
+"""Statistics of all channels and of the server, once a second, for clients that ask for them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import psutil
+
+from robolink.view.channels import Channel, Source
+from robolink.view.protocol import answers
+from robolink.view.server.listener import Listener
+
+PERIOD = 1.0
+"""Interval of the statistics, in seconds."""
+
+HEAVY = 2e6
+"""Bandwidth in bytes a second above which a channel that is received for its figures alone is only sampled."""
+
+REST = 10
+"""Number of intervals in which a heavy channel is not received, after one in which it was measured."""
+
+
+class Statistics:
+    """Figures of all channels, which are received while anybody wants them; of most only the size is looked at.
+
+    Heavy ones, such as cameras, are sampled: figures alone are not worth the load on a robot's wireless network.
+
+    Args:
+        source: Where the channels come from.
+        clock: Function that returns the time of a steady clock, in seconds.
+    """
+
+    def __init__(self, source: Source, clock: Callable[[], float] = time.monotonic) -> None:
+        self._source, self._clock = source, clock
+        self._resting: dict[int, int] = {}
+        """Intervals that are left until a channel is received again, by its id."""
+        self._flows: dict[int, tuple[float, float]] = {}
+        """Rate and bandwidth of each channel as they were measured last."""
+        self._followers: set[Listener] = set()
+        self._before: dict[int, tuple[float, int, int]] = {}
+        self._process = psutil.Process()
+
+    @property
+    def wanted(self) -> bool:
+        """True while a client wants them."""
+        return bool(self._followers)
+
+    def follow(self, client: Listener) -> None:
+        """Send a client the figures from now on."""
+        self._followers.add(client)
+        self._process.cpu_percent()
+        self.measure(self._source.channels.values())
+
+    def measure(self, channels: Iterable[Channel]) -> None:
+        """Receive these channels, if anybody wants their figures."""
+        if self._followers:
+            now = self._clock()
+            for each in channels:
+                if each.id in self._resting:
+                    continue
+                self._source.listen(each)
+                self._before.setdefault(each.id, (now, each.count, each.bytes))
+
+    def forget(self, channels: Iterable[Channel]) -> None:
+        """Forget channels that have gone."""
+        for each in channels:
+            for known in (self._before, self._resting, self._flows):
+                known.pop(each.id, None)
+
+    def part(self, client: Listener) -> None:
+        """Send a client no more of them."""
+        if client in self._followers:
+            self._followers.discard(client)
+            if not self._followers:
+                self.forget(self._source.channels.values())
+                for each in list(self._source.channels.values()):
+                    if not each.takers:
+                        self._source.leave(each)
+
+    def tick(self, clients: int, dropped: int) -> None:
+        """Send the figures; to be called each PERIOD.
+
+        Args:
+            clients: Number of clients.
+            dropped: Number of messages that slow clients did not get.
+        """
+        if not self._followers:
+            return
+        now, wall = self._clock(), time.time_ns()
+        topics = [self._topic(each, now, wall) for each in self._source.channels.values()]
+        server = {"clients": clients, "cpu": self._process.cpu_percent() / 100, "dropped": dropped}
+        text = answers.text("statistics", topics=topics, server=server)
+        for each in self._followers:
+            each.say(text)
+
+    def _is_resting(self, channel: Channel, now: float) -> bool:
+        """Return whether a heavy channel is not received now; when its rest is over, it is again."""
+        left = self._resting.pop(channel.id, None)
+        if left is None:
+            return False
+        if left > 1 and not channel.takers:
+            self._resting[channel.id] = left - 1
+        else:
+            self._source.listen(channel)
+            self._before[channel.id] = (now, channel.count, channel.bytes)
+        return True
+
+    def _measure(self, channel: Channel, now: float) -> None:
+        then, count, size = self._before.get(channel.id, (now, channel.count, channel.bytes))
+        self._before[channel.id] = (now, channel.count, channel.bytes)
+        spent = max(now - then, 1e-3)
+        self._flows[channel.id] = ((channel.count - count) / spent, (channel.bytes - size) / spent)
+        if self._flows[channel.id][1] > HEAVY and not channel.takers:
+            self._resting[channel.id] = REST
+            self._source.leave(channel)
+
+    def _topic(self, channel: Channel, now: float, wall: int) -> dict[str, Any]:
+        is_resting = self._is_resting(channel, now)
+        if not is_resting:
+            self._measure(channel, now)
+        rate, bandwidth = self._flows[channel.id]
+        publishers, subscriptions = self._source.ends(channel)
+        return {
+            "channelId": channel.id,
+            "rate": round(rate, 2),
+            "bandwidth": round(bandwidth, 1),
+            "age": round(max(0, wall - channel.last) / 1e9, 3) if channel.count and not is_resting else None,
+            "count": channel.count,
+            "publishers": publishers,
+            "subscriptions": subscriptions,
+        }

@@ -1,0 +1,1 @@
+"""Sources of what the view shows: a running system, or a bag."""
