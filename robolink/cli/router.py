@@ -1,0 +1,80 @@
+"""robolink router: lets machines meet that cannot reach each other directly, ROS 2 nodes included."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from robolink.cli.shared.output import say
+
+if TYPE_CHECKING:
+    from robolink.transport.reach import Link
+
+LOOK_EVERY = 0.5
+"""Interval at which who has come and gone is looked at, in seconds."""
+
+app = typer.Typer()
+
+
+@app.command("router")
+def router(
+    listen: Annotated[
+        list[str] | None,
+        typer.Option("--listen", metavar="ADDRESS", help="localhost (default), lan, HOST[:PORT] or tls/HOST[:PORT]."),
+    ] = None,
+    connect: Annotated[
+        list[str] | None,
+        typer.Option("--connect", metavar="ROUTER", help="Another router, HOST[:PORT], that it joins."),
+    ] = None,
+) -> None:
+    """Run a router until Ctrl-C: nodes of this machine use it by themselves, others with --network HOST.
+
+    It listens on this machine only, unless --listen says more: --listen lan opens it to everybody who reaches its port.
+    Both options may be there several times.
+    """
+    from robolink.networks.router import endpoint_of
+    from robolink.transport.router import running
+
+    here = [endpoint_of(each, "--listen") for each in listen or ["localhost"]]
+    there = [endpoint_of(each, "--connect") for each in connect or []]
+    try:
+        with running(here, there) as it:
+            say("\n".join(opening(here, there)))
+            report(it.links, say)
+    except KeyboardInterrupt:
+        say("the router has ended")
+
+
+def opening(listens: list[str], connects: list[str]) -> list[str]:
+    """Return what a router says first: where it listens, and who can reach it there."""
+    from robolink.transport.reach import on_this_machine
+
+    far = [each for each in listens if not on_this_machine(each)]
+    lines = [f"robolink router: listens at {', '.join(listens)}; Ctrl-C ends it"]
+    if far:
+        lines.append("whoever reaches it there may hear and command all nodes behind it (docs/networks.md)")
+    else:
+        lines.append("only this machine reaches it; --listen lan opens it to others")
+    return [*lines, *(f"connects to {each}" for each in connects)]
+
+
+def report(
+    links: Callable[[], Iterable[Link]],
+    say: Callable[[str], object],
+    pause: Callable[[float], object] = time.sleep,
+) -> None:
+    """Report who has come and who has gone, for ever."""
+    known: dict[str, str] = {}
+    while True:
+        present = {each.session: f"{each.role} {each.session[:8]} from {each.there}" for each in links()}
+        for session, text in present.items():
+            if session not in known:
+                say(f"+ {text} ({len(present)} connected)")
+        for session, text in known.items():
+            if session not in present:
+                say(f"- {text} ({len(present)} connected)")
+        known = present
+        pause(LOOK_EVERY)

@@ -1,0 +1,34 @@
+"""Profiles of the nodes that run: what each publishes, hears, serves and calls, in the words of a policy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robolink.security.policy import Policy, Profile, Rule
+from robolink.wire import EndpointKind
+
+if TYPE_CHECKING:
+    from robolink.context import Context
+
+_KINDS = {
+    EndpointKind.PUBLISHER: "publish",
+    EndpointKind.SUBSCRIPTION: "subscribe",
+    EndpointKind.SERVICE: "reply",
+    EndpointKind.CLIENT: "request",
+}
+
+
+def profiles_of_graph(context: Context) -> Policy:
+    """Return the profiles of all nodes, by enclave, but for nodes whose names begin with `_`."""
+    graph = context.graph
+    found: Policy = {}
+    for node in graph.nodes():
+        if node.node_name.startswith("_"):
+            continue
+        rules = {
+            Rule(word, True, each.name)
+            for kind, word in _KINDS.items()
+            for each in graph.of_node(node.node_name, node.namespace, kind)
+        }
+        found.setdefault(node.enclave, []).append(Profile(node.namespace, node.node_name, sorted(rules)))
+    return found

@@ -1,0 +1,111 @@
+"""Places: what a host, or a name of the file of networks, turns out to be, and Zenoh's settings to go there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from robolink.exceptions import TransportError, nearest
+from robolink.networks import hosts, named
+from robolink.networks.asked import ALIASES, FIRST_PORT, NAMES, ROUTER_PORT, Wanted
+from robolink.networks.port_probe import ROUTER
+from robolink.networks.refusals import WANTS_KEYS, wants_keys
+from robolink.networks.settings import client, settings
+
+KNOWN = (
+    f"the networks are {', '.join(NAMES)}, HOST[:PORT] and tls/HOST[:PORT] of a robot or router, and files of Zenoh's"
+)
+_FILES = (".json5", ".json", ".yaml", ".yml")
+
+
+class Place(NamedTuple):
+    """Way to others: as a client of a router, or as a peer of somebody's peers."""
+
+    endpoints: tuple[str, ...]
+    """Endpoints to connect to."""
+    is_client: bool = False
+    lan: bool = False
+    """True if it also takes part in the local network, as `lan` does."""
+    session: str = ""
+    """Id of the session that has answered there; empty if nobody was asked."""
+
+    @property
+    def meets(self) -> bool:
+        """True if the processes of this machine find each other at the rendezvous port of their domain."""
+        return not self.is_client
+
+    def settings(self, domain: int, *, holds_port: bool) -> dict[str, Any]:
+        """Return Zenoh's settings; without `holds_port` the rendezvous port is left to another process."""
+        if self.is_client:
+            return client(*self.endpoints)
+        name = "lan" if self.lan else "localhost"
+        return settings(name, domain, holds_port=holds_port, peers=self.endpoints)
+
+
+def find(asked: Wanted, domain: int, environ: Mapping[str, str], *, secured: bool = False) -> Place | str:
+    """Return the place that is asked for; a text where the file of networks says another network instead.
+
+    Raises TransportError if there is no such place, or if nobody answers there. With `secured` a host is `tls/HOST`:
+    nothing is sent there in the clear.
+    """
+    known = named.read_all(environ, asked.asked_by)
+    meant = known.get(asked.value)
+    if isinstance(meant, named.Peers) and meant.network:
+        meant = meant.network
+    if isinstance(meant, named.Peers):
+        return Place(tuple(_peer(each, domain) for each in meant.peers), lan=meant.lan)
+    if meant is not None and not isinstance(found := _of_word(meant), hosts.Host):
+        return found
+    host = hosts.parse(meant or asked.value)
+    if host is None or (meant is None and asked.value.endswith(_FILES)):
+        raise _unknown(asked, known)
+    try:
+        return _asked_there(host._replace(tls=host.tls or secured), asked, domain)
+    except hosts.UnknownHostError:
+        if meant is not None:
+            raise TransportError(f"{asked.asked_by}: '{asked.value}' is {meant}, a host that is not known") from None
+        raise _unknown(asked, known) from None
+
+
+def _of_word(meant: str) -> str | hosts.Host:
+    """Return a host, or the word itself where it is none: another network's, an endpoint's or a file's."""
+    word = ALIASES.get(meant, meant)
+    host = None if word in NAMES or word.startswith(("tcp/", "/", "~")) or word.endswith(_FILES) else hosts.parse(word)
+    return host or word
+
+
+def _peer(text: str, domain: int) -> str:
+    host = hosts.parse(text)
+    assert host is not None  # checked when the file was read
+    return host.endpoint(host.port or FIRST_PORT + domain)
+
+
+def _asked_there(host: hosts.Host, asked: Wanted, domain: int) -> Place:
+    """Ask a host what listens there: it is joined as a peer if it is one, else as a client.
+
+    A router forwards between a client and a peer, not between two peers. With TLS the answer cannot be read without a
+    certificate: there a client is right with both, since peers forward what their clients send.
+    """
+    port = hosts.seek(host, domain)
+    if port is None:
+        if not host.tls and (keyed := next((each for each in host.ports(domain) if wants_keys(host.name, each)), 0)):
+            raise TransportError(f"{asked.asked_by}: at {host.name}, port {keyed}, is a process {WANTS_KEYS}")
+        raise TransportError(f"{asked.asked_by}: nobody answers at {host.name}{_what_to_do(host, domain)}")
+    endpoint = host.endpoint(port.number)
+    return Place((endpoint,), host.tls or port.role == ROUTER, session=port.session)
+
+
+def _what_to_do(host: hosts.Host, domain: int) -> str:
+    if host.port:
+        return f", port {host.port}: is it on, is the port right, and does its firewall let it through?"
+    return (
+        f", no robolink process (port {FIRST_PORT + domain}, domain {domain}) and no router (port {ROUTER_PORT}): "
+        "start its nodes with --network lan there, or a router (robolink router --listen lan), and open its firewall"
+    )
+
+
+def _unknown(asked: Wanted, known: Mapping[str, object]) -> TransportError:
+    value = asked.value[:200]
+    names = [*NAMES, *ALIASES, *known]
+    more = f", {', '.join(sorted(known)[:8])} of {named.FILE}" if known else ""
+    return TransportError(f"{asked.asked_by}: no network, host or file '{value}'{nearest(value, names)}; {KNOWN}{more}")

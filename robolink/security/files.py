@@ -1,0 +1,81 @@
+"""Files of a keystore: keys that only their owner reads, whole at every moment, and links that Windows copies."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import stat
+import sys
+from pathlib import Path
+
+from robolink.exceptions import SecurityError
+from robolink.system.plainfile import read_plain
+
+LARGEST = 1_000_000
+"""Largest file of a keystore that is read, in bytes."""
+
+PRIVATE, PUBLIC = 0o600, 0o644
+"""Modes of keys, and of everything else."""
+
+
+def write(path: Path, content: bytes, mode: int = PUBLIC) -> None:
+    """Write a file under another name, with its mode from the first byte on, and put it in place.
+
+    On Windows modes say nothing: a file is as private there as the folder that it is in.
+    """
+    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    with contextlib.suppress(FileNotFoundError):
+        draft.unlink()
+    number = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), mode)
+    try:
+        with os.fdopen(number, "wb") as file:
+            file.write(content)
+        draft.replace(path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            draft.unlink()
+        raise
+
+
+def make_folder(path: Path, mode: int = 0o755) -> None:
+    """Make a folder and those above it; the mode is its own."""
+    path.mkdir(parents=True, exist_ok=True)
+    if sys.platform != "win32":
+        path.chmod(mode)
+
+
+def link(target: Path, path: Path) -> None:
+    """Make `path` a link to `target`, relative to it, as in SROS2's keystores; where there are no links, a copy."""
+    if path.is_symlink() or path.exists():
+        path.unlink()
+    try:
+        path.symlink_to(os.path.relpath(target, path.parent))
+    except OSError:  # Windows: links need a right that few users have
+        shutil.copyfile(target, path)
+
+
+def read(path: Path) -> bytes:
+    """Return the content of a file of a keystore; raises SecurityError that names the file and the reason."""
+    try:
+        return read_plain(path, LARGEST)
+    except (OSError, ValueError) as error:
+        why = "is not there" if isinstance(error, FileNotFoundError) else f"cannot be read: {_reason(error)}"
+        raise SecurityError(f"{path} {why}") from None
+
+
+def exposure(path: Path) -> str:
+    """Return who else may read or change a key, and what to do; '' where nobody may. Windows cannot say."""
+    if sys.platform == "win32":
+        return ""
+    try:
+        found = path.stat()
+    except OSError:
+        return ""
+    if not found.st_mode & (stat.S_IRWXG | stat.S_IRWXO):
+        return ""
+    return f"{path} may be read or changed by others (mode {stat.S_IMODE(found.st_mode):04o}): chmod 600 {path}"
+
+
+def _reason(error: Exception) -> str:
+    return getattr(error, "strerror", None) or str(error)

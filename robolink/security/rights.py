@@ -1,0 +1,95 @@
+"""Rights of an enclave in a domain: whether it may publish, subscribe, request or reply, and by which rule."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from robolink.exceptions import DocumentError, SecurityError, WireError
+from robolink.security import permissions
+from robolink.security.keystore import PERMISSIONS, enclave_of
+from robolink.security.patterns import fits
+from robolink.security.permissions import Permission
+from robolink.wire import parse_key
+
+VERBS = {"publish": "publish", "subscribe": "subscribe to", "request": "call", "reply": "serve"}
+"""Kinds of rights, each as a verb for people."""
+
+
+class Rights:
+    """Set of rights of one enclave in one domain: what is not allowed is denied, and a denial beats what is allowed.
+
+    Args:
+        enclave: Enclave whose rights they are.
+        given: Its permissions, in any order.
+        domain: Domain in which they are asked for.
+        source: File that they come from, to name in errors.
+    """
+
+    def __init__(self, enclave: str, given: Iterable[Permission], domain: int, source: str = "") -> None:
+        self.enclave, self.domain, self.source = enclave, domain, source
+        held = [each for each in given if each.holds_in(domain)]
+        self.allowed = [each for each in held if each.allows]
+        self.denied = [each for each in held if not each.allows]
+
+    def allows(self, kind: str, key: str) -> bool:
+        """True if a right is there.
+
+        Args:
+            kind: `publish`, `subscribe`, `request` or `reply`.
+            key: Key of the topic or service (`robolink.wire.format_key`), or its full name.
+        """
+        return not self.refusal(kind, key)
+
+    def refusal(self, kind: str, key: str) -> str:
+        """Return why a right is not there, with enclave, name and rule; '' if it is. Arguments as for `allows`."""
+        name = _name(key, self.domain)
+        asked = f"enclave '{self.enclave}' may not {VERBS[kind]} {name or key}"
+        if not name:
+            return f"{asked}: it is of another domain than {self.domain}"
+        for each in self.denied:
+            if each.kind == kind and fits(each.name, name):
+                return f"{asked}: '{each.name}' is denied ({each.place})"
+        if any(each.kind == kind and fits(each.name, name) for each in self.allowed):
+            return ""
+        domain = f" in domain {self.domain}" if self.domain else ""
+        return f"{asked}: no rule allows it{domain} ({self.source})"
+
+    def require(self, kind: str, key: str) -> None:
+        """Raise SecurityError if a right is not there. Arguments as for `allows`."""
+        if why := self.refusal(kind, key):
+            raise SecurityError(why)
+
+    @property
+    def is_withdrawn(self) -> bool:
+        """True if everything is denied."""
+        return {each.kind for each in self.denied if each.name == "/*"} == set(VERBS)
+
+
+def load_rights(enclaves: Path, domain: int) -> tuple[dict[str, Rights], list[str]]:
+    """Return the rights of all enclaves below a folder, by name, and the mistakes in their files.
+
+    An enclave whose file has a mistake has no rights.
+    """
+    found: dict[str, Rights] = {}
+    mistakes: list[str] = []
+    for path in sorted(enclaves.rglob(PERMISSIONS)):
+        name = enclave_of(path, enclaves)
+        try:
+            given = permissions.load(path)
+        except DocumentError as error:
+            mistakes.append(str(error))
+            given = []
+        found[name] = Rights(name, given, domain, str(path))
+    return found, mistakes
+
+
+def _name(key: str, domain: int) -> str:
+    """Return the name of a topic or service from its key; '' for one of another domain."""
+    if key.startswith("/"):
+        return key
+    try:
+        parsed = parse_key(key)
+    except WireError:
+        return ""
+    return parsed.name if parsed.domain == domain else ""

@@ -1,0 +1,271 @@
+"""Zenoh configuration of a session: the requested network's settings or a file's, and what overrides them."""
+
+from __future__ import annotations
+
+import json
+import re
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robolink.exceptions import TransportError
+from robolink.networks.asked import (
+    FIRST_PORT,
+    NAMES,
+    OVERRIDE,
+    ROS_ROUTER,
+    Wanted,
+    checked_domain,
+    domain_id,
+    network_of_overrides,
+    overrides,
+    wanted,
+)
+from robolink.networks.settings import LONGEST_WAIT, OFTEN, SOUGHT_EVERY, as_ros, client, settings
+from robolink.system.terminal import shown
+from robolink.transport import shared_memory
+from robolink.transport.reach import mode_of
+
+if TYPE_CHECKING:
+    import zenoh
+
+    from robolink.networks.limits import Limits
+    from robolink.networks.places import Place
+
+__all__ = [
+    "FIRST_PORT",
+    "LONGEST_WAIT",
+    "NAMES",
+    "OFTEN",
+    "ROS_ROUTER",
+    "SHARES_MEMORY",
+    "SOUGHT_EVERY",
+    "Plan",
+    "Wanted",
+    "await_host",
+    "checked_domain",
+    "domain_id",
+    "file_of",
+    "limits_wanted",
+    "load",
+    "meets_at_port",
+    "plan",
+    "reason",
+    "settings",
+    "wanted",
+]
+
+SHARES_MEMORY = "transport/shared_memory/enabled"
+"""Path of the setting that offers shared memory to others and accepts it."""
+
+HOST_WITHIN = 1.0
+"""Longest wait for the link to a host that was asked for by name, in seconds; it takes some round trips."""
+
+_ENDPOINT = re.compile(r"(tcp|tls|quic|ws)/\S+:\d+")
+_SHARED_MEMORY = {
+    "enabled": True,
+    "transport_optimization": {
+        "message_size_threshold": shared_memory.SMALLEST_SHARED,
+        "messages": shared_memory.MESSAGES,
+    },
+}
+
+
+class Plan(NamedTuple):
+    """A requested network once it is known what is there: a host, for instance, has answered as a robot or a router.
+
+    Made by `plan`. `config` returns the configuration of a session, which may be asked for again and again.
+    """
+
+    asked: Wanted
+    domain: int
+    environ: Mapping[str, str]
+    place: Place | None = None
+    """The host, or the name of the file of networks, once it is known what it is; None for the other networks."""
+    limits: Limits | None = None
+    """Limits of slow links, if any are asked for."""
+
+    @property
+    def meets(self) -> bool:
+        """True if the processes of this machine find each other at the rendezvous port of their domain."""
+        if self.place is not None:
+            return self.place.meets
+        return meets_at_port(self.asked.value, self.environ)
+
+    def config(self, *, holds_port: bool = True) -> zenoh.Config:
+        """Return Zenoh's configuration; without `holds_port` the session leaves the rendezvous port to another."""
+        given = overrides(self.environ)
+        config = _overridden(self._limited(self._without_overrides(given, holds_port)), given)
+        shares = shared_memory.wanted(self.environ, mode=mode_of(config))
+        named = any(SHARES_MEMORY.startswith(path) for path, _ in given)
+        if not named and (shares.forced or not shares.on):  # else as it is: a file may have it off
+            config.insert_json5(SHARES_MEMORY, json.dumps(shares.on))
+        if self.environ.get("ROS_SECURITY_ENABLE"):  # the very last: no override opens what it closes
+            from robolink.transport import securing  # late: few sessions need it
+
+            securing.secure(config, self.domain, self.environ)
+        return config
+
+    def _limited(self, config: zenoh.Config) -> zenoh.Config:
+        """Add what thins topics on slow links, if that is asked for."""
+        if self.limits is not None:
+            from robolink.networks import limits  # late: few sessions need it
+
+            limits.apply(config, self.limits, self.domain)
+        return config
+
+    def _without_overrides(self, given: list[tuple[str, str]], holds_port: bool) -> zenoh.Config:
+        asked_by, value = self.asked
+        if asked_by == OVERRIDE:
+            return _config(as_ros(dict(given).get("mode", "")))
+        if self.place is not None:
+            return _config(self.place.settings(self.domain, holds_port=holds_port))
+        if _ENDPOINT.fullmatch(value):
+            return _config(client(value))
+        if value not in NAMES:
+            return _from_file(asked_by, file_of(value))
+        wished = settings(value, self.domain, holds_port=holds_port)
+        if any(path.startswith("access_control") for path, _ in given):  # theirs, and not a mixture with ours
+            wished.pop("access_control", None)
+        return _config(wished)
+
+
+def plan(network: str | None, domain: int, environ: Mapping[str, str]) -> Plan:
+    """Return the requested network, ready to be joined. A host is asked what it is, which takes it some milliseconds.
+
+    Args:
+        network: As in `robolink.networks.asked.wanted`; None asks the environment.
+        domain: ROS domain id.
+        environ: Variables that may ask for a network, and override settings.
+
+    Raises:
+        TransportError: if there is no such network, file or host, or if nobody answers there.
+    """
+    asked = wanted(network, environ)
+    return _planned(asked, domain, environ)._replace(limits=limits_wanted(asked, environ))
+
+
+def _planned(asked: Wanted, domain: int, environ: Mapping[str, str]) -> Plan:
+    if _needs_no_name(asked):
+        return Plan(asked, domain, environ)
+    from robolink.networks import places  # late: this machine's own network does without
+
+    found = places.find(asked, domain, environ, secured=_is_secured(domain, environ))
+    if isinstance(found, str):  # what a file of networks says in the place of this name
+        return Plan(Wanted(asked.asked_by, found), domain, environ)
+    return Plan(asked, domain, environ, found)
+
+
+def _needs_no_name(asked: Wanted) -> bool:
+    """True for networks that are neither a host nor a name of the file of networks."""
+    if asked.asked_by == OVERRIDE or asked.value in NAMES or _ENDPOINT.fullmatch(asked.value):
+        return True
+    return file_of(asked.value).is_file()
+
+
+def limits_wanted(asked: Wanted, environ: Mapping[str, str]) -> Limits | None:
+    """Return the limits of ROBOLINK_LIMITS, else those that the file of networks has for a network; None for none.
+
+    Args:
+        asked: The network.
+        environ: Variables that may have limits, and say where the file of networks is.
+
+    Raises:
+        TransportError: for a mistake in either, with its place.
+    """
+    if environ.get("ROBOLINK_LIMITS"):
+        from robolink.networks import limits  # late: few sessions need it
+
+        return limits.wanted(environ)
+    if _needs_no_name(asked):
+        return None
+    from robolink.networks import named  # late, too
+
+    return named.limits_of(asked, environ)
+
+
+def await_host(session: zenoh.Session, found: Plan) -> None:
+    """Wait until the host that has answered is linked, so that the first listing has its nodes; at most HOST_WITHIN."""
+    sought = found.place.session if found.place else ""
+    deadline = time.monotonic() + HOST_WITHIN
+    while sought and time.monotonic() < deadline:
+        if any(str(each) == sought for each in session.info.peers_zid()):
+            return
+        time.sleep(0.002)
+
+
+def _is_secured(domain: int, environ: Mapping[str, str]) -> bool:
+    if not environ.get("ROS_SECURITY_ENABLE"):
+        return False
+    from robolink.transport import securing  # late: few sessions need it
+
+    return securing.is_secured(domain, environ)
+
+
+def load(network: str | None, domain: int, environ: Mapping[str, str], *, holds_port: bool = True) -> zenoh.Config:
+    """Return Zenoh's configuration of the requested network; raises TransportError that names the option or variable.
+
+    ZENOH_CONFIG_OVERRIDE, `path=json5;path=json5`, has the last word, but for security (ROS_SECURITY_*). If it does
+    not name shared memory, that is off where it is not safe, and where ROBOLINK_SHARED_MEMORY says so.
+    """
+    return plan(network, domain, environ).config(holds_port=holds_port)
+
+
+def _config(wished: dict[str, Any]) -> zenoh.Config:
+    import zenoh
+
+    transport = wished["transport"] | {"shared_memory": _SHARED_MEMORY}
+    config: zenoh.Config = zenoh.Config.from_json5(json.dumps(wished | {"transport": transport}))
+    return config
+
+
+def meets_at_port(value: str, environ: Mapping[str, str]) -> bool:
+    """True if the sessions of this network find each other at the rendezvous port of their domain."""
+    return value in ("localhost", "lan", "subnet") and not network_of_overrides(environ)
+
+
+def _from_file(asked_by: str, path: Path) -> zenoh.Config:
+    import zenoh
+
+    try:
+        config: zenoh.Config = zenoh.Config.from_file(path)
+    except zenoh.ZError as error:
+        raise TransportError(f"{asked_by}: {path}: {reason(error)}") from None
+    config.insert_json5("timestamping/enabled", "true")  # latched topics cannot do without
+    return config
+
+
+def file_of(value: str) -> Path:
+    """Return the file that a path or a `file://` URL names.
+
+    >>> file_of("file:///C:/robot.json5").as_posix()
+    'C:/robot.json5'
+    """
+    return Path(re.sub(r"^file://(/(?=[A-Za-z]:))?", "", value)).expanduser()
+
+
+def _overridden(config: zenoh.Config, given: list[tuple[str, str]]) -> zenoh.Config:
+    import zenoh
+
+    for path, value in given:
+        try:
+            config.insert_json5(path, value)
+        except (zenoh.ZError, UnicodeEncodeError) as error:  # the latter: bytes that are no UTF-8
+            override = shown(f"{path}={value}")
+            raise TransportError(f"{OVERRIDE}: '{override}': {reason(error)}") from None
+    return config
+
+
+def reason(error: Exception) -> str:
+    """Return the text of a Zenoh error in one line, without places in Zenoh's own source.
+
+    >>> reason(Exception("Timeout! at /home/a/zenoh/src/b.rs:388."))
+    'Timeout!'
+    """
+    text = str(error)
+    quoted = re.search(r'(?:msg: |Str\()"((?:[^"\\]|\\.)*)"', text)
+    text = quoted[1].replace("\\n", "\n") if quoted else text
+    syntax = re.search(r"--> (\d+):(\d+)\n.*= (expected [^\n]*)", text, re.DOTALL)
+    text = f"line {syntax[1]}, column {syntax[2]}: {syntax[3]}" if syntax else text
+    return " ".join(re.sub(r" at [^\s]+\.rs:\d+\.?", "", text).split())

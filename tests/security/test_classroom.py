@@ -1,0 +1,101 @@
+"""A class: a folder of keys for each student, who sees the robot, and drives it only when it is its turn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from robolink.cli.main import main
+from robolink.security import session
+from robolink.security.keystore import Keystore
+from robolink.security.rights import Rights, load_rights
+
+pytest.importorskip("cryptography", reason="needs the extra `security`")
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.delenv("ROS_DOMAIN_ID", raising=False)
+    assert main(["security", "class", str(tmp_path / "class"), "--students", "3"]) == 0
+    return tmp_path / "class"
+
+
+def rights(folder: Path, holder: str) -> dict[str, Rights]:
+    found, mistakes = load_rights(folder / holder / "enclaves", 0)
+    assert mistakes == []
+    return found
+
+
+def may_drive(folder: Path, holder: str = "robot") -> list[str]:
+    return [name for name, each in rights(folder, holder).items() if each.allows("publish", "/cmd_vel")]
+
+
+def test_each_folder_has_one_key_and_the_rights_of_all(folder: Path) -> None:
+    assert {each.name for each in folder.iterdir()} == {
+        *("keys", "robot", "router", "student1", "student2", "student3", "teacher"),
+    }
+    for holder in ("robot", "student1", "student3", "router"):
+        keys = [each.relative_to(folder / holder).as_posix() for each in (folder / holder).rglob("*key.pem")]
+        assert keys == [f"enclaves/{holder}/key.pem"]
+        assert len(rights(folder, holder)) == 6
+        assert not (folder / holder / "private").exists()
+        assert f"ROS_SECURITY_ENCLAVE_OVERRIDE=/{holder}\n" in (folder / holder / "security.env").read_text("utf-8")
+
+
+def test_a_handed_out_folder_opens_sessions(folder: Path) -> None:
+    environ = {"ROS_SECURITY_ENABLE": "true", "ROS_SECURITY_KEYSTORE": str(folder / "student1")}
+    found = session.wanted(environ, 0, "/student1")
+    assert found is not None
+    assert session.settings(found)["transport/link/tls"]["enable_mtls"] is True
+
+
+def test_a_student_sees_the_robot_and_has_its_own_namespace(folder: Path) -> None:
+    own = rights(folder, "robot")["/student1"]
+    for kind, name in (
+        ("subscribe", "/scan"),
+        ("publish", "/student1/x"),
+        ("reply", "/_robolink_cli_7/get_type_description"),
+    ):
+        assert own.allows(kind, name)
+    for kind, name in (
+        *(("publish", "/scan"), ("publish", "/student2/x"), ("publish", "/student10/x"), ("subscribe", "/student2/x")),
+        *(("request", "/robot/set_parameters"), ("reply", "/robot/get_parameters"), ("publish", "/cmd_vel")),
+    ):
+        assert not own.allows(kind, name)
+    assert own.allows("request", "/robot/get_parameters")
+
+
+def test_one_student_at_a_time_drives(folder: Path) -> None:
+    others = ["/robot", "/router", "/teacher"]
+    assert may_drive(folder) == others
+    assert main(["security", "class", str(folder), "--turn", "2"]) == 0
+    assert may_drive(folder) == may_drive(folder, "student1") == ["/robot", "/router", "/student2", "/teacher"]
+    assert main(["security", "class", str(folder), "--turn", "3"]) == 0
+    assert may_drive(folder) == ["/robot", "/router", "/student3", "/teacher"]
+    assert main(["security", "class", str(folder), "--turn", "none"]) == 0
+    assert may_drive(folder) == others
+
+
+def test_a_second_time_adds_students_and_keeps_keys(folder: Path) -> None:
+    before = (folder / "student1" / "enclaves" / "student1" / "key.pem").read_bytes()
+    assert main(["security", "class", str(folder), "--students", "4"]) == 0
+    assert (folder / "student1" / "enclaves" / "student1" / "key.pem").read_bytes() == before
+    assert len(rights(folder, "student1")) == 7
+    assert Keystore(folder / "keys").names()[-2] == "/student4"
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("--students 0 --turn 9", "no student '9'"),
+        ("--students 1000", "a class has 1 to 200 students, got 1000"),
+        ("--turn 1 --drive cmd_vel", "'cmd_vel': a name is /a/b"),
+    ],
+)
+def test_mistakes_are_one_line(folder: Path, words: str, told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    assert main(["security", "class", str(folder), *words.split()]) == 1
+    err = capsys.readouterr().err
+    assert told in err
+    assert err.count("\n") == 1

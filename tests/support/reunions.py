@@ -1,0 +1,217 @@
+"""Reunion scenarios: a cable is cut, an address changes, a router restarts; measures how soon all is found again.
+
+    python -m tests.support.reunions [SCENE ...] [--rounds 20] [--seconds 15]
+
+plays each scene for so many rounds, with KEEP_ALL at 100 Hz, and prints after how many seconds both sides heard
+something new from each other, how many messages were lost, how many of these were counted, and the longest `publish`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from functools import partial
+from typing import Any, NamedTuple
+
+from robolink.transport.free_domain import free_domain
+from tests.support import stalls
+from tests.support.obedient import line, start, tell
+
+SETTLES = 8.0
+"""Longest time in seconds for which both sides are given to find each other again."""
+
+ROUTER = """
+import json, sys, zenoh
+settings = {"mode": "router", "listen": {"endpoints": ["tcp/0.0.0.0:7447"]}, "timestamping": {"enabled": True}}
+session = zenoh.open(zenoh.Config.from_json5(json.dumps(settings | {"scouting": {"multicast": {"enabled": False}}})))
+print("ready", flush=True)
+sys.stdin.read()
+"""
+
+Fault = Callable[[str, str], None]
+"""Function of the names of both machines, which lets something happen to them."""
+
+
+class Reunion(NamedTuple):
+    """The worse of both directions."""
+
+    back: float
+    """Seconds from the end of the cut until something came that was sent after it; infinite if nothing did."""
+    lost: int
+    """Messages that never came."""
+    told: int
+    """Those of them that a subscription has counted."""
+    longest: float
+    """Seconds: the longest `publish`."""
+    latched: bool
+    """True if the last latched message came on both sides."""
+
+
+def play(
+    fault: Fault,
+    *options: str,
+    network: str = "subnet",
+    settles: float = SETTLES,
+    before: Fault | None = None,
+) -> Reunion:
+    """Let two machines publish to each other and something happen; return how they met again."""
+    with ExitStack() as stack:
+        here, there = stack.enter_context(stalls.two_hosts())
+        domain = stack.enter_context(free_domain())
+        if before is not None:
+            before(here, there)
+        environ = _clean() | {"ROS_DOMAIN_ID": str(domain), "ROBOLINK_NETWORK": network}
+        diaries = {}
+        for name, other, host in (("a", "b", here), ("b", "a", there)):
+            command = [
+                "ip",
+                "netns",
+                "exec",
+                host,
+                sys.executable,
+                "-m",
+                "tests.support.diary",
+                name,
+                "--others",
+                other,
+            ]
+            diaries[name] = start(stack, [*command, *options], environ)
+        for each in diaries.values():
+            assert line(each) == "ready"
+        begin = time.time()
+        fault(here, there)
+        ended = time.time()
+        _settle(diaries, settles)
+        reports, until = {}, time.time() - 1.0
+        for name, each in diaries.items():
+            tell(each, "report")
+            reports[name] = json.loads(line(each))
+        return _judge(reports, begin, ended, until)
+
+
+def _settle(diaries: dict[str, subprocess.Popen[str]], longest: float) -> None:
+    """Wait so long at most, until both sides have heard a hundred more messages and a latched one, and a while more."""
+    deadline = time.monotonic() + longest
+    for each in diaries.values():
+        tell(each, f"hear {max(0.0, deadline - time.monotonic())}")
+        assert line(each) == "heard"
+    time.sleep(max(0.0, min(SETTLES, deadline - time.monotonic())))
+
+
+def _judge(reports: dict[str, Any], begin: float, ended: float, until: float) -> Reunion:
+    worst = Reunion(0.0, 0, 0, 0.0, True)
+    for name, other in ("ab", "ba"):
+        sent, heard = reports[other]["sent"], reports[name]["heard"]
+        came = dict(heard[other])
+        first = min(came)  # what was sent before the two had met is not lost
+        wanted = [number for number, at in enumerate(sent) if number >= first and begin - 1.0 < at < until]
+        news = [at for number, at in came.items() if number < len(sent) and sent[number] > ended]
+        latched = max((number for number, _ in heard[f"{other}/latched"]), default=0)
+        worst = Reunion(
+            max(worst.back, min(news, default=float("inf")) - ended),
+            max(worst.lost, sum(number not in came for number in wanted)),
+            max(worst.told, reports[name]["told"]),
+            max(worst.longest, reports[name]["longest"]),
+            worst.latched and latched >= wanted[-1] // 100 * 100,
+        )
+    return worst
+
+
+def _clean() -> dict[str, str]:
+    return {name: each for name, each in os.environ.items() if not name.startswith(("ROS_", "ZENOH_", "ROBOLINK"))}
+
+
+def pull_out(seconds: float) -> Fault:
+    """Pull the cable for so long: both sides see that the link is down."""
+
+    def fault(here: str, there: str) -> None:
+        stalls.pull_out(here)
+        time.sleep(seconds)
+        stalls.plug_in(here)
+
+    return fault
+
+
+def swallow(seconds: float) -> Fault:
+    """Drop all packets between the two for so long, though both cables are in, as behind a switch that fails."""
+
+    def fault(here: str, there: str) -> None:
+        for host, peer in ((here, 2), (there, 1)):  # to nobody's address: the other machine's kernel drops them
+            ip(host, "neigh", "replace", f"10.77.0.{peer}", "lladdr", "02:00:00:00:00:99", "dev", "cable")
+        time.sleep(seconds)
+        for host, peer in ((here, 2), (there, 1)):
+            ip(host, "neigh", "delete", f"10.77.0.{peer}", "dev", "cable")
+
+    return fault
+
+
+def move(*, both: bool = False) -> Fault:
+    """Change the address of one machine, or of both."""
+
+    def fault(here: str, there: str) -> None:
+        for host, old, new in ((here, 1, 11), (there, 2, 12))[: 2 if both else 1]:
+            ip(host, "address", "delete", f"10.77.0.{old}/24", "dev", "cable")
+            ip(host, "address", "add", f"10.77.0.{new}/24", "dev", "cable")
+            stalls.plug_in(host)
+
+    return fault
+
+
+def play_router(seconds: float, *options: str) -> Reunion:
+    """As `play`, with a router between the two machines, which is killed and comes again after so long."""
+    with ExitStack() as stack:
+        routers: list[subprocess.Popen[str]] = []
+
+        def begin(here: str, there: str) -> None:
+            command = ["ip", "netns", "exec", there, sys.executable, "-c", ROUTER]
+            routers.append(start(stack, command, _clean()))
+            assert line(routers[-1]) == "ready"
+
+        def kill(here: str, there: str) -> None:
+            routers[-1].kill()
+            routers[-1].wait()
+            time.sleep(seconds)
+            begin(here, there)
+
+        return play(kill, *options, network="tcp/10.77.0.2:7447", before=begin)
+
+
+def ip(host: str, *words: str) -> None:
+    """Run `ip` on a host."""
+    subprocess.run(["ip", "-netns", host, *words], check=True)
+
+
+def scenes(seconds: float) -> dict[str, Callable[[], Reunion]]:
+    """All scenes by name."""
+    keep_all = "--keep-all"
+    return {
+        "cable": partial(play, pull_out(seconds), keep_all),
+        "packets": partial(play, swallow(seconds), keep_all),
+        "cable-last-10": partial(play, pull_out(seconds)),
+        "address": partial(play, move(), keep_all),
+        "router": partial(play_router, 2.0, keep_all),
+        "both-addresses": partial(play, move(both=True), keep_all),
+    }
+
+
+def main() -> None:
+    """Play scenes, and say how they went."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(scenes(0)))
+    parser.add_argument("--rounds", type=int, default=20)
+    parser.add_argument("--seconds", type=float, default=15.0)
+    asked = parser.parse_args()
+    known = scenes(asked.seconds)
+    for name in asked.scenes or known:
+        for _ in range(asked.rounds):
+            print(f"{name:15} {known[name]()}", flush=True)  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()
