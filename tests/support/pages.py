@@ -46,7 +46,7 @@ class Page:
         """Wait until the page has a message of a topic."""
         self.browser.wait(f"{self.topic(name)}?.latest")
 
-    def wait_for_reader(self, publisher: Publisher) -> None:
+    def wait_for_reader(self, publisher: Publisher[Any]) -> None:
         """Wait until the page has asked for a topic and the server has subscribed to it, so that nothing is lost."""
         self.browser.wait(f"{self.topic(publisher.topic_name)}?.subscription")
         until(lambda: publisher.get_subscription_count() > 0)

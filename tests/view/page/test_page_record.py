@@ -10,6 +10,7 @@ from robolink.bag.reader import open_bag
 from robolink.interfaces.std_msgs.msg import Int32
 from tests.support.browser import Browser, needs_chromium
 from tests.support.pages import opened
+from tests.support.view_clients import until
 
 pytestmark = [pytest.mark.processes, needs_chromium]
 
@@ -22,6 +23,7 @@ def test_a_bag_is_recorded_by_a_click_and_ended_by_another(
         publisher = page.node.create_publisher(Int32, "count", 10)
         browser.click("#record")
         browser.wait("document.getElementById('record').ariaPressed == 'true'")
+        until(lambda: publisher.get_subscription_count() > 0)
         for number in range(20):
             publisher.publish(Int32(data=number))
         browser.wait("/[1-9]\\d* s/.test(document.getElementById('record').textContent)")
