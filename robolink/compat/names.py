@@ -14,6 +14,9 @@ ROOMS = {
     "tf2_sensor_msgs.tf2_sensor_msgs": "robolink.tf2.point_cloud",
     "tf_transformations": "robolink.geometry.transformations",
     "message_filters": "robolink.companions.message_filters",
+    "cv_bridge": "robolink.companions.cv_bridge",
+    "cv_bridge.boost": "",
+    "cv_bridge.boost.cv_bridge_boost": "robolink.companions.cv_bridge.functions",
     "sensor_msgs_py": "",
     "sensor_msgs_py.numpy_compat": "robolink.sensor_msgs_py.numpy_compat",
     "sensor_msgs_py.point_cloud2": "robolink.sensor_msgs_py.point_cloud2",
@@ -27,7 +30,6 @@ ROOMS = {
 """Modules by name; '' is a package with nothing in it. A name below another is below its module."""
 
 INSTEAD = {
-    "cv_bridge": "numpy reads an Image: np.frombuffer(msg.data, np.uint8).reshape(msg.height, msg.width, -1)",
     "launch": "a system is started by 'robolink launch' from a YAML file",
     "launch_ros": "a system is started by 'robolink launch' from a YAML file",
     "launch_testing": "a test makes its nodes itself, in memory and in virtual time",

@@ -109,6 +109,9 @@ def test_private_modules_have_the_parts_of_services_and_actions() -> None:
         ("sensor_msgs_py.numpy_compat", "structured_to_unstructured", "sensor_msgs_py.numpy_compat"),
         ("sensor_msgs_py.numpy_compat", "unstructured_to_structured", "sensor_msgs_py.numpy_compat"),
         ("sensor_msgs_py.point_cloud2", "read_points", "sensor_msgs_py.point_cloud2"),
+        ("cv_bridge", "CvBridge", "companions.cv_bridge"),
+        ("cv_bridge.core", "CvBridgeError", "companions.cv_bridge.core"),
+        ("cv_bridge.boost.cv_bridge_boost", "getCvType", "companions.cv_bridge.functions"),
         ("rosidl_runtime_py", "set_message_fields", "companions.rosidl_runtime"),
         ("rosidl_runtime_py.utilities", "get_message", "companions.rosidl_runtime.utilities"),
         ("ament_index_python", "get_package_share_directory", "companions.ament_index"),
@@ -193,7 +196,7 @@ def test_a_name_that_is_missing(code: str, kind: type[Exception], report: str) -
 @pytest.mark.parametrize(
     ("name", "hint"),
     [
-        ("cv_bridge", "numpy"),
+        ("image_transport", "CompressedImage"),
         ("tf2_kdl", "tf2_geometry_msgs"),
         ("launch", "robolink launch"),
         ("launch_ros", "robolink launch"),
@@ -239,10 +242,10 @@ def test_a_mere_folder_does_not_hide_those_words(name: str, tmp_path: Path) -> N
 @pytest.mark.usefixtures("compat")
 def test_others_names_are_left_alone(tmp_path: Path) -> None:
     assert str(raised("import numpyy")) == "No module named 'numpyy'"
-    (tmp_path / "cv_bridge.py").write_text("HERE = True")
+    (tmp_path / "image_transport.py").write_text("HERE = True")
     sys.path.append(str(tmp_path))
     importlib.invalidate_caches()
-    assert importlib.import_module("cv_bridge").HERE
+    assert importlib.import_module("image_transport").HERE
 
 
 @pytest.mark.usefixtures("compat")

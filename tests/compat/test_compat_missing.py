@@ -213,7 +213,7 @@ def test_run_hides_a_real_rclpy_and_shows_what_is_missing(tmp_path: Path) -> Non
     assert f'File "{bad}", line 3' in place
     assert last.endswith(f"{VERSION} has no rclpy.node.Nod (did you mean 'Node'?)")
     assert err.count('  File "') == 1
-    bad.write_text("import cv_bridge\n")
+    bad.write_text("import image_transport\n")
     code, out, err = python(*run, "run", str(bad), cwd=tmp_path, **path)
     assert (code, out, err.count('  File "')) == (1, "", 1)
-    assert f"{VERSION} has no cv_bridge; numpy reads an Image" in err
+    assert f"{VERSION} has no image_transport; publish and subscribe to sensor_msgs.msg.Image" in err

@@ -43,7 +43,6 @@ OUT_OF_SCOPE = {
     "launch_testing": "ROS 2's launch; a robot system is a unit test here",
     "cv2": "a library that the program's user installs",
     "matplotlib": "a library that the program's user installs",
-    "cv_bridge": "a part of ROS's vision packages, which needs OpenCV",
     "controller_manager": "a part of ros2_control, in C++",
     "webots_ros2_tests": "a part of Webots' ROS packages",
     "my_robot_interfaces": "types of the program's own, which a workspace's files define",
