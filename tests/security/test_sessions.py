@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from robolink import Node
+from robolink.cli.doctor.look import look
 from robolink.context import Context
 from robolink.exceptions import SecurityError
 from robolink.interfaces.std_msgs.msg import String
@@ -22,7 +23,9 @@ from robolink.security import session
 from robolink.security.keystore import Keystore
 from robolink.security.policy import Profile, Rule
 from robolink.transport import connect, network
+from robolink.wire import NodeToken
 from tests.support.domains import free_domain
+from tests.support.waits import wait_until
 
 pytest.importorskip("cryptography", reason="needs the extra `security`")
 
@@ -202,6 +205,7 @@ def test_a_mistake_of_another_enclave_takes_its_rights_alone(store: Keystore) ->
 TALKER = """
 import robolink
 from robolink import Node
+from robolink.cli.doctor.look import look
 from robolink.interfaces.std_msgs.msg import String
 
 robolink.init()
@@ -249,3 +253,15 @@ def test_a_host_is_asked_by_tls_alone_where_there_are_keys(store: Keystore) -> N
         connection, _ = server.accept()
         with connection:
             assert connection.recv(100) == b""
+
+
+def test_a_look_goes_on_where_an_enclave_may_not_ask_for_the_time(
+    store: Keystore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    context = Context()
+    context.init(args=["--ros-args", "--enclave", "/robot"])
+    with context:
+        Node("arm", context=context)
+        monkeypatch.setenv("ROS_SECURITY_ENCLAVE_OVERRIDE", "/student")
+        assert look("zenoh://", store.domain).error == ""
+        wait_until(lambda: any(isinstance(each, NodeToken) for each in look("zenoh://", store.domain).tokens))

@@ -8,7 +8,7 @@ import re
 import sys
 import threading
 from collections.abc import Callable, Mapping
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from robolink.cli.doctor.facts import Facts, Seen, Settings
 from robolink.cli.doctor.look import count_nodes, look
@@ -18,6 +18,9 @@ from robolink.exceptions import TransportError
 from robolink.networks.port_probe import Port, listening
 from robolink.transport import certificates, lifetime, network, shared_memory
 from robolink.transport.reach import Reach, reach
+
+if TYPE_CHECKING:
+    import zenoh
 
 ANSWER_WITHIN = 0.3
 """Timeout of a port's answer, in seconds; a Zenoh session takes a few milliseconds."""
@@ -49,8 +52,10 @@ ResultT = TypeVar("ResultT")
 
 def gather() -> Facts:
     """Collect and return all facts, in well under a second if nothing hangs."""
-    settings = read_settings(os.environ)
-    machine, found = shared_memory.this_machine(), _reach(settings)
+    settings, config = read_settings(os.environ)
+    if settings.transport != "zenoh":
+        config = None
+    machine, found = shared_memory.this_machine(), Reach() if config is None else reach(config)
     facts = Facts(
         environ={name: shown(value) for name, value in os.environ.items()},
         platform=sys.platform,
@@ -65,8 +70,8 @@ def gather() -> Facts:
         memory=_memory(settings, machine, found.mode),
     )
     if settings.transport == "zenoh":
-        facts = _with_certificates(_with_ports(facts))
-    return _with_graph(facts)
+        facts = _with_ports(facts)
+    return _with_graph(facts if config is None else _with_certificates(facts, config))
 
 
 def shown(value: str) -> str:
@@ -74,22 +79,26 @@ def shown(value: str) -> str:
     return re.sub(r"(?i)(password|secret)[^;}]*", r"\1...", ascii_only(value))
 
 
-def read_settings(environ: Mapping[str, str]) -> Settings:
-    """Return the settings in an environment, read as nodes do; what they would refuse is in `errors`."""
+def read_settings(environ: Mapping[str, str]) -> tuple[Settings, zenoh.Config | None]:
+    """Return the settings in an environment, read as nodes do, and the session's configuration; None if they are wrong.
+
+    What nodes would refuse is in the settings' `errors`. A host that is named is asked what it is, once.
+    """
     errors: list[str] = []
     domain = _try(errors, 0, lambda: network.domain_id(environ))
     asked_by, value = _try(errors, network.Wanted("", "localhost"), lambda: network.wanted(None, environ))
     found = None if errors else _try(errors, None, lambda: network.plan(None, domain, environ))
-    shared = True if found is None else _try(errors, True, lambda: _shares_memory(found))
-    return Settings(
+    config = None if found is None else _try(errors, None, found.config)
+    settings = Settings(
         domain=domain,
         network=value,
         asked_by=asked_by if environ.get(asked_by) else "",
         transport=environ.get("ROBOLINK_TRANSPORT") or "zenoh",
         meets=network.meets_at_port(value, environ) if found is None else found.meets,
-        shared_memory=shared,
+        shared_memory=config is None or config.get_json(network.SHARES_MEMORY) == "true",
         errors=tuple(errors),
     )
+    return settings, config
 
 
 def _try(errors: list[str], otherwise: ResultT, action: Callable[[], ResultT]) -> ResultT:
@@ -100,10 +109,6 @@ def _try(errors: list[str], otherwise: ResultT, action: Callable[[], ResultT]) -
         return otherwise
 
 
-def _shares_memory(found: network.Plan) -> bool:
-    return bool(found.config().get_json(network.SHARES_MEMORY) == "true")
-
-
 def _memory(settings: Settings, machine: shared_memory.Machine, mode: str) -> shared_memory.Decision:
     """Return the use of shared memory by sessions of this mode with these settings, and the reason."""
     found = shared_memory.wanted({} if settings.errors else os.environ, machine, mode)
@@ -111,12 +116,6 @@ def _memory(settings: Settings, machine: shared_memory.Machine, mode: str) -> sh
         return found
     by = "ZENOH_CONFIG_OVERRIDE or the network's file decides"
     return shared_memory.Decision(settings.shared_memory, by, forced=True)
-
-
-def _reach(settings: Settings) -> Reach:
-    if settings.errors or settings.transport != "zenoh":
-        return Reach()
-    return reach(network.load(None, settings.domain, os.environ))
 
 
 def versions() -> dict[str, str]:
@@ -158,11 +157,8 @@ def _with_ports(facts: Facts) -> Facts:
     )
 
 
-def _with_certificates(facts: Facts) -> Facts:
+def _with_certificates(facts: Facts, config: zenoh.Config) -> Facts:
     """Add the problems of the settings' certificates."""
-    if facts.settings.errors:
-        return facts
-    config = network.load(None, facts.settings.domain, os.environ)
     errors = certificates.faults(config) or certificates.refusals(config)
     return facts._replace(
         certificate_errors=tuple(errors), certificate_warnings=tuple(certificates.doubts(config) if not errors else ())

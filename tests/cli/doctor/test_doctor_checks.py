@@ -65,7 +65,7 @@ def test_the_settings_in_force_are_read_as_nodes_read_them(
     monkeypatch: pytest.MonkeyPatch, environ: dict[str, str], expected: Settings
 ) -> None:
     monkeypatch.setattr(shared_memory, "this_machine", lambda: Machine(total=2**30, free=2**30))
-    assert read_settings(environ) == expected
+    assert read_settings(environ)[0] == expected
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ def test_the_settings_in_force_are_read_as_nodes_read_them(
     ],
 )
 def test_settings_that_cannot_be_are_errors_that_name_the_variable(environ: dict[str, str], named: str) -> None:
-    found = Facts(environ=environ, settings=read_settings(environ))
+    found = Facts(environ=environ, settings=read_settings(environ)[0])
     assert named in only(checks.settings(found).errors)
 
 
@@ -94,13 +94,13 @@ def test_settings_that_cannot_be_are_errors_that_name_the_variable(environ: dict
     ],
 )
 def test_settings_that_mislead_are_warnings(environ: dict[str, str], named: str) -> None:
-    found = checks.settings(Facts(environ=environ, settings=read_settings(environ)))
+    found = checks.settings(Facts(environ=environ, settings=read_settings(environ)[0]))
     assert (found.errors, named in only(found.warnings)) == ((), True)
 
 
 def test_settings_without_fault_say_where_each_comes_from() -> None:
     environ = {"ROS_DOMAIN_ID": "7", "ROS_LOCALHOST_ONLY": "0", "ZENOH_CONFIG_OVERRIDE": "scouting/delay=1"}
-    found = checks.settings(Facts(environ=environ, settings=read_settings(environ)))
+    found = checks.settings(Facts(environ=environ, settings=read_settings(environ)[0]))
     assert found == Verdict(
         "domain 7 (ROS_DOMAIN_ID), network localhost (the default), ZENOH_CONFIG_OVERRIDE=scouting/delay=1"
     )
