@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import shutil
 import stat
 import sys
 from pathlib import Path
@@ -52,6 +51,8 @@ def link(target: Path, path: Path) -> None:
     try:
         path.symlink_to(os.path.relpath(target, path.parent))
     except OSError:  # Windows: links need a right that few users have
+        import shutil  # late: 15 ms of each session's start
+
         shutil.copyfile(target, path)
 
 

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 from xml.parsers import expat
-from xml.sax.saxutils import escape, quoteattr
 
 from robolink.exceptions import DocumentError
 from robolink.system.plainfile import read_plain
@@ -97,6 +96,8 @@ def parse(content: bytes, name: str) -> Element:
 
 def spell(element: Element, indent: str = "") -> str:
     """Return the text of an element, with its children on lines of their own."""
+    from xml.sax.saxutils import escape, quoteattr  # late: it imports urllib and http, 50 ms of a session's start
+
     head = element.tag + "".join(f" {key}={quoteattr(value)}" for key, value in element.attributes.items())
     if element.children:
         inner = "".join(spell(child, indent + "  ") for child in element.children)

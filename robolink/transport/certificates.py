@@ -5,11 +5,15 @@ Zenoh itself reports "Timeout!" or nothing at all. Python's `ssl` makes the same
 
 from __future__ import annotations
 
+import contextlib
+import datetime
 import json
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from robolink.exceptions import SecurityError
 from robolink.transport.reach import SECURED, address_of, host_of, mode_of, port_of, reach, read
 
 if TYPE_CHECKING:
@@ -28,7 +32,10 @@ MOST_ASKED = 4
 
 _NOT_YET, _EXPIRED = 9, 10
 """OpenSSL's error numbers of certificates that are not valid yet, or no longer."""
+_OUT_OF_DATE = {_EXPIRED: "has expired", _NOT_YET: "is not valid yet (is this machine's clock right?)"}
 _WRONG_NAME = (62, 64)
+_CERTIFICATE = re.compile("-----BEGIN CERTIFICATE-----[^-]*-----END CERTIFICATE-----")
+_MONTHS = "JanFebMarAprMayJunJulAugSepOctNovDec"
 _SAID = {
     "UNKNOWN_CA": "it does not trust the authority that signed {}",
     "CERTIFICATE_EXPIRED": "it says that {} has expired",
@@ -55,7 +62,8 @@ def faults(config: zenoh.Config) -> list[str]:
     """
     if not reach(config).secured:
         return []
-    return [*_faults_of_authority(config), *(fault for own in _own(config) for fault in _faults_of(own))]
+    authority = _settings(config)["root_ca_certificate"]
+    return [*_faults_of_authority(authority), *(fault for own in _own(config) for fault in _faults_of(own))]
 
 
 def doubts(config: zenoh.Config) -> list[str]:
@@ -66,12 +74,26 @@ def doubts(config: zenoh.Config) -> list[str]:
     authority = _settings(config)["root_ca_certificate"]
     if not reach(config).secured or not authority or faults(config):
         return []
-    return [
-        f"{own.used_to}_certificate {own.certificate} is not signed by root_ca_certificate {authority}: "
-        "whoever has the same one refuses it"
-        for own in _own(config)
-        if _verified(own, authority) not in (0, _NOT_YET, _EXPIRED)
-    ]
+    return [doubt for own in _own(config) for doubt in _doubts_of(own, authority)]
+
+
+def end_of(certificate: str, key: str, authority: str) -> float:
+    """Return when a session's certificate ends, or the certificate of its authority, in seconds since 1970.
+
+    Args:
+        certificate: Its file; the session uses it to listen and to connect.
+        key: File of its private key.
+        authority: File with the certificates of those that all trust.
+
+    Raises:
+        SecurityError: with the reason why nobody would let the session in.
+    """
+    uses = [Own(use, certificate, key) for use in ("listen", "connect")]
+    with contextlib.suppress(OSError, ValueError):  # of which SSLError is one
+        for each in _in_pem(authority):
+            if end := _end_under(uses[0], each):
+                return end
+    raise SecurityError(_why_refused(uses, authority))
 
 
 def refusals(config: zenoh.Config, endpoints: list[str] | None = None) -> list[str]:
@@ -102,8 +124,7 @@ def _own(config: zenoh.Config) -> Iterator[Own]:
             yield Own(used_to, certificate, key)
 
 
-def _faults_of_authority(config: zenoh.Config) -> list[str]:
-    path = _settings(config)["root_ca_certificate"]
+def _faults_of_authority(path: str) -> list[str]:
     if not path:
         return []
     fault = _unreadable(path) or ("" if _holds_certificates(path) else "holds no certificate in PEM")
@@ -125,9 +146,48 @@ def _faults_of(own: Own) -> list[str]:
     except ssl.SSLError as error:
         is_others = error.reason == "KEY_VALUES_MISMATCH"
         return [f"{key} {'is not the key of' if is_others else 'holds no private key in PEM for'} {own.certificate}"]
-    out_of_date = {_EXPIRED: "has expired", _NOT_YET: "is not valid yet (is this machine's clock right?)"}
-    code = _verified(own, own.certificate)
-    return [f"{certificate} {out_of_date[code]}"] if code in out_of_date else []
+    code = _verified(own, "\n".join(_in_pem(own.certificate)))
+    return [f"{certificate} {_OUT_OF_DATE[code]}"] if code in _OUT_OF_DATE else []
+
+
+def _doubts_of(own: Own, authority: str) -> list[str]:
+    if {0, _NOT_YET, _EXPIRED} & {_verified(own, each) for each in _in_pem(authority)}:
+        return []
+    doubt = f"{own.used_to}_certificate {own.certificate} is not signed by root_ca_certificate {authority}"
+    return [f"{doubt}: whoever has the same one refuses it"]
+
+
+def _why_refused(uses: Sequence[Own], authority: str) -> str:
+    """Return why whoever trusts an authority refuses a certificate, for any of its uses."""
+    wrong = [*_faults_of_authority(authority), *(fault for own in uses for fault in _faults_of(own))]
+    wrong = wrong or [doubt for own in uses for doubt in _doubts_of(own, authority)]
+    if wrong:
+        return wrong[0]
+    codes = [_verified(uses[0], each) for each in _in_pem(authority)]
+    why = next((_OUT_OF_DATE[each] for each in codes if each in _OUT_OF_DATE), "was just being changed: try again")
+    return f"root_ca_certificate {authority} {why}"
+
+
+def _end_under(own: Own, authority: str) -> float:
+    """Return the end of a certificate, or of the authority that has signed it if that is earlier; 0 if it has not."""
+    import ssl
+
+    server, client = _sides(own)
+    for side in (server, client):  # a handshake that judges it for both uses
+        _trust(side, authority)
+    try:
+        shown = _shake_hands(server, client).getpeercert()
+    except ssl.SSLError:
+        return 0.0
+    return min(_end(each) for each in (shown, *client.get_ca_certs()) if each)
+
+
+def _end(shown: Mapping[str, Any]) -> float:
+    """Return the time of `Jan  5 09:34:43 2036 GMT`; `ssl.cert_time_to_seconds` imports strptime and locales, 10 ms."""
+    month, day, clock, year, _ = shown["notAfter"].split()
+    midnight = datetime.datetime(int(year), _MONTHS.index(month) // 3 + 1, int(day), tzinfo=datetime.timezone.utc)
+    hours, minutes, seconds = map(int, clock.split(":"))
+    return midnight.timestamp() + 3600 * hours + 60 * minutes + seconds
 
 
 def _unreadable(path: str) -> str:
@@ -156,23 +216,13 @@ def _load(context: ssl.SSLContext, own: Own) -> None:
 
 
 def _verified(own: Own, authority: str) -> int:
-    """Try a handshake with oneself; return OpenSSL's error number for a client that trusts `authority`, 0 if valid."""
+    """Try a handshake with oneself; return OpenSSL's error number where one trusts `authority` (PEM), 0 if valid."""
     import ssl
 
-    server, client = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
-    client.check_hostname = False
-    client.verify_mode = ssl.CERT_NONE
-    judge = client if own.used_to == "listen" else server
-    judge.verify_mode = ssl.CERT_REQUIRED
-    judge.verify_flags |= ssl.VERIFY_X509_PARTIAL_CHAIN  # so that a certificate can stand for its own authority
-    judge.load_verify_locations(authority)
-    for side in (server, client):
-        _load(side, own)
-    there, back = ssl.MemoryBIO(), ssl.MemoryBIO()
-    sides = (client.wrap_bio(back, there), server.wrap_bio(there, back, server_side=True))
+    server, client = _sides(own)
+    _trust(client if own.used_to == "listen" else server, authority)
     try:
-        for end in sides * 4:
-            _step(end)
+        _shake_hands(server, client)
     except ssl.SSLCertVerificationError as error:
         return error.verify_code
     except ssl.SSLError:
@@ -180,8 +230,44 @@ def _verified(own: Own, authority: str) -> int:
     return 0
 
 
+def _in_pem(path: str) -> list[str]:
+    """Return the certificates of a file one by one: of two authorities with one name OpenSSL tries the first alone."""
+    return _CERTIFICATE.findall(Path(path).read_text("ascii", "replace"))
+
+
+def _sides(own: Own) -> tuple[ssl.SSLContext, ssl.SSLContext]:
+    """Return a server and a client that show a certificate, and trust everybody."""
+    import ssl
+
+    server, client = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    client.check_hostname = False
+    client.verify_mode = ssl.CERT_NONE
+    for side in (server, client):
+        _load(side, own)
+    return server, client
+
+
+def _trust(side: ssl.SSLContext, authority: str) -> None:
+    """Let a side demand a certificate that an authority has signed."""
+    import ssl
+
+    side.verify_mode = ssl.CERT_REQUIRED
+    side.verify_flags |= ssl.VERIFY_X509_PARTIAL_CHAIN  # so that a certificate can stand for its own authority
+    side.load_verify_locations(cadata=authority)
+
+
+def _shake_hands(server: ssl.SSLContext, client: ssl.SSLContext) -> ssl.SSLObject:
+    """Let two sides meet in memory, and return the client's end; raises ssl.SSLError where one refuses the other."""
+    import ssl
+
+    there, back = ssl.MemoryBIO(), ssl.MemoryBIO()
+    sides = (client.wrap_bio(back, there), server.wrap_bio(there, back, server_side=True))
+    for end in sides * 4:
+        _step(end)
+    return sides[0]
+
+
 def _step(end: ssl.SSLObject) -> None:
-    import contextlib
     import ssl
 
     with contextlib.suppress(ssl.SSLWantReadError):

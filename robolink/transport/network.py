@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -85,6 +85,8 @@ class Plan(NamedTuple):
     """The host, or the name of the file of networks, once it is known what it is; None for the other networks."""
     limits: Limits | None = None
     """Limits of slow links, if any are asked for."""
+    secure: Callable[[zenoh.Config], object] | None = None
+    """Function that closes a configuration to whoever has no keys; None where nobody has any."""
 
     @property
     def meets(self) -> bool:
@@ -101,10 +103,8 @@ class Plan(NamedTuple):
         named = any(SHARES_MEMORY.startswith(path) for path, _ in given)
         if not named and (shares.forced or not shares.on):  # else as it is: a file may have it off
             config.insert_json5(SHARES_MEMORY, json.dumps(shares.on))
-        if self.environ.get("ROS_SECURITY_ENABLE"):  # the very last: no override opens what it closes
-            from robolink.transport import securing  # late: few sessions need it
-
-            securing.secure(config, self.domain, self.environ)
+        if self.secure is not None:  # the very last: no override opens what it closes
+            self.secure(config)
         return config
 
     def _limited(self, config: zenoh.Config) -> zenoh.Config:
@@ -131,27 +131,31 @@ class Plan(NamedTuple):
         return _config(wished)
 
 
-def plan(network: str | None, domain: int, environ: Mapping[str, str]) -> Plan:
+def plan(
+    network: str | None, domain: int, environ: Mapping[str, str], secure: Callable[[zenoh.Config], object] | None = None
+) -> Plan:
     """Return the requested network, ready to be joined. A host is asked what it is, which takes it some milliseconds.
 
     Args:
         network: As in `robolink.networks.asked.wanted`; None asks the environment.
         domain: ROS domain id.
         environ: Variables that may ask for a network, and override settings.
+        secure: Function that closes a configuration to whoever has no keys; None does as the environment asks.
 
     Raises:
         TransportError: if there is no such network, file or host, or if nobody answers there.
     """
-    asked = wanted(network, environ)
-    return _planned(asked, domain, environ)._replace(limits=limits_wanted(asked, environ))
+    asked, secure = wanted(network, environ), secure or _secure(domain, environ)
+    found = _planned(asked, domain, environ, secured=secure is not None)
+    return found._replace(limits=limits_wanted(asked, environ), secure=secure)
 
 
-def _planned(asked: Wanted, domain: int, environ: Mapping[str, str]) -> Plan:
+def _planned(asked: Wanted, domain: int, environ: Mapping[str, str], *, secured: bool) -> Plan:
     if _needs_no_name(asked):
         return Plan(asked, domain, environ)
     from robolink.networks import places  # late: this machine's own network does without
 
-    found = places.find(asked, domain, environ, secured=_is_secured(domain, environ))
+    found = places.find(asked, domain, environ, secured=secured)
     if isinstance(found, str):  # what a file of networks says in the place of this name
         return Plan(Wanted(asked.asked_by, found), domain, environ)
     return Plan(asked, domain, environ, found)
@@ -195,12 +199,12 @@ def await_host(session: zenoh.Session, found: Plan) -> None:
         time.sleep(0.002)
 
 
-def _is_secured(domain: int, environ: Mapping[str, str]) -> bool:
-    if not environ.get("ROS_SECURITY_ENABLE"):
-        return False
+def _secure(domain: int, environ: Mapping[str, str]) -> Callable[[zenoh.Config], object] | None:
+    if environ.get("ROS_SECURITY_ENABLE", "false") in ("", "false"):
+        return None
     from robolink.transport import securing  # late: few sessions need it
 
-    return securing.is_secured(domain, environ)
+    return securing.secure_as(domain, environ)
 
 
 def load(network: str | None, domain: int, environ: Mapping[str, str], *, holds_port: bool = True) -> zenoh.Config:

@@ -7,16 +7,21 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from robolink.exceptions import SecurityError, TransportError, WireError
 from robolink.logging import get_logger
 from robolink.qos import QoSProfile
 from robolink.security import session
+from robolink.security.keystore import CERTIFICATE, KEY
 from robolink.security.session import Security
-from robolink.transport import certificates, network, permission_watch
+from robolink.transport import certificates, network, permission_watch, securing
 from robolink.transport.base import Handle, Outlet, Sink
 from robolink.transport.zenoh import ZenohTransport
 from robolink.wire import parse_token
+
+if TYPE_CHECKING:
+    import zenoh
 
 
 def open_session(domain: int, asked: str | None, environ: Mapping[str, str], enclave: str | None) -> ZenohTransport:
@@ -43,6 +48,30 @@ def open_session(domain: int, asked: str | None, environ: Mapping[str, str], enc
     return SecuredTransport(security, asked, {**environ, session.OVERRIDE: security.enclave})
 
 
+class _Keys:
+    """Keys and rights of a session at present. They do not refer to it, so that it is freed when nobody holds it.
+
+    Raises SecurityError where nobody would let a session with these keys in.
+    """
+
+    def __init__(self, security: Security) -> None:
+        self.take(security)
+
+    def take(self, security: Security) -> None:
+        """Use others from now on; raises SecurityError, and changes nothing, where nobody would let a session in."""
+        files = (str(security.folder / each) for each in (CERTIFICATE, KEY, session.AUTHORITY))
+        try:
+            self.end = certificates.end_of(*files)
+        except SecurityError as error:
+            raise SecurityError(f"enclave '{security.enclave}': {error}") from None
+        self.security = security
+        self.refusal = functools.lru_cache(maxsize=1024)(security.rights.refusal)
+
+    def secure(self, config: zenoh.Config) -> None:
+        """Close a configuration to whoever has no keys."""
+        securing.secure(self.security, config)
+
+
 class SecuredTransport(ZenohTransport):
     """A session of an enclave, which refuses what the enclave has no right to.
 
@@ -54,13 +83,10 @@ class SecuredTransport(ZenohTransport):
 
     def __init__(self, security: Security, asked: str | None, environ: Mapping[str, str]) -> None:
         self.enclave = security.enclave
-        self._take(security)
+        self._keys = _Keys(security)
         domain = security.rights.domain
-        config = network.load(asked, domain, environ)
-        if wrong := [*certificates.faults(config), *certificates.doubts(config)]:  # nobody would let it in
-            raise SecurityError(f"enclave '{security.enclave}': {wrong[0]}")
         try:
-            super().__init__(domain, asked, environ)
+            super().__init__(domain, asked, environ, self._keys.secure)
         except SecurityError:
             raise
         except TransportError as error:
@@ -69,24 +95,20 @@ class SecuredTransport(ZenohTransport):
 
     def fingerprint(self) -> object:
         """Return something that differs as soon as permissions or keys have changed."""
-        return session.fingerprint(self._security)
+        return session.fingerprint(self._keys.security)
 
     def renew(self) -> None:
         """Go on with the permissions and keys that the keystore has now, behind the same handles; takes some seconds.
 
         Raises SecurityError, and changes nothing, where they allow no session.
         """
-        self._take(session.read(self._security))
+        self._keys.take(session.read(self._keys.security))
         self.reopen()
 
     @property
     def has_left(self) -> bool:
         """True once it is closed."""
         return self._has_left
-
-    def _take(self, security: Security) -> None:
-        self._security = security
-        self._refusal = functools.lru_cache(maxsize=1024)(security.rights.refusal)
 
     def advertise(self, key: str, qos: QoSProfile) -> Outlet:
         """Declare a publisher; raises SecurityError where the enclave may not publish."""
@@ -115,7 +137,7 @@ class SecuredTransport(ZenohTransport):
         return super().announce(token)
 
     def _require(self, kind: str, key: str) -> None:
-        if why := self._refusal(kind, key):
+        if why := self._keys.refusal(kind, key):
             raise SecurityError(why)
 
     def _refused_token(self, text: str) -> str:
@@ -126,7 +148,7 @@ class SecuredTransport(ZenohTransport):
         if token.enclave != self.enclave:
             return f"enclave '{self.enclave}' may not announce {token.full_node_name} of enclave '{token.enclave}'"
         kind = getattr(token, "kind", None)
-        return self._refusal(session.KINDS[kind], getattr(token, "name", "")) if kind else ""
+        return self._keys.refusal(session.KINDS[kind], getattr(token, "name", "")) if kind else ""
 
 
 def _reasons(domain: int, asked: str | None, environ: Mapping[str, str]) -> str:

@@ -2,28 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import functools
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from robolink.networks.asked import domain_id
 from robolink.security import session
 from robolink.security.keystore import ROUTER
+from robolink.security.session import Security
 from robolink.transport.reach import reach
 
 if TYPE_CHECKING:
     import zenoh
 
 
-def secure(config: zenoh.Config, domain: int, environ: Mapping[str, str]) -> None:
-    """Change a session's configuration as the environment asks: see `robolink.security.session.secure`."""
+def secure(security: Security, config: zenoh.Config) -> None:
+    """Change a session's configuration by its keys and rights: see `robolink.security.session.secure`."""
+    session.secure(config, security, reach(config).interfaces)
+
+
+def secure_as(domain: int, environ: Mapping[str, str]) -> Callable[[zenoh.Config], None] | None:
+    """Return the function that changes a session's configuration as the environment asks; None where it asks nothing.
+
+    Args:
+        domain: Domain of the session.
+        environ: Environment, which names the enclave.
+
+    Raises:
+        SecurityError: where the session must have keys and cannot.
+    """
     security = session.wanted(environ, domain)
-    if security is not None:
-        session.secure(config, security, reach(config).interfaces)
-
-
-def is_secured(domain: int, environ: Mapping[str, str]) -> bool:
-    """True if sessions of this environment have keys; raises SecurityError where they must and cannot."""
-    return session.wanted(environ, domain) is not None
+    return None if security is None else functools.partial(secure, security)
 
 
 def secure_router(config: zenoh.Config, environ: Mapping[str, str]) -> None:
@@ -32,4 +41,5 @@ def secure_router(config: zenoh.Config, environ: Mapping[str, str]) -> None:
     It passes on what each enclave may send, in the domain of ROS_DOMAIN_ID and in no other.
     """
     named = {session.OVERRIDE: environ.get(session.OVERRIDE) or ROUTER}
-    secure(config, domain_id(environ), {**environ, **named})
+    if change := secure_as(domain_id(environ), {**environ, **named}):
+        change(config)

@@ -51,12 +51,19 @@ _Handle = TypeVar("_Handle", bound=handles.Declared)
 class ZenohTransport(Transport):
     """A session on a Zenoh network: this machine's, or what `network` or the environment asks for.
 
-    See `robolink.transport.network.wanted`. Raises TransportError when there is no joining it.
+    See `robolink.transport.network.wanted`. `secure` closes each configuration to whoever has no keys, in place of what
+    the environment says of security. Raises TransportError when there is no joining it.
     """
 
     threaded = True
 
-    def __init__(self, domain: int = 0, network: str | None = None, environ: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self,
+        domain: int = 0,
+        network: str | None = None,
+        environ: Mapping[str, str] | None = None,
+        secure: Callable[[zenoh.Config], object] | None = None,
+    ) -> None:
         self.url = "zenoh://"
         lifetime.refuse_if_forked()
         self._holdings = handles.Holdings()
@@ -66,7 +73,8 @@ class ZenohTransport(Transport):
         self._has_left = False
         with lifetime.inside:
             before = time.time()
-            self._join = functools.partial(_join, domain, network, dict(os.environ if environ is None else environ))
+            environ = dict(os.environ if environ is None else environ)
+            self._join = functools.partial(_join, domain, network, environ, secure)
             self._session, self._claim, holds_port, self._moves = self._join()
             self._met_at = time.monotonic() + (REUNION if holds_port else 0.0)
             self._pools = PoolLimit(before)
@@ -304,21 +312,28 @@ class _Joined(NamedTuple):
     """True if others may be met at addresses that change."""
 
 
-def _join(domain: int, asked: str | None, environ: Mapping[str, str], named: frozenset[str] = frozenset()) -> _Joined:
+def _join(
+    domain: int,
+    asked: str | None,
+    environ: Mapping[str, str],
+    secure: Callable[[zenoh.Config], object] | None,
+    named: frozenset[str] = frozenset(),
+) -> _Joined:
     if "RUST_LOG" in environ:
         show_log: Callable[[], object] = zenoh.try_init_log_from_env
         show_log()
     port = network.FIRST_PORT + network.checked_domain(domain)
-    found = network.plan(asked, domain, environ)
+    found = network.plan(asked, domain, environ, secure)
 
     def load(holds_port: bool = False) -> zenoh.Config:  # usually nobody looks for it at the rendezvous port
         return addresses.named(found.config(holds_port=holds_port), named)
 
     try:
         config = load()
-        moves = reach(config).leaves_machine
+        within = reach(config)
+        moves = within.leaves_machine
         if found.meets:
-            joined = _meet(port, lambda holds_port: zenoh.open(load(holds_port)), secured=reach(config).secured)
+            joined = _meet(port, lambda holds: zenoh.open(load(True) if holds else config), secured=within.secured)
             network.await_host(joined.session, found)
             return joined._replace(moves=moves)
         if wrong := certificates.faults(config):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import sys
 from collections.abc import Callable, Sequence
 from typing import NoReturn
@@ -50,6 +51,10 @@ def fork_server(descriptor: int) -> int:
     from robolink.cli.running_nodes import runner
     from robolink.supervisor.processes import fork_server
 
+    if os.environ.get("ROS_SECURITY_ENABLE", "false") != "false":  # 30 ms of each node's start
+        import ssl  # noqa: F401
+
+        import robolink.transport.secured  # noqa: F401
     runner.prepare_types()
     asked = shortcut(fork_server.serve(descriptor))
     assert asked is not None, "a launcher asks for what it would run itself"
