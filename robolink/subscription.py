@@ -7,7 +7,7 @@ import functools
 import threading
 from collections.abc import Callable
 from enum import Enum
-from typing import Any, Generic, TypedDict, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
 
 from robolink.callback_groups import CallbackGroup
 from robolink.event_handler import (
@@ -28,6 +28,9 @@ from robolink.running.inbox import Inbox
 from robolink.system.terminal import shown
 from robolink.transport.base import Handle, Sample
 from robolink.wire import EndpointKind, check_attachment, is_attachment, unpack_attachment
+
+if TYPE_CHECKING:
+    from robolink.running.ports import Loop
 
 MsgT = TypeVar("MsgT", bound=Message)
 
@@ -105,6 +108,8 @@ class Subscription(Receiver, Generic[MsgT]):
         self.malformed = 0
         """Number of messages that could not be decoded."""
         self._overwritten, self._has_warned = 0, False
+        self.on_loss: Callable[[Any], object] | None = None
+        """Function of the executor's ready queue, if there is one; called for each message that is lost."""
         self.callback = callback
         self._decode: Callable[[bytes], Any] = bytes if raw else decoder(message_type(msg_type))
         self._endpoint = Endpoint(owner, EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile)
@@ -169,12 +174,25 @@ class Subscription(Receiver, Generic[MsgT]):
             return
         if missing > 0:
             tell_handlers(self.event_handlers, _LOST, total=missing)
+            self.overflowed()
+
+    def attach(self, executor: Loop, queued: int = 0) -> None:
+        """Belong to this executor; the node tells others what was dropped while there was none."""
+        super().attach(executor, queued)
+        if self.dropped:
+            self.overflowed()
+
+    def overflowed(self) -> None:
+        """Let the node know that messages were dropped or lost: it tells others, later."""
+        if self.on_loss is not None:
+            self.on_loss(self._queue_)
 
     def lose(self, warn: Callable[[str], object] | None) -> None:
         """Count a message that was overwritten in shared memory; call `warn`, if there is one, about the first."""
         with self._parking.lock:  # callbacks of a reentrant group lose side by side
             self._overwritten += 1
         tell_handlers(self.event_handlers, _LOST, total=1)
+        self.overflowed()
         if warn is not None and not self._has_warned:
             self._has_warned = True
             warn(
@@ -233,6 +251,11 @@ class Subscription(Receiver, Generic[MsgT]):
             get_logger(self.logger_name).warning(
                 f"{self.topic}: dropped a message {ros}: {error} (the next ones are only counted)"
             )
+
+    @property
+    def gid(self) -> bytes:
+        """Global id of the subscription, 16 bytes, as in `robolink topic info -v`."""
+        return self._endpoint.gid
 
     @property
     def dropped(self) -> int:

@@ -340,6 +340,7 @@ def _straight_sink(target: Any, place: _Place, schedule: Callable[[HostedInbox],
     def arrive(content: Any) -> None:
         if len(waiting) == depth:
             mailbox.dropped += 1
+            target.overflowed()
         elif (queue := target._queue_) is not None:
             queue.ready.append(target)
         keep(content)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from robolink.client import Client
 from robolink.event_handler import EventHandler, with_callbacks
 from robolink.guard_condition import GuardCondition
+from robolink.node_parts.losses import LossReports
 from robolink.publisher import Publisher
 from robolink.running.destroyable import Destroyable
 from robolink.running.entity import Entity
@@ -48,6 +49,7 @@ class NodeEntities(Destroyable):
         self._timers: list[Timer] = []
         self._guards: list[GuardCondition] = []
         self._waitables_: list[Waitable] = []
+        self._losses_ = LossReports(self)
 
     @property
     def executor(self) -> Executor | None:
@@ -136,6 +138,7 @@ class NodeEntities(Destroyable):
 
     def _add_subscription_(self, made: Subscription[Any]) -> None:
         """Own a subscription, and attach its callbacks to the executor."""
+        made.on_loss = self._losses_.note
         self._add_(made, self._subscriptions)
         self._attach_handlers_(made.event_handlers)
 
@@ -187,6 +190,7 @@ class NodeEntities(Destroyable):
                 _destroy(entity, owned)
         for waitable in list(self._waitables_):
             _destroy(waitable, self._waitables_)
+        self._losses_.destroy()
 
 
 def _destroy(entity: Any, owned: list[Any]) -> bool:

@@ -167,11 +167,15 @@ class Receiver(Entity):
         mailbox = self.mailbox
         if mailbox.depth:
             if not mailbox.put(arrived):
+                self.overflowed()
                 return
         else:
             mailbox.waiting.append(arrived)
         if self._queue_ is not None:
             self._queue_.ready.append(self)
+
+    def overflowed(self) -> None:
+        """Note, under the inbox's lock, that the oldest of what waited was dropped for what has arrived."""
 
     def take(self) -> Any:
         """Return the oldest of what waits, or NOTHING."""

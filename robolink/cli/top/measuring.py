@@ -6,6 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
+from robolink.cli.shared.losses import ReportedLosses
 from robolink.cli.top.processes import Processes
 from robolink.cli.top.table import NodeRow, Shown, TopicRow
 from robolink.cli.top.traffic import Count, Traffic
@@ -39,6 +40,7 @@ class Meter:
         self._graph.endpoints()  # waits until what was there before is known
         self._traffic = Traffic(node) if with_traffic else None
         self._processes = Processes(node.context.transport.links)
+        self._reported = ReportedLosses(node.context, node)
         self._before: Mapping[tuple[str, bytes], Count] = {}
         self._looked = clocks.steady()
         self._is_first = True
@@ -55,6 +57,7 @@ class Meter:
 
     def close(self) -> None:
         """Stop listening."""
+        self._reported.close()
         if self._traffic is not None:
             self._traffic.close()
 
@@ -94,6 +97,7 @@ class Meter:
         ends = self._graph.endpoints(EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
         others = [each for each in ends if (each.session, each.node_id) != self._own]
         number = Counter((each.name, each.kind) for each in others)
+        reported = self._reported_by_topic()
         rows = []
         for name, types in _types(others).items():
             of_topic = [place for place in counts if place[0] == name]
@@ -109,9 +113,19 @@ class Meter:
                     sum(counts[place].lost for place in of_topic),
                     number[name, EndpointKind.PUBLISHER],
                     number[name, EndpointKind.SUBSCRIPTION],
+                    reported[name],
                 )
             )
         return rows
+
+    def _reported_by_topic(self) -> Counter[str]:
+        """Return what the subscriptions that are there now have lost, by topic."""
+        found: Counter[str] = Counter()
+        for gid, losses in self._reported.look().items():
+            token = self._graph.endpoint_of(gid)
+            if token is not None:
+                found[token.name] += losses.total
+        return found
 
 
 def _since(before: Count, now: Count) -> Flow:

@@ -26,7 +26,8 @@ class NodeRow(NamedTuple):
 class TopicRow(NamedTuple):
     """Row of a topic: `rate` in Hz, `bandwidth` in bytes/s, `age` of the last message in s; None where not known.
 
-    `lost` counts the messages that publishers have numbered and that did not arrive here.
+    `lost` counts the messages that publishers have numbered and that did not arrive here; `missed` those that the
+    nodes' own subscriptions have lost, on the way or since their callbacks are too slow, as the nodes report it.
     """
 
     name: str
@@ -37,6 +38,7 @@ class TopicRow(NamedTuple):
     lost: int = 0
     publishers: int = 0
     subscriptions: int = 0
+    missed: int = 0
 
 
 class Shown(NamedTuple):
@@ -71,7 +73,7 @@ ORDERS: dict[str, Callable[[Any], Any]] = {
     "rate": _most(lambda row: row.rate),
     "bandwidth": _most(lambda row: row.bandwidth),
     "age": _most(lambda row: getattr(row, "age", None)),
-    "lost": _most(lambda row: getattr(row, "lost", None)),
+    "lost": _most(lambda row: row.lost + row.missed if isinstance(row, TopicRow) else None),
 }
 """Orders of rows, by name; nodes have no age and topics no CPU: they are by name then."""
 
@@ -100,7 +102,8 @@ def summary(shown: Shown, domain: int) -> str:
         carried = sum(each.bandwidth or 0.0 for each in shown.topics)
         text += f", {sum(rates):.0f} messages/s, {as_bytes(carried)}/s"
     lost = sum(each.lost for each in shown.topics)
-    return text + (f", {lost} lost" if lost else "")
+    missed = sum(each.missed for each in shown.topics)
+    return text + (f", {lost} lost" if lost else "") + (f", {missed} missed by nodes" if missed else "")
 
 
 def _count(number: int, noun: str) -> str:
@@ -108,7 +111,7 @@ def _count(number: int, noun: str) -> str:
 
 
 NODE_HEADER = ["NODE", "PID", "CPU", "MEMORY", "SENDS", "BANDWIDTH"]
-TOPIC_HEADER = ["TOPIC", "TYPE", "RATE", "BANDWIDTH", "AGE", "LOST", "PUBS", "SUBS"]
+TOPIC_HEADER = ["TOPIC", "TYPE", "RATE", "BANDWIDTH", "AGE", "LOST", "MISSED", "PUBS", "SUBS"]
 _LEFT = {"NODE", "TOPIC", "TYPE"}
 
 
@@ -125,7 +128,7 @@ def topic_cells(row: TopicRow) -> list[str]:
     """Return the cells of a topic's row."""
     age = "-" if row.age is None else f"{row.age:.1f} s" if row.age < 100 else f"{row.age:.0f} s"
     types = ", ".join(row.types)
-    numbers = [str(row.lost or "-"), str(row.publishers), str(row.subscriptions)]
+    numbers = [str(row.lost or "-"), str(row.missed or "-"), str(row.publishers), str(row.subscriptions)]
     return [row.name, types, _rate(row.rate), _bandwidth(row.bandwidth), age, *numbers]
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from robolink.cli.shared.announced import absolute, announced, endpoints, is_hidden
+from robolink.cli.shared.losses import ReportedLosses
 from robolink.cli.shared.names import show_names, show_of_type, show_types
 from robolink.cli.shared.output import say, say_json, tell
 from robolink.cli.shared.session import looking
@@ -21,6 +24,10 @@ from robolink.wire import EndpointKind, EndpointToken, gid_of
 
 if TYPE_CHECKING:
     from robolink.context import Context
+    from robolink.node_parts.losses import Losses
+
+LOSSES_WITHIN = 0.3
+"""Longest wait for the reports of nodes that lose messages, in seconds; there is none where nobody reports."""
 
 End = tuple[bytes, EndpointToken]
 """Publisher or subscription, with the gid from its announcement."""
@@ -48,11 +55,14 @@ def show_info(topic: str, *, verbose: bool, json: bool) -> None:
     """Show the type of a topic and its endpoints."""
     with looking() as context:
         name, found = _of_topic(context, topic)
+        lost = _losses(context) if verbose or json else {}
     types = sorted({each.type_name for _, each in found})
     ends = {kind: [each for each in found if each[1].kind is kind] for kind in _KINDS}
     if json:
         counts = {f"{_KINDS[kind].lower()}_count": len(each) for kind, each in ends.items()}
-        lists = {f"{_KINDS[kind].lower()}s": [_endpoint_data(*one) for one in each] for kind, each in ends.items()}
+        lists = {
+            f"{_KINDS[kind].lower()}s": [_endpoint_data(*one, lost) for one in each] for kind, each in ends.items()
+        }
         say_json({"name": name, "types": types, **counts, **lists})
         return
     gap = "\n" if verbose else ""
@@ -60,7 +70,7 @@ def show_info(topic: str, *, verbose: bool, json: bool) -> None:
     for kind, each in ends.items():
         say(f"{_KINDS[kind].capitalize()} count: {len(each)}{gap}")
         for one in each if verbose else []:
-            say(f"{_endpoint_text(*one)}\n")
+            say(f"{_endpoint_text(*one, lost)}\n")
 
 
 def show_type(topic: str, *, json: bool) -> None:
@@ -137,8 +147,14 @@ def _details(ends: list[EndpointToken]) -> dict[str, Any]:
     }
 
 
-def _endpoint_text(gid: bytes, end: EndpointToken) -> str:
-    """Return one endpoint as text, like `ros2 topic info -v`."""
+def _losses(context: Context) -> dict[bytes, Losses]:
+    """Return what subscriptions have lost, as far as their nodes report it."""
+    with contextlib.closing(ReportedLosses(context)) as reported:
+        return reported.look(LOSSES_WITHIN)
+
+
+def _endpoint_text(gid: bytes, end: EndpointToken, lost: Mapping[bytes, Losses]) -> str:
+    """Return one endpoint as text, like `ros2 topic info -v`, with what it has lost."""
     return "\n".join(
         [
             f"Node name: {end.node_name}",
@@ -148,11 +164,18 @@ def _endpoint_text(gid: bytes, end: EndpointToken) -> str:
             f"Endpoint type: {_KINDS[end.kind].upper()}",
             f"GID: {gid.hex('.')}",
             *qos_lines(end.qos),
+            *_loss_lines(lost.get(gid)),
         ]
     )
 
 
-def _endpoint_data(gid: bytes, end: EndpointToken) -> dict[str, Any]:
+def _loss_lines(losses: Losses | None) -> list[str]:
+    if losses is None:
+        return []
+    return [f"Messages lost: {losses.lost} on the way, {losses.dropped} dropped for newer ones"]
+
+
+def _endpoint_data(gid: bytes, end: EndpointToken, lost: Mapping[bytes, Losses]) -> dict[str, Any]:
     return {
         "node_name": end.node_name,
         "node_namespace": end.namespace,
@@ -161,6 +184,7 @@ def _endpoint_data(gid: bytes, end: EndpointToken) -> dict[str, Any]:
         "endpoint_type": _KINDS[end.kind].upper(),
         "gid": gid.hex("."),
         "qos_profile": _qos_data(end.qos),
+        **({"messages_lost": lost[gid]._asdict()} if gid in lost else {}),
     }
 
 

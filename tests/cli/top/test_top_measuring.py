@@ -14,7 +14,7 @@ from robolink.cli.top.processes import sessions_here
 from robolink.cli.top.table import Shown
 from robolink.interfaces.std_msgs.msg import String
 from robolink.transport.reach import Link
-from tests.support.seen_by_commands import a_node_that_commands_see
+from tests.support.seen_by_commands import a_node_that_commands_see, spinning
 from tests.support.transports import until
 
 
@@ -87,3 +87,14 @@ def test_a_session_is_the_process_that_holds_the_other_end_of_its_connection() -
     ]
     holders = {("127.0.0.1:50001", "127.0.0.1:40001"): 11, ("127.0.0.1:40001", "127.0.0.1:50001"): 12}
     assert sessions_here(links, {**holders, ("::1:50002", "::1:40002"): 13}) == {"near": 11, "six": 13}
+
+
+def test_what_nodes_have_missed_is_shown_beside_what_is_lost_on_the_way_here(node: Node) -> None:
+    publisher = node.create_publisher(String, "said", 10)
+    node.create_subscription(String, "said", lambda message: None, 2)
+    with meter(with_traffic=False) as measured:
+        assert [each.missed for each in measured.look().topics if each.name == "/lab/said"] == [0]
+        for _ in range(5):
+            publisher.publish(String())
+        with spinning(node):
+            until(lambda: [each.missed for each in measured.look().topics if each.name == "/lab/said"] == [3])

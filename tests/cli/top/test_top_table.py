@@ -55,7 +55,7 @@ def test_what_is_not_known_is_a_dash() -> None:
     assert text.startswith("domain 7: 5 nodes, 3 topics, 60 messages/s, 51 kB/s, 3 lost\n")
     cells = [line.split() for line in text.splitlines()]
     assert ["/a", "(+3)", *"-----"] in cells
-    assert ["/map", "nav_msgs/msg/OccupancyGrid", *"----", "0", "0"] in cells
+    assert ["/map", "nav_msgs/msg/OccupancyGrid", *"-----", "0", "0"] in cells
 
 
 @pytest.mark.parametrize(("number", "text"), [(0, "0 B"), (999, "999 B"), (1500, "1.5 kB"), (12e6, "12 MB")])

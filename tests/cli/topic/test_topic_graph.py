@@ -18,7 +18,8 @@ from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.message import type_hash
 from robolink.qos import HistoryPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
 from robolink.wire import EndpointKind, format_token, gid_of
-from tests.support.seen_by_commands import LATCHED, a_node_that_commands_see, made
+from tests.support.seen_by_commands import LATCHED, a_node_that_commands_see, made, spinning
+from tests.support.waits import wait_until
 
 Captured = pytest.CaptureFixture[str]
 
@@ -211,3 +212,24 @@ def test_what_cannot_be_read_hides_nothing_else(node: Node, capsys: Captured) ->
 )
 def test_the_shell_completes_live_names(argument: Any, completes: Any) -> None:
     assert argument.__metadata__[0].autocompletion is completes
+
+
+def test_what_subscriptions_have_lost_is_shown(node: Node, capsys: Captured) -> None:
+    publisher = node.create_publisher(Int32, "/count", 10)
+    subscription = node.create_subscription(Int32, "/count", lambda message: None, 2)
+    for number in range(5):
+        publisher.publish(Int32(data=number))
+    with spinning(node):
+        wait_until(lambda: node.count_publishers("/diagnostics") == 1)
+        wait_until(lambda: "Messages lost" in _info(capsys))
+    assert _info(capsys).count("Messages lost: 0 on the way, 3 dropped for newer ones") == 1
+    assert main(["topic", "info", "/count", "--json"]) == 0
+    shown = json.loads(capsys.readouterr().out)
+    assert shown["subscriptions"][0]["messages_lost"] == {"dropped": 3, "lost": 0}
+    assert shown["subscriptions"][0]["gid"] == subscription.gid.hex(".")
+    assert "messages_lost" not in shown["publishers"][0]
+
+
+def _info(capsys: Captured) -> str:
+    assert main(["topic", "info", "-v", "/count"]) == 0
+    return capsys.readouterr().out
