@@ -134,16 +134,6 @@ def test_a_launch_joins_its_files_network_once(machines: Machines, tmp_path_fact
     assert "nobody answers at 10.78.0.1, port 9" in done.stderr
 
 
-def test_the_default_network_sends_nothing(machines: Machines) -> None:
-    """Not one frame leaves a machine whose nodes are on its own network."""
-    machines.silence_kernel(machines.here)
-    before = machines.sent(machines.here)
-    for name in ("a", "b"):
-        machines.start(machines.here, NODE, name)
-    assert nodes_once_seen(machines, ["/a", "/b"]) == ["/a", "/b"]
-    assert machines.sent(machines.here) == before
-
-
 def test_our_router_opens_the_way_to_local_nodes(machines: Machines) -> None:
     machines.command(machines.there, "router", "--listen", "lan")
     machines.start(machines.there, NODE, "local")

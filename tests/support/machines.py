@@ -68,16 +68,6 @@ class Machines:
         environ_ = self.environ(environ)
         return subprocess.run(whole, env=environ_, capture_output=True, text=True, check=False, timeout=120)
 
-    def silence_kernel(self, host: str) -> None:
-        """Switch IPv6 off on a host's cable: its kernel greets its neighbours there by itself."""
-        off = "echo 1 >/proc/sys/net/ipv6/conf/cable/disable_ipv6"
-        subprocess.run(["ip", "netns", "exec", host, "sh", "-c", off], check=True)
-
-    def sent(self, host: str) -> int:
-        """Return how many frames have left a host by its cable."""
-        command = ["ip", "netns", "exec", host, "cat", "/sys/class/net/cable/statistics/tx_packets"]
-        return int(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
-
     def environ(self, given: dict[str, str]) -> dict[str, str]:
         """The variables of a program: none of this shell's own that concern robolink, but these."""
         clean = {name: each for name, each in os.environ.items() if not name.startswith(("ROS_", "ZENOH_", "ROBOLINK"))}

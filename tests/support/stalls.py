@@ -161,24 +161,31 @@ def two_hosts() -> Iterator[tuple[str, str]]:
 @contextlib.contextmanager
 def two_routed_hosts() -> Iterator[tuple[str, str]]:
     """Make two network namespaces, 10.77.0.1 and 10.78.0.1, between which a third one routes: no multicast passes."""
-    names = [f"robolink-{os.getpid()}-{side}" for side in "lrm"]
+    with routed_hosts(2) as (here, there):
+        yield here, there
+
+
+@contextlib.contextmanager
+def routed_hosts(number: int) -> Iterator[list[str]]:
+    """Make so many network namespaces, 10.77.0.1, 10.78.0.1 and so on, between which one more routes."""
+    names = [f"robolink-{os.getpid()}-{each}" for each in range(number)]
+    between = f"robolink-{os.getpid()}-m"
     with ExitStack() as stack:
-        for name in names:
+        for name in (*names, between):
             _ip("netns", "add", name)
             stack.callback(_ip, "netns", "delete", name)
             _ip("-netns", name, "link", "set", "lo", "up")
-        between = names.pop()
-        for number, name in enumerate(names):
-            link = f"cable{number}"
+        for each, name in enumerate(names):
+            link = f"cable{each}"
             _ip("link", "add", "cable", "netns", name, "type", "veth", "peer", "name", link, "netns", between)
             for host, device, last in ((name, "cable", 1), (between, link, 254)):
-                _ip("-netns", host, "address", "add", f"10.{77 + number}.0.{last}/24", "dev", device)
+                _ip("-netns", host, "address", "add", f"10.{77 + each}.0.{last}/24", "dev", device)
                 _ip("-netns", host, "link", "set", device, "up")
-            _ip("-netns", name, "route", "add", "default", "via", f"10.{77 + number}.0.254")
+            _ip("-netns", name, "route", "add", "default", "via", f"10.{77 + each}.0.254")
         subprocess.run(
             ["ip", "netns", "exec", between, "sh", "-c", "echo 1 >/proc/sys/net/ipv4/ip_forward"], check=True
         )
-        yield names[0], names[1]
+        yield names
 
 
 def plug_in(host: str) -> None:
