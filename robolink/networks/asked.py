@@ -24,6 +24,9 @@ NAMES = ("localhost", "lan", "off")
 ALIASES = {"subnet": "lan"}
 """Other names of these: `subnet` is ROS 2's word."""
 
+ENDPOINT = re.compile(r"(tcp|tls|quic|ws)/\S+:\d+")
+"""Pattern of Zenoh's endpoints, `tcp/HOST:PORT`."""
+
 OVERRIDE = "ZENOH_CONFIG_OVERRIDE"
 """Variable with Zenoh's settings, `path=json5;path=json5`, that have the last word."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import queue
 import re
 import socket
@@ -11,7 +12,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from robolink.networks.asked import FIRST_PORT, ROUTER_PORT
-from robolink.networks.port_probe import Port, listening
+from robolink.networks.port_probe import STRANGER, Port, listening
 from robolink.system.queues import get_within
 
 ANSWER_WITHIN = 1.0
@@ -73,24 +74,44 @@ def parse(text: str) -> Host | None:
     return Host(found[2] or found[3], int(found[4] or 0), bool(found[1]))
 
 
-def seek(host: Host, domain: int, within: float = SEEK_WITHIN) -> Port | None:
-    """Return the port of a host at which a Zenoh session answers, or with TLS anybody; None if there is none.
+def mistake(text: str) -> str:
+    """Return what keeps a text from being HOST[:PORT] where that can be said; empty otherwise.
 
-    With TLS nothing is sent: what listens can only be known to those whom it lets in.
+    >>> mistake("http://robot"), mistake("robot:70000"), mistake("tcp/robot")
+    ('write HOST:PORT in place of a URL', 'ports are 1 to 65535', 'write tcp/HOST:PORT, or HOST alone')
+    """
+    if "://" in text:
+        return "write HOST:PORT in place of a URL"
+    port = re.fullmatch(r".*[^:]:([^:\]]*)", text)
+    if port and parse(text[: port.start(1) - 1]):
+        return "ports are 1 to 65535"
+    if text.startswith("tcp/") and parse(text.removeprefix("tcp/")):
+        return "write tcp/HOST:PORT, or HOST alone"
+    return ""
+
+
+def seek(host: Host, domain: int, within: float = SEEK_WITHIN) -> Port | None:
+    """Return the port of a host at which a Zenoh session answers, or with TLS anybody; None if nobody listens.
+
+    If something else listens, and goes on so until the end, that port is returned: see `Port.speaks_zenoh`. With TLS
+    nothing is sent: what listens can only be known to those whom it lets in.
 
     Raises UnknownHostError for a name without an address. `domain` is the ROS domain id, and `within` the longest time
     that it may take, in seconds.
     """
     deadline = time.monotonic() + within
     addresses = _addresses(host.name, within)
+    ports, other = host.ports(domain), None
     while True:
         for address in addresses:
             left = max(0.05, min(ANSWER_WITHIN, deadline - time.monotonic()))
-            ports = host.ports(domain)
-            if found := _best(host, listening(ports, left, address, first=ports[0], greet=not host.tls), domain):
-                return found
-        if time.monotonic() + _PAUSE >= deadline:
-            return None
+            with contextlib.suppress(OSError):  # a kind of address that this machine has not
+                found = listening(ports, left, address, first=ports[0], greet=not host.tls)
+                if right := _best(host, found, domain):
+                    return right
+                other = next(iter(found.values()), other)
+        if time.monotonic() + _PAUSE >= deadline or (host.port and other is not None and other.role == STRANGER):
+            return other
         time.sleep(_PAUSE)
 
 

@@ -15,7 +15,6 @@ import os
 import re
 import socket
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -24,6 +23,7 @@ from robolink.documents.mistakes import Step
 from robolink.documents.yamlfile import Document, read, spell
 from robolink.exceptions import DocumentError, TransportError
 from robolink.security.patterns import keys, problem
+from robolink.system.paths import expanded
 
 if TYPE_CHECKING:
     import zenoh
@@ -117,7 +117,7 @@ def wanted(environ: Mapping[str, str]) -> Limits | None:
     if not text:
         return None
     try:
-        return parsed(text).value if text.startswith("{") else parsed(None, os.fspath(Path(text).expanduser())).value
+        return parsed(text).value if text.startswith("{") else parsed(None, os.fspath(expanded(text))).value
     except DocumentError as error:
         raise TransportError(str(error) if text.startswith("{") else f"{VARIABLE}: {error}") from None
 

@@ -14,14 +14,16 @@ from robolink.documents.mistakes import Step
 from robolink.documents.yamlfile import Document, read
 from robolink.exceptions import DocumentError, TransportError
 from robolink.networks import hosts
-from robolink.networks.asked import ALIASES, NAMES, Wanted
+from robolink.networks.asked import ALIASES, ENDPOINT, NAMES, Wanted
 from robolink.networks.limits import Limits, mistakes
+from robolink.system.paths import expanded, is_file
 
 FILE = "networks.yaml"
 WORKSPACE = "ROBOLINK_WORKSPACE"
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]*")
-_FILES = (".json5", ".json")
+FILES = (".json5", ".json", ".yaml", ".yml")
+"""Suffixes of Zenoh's files."""
 
 
 class Peers(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
@@ -50,11 +52,16 @@ def read_all(environ: Mapping[str, str], asked_by: str) -> dict[str, str | Peers
     """
     found: dict[str, str | Peers] = {}
     for path in places(environ):
-        if path.is_file():
-            try:
-                found |= _read(path)
-            except DocumentError as error:
-                raise TransportError(f"{asked_by}: {error}") from None
+        try:
+            path.lstat()
+        except (FileNotFoundError, NotADirectoryError):
+            continue
+        except OSError:
+            pass  # it cannot be read either, which says why
+        try:
+            found |= _read(path)
+        except DocumentError as error:
+            raise TransportError(f"{asked_by}: {error}") from None
     return found
 
 
@@ -86,12 +93,22 @@ def _own_folder(environ: Mapping[str, str], platform: str = sys.platform) -> Pat
 def _workspace(environ: Mapping[str, str]) -> Path | None:
     """Return the workspace that is asked for, else the nearest folder above that has such a file and is the user's."""
     if given := environ.get(WORKSPACE):
-        return Path(given).expanduser()
+        return expanded(given)
     try:
         here = Path.cwd()
     except OSError:  # it has been deleted
         return None
-    return next((each for each in (here, *here.parents) if (each / FILE).is_file() and _is_own(each)), None)
+    return next((each for each in (here, *here.parents) if is_file(each / FILE) and _is_own(each)), None)
+
+
+def passed_over(environ: Mapping[str, str]) -> Path | None:
+    """Return the nearest file above that is not read, since others may write it; None if there is none."""
+    try:
+        here = Path.cwd()
+    except OSError:
+        return None
+    above = (each / FILE for each in (here, *here.parents) if not environ.get(WORKSPACE))
+    return next((each for each in above if is_file(each) and not _is_own(each.parent)), None)
 
 
 def _is_own(folder: Path) -> bool:
@@ -120,7 +137,7 @@ def _beside(path: Path, meant: str | Peers) -> str | Peers:
     """Return what a name stands for; a file of Zenoh's is looked for beside the file of networks."""
     if isinstance(meant, Peers):
         return msgspec.structs.replace(meant, network=str(_beside(path, meant.network))) if meant.network else meant
-    return os.fspath(path.parent / meant) if meant.endswith(_FILES) else meant
+    return os.fspath(path.parent / meant) if meant.endswith(FILES) else meant
 
 
 def _check(document: Document[dict[str, str | Peers]], name: str, meant: str | Peers) -> None:
@@ -136,15 +153,24 @@ def _check(document: Document[dict[str, str | Peers]], name: str, meant: str | P
         raise document.error([name, "peers"], "name at least one host")
     for index, each in enumerate(meant.peers):
         if hosts.parse(each) is None:
-            raise document.error([name, "peers", index], f"'{each[:80]}' is no host: write HOST or HOST:PORT")
+            wrong = hosts.mistake(each) or "write HOST or HOST:PORT"
+            raise document.error([name, "peers", index], f"'{each[:80]}' is no host: {wrong}")
+        _check_no_name(document, [name, "peers", index], each)
     for steps, message, is_key in mistakes(meant.limits) if meant.limits else ():
         raise document.error([name, "limits", *steps], message, key=is_key)
 
 
 def _check_way(document: Document[dict[str, str | Peers]], steps: list[Step], meant: str) -> None:
     if meant not in (*NAMES, *ALIASES) and not _is_way(meant):
-        raise document.error(steps, f"'{meant[:80]}' is no network: write HOST[:PORT], tls/HOST[:PORT] or a file")
+        wrong = hosts.mistake(meant) or "write HOST[:PORT], tls/HOST[:PORT] or a file (.json5)"
+        raise document.error(steps, f"'{meant[:80]}' is no network: {wrong}")
+    _check_no_name(document, steps, meant)
+
+
+def _check_no_name(document: Document[dict[str, str | Peers]], steps: list[Step], meant: str) -> None:
+    if meant in document.value and meant != steps[0]:
+        raise document.error(steps, f"'{meant}' is a name of this file itself: write the host that it stands for")
 
 
 def _is_way(meant: str) -> bool:
-    return meant.endswith(_FILES) or "/" in meant.removeprefix("tls/") or hosts.parse(meant) is not None
+    return meant.endswith(FILES) or ENDPOINT.fullmatch(meant) is not None or hosts.parse(meant) is not None

@@ -8,14 +8,19 @@ from typing import Any, NamedTuple
 from robolink.exceptions import TransportError, nearest
 from robolink.networks import hosts, named
 from robolink.networks.asked import ALIASES, FIRST_PORT, NAMES, ROUTER_PORT, Wanted
-from robolink.networks.port_probe import ROUTER
+from robolink.networks.port_probe import REFUSES, ROUTER, SILENT, STRANGER
 from robolink.networks.refusals import WANTS_KEYS, wants_keys
 from robolink.networks.settings import client, settings
 
 KNOWN = (
     f"the networks are {', '.join(NAMES)}, HOST[:PORT] and tls/HOST[:PORT] of a robot or router, and files of Zenoh's"
 )
-_FILES = (".json5", ".json", ".yaml", ".yml")
+_OTHERS = {
+    STRANGER: "is a program that does not speak Zenoh: is the port right?",
+    SILENT: "somebody listens and does not answer: is that process stopped (Ctrl-Z), or no robolink process or router?",
+    REFUSES: "is a Zenoh session that refuses this one: it has its most sessions, or is of another version",
+}
+"""Others that may listen at a port, by their role, for an error."""
 
 
 class Place(NamedTuple):
@@ -57,20 +62,24 @@ def find(asked: Wanted, domain: int, environ: Mapping[str, str], *, secured: boo
     if meant is not None and not isinstance(found := _of_word(meant), hosts.Host):
         return found
     host = hosts.parse(meant or asked.value)
-    if host is None or (meant is None and asked.value.endswith(_FILES)):
-        raise _unknown(asked, known)
+    if host is None or (meant is None and asked.value.endswith(named.FILES)):
+        raise _unknown(asked, known, environ)
     try:
         return _asked_there(host._replace(tls=host.tls or secured), asked, domain)
     except hosts.UnknownHostError:
         if meant is not None:
             raise TransportError(f"{asked.asked_by}: '{asked.value}' is {meant}, a host that is not known") from None
-        raise _unknown(asked, known) from None
+        raise _unknown(asked, known, environ) from None
 
 
 def _of_word(meant: str) -> str | hosts.Host:
     """Return a host, or the word itself where it is none: another network's, an endpoint's or a file's."""
     word = ALIASES.get(meant, meant)
-    host = None if word in NAMES or word.startswith(("tcp/", "/", "~")) or word.endswith(_FILES) else hosts.parse(word)
+    host = (
+        None
+        if word in NAMES or word.startswith(("tcp/", "/", "~")) or word.endswith(named.FILES)
+        else hosts.parse(word)
+    )
     return host or word
 
 
@@ -87,9 +96,11 @@ def _asked_there(host: hosts.Host, asked: Wanted, domain: int) -> Place:
     certificate: there a client is right with both, since peers forward what their clients send.
     """
     port = hosts.seek(host, domain)
-    if port is None:
+    if port is None or not (port.speaks_zenoh or host.tls):
         if not host.tls and (keyed := next((each for each in host.ports(domain) if wants_keys(host.name, each)), 0)):
             raise TransportError(f"{asked.asked_by}: at {host.name}, port {keyed}, is a process {WANTS_KEYS}")
+        if port is not None:
+            raise TransportError(f"{asked.asked_by}: at {host.name}, port {port.number}, {_OTHERS[port.role]}")
         raise TransportError(f"{asked.asked_by}: nobody answers at {host.name}{_what_to_do(host, domain)}")
     endpoint = host.endpoint(port.number)
     return Place((endpoint,), host.tls or port.role == ROUTER, session=port.session)
@@ -104,8 +115,13 @@ def _what_to_do(host: hosts.Host, domain: int) -> str:
     )
 
 
-def _unknown(asked: Wanted, known: Mapping[str, object]) -> TransportError:
+def _unknown(asked: Wanted, known: Mapping[str, object], environ: Mapping[str, str]) -> TransportError:
     value = asked.value[:200]
     names = [*NAMES, *ALIASES, *known]
-    more = f", {', '.join(sorted(known)[:8])} of {named.FILE}" if known else ""
-    return TransportError(f"{asked.asked_by}: no network, host or file '{value}'{nearest(value, names)}; {KNOWN}{more}")
+    wrong = hosts.mistake(value)
+    if not wrong:
+        more = f", {', '.join(sorted(known)[:8])} of {named.FILE}" if known else ""
+        wrong = f"{KNOWN}{more}"
+        if path := named.passed_over(environ):
+            wrong += f"; {path} is not read, since others may write it or its folder"
+    return TransportError(f"{asked.asked_by}: no network, host or file '{value}'{nearest(value, names)}; {wrong}")

@@ -9,7 +9,7 @@ from robolink.constants import LARGEST_MESSAGE
 from robolink.exceptions import TransportError
 from robolink.networks import hosts
 from robolink.networks.asked import ROUTER_PORT
-from robolink.networks.settings import LEASE_MS, MOST_PENDING, most_pending
+from robolink.networks.settings import LEASE_MS, MOST_PENDING, RETRY, most_pending
 
 EVERYWHERE = ("0.0.0.0", "::")
 """Addresses that stand for all of this machine's."""
@@ -48,7 +48,7 @@ def router_settings(listen: Sequence[str], connect: Sequence[str]) -> dict[str, 
             "endpoints": [*connect],
             "exit_on_failure": False,
             "timeout_ms": -1,
-            "retry": {"period_init_ms": 250, "period_max_ms": 1000, "period_increase_factor": 2},
+            "retry": RETRY,
         },
         # Peers learn of each other here and link themselves; routers are joined only where that is asked for.
         "scouting": {

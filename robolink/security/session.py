@@ -12,6 +12,7 @@ from robolink.exceptions import SecurityError, nearest
 from robolink.security import access, files
 from robolink.security.keystore import CERTIFICATE, KEY, PERMISSIONS, ROUTER, checked_enclave, enclave_of
 from robolink.security.rights import Rights, load_rights
+from robolink.system.paths import expanded
 from robolink.wire import EndpointKind
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def wanted(environ: Mapping[str, str], domain: int, enclave: str | None = None) 
         if not enforces:
             return None
         raise SecurityError(f"{ENABLE} is true and {_KEYSTORE} names no keystore: make one with 'robolink security'")
-    enclaves = Path(store).expanduser() / "enclaves"
+    enclaves = expanded(store) / "enclaves"
     folder = enclaves / name.strip("/")
     if not (folder / KEY).is_file():
         if not enforces:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.exceptions import TransportError
 from robolink.networks.asked import (
+    ENDPOINT,
     FIRST_PORT,
     NAMES,
     OVERRIDE,
@@ -23,6 +24,7 @@ from robolink.networks.asked import (
     wanted,
 )
 from robolink.networks.settings import LONGEST_WAIT, OFTEN, SOUGHT_EVERY, as_ros, client, settings
+from robolink.system.paths import expanded, is_file
 from robolink.system.terminal import shown
 from robolink.transport import shared_memory
 from robolink.transport.reach import mode_of
@@ -62,7 +64,6 @@ SHARES_MEMORY = "transport/shared_memory/enabled"
 HOST_WITHIN = 1.0
 """Longest wait for the link to a host that was asked for by name, in seconds; it takes some round trips."""
 
-_ENDPOINT = re.compile(r"(tcp|tls|quic|ws)/\S+:\d+")
 _SHARED_MEMORY = {
     "enabled": True,
     "transport_optimization": {
@@ -121,7 +122,7 @@ class Plan(NamedTuple):
             return _config(as_ros(dict(given).get("mode", "")))
         if self.place is not None:
             return _config(self.place.settings(self.domain, holds_port=holds_port))
-        if _ENDPOINT.fullmatch(value):
+        if ENDPOINT.fullmatch(value):
             return _config(client(value))
         if value not in NAMES:
             return _from_file(asked_by, file_of(value))
@@ -163,9 +164,9 @@ def _planned(asked: Wanted, domain: int, environ: Mapping[str, str], *, secured:
 
 def _needs_no_name(asked: Wanted) -> bool:
     """True for networks that are neither a host nor a name of the file of networks."""
-    if asked.asked_by == OVERRIDE or asked.value in NAMES or _ENDPOINT.fullmatch(asked.value):
+    if asked.asked_by == OVERRIDE or asked.value in NAMES or ENDPOINT.fullmatch(asked.value):
         return True
-    return file_of(asked.value).is_file()
+    return is_file(file_of(asked.value))
 
 
 def limits_wanted(asked: Wanted, environ: Mapping[str, str]) -> Limits | None:
@@ -246,7 +247,7 @@ def file_of(value: str) -> Path:
     >>> file_of("file:///C:/robot.json5").as_posix()
     'C:/robot.json5'
     """
-    return Path(re.sub(r"^file://(/(?=[A-Za-z]:))?", "", value)).expanduser()
+    return expanded(re.sub(r"^file://(/(?=[A-Za-z]:))?", "", value))
 
 
 def _overridden(config: zenoh.Config, given: list[tuple[str, str]]) -> zenoh.Config:
@@ -270,6 +271,8 @@ def reason(error: Exception) -> str:
     text = str(error)
     quoted = re.search(r'(?:msg: |Str\()"((?:[^"\\]|\\.)*)"', text)
     text = quoted[1].replace("\\n", "\n") if quoted else text
+    if unmet := re.match(r"Unable to connect to any of \[(?:\w+\()?(.*?)\)?\]\. Timeout!", text):
+        return f"nobody lets this session in at {unmet[1]}: is it on, is the port right, and no firewall between?"
     syntax = re.search(r"--> (\d+):(\d+)\n.*= (expected [^\n]*)", text, re.DOTALL)
     text = f"line {syntax[1]}, column {syntax[2]}: {syntax[3]}" if syntax else text
     return " ".join(re.sub(r" at [^\s]+\.rs:\d+\.?", "", text).split())

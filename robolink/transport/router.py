@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import json
 import os
 from collections.abc import Iterator, Sequence
@@ -13,22 +14,40 @@ from robolink.exceptions import TransportError
 from robolink.networks import limits
 from robolink.networks.asked import domain_id
 from robolink.networks.router import router_settings
-from robolink.transport import securing
+from robolink.transport import lifetime, securing
+from robolink.transport import zenoh_declare as declare
 from robolink.transport.network import reason
 from robolink.transport.port_sharing import PortClaim, is_taken
 from robolink.transport.reach import Link, links_of, port_of
+
+CLOSE_WITHIN = 0.5
+"""Longest `close`, in seconds; then it goes on in the background, for 10 s if a handshake is not answered."""
 
 
 class Router:
     """A running router; made by `running`."""
 
-    def __init__(self, session: zenoh.Session) -> None:
-        self._session = session
-        self.session_id = str(session.info.zid())
+    def __init__(self) -> None:
+        self._sessions: list[zenoh.Session] = []
+        lifetime.watch_over(self)
+
+    def open(self, config: zenoh.Config) -> None:
+        """Open its session; raises ZError. A Ctrl-C meanwhile must not free it, since closing may take 10 s."""
+        self._sessions.extend(map(zenoh.open, [config]))  # one step of C
 
     def links(self) -> list[Link]:
         """Return the connections to others."""
-        return links_of(self._session)
+        return links_of(self._sessions[0])
+
+    def close(self) -> None:
+        """Leave the network. Safe to call twice."""
+        for each in self._sessions:
+            lifetime.finish(functools.partial(declare.close_session, each), CLOSE_WITHIN)
+        lifetime.forget(self)
+
+    def disown(self) -> None:
+        """Refuse every further use in a forked child."""
+        lifetime.leak(self._sessions)
 
 
 @contextlib.contextmanager
@@ -56,14 +75,10 @@ def running(listen: Sequence[str], connect: Sequence[str]) -> Iterator[Router]:
                     f"{each} is taken, perhaps by another router ('robolink doctor' says by whom): "
                     "stop that one, use it, or choose another port with --listen HOST:PORT"
                 )
+        router = Router()
+        stack.callback(router.close)
         try:
-            session = zenoh.open(config)
+            router.open(config)
         except zenoh.ZError as error:
             raise TransportError(f"cannot listen at {' and '.join(listen)}: {reason(error)}") from None
-        stack.callback(_close, session)
-        yield Router(session)
-
-
-def _close(session: zenoh.Session) -> None:
-    with contextlib.suppress(zenoh.ZError, RuntimeError):
-        session.close()  # type: ignore[no-untyped-call]
+        yield router

@@ -15,6 +15,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from robolink.exceptions import NotFoundError
+from robolink.system.paths import expanded
 from robolink.workspace.packages import BUILT_IN, is_ros_workspace, named_executables, source_packages
 from robolink.workspace.source import Folder, NodeSource, canonical
 from robolink.workspace.trust import is_trusted
@@ -182,7 +183,7 @@ def user_workspace(workspace: Folder = None) -> Path | None:
             return workspace_of(Path.cwd())
         except FileNotFoundError:  # the working directory has been deleted
             return None
-    folder = Path(asked).expanduser()
+    folder = expanded(asked)
     if not folder.is_dir():
         raise NotFoundError("workspace folder", str(asked))
     return folder.resolve()
@@ -226,7 +227,7 @@ def _split(name: str) -> tuple[str, str]:
 
 def _as_path(name: str, workspace: Folder, suffixes: tuple[str, ...]) -> Path | None:
     """Return the file of a path, from here or from the user's workspace; None for a mere name."""
-    path = Path(name).expanduser()
+    path = expanded(name)
     is_path = len(path.parts) > 1 or path.suffix in suffixes
     if not is_path:
         return None

@@ -13,6 +13,7 @@ import sys
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
+from robolink.system.paths import expanded
 from robolink.system.terminal import shown
 
 SAFE = "ROBOLINK_SAFE_WORKSPACES"
@@ -48,7 +49,7 @@ def why_not(folder: Path, trusted: Collection[int] | None = None) -> str:
 
 def _is_named_safe(folder: Path) -> bool:
     named = [each for each in os.environ.get(SAFE, "").split(os.pathsep) if each]
-    return any(each == "*" or Path(each).expanduser().resolve() == folder for each in named)
+    return any(each == "*" or expanded(each).resolve() == folder for each in named)
 
 
 def _warn(text: str) -> None:

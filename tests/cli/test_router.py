@@ -79,9 +79,24 @@ def test_a_taken_port_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.processes
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows sends no SIGINT to one process")
 def test_it_ends_by_ctrl_c() -> None:
+    assert interrupted() == (0, "the router has ended\n", "")
+
+
+@pytest.mark.processes
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows sends no SIGINT to one process")
+def test_it_ends_by_ctrl_c_where_a_router_it_connects_to_is_silent() -> None:
+    """Zenoh waits 10 s for its handshake, and then crashed."""
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        code, out, err = interrupted("--connect", f"127.0.0.1:{silent.getsockname()[1]}")
+    assert (code, err) == (0, "")
+    assert out.endswith("the router has ended\n")
+
+
+def interrupted(*options: str) -> tuple[int, str, str]:
+    """Run a router until Ctrl-C; return its exit code, and what it has said last."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-    command = [sys.executable, "-m", "robolink", "router", "--listen", f"127.0.0.1:{port}"]
+    command = [sys.executable, "-m", "robolink", "router", "--listen", f"127.0.0.1:{port}", *options]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         try:
             assert process.stdout is not None
@@ -91,4 +106,4 @@ def test_it_ends_by_ctrl_c() -> None:
             out, err = process.communicate(timeout=60)
         finally:
             process.kill()
-    assert (process.returncode, out, err) == (0, "the router has ended\n", "")
+    return process.returncode, out, err

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import socket
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
@@ -13,7 +14,7 @@ import zenoh
 from robolink.networks import hosts
 from robolink.networks.asked import FIRST_PORT
 from robolink.networks.hosts import Host, parse, seek
-from robolink.networks.port_probe import PEER, ROUTER, SILENT, Port
+from robolink.networks.port_probe import PEER, ROUTER, SILENT, STRANGER, Port
 from robolink.transport import network
 from robolink.transport.zenoh import ZenohTransport
 from tests.support.domains import free_domain
@@ -62,13 +63,33 @@ def test_nobody_answers() -> None:
         assert seek(Host("127.0.0.1", bound.getsockname()[1]), 0, within=0.2) is None
 
 
-def test_a_stranger_is_nobody_but_with_tls_who_listens_may_be_right() -> None:
+def test_somebody_who_does_not_answer() -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-        assert seek(Host("127.0.0.1", port), 0, within=0.2) is None
-        found = seek(Host("127.0.0.1", port, tls=True), 0, within=0.2)
-        assert found is not None
-        assert found.number == port
+        assert seek(Host("127.0.0.1", port), 0, within=0.2) == Port(port, SILENT)
+
+
+def test_a_stranger_at_a_named_port_is_known_at_once() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server, ThreadPoolExecutor(1) as pool:
+        port = server.getsockname()[1]
+
+        def hang_up() -> None:
+            connection, _ = server.accept()
+            with connection:
+                connection.sendall(b"SSH-2.0-OpenSSH_9\r\n")
+
+        done = pool.submit(hang_up)
+        assert seek(Host("127.0.0.1", port), 0, within=60.0) == Port(port, STRANGER)
+        done.result()
+
+
+def test_an_address_of_a_kind_that_this_machine_has_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object, **__: object) -> Any:
+        raise OSError("Address family not supported by protocol")
+
+    monkeypatch.setattr(hosts, "_addresses", lambda name, within: [name])
+    monkeypatch.setattr(hosts, "listening", refuse)
+    assert seek(Host("::1"), 0, within=0.3) is None
 
 
 def test_a_name_without_an_address(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ import pytest
 from robolink.exceptions import TransportError
 from robolink.networks import hosts, named, places
 from robolink.networks.named import Peers
-from robolink.networks.port_probe import ROUTER, Port
+from robolink.networks.port_probe import REFUSES, ROUTER, SILENT, STRANGER, Port
 from robolink.transport import network
 
 FILE = """
@@ -87,6 +87,35 @@ def test_nobody_answers_there(environ: dict[str, str], monkeypatch: pytest.Monke
     )
 
 
+@pytest.mark.parametrize(
+    ("port", "said"),
+    [
+        (Port(8000, STRANGER), "is a program that does not speak Zenoh: is the port right?"),
+        (Port(8000, SILENT), "somebody listens and does not answer: is that process stopped (Ctrl-Z), or no robolink"),
+        (Port(8000, REFUSES), "is a Zenoh session that refuses this one: it has its most sessions, or is of another"),
+    ],
+)
+def test_somebody_else_is_there(port: Port, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(hosts, "seek", lambda host, domain: port)
+    monkeypatch.setattr(places, "wants_keys", lambda host, port: False)
+    assert refusal("robot.example:8000", {}).startswith(f"network: at robot.example, port 8000, {said}")
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ("http://robot", "write HOST:PORT in place of a URL"),
+        ("robot:70000", "ports are 1 to 65535"),
+        ("[::1]:0", "ports are 1 to 65535"),
+        ("tcp/robot", "write tcp/HOST:PORT, or HOST alone"),
+        ("~nobody-here/lab.json5", places.KNOWN),
+        ("x" * 5000, places.KNOWN),
+    ],
+)
+def test_what_is_no_network(value: str, said: str) -> None:
+    assert refusal(value, {}) == f"network: no network, host or file '{value[:200]}'; {said}"
+
+
 def test_the_nearest_name(environ: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
     def unknown(host: hosts.Host, domain: int) -> None:
         raise hosts.UnknownHostError
@@ -106,6 +135,10 @@ def test_the_nearest_name(environ: dict[str, str], monkeypatch: pytest.MonkeyPat
         ("lab: {peers: [a, 'b c']}", "lab.peers[1]: 'b c' is no host: write HOST or HOST:PORT"),
         ("lab: {peer: [a]}", "unknown key 'peer' (did you mean 'peers'?)"),
         ("robot: 'a b'", "robot: 'a b' is no network"),
+        ("robot: 'http://robot'", "'http://robot' is no network: write HOST:PORT in place of a URL"),
+        ("robot: tcp/10.0.0.1", "'tcp/10.0.0.1' is no network: write tcp/HOST:PORT, or HOST alone"),
+        ("robot: arm\narm: robot", "robot: 'arm' is a name of this file itself: write the host that it stands for"),
+        ("robot: 10.0.0.1\nlab: {peers: [robot]}", "lab.peers[0]: 'robot' is a name of this file itself"),
         ("robot: 5", "robot: expected"),
         ("[", "networks.yaml:1:"),
     ],
@@ -146,3 +179,14 @@ def test_a_file_that_others_may_write_is_not_found_by_itself(tmp_path: Path, mon
     assert named._workspace({}) == tmp_path
     Path(tmp_path / "networks.yaml").chmod(0o666)
     assert named._workspace({}) != tmp_path
+    assert f"{tmp_path / 'networks.yaml'} is not read, since others may write it" in refusal("[robot", {})
+
+
+def test_a_file_that_is_none_is_told(tmp_path: Path) -> None:
+    (tmp_path / "networks.yaml").mkdir()
+    assert "networks.yaml: cannot be read: " in refusal("robot", {"ROBOLINK_WORKSPACE": str(tmp_path)})
+
+
+def test_a_home_folder_of_nobody() -> None:
+    assert named._workspace({"ROBOLINK_WORKSPACE": "~nobody-here"}) == Path("~nobody-here")
+    assert "no file '~nobody-here/x'" in refusal("lan", {"ROBOLINK_LIMITS": "~nobody-here/x"})

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.system.own_command import own_command
+from robolink.system.paths import expanded
 from robolink.workspace import (
     Folder,
     NodeSource,
@@ -132,7 +133,7 @@ def source_of(name: str, home: Path | None, folder: Path) -> NodeSource:
     nearest name.
     """
     file, colon, attribute = name.rpartition(":") if ".py:" in name else (name, "", "")
-    found = _first_file(each / Path(file).expanduser() for each in _around(folder, home))
+    found = _first_file(each / expanded(file) for each in _around(folder, home))
     if found is not None and file.endswith(".py"):
         return NodeSource(found.stem, found.resolve(), attribute if colon else "")
     package, _, its_name = name.partition(" ")
@@ -158,7 +159,7 @@ def included_file(name: str, home: Path | None, folder: Path) -> Path:
     Candidates are a path from that folder, with or without `.yaml`, a path from the workspace, and a name. Raises
     `NotFoundError` with the nearest name.
     """
-    path = Path(name).expanduser()
+    path = expanded(name)
     beside_it = (folder / path.with_name(f"{path.name}{suffix}") for suffix in YAML if path.name)
     found = _first([folder / path, *beside_it, *(each / path for each in _around(folder, home)[1:])])
     if found is not None:
@@ -175,7 +176,7 @@ def parameter_file(name: str, home: Path | None, folder: Path) -> Path:
 
     Raises `NotFoundError` with the nearest name beside it.
     """
-    path = Path(name).expanduser()
+    path = expanded(name)
     folders = _around(folder, home)
     found = _first(each / path for each in folders)
     if found is None:
