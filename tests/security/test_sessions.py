@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from robolink import Node
+from robolink.cli.doctor.gathering import gather
 from robolink.cli.doctor.look import look
 from robolink.context import Context
 from robolink.exceptions import SecurityError
@@ -205,6 +206,7 @@ def test_a_mistake_of_another_enclave_takes_its_rights_alone(store: Keystore) ->
 TALKER = """
 import robolink
 from robolink import Node
+from robolink.cli.doctor.gathering import gather
 from robolink.cli.doctor.look import look
 from robolink.interfaces.std_msgs.msg import String
 
@@ -255,9 +257,7 @@ def test_a_host_is_asked_by_tls_alone_where_there_are_keys(store: Keystore) -> N
             assert connection.recv(100) == b""
 
 
-def test_a_look_goes_on_where_an_enclave_may_not_ask_for_the_time(
-    store: Keystore, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_doctor_looks_with_keys_and_says_who_has_some(store: Keystore, monkeypatch: pytest.MonkeyPatch) -> None:
     context = Context()
     context.init(args=["--ros-args", "--enclave", "/robot"])
     with context:
@@ -265,3 +265,7 @@ def test_a_look_goes_on_where_an_enclave_may_not_ask_for_the_time(
         monkeypatch.setenv("ROS_SECURITY_ENCLAVE_OVERRIDE", "/student")
         assert look("zenoh://", store.domain).error == ""
         wait_until(lambda: any(isinstance(each, NodeToken) for each in look("zenoh://", store.domain).tokens))
+        facts = gather()
+        assert (set(facts.keyed_ports), facts.seen.error) == ({network.FIRST_PORT + store.domain}, "")
+        monkeypatch.delenv("ROS_SECURITY_ENABLE")
+        assert "with security" in gather().seen.error

@@ -7,6 +7,7 @@ import re
 from robolink.cli.doctor.facts import ClockOffset, Facts
 from robolink.cli.doctor.verdict import Check, Verdict, count, listed
 from robolink.networks.port_probe import REFUSES, ROUTER, SILENT, Port
+from robolink.networks.refusals import HAS_NO_KEYS, WANTS_KEYS
 from robolink.transport.reach import on_this_machine
 from robolink.transport.shared_memory import VARIABLE, decide
 from robolink.wire import NodeToken
@@ -135,10 +136,13 @@ def rendezvous(facts: Facts) -> Verdict:
     port = facts.ports.get(wanted.port)
     if port is None:
         return Verdict(f"port {wanted.port} of domain {wanted.domain} is free: the next node takes it")
-    if port.speaks_zenoh:
-        return Verdict(f"port {wanted.port} of domain {wanted.domain} is held by {_whose(facts, port)}")
-    hint = "stop it, or choose another ROS_DOMAIN_ID"
-    return Verdict("", (f"port {wanted.port} of domain {wanted.domain} is held by {_stranger(facts, port)}: {hint}",))
+    held, keyed = f"port {wanted.port} of domain {wanted.domain} is held by", wanted.port in facts.keyed_ports
+    if not port.speaks_zenoh and not keyed:
+        hint = "stop it, or choose another ROS_DOMAIN_ID"
+        return Verdict("", (f"{held} {_stranger(facts, port)}: {hint}",))
+    if keyed != facts.reach.secured:
+        return Verdict("", (f"{held} {_whose(facts, port)}, {WANTS_KEYS if keyed else HAS_NO_KEYS}",))
+    return Verdict(f"{held} {_whose(facts, port)}")
 
 
 def router(facts: Facts) -> Verdict:
@@ -150,16 +154,24 @@ def router(facts: Facts) -> Verdict:
         errors.append(f"nothing listens at {asked}: start the router there, or unblock the port")
     elif asked.startswith("tcp/") and far is not None and not far.speaks_zenoh:
         errors.append(f"{asked} listens but does not answer as Zenoh does")
+    if port is not None and port.number in facts.keyed_ports:
+        return _keyed_router(facts, port, tuple(errors))
     if port is not None and port.role != ROUTER:
         errors.append(f"{where} is held by {_stranger(facts, port)}: stop it to meet ROS 2 nodes")
     elif port is not None and facts.platform == "win32" and asked == "localhost":
         hint = f"ROBOLINK_NETWORK=tcp/127.0.0.1:{port.number}"
         warnings.append(f"a ROS 2 router answers; on Windows nodes join it only when asked to: {hint}")
-    elif port is not None and not facts.reach.leaves_machine:
+    elif port is not None and not facts.reach.leaves_machine and not facts.reach.secured:
         warnings += _ways_in(facts)
     answers = f"a ROS 2 router answers on port {facts.router_port}: {_whose(facts, port)}" if port else ""
     none = f"no ROS 2 router on port {facts.router_port}: none is needed but to meet ROS 2 nodes"
     return Verdict(answers or none, tuple(errors), tuple(warnings))
+
+
+def _keyed_router(facts: Facts, port: Port, errors: tuple[str, ...]) -> Verdict:
+    """Return the verdict on a router's port that asks for a certificate: only those with keys use it."""
+    held = f"port {port.number}, the ROS 2 router's, is held by {_whose(facts, port)}"
+    return Verdict(held, errors, () if facts.reach.secured else (f"{held}, {WANTS_KEYS}",))
 
 
 def _ways_in(facts: Facts) -> list[str]:
@@ -181,6 +193,8 @@ def _ways_in(facts: Facts) -> list[str]:
 def _whose(facts: Facts, port: Port) -> str:
     holder = facts.holders.get(port.number)
     process = f" ({holder.command}, pid {holder.pid})" if holder else ""
+    if port.number in facts.keyed_ports:
+        return f"a process with security{process}"
     return f"a Zenoh {port.role}{process}" if port.speaks_zenoh else f"a stranger{process}"
 
 

@@ -79,6 +79,8 @@ class Facts(NamedTuple):
     """Port of a ROS 2 router."""
     ports: Mapping[int, Port] = {}
     """Ports of this machine that something listens on, of those that were probed."""
+    keyed_ports: frozenset[int] = frozenset()
+    """Of the router's port and the domain's, those that ask for a certificate: of processes with security."""
     holders: Mapping[int, Holder | None] = {}
     """Processes that hold the ports; None if unknown."""
     router_open_at: tuple[str, ...] = ()

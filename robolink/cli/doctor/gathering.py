@@ -15,7 +15,8 @@ from robolink.cli.doctor.look import count_nodes, look
 from robolink.cli.doctor.ports import also_open_at, ascii_only, holder, loopback_works, owner
 from robolink.constants import LAST_DOMAIN
 from robolink.exceptions import TransportError
-from robolink.networks.port_probe import Port, listening
+from robolink.networks.port_probe import HOST, STRANGER, Port, listening
+from robolink.networks.refusals import wants_keys
 from robolink.transport import certificates, lifetime, network, shared_memory
 from robolink.transport.reach import Reach, reach
 
@@ -148,9 +149,11 @@ def _with_ports(facts: Facts) -> Facts:
     numbers = [facts.router_port, *(network.FIRST_PORT + domain for domain in range(LAST_DOMAIN + 1))]
     ports = listening(numbers, ANSWER_WITHIN)
     router = ports.get(facts.router_port)
+    meant = [ports[number] for number in (facts.router_port, facts.settings.port) if number in ports]
     return facts._replace(
         ports=ports,
-        holders={number: holder(number) for number in ports if number in (facts.router_port, facts.settings.port)},
+        keyed_ports=frozenset(each.number for each in meant if each.role == STRANGER and wants_keys(HOST, each.number)),
+        holders={each.number: holder(each.number) for each in meant},
         router_open_at=also_open_at(router, ANSWER_WITHIN) if router and router.speaks_zenoh else (),
         router_owner=owner(facts.router_port) if router else "",
         far_router=_far_router(facts.settings.network),
@@ -220,7 +223,10 @@ def _why_not_to_look(facts: Facts) -> str:
         return "this machine cannot connect to itself"
     port = facts.ports.get(settings.port)
     if settings.meets and port is not None and not port.speaks_zenoh:
-        return f"port {port.number} is taken by a stranger"
+        if port.number not in facts.keyed_ports:
+            return f"port {port.number} is taken by a stranger"
+        if not facts.reach.secured:
+            return f"port {port.number} is taken by a process with security"
     if settings.network.startswith("tcp/") and (facts.far_router is None or not facts.far_router.speaks_zenoh):
         return f"no router answers at {settings.network}"
     return ""

@@ -75,7 +75,7 @@ def _seen(transport: Transport, domain: int) -> Seen:
     tokens: list[NodeToken | EndpointToken] = []
     malformed: list[str] = []
     others: collections.Counter[int] = collections.Counter()
-    for text in _listed(transport):
+    for text in _listed(transport, domain):
         try:
             token = parse_token(text)
         except WireError:
@@ -89,12 +89,17 @@ def _seen(transport: Transport, domain: int) -> Seen:
     return Seen(transport.session_id, tuple(tokens), tuple(malformed), others, clocks, tuple(transport.links()))
 
 
-def _listed(transport: Transport) -> list[str]:
+def _listed(transport: Transport, domain: int) -> list[str]:
     """Return what is announced, once two listings agree: on a busy machine the first may be incomplete."""
+
+    def listing() -> list[str]:
+        # Its own domain by name: with security nobody may ask for all domains at once, which others then refuse.
+        return sorted({*transport.tokens(graph_pattern()), *transport.tokens(graph_pattern(domain))})
+
     deadline = time.monotonic() + LIST_WITHIN
-    found = transport.tokens(graph_pattern())
+    found = listing()
     while time.monotonic() < deadline:
-        before, found = found, transport.tokens(graph_pattern())
+        before, found = found, listing()
         if found == before:
             break
     return found

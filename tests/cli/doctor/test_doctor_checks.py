@@ -124,6 +124,33 @@ def test_who_holds_the_rendezvous_port(role: str | None, level: str, said: str) 
     assert (found.level, said in " ".join([found.summary, *found.errors])) == (level, True)
 
 
+@pytest.mark.parametrize(
+    ("keyed", "secured", "level", "said"),
+    [
+        (True, True, OK, "held by a process with security"),
+        (True, False, ERROR, "a process with security, which lets nobody in without keys"),
+        (False, True, ERROR, "a Zenoh peer, which has no keys"),
+        (False, False, OK, "held by a Zenoh peer"),
+    ],
+)
+def test_who_holds_the_rendezvous_port_with_keys_or_without(keyed: bool, secured: bool, level: str, said: str) -> None:
+    port = Port(17447, port_probe.STRANGER if keyed else port_probe.PEER)
+    facts = Facts(
+        ports={17447: port}, keyed_ports=frozenset({17447} if keyed else ()), reach=KEYED if secured else LOCAL
+    )
+    found = checks.rendezvous(facts)
+    assert (found.level, said in " ".join([found.summary, *found.errors])) == (level, True)
+
+
+@pytest.mark.parametrize(("secured", "level"), [(True, OK), (False, WARNING)])
+def test_a_router_with_keys_is_no_stranger(secured: bool, level: str) -> None:
+    ports = {7447: Port(7447, port_probe.STRANGER)}
+    found = checks.router(Facts(ports=ports, keyed_ports=frozenset({7447}), reach=KEYED if secured else LOCAL))
+    assert (found.level, "held by a process with security" in found.summary) == (level, True)
+
+
+LOCAL = Reach(listens=("tcp/127.0.0.1:17447",), interfaces=("lo",))
+KEYED = LOCAL._replace(listens=("tls/127.0.0.1:17447",))
 SUBNET = Reach(listens=("tcp/0.0.0.0:17447",), multicast="224.0.0.224:17447")
 AWAY = Link("peer", "tcp/10.0.0.1:40000", "tcp/10.0.0.2:17447")
 ITSELF = Link("peer", "tcp/10.0.0.1:40000", "tcp/10.0.0.1:17447")
