@@ -93,7 +93,7 @@ def make_class(
         say(
             "nobody may drive"
             if turn == "none"
-            else f"student {turn} may drive: hand out the folders of the robot and of that student again"
+            else f"student {turn} may drive: hand out the folders of the robot, of that student and of a router again"
         )
 
 

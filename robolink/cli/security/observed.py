@@ -5,17 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robolink.security.policy import Policy, Profile, Rule
-from robolink.wire import EndpointKind
+from robolink.security.session import KINDS
 
 if TYPE_CHECKING:
     from robolink.context import Context
-
-_KINDS = {
-    EndpointKind.PUBLISHER: "publish",
-    EndpointKind.SUBSCRIPTION: "subscribe",
-    EndpointKind.SERVICE: "reply",
-    EndpointKind.CLIENT: "request",
-}
 
 
 def profiles_of_graph(context: Context) -> Policy:
@@ -27,7 +20,7 @@ def profiles_of_graph(context: Context) -> Policy:
             continue
         rules = {
             Rule(word, True, each.name)
-            for kind, word in _KINDS.items()
+            for kind, word in KINDS.items()
             for each in graph.of_node(node.node_name, node.namespace, kind)
         }
         found.setdefault(node.enclave, []).append(Profile(node.namespace, node.node_name, sorted(rules)))
