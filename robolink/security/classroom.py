@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
@@ -73,7 +74,8 @@ def make(folder: Path, students: int, topics: Class, domain: int) -> list[Path]:
     names = [student(number + 1) for number in range(students)]
     for name in names:
         store.create_enclave(name)
-        store.permit(name, rules(name, topics, may_drive=False))
+        if not store.is_withdrawn(name):
+            store.permit(name, rules(name, topics, may_drive=False))
     return hand_out(folder, store, [ROBOT, TEACHER, ROUTER, *names])
 
 
@@ -89,6 +91,8 @@ def rules(name: str, topics: Class, *, may_drive: bool) -> list[Rule]:
 def give_turn(folder: Path, name: str, topics: Class, domain: int) -> list[Path]:
     """Let one student drive, and no other; an empty `name` is for none. Returns the folders to hand out again.
 
+    Who has been withdrawn stays so, and enclaves that are no student's keep their permissions.
+
     Args:
         folder: Folder of the class.
         name: Enclave of the student, or its number.
@@ -96,11 +100,15 @@ def give_turn(folder: Path, name: str, topics: Class, domain: int) -> list[Path]
         domain: ROS domain.
     """
     store = Keystore(folder / "keys", domain)
-    there = [each for each in store.names() if each not in (ROBOT, TEACHER, ROUTER)]
+    there = [each for each in store.names() if re.fullmatch(r"/student[0-9]+", each)]
     wished = student(int(name)) if name.isdigit() else name
     if wished and wished not in there:
         raise SecurityError(f"there is no student '{name}' in {store.path}: they are {', '.join(there[:5])} ...")
+    if wished and store.is_withdrawn(wished):
+        raise SecurityError(f"'{wished}' has been withdrawn: 'robolink security create_permission' lets it in again")
     for each in there:
+        if store.is_withdrawn(each):
+            continue
         store.permit(each, rules(each, topics, may_drive=each == wished))
     return hand_out(folder, store, store.names())
 

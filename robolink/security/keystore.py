@@ -133,6 +133,12 @@ class Keystore:
         """Deny an enclave everything; its key stays, and is of no use from then on."""
         self.permit(name, [rule._replace(allows=False) for rule in EVERYTHING])
 
+    def is_withdrawn(self, name: str) -> bool:
+        """True if everything is denied to an enclave, in whatever domain."""
+        given = permissions.load(self.folder(name) / PERMISSIONS)
+        denied = {each.kind for each in given if not each.allows and each.name == "/*"}
+        return denied == {rule.kind for rule in EVERYTHING}
+
     def names(self) -> list[str]:
         """Return the enclaves that have a key, sorted; raises SecurityError where it is no keystore."""
         self.check()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -25,6 +26,11 @@ ENABLE, OVERRIDE = "ROS_SECURITY_ENABLE", "ROS_SECURITY_ENCLAVE_OVERRIDE"
 """Variables that switch security on, and that name the enclave in place of `--enclave`."""
 
 _STRATEGY, _KEYSTORE = "ROS_SECURITY_STRATEGY", "ROS_SECURITY_KEYSTORE"
+
+_HARMLESS = re.compile(
+    r"|iface|bind|so_(snd|rcv)buf|retry_period_\w+|exit_on_failure|timeout_ms|tls_handshake_timeout_ms"
+)
+"""Settings that an endpoint may have after its `#`; others are those of TLS, such as `enable_mtls`."""
 
 KINDS = {
     EndpointKind.PUBLISHER: "publish",
@@ -145,7 +151,7 @@ def settings(security: Security, interfaces: tuple[str, ...] = ()) -> dict[str, 
 def secure(config: zenoh.Config, security: Security, interfaces: tuple[str, ...] = ()) -> None:
     """Change a configuration so that nothing is sent in the clear, nor to anybody without rights.
 
-    Raises SecurityError if it names endpoints of another kind than tcp and tls.
+    Raises SecurityError if it names endpoints of another kind than tcp and tls, or with settings of their own.
 
     Args:
         config: Configuration of a session, complete but for this.
@@ -169,6 +175,9 @@ def _over_tls(endpoint: str) -> str:
     protocol, _, address = endpoint.partition("/")
     if protocol not in ("tcp", "tls"):
         raise SecurityError(f"security is on, and {endpoint} is not secured by certificates: use tls/HOST:PORT")
+    for each in endpoint.partition("#")[2].split(";"):
+        if not _HARMLESS.fullmatch(name := each.partition("=")[0]):  # Zenoh prefers it to the setting of the same name
+            raise SecurityError(f"security is on, and {endpoint} has a setting of its own, '{name}': leave it out")
     return f"tls/{address}"
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import SecurityError, TransportError, WireError
 from robolink.logging import get_logger
@@ -16,7 +16,7 @@ from robolink.security import session
 from robolink.security.keystore import CERTIFICATE, KEY
 from robolink.security.session import Security
 from robolink.transport import certificates, network, permission_watch, securing
-from robolink.transport.base import Handle, Outlet, Sink
+from robolink.transport.base import Handle, Outlet, Sample, Sink
 from robolink.transport.zenoh import ZenohTransport
 from robolink.wire import parse_token
 
@@ -118,12 +118,12 @@ class SecuredTransport(ZenohTransport):
     def subscribe(self, key: str, qos: QoSProfile, sink: Sink) -> Handle:
         """Declare a subscription; raises SecurityError where the enclave may not hear."""
         self._require("subscribe", key)
-        return super().subscribe(key, qos, sink)
+        return super().subscribe(key, qos, _named(sink))
 
     def serve(self, key: str, sink: Sink) -> Handle:
         """Declare a server; raises SecurityError where the enclave may not reply."""
         self._require("reply", key)
-        return super().serve(key, sink)
+        return super().serve(key, _named(sink))
 
     def call(self, key: str, payload: bytes, attachment: bytes, sink: Sink) -> Handle:
         """Send a request; raises SecurityError where the enclave may not call."""
@@ -149,6 +149,19 @@ class SecuredTransport(ZenohTransport):
             return f"enclave '{self.enclave}' may not announce {token.full_node_name} of enclave '{token.enclave}'"
         kind = getattr(token, "kind", None)
         return self._keys.refusal(session.KINDS[kind], getattr(token, "name", "")) if kind else ""
+
+
+def _named(sink: Sink) -> Sink:
+    """Return a sink that drops what was sent to a key with wildcards.
+
+    Zenoh lets such a key pass where a right with a wildcard includes it, and no denial does: it reaches what is denied.
+    """
+
+    def pass_on(arrived: Any) -> None:
+        if type(arrived) is Sample or "*" not in str(arrived.key_expr):
+            sink(arrived)
+
+    return pass_on
 
 
 def _reasons(domain: int, asked: str | None, environ: Mapping[str, str]) -> str:

@@ -9,6 +9,7 @@ import pytest
 from robolink.cli.main import main
 from robolink.security import session
 from robolink.security.keystore import Keystore
+from robolink.security.policy import Rule
 from robolink.security.rights import Rights, load_rights
 
 pytest.importorskip("cryptography", reason="needs the extra `security`")
@@ -75,6 +76,21 @@ def test_one_student_at_a_time_drives(folder: Path) -> None:
     assert may_drive(folder) == ["/robot", "/router", "/student3", "/teacher"]
     assert main(["security", "class", str(folder), "--turn", "none"]) == 0
     assert may_drive(folder) == others
+
+
+def test_no_turn_and_no_new_student_brings_back_who_was_withdrawn(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    store = Keystore(folder / "keys")
+    store.create_enclave("/camera")
+    store.permit("/camera", [Rule("publish", True, "/image")])
+    store.withdraw("/student2")
+    for words in ("--turn 3", "--students 4", "--turn none"):
+        assert main(["security", "class", str(folder), *words.split()]) == 0
+        assert rights(folder, "robot")["/student2"].is_withdrawn
+        assert rights(folder, "robot")["/camera"].allows("publish", "/image")
+    assert main(["security", "class", str(folder), "--turn", "2"]) == 1
+    assert "'/student2' has been withdrawn: 'robolink security create_permission'" in capsys.readouterr().err
 
 
 def test_a_second_time_adds_students_and_keeps_keys(folder: Path) -> None:
