@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import stat
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 from robolink.exceptions import SecurityError
@@ -37,6 +39,27 @@ def write(path: Path, content: bytes, mode: int = PUBLIC) -> None:
         raise
 
 
+@contextlib.contextmanager
+def alone(folder: Path) -> Iterator[None]:
+    """Keep other commands out of a folder that is there, while a `with` lasts; they wait for their turn."""
+    if sys.platform == "win32":  # a file that is gone once nobody has it open: a folder has no lock there
+        import msvcrt
+
+        number = os.open(folder / ".lock", os.O_RDWR | os.O_CREAT | os.O_TEMPORARY)
+        lock = functools.partial(msvcrt.locking, number, msvcrt.LK_LOCK, 1)  # gives up after 10 s
+    else:
+        import fcntl
+
+        number = os.open(folder, os.O_RDONLY)
+        lock = functools.partial(fcntl.flock, number, fcntl.LOCK_EX)
+    try:
+        with contextlib.suppress(OSError):  # a file system without locks
+            lock()
+        yield
+    finally:
+        os.close(number)
+
+
 def make_folder(path: Path, mode: int = 0o755) -> None:
     """Make a folder and those above it; the mode is its own."""
     path.mkdir(parents=True, exist_ok=True)
@@ -45,7 +68,12 @@ def make_folder(path: Path, mode: int = 0o755) -> None:
 
 
 def link(target: Path, path: Path) -> None:
-    """Make `path` a link to `target`, relative to it, as in SROS2's keystores; where there are no links, a copy."""
+    """Make `path` a link to `target`, relative to it, as in SROS2's keystores; where there are no links, a copy.
+
+    A file that is its own target stays: such are those of the enclave `/`.
+    """
+    if path == target:
+        return
     if path.is_symlink() or path.exists():
         path.unlink()
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 from robolink.exceptions import DocumentError, SecurityError, nearest
@@ -77,13 +78,28 @@ class Keystore:
             raise SecurityError(f"keystore '{self.path}' already exists")
         for folder, mode in ((self.path, 0o755), (self._public, 0o755), (self._private, 0o700), (self.enclaves, 0o755)):
             files.make_folder(folder, mode)
-        if not all((self.path / name).is_file() for name in _REQUIRED[:4]):
+        with self._alone():
+            if self.is_valid:  # by another command, meanwhile
+                raise SecurityError(f"keystore '{self.path}' already exists")
+            self._complete()
+
+    def _complete(self) -> None:
+        missing = [name for name in _REQUIRED[:4] if not (self.path / name).is_file()]
+        key, certificate = self._private / "ca.key.pem", self._public / "ca.cert.pem"
+        if missing and not (
+            key.is_file() and certificate.is_file() and authority.is_pair(authority.load(certificate, key))
+        ):
+            if any(self.enclaves.rglob(KEY)):  # whose keys would be of no use with another authority
+                raise SecurityError(
+                    f"keystore '{self.path}' has enclaves, and {missing[0]} is not there: "
+                    "bring it back, or begin in another folder"
+                )
             made = authority.make_authority()
-            files.write(self._private / "ca.key.pem", made.key, files.PRIVATE)
-            files.write(self._public / "ca.cert.pem", made.certificate)
-            for use in ("permissions_ca", "identity_ca"):
-                files.link(self._public / "ca.cert.pem", self._public / f"{use}.cert.pem")
-                files.link(self._private / "ca.key.pem", self._private / f"{use}.key.pem")
+            files.write(key, made.key, files.PRIVATE)
+            files.write(certificate, made.certificate)
+        for use in ("permissions_ca", "identity_ca") if missing else ():
+            files.link(certificate, self._public / f"{use}.cert.pem")
+            files.link(key, self._private / f"{use}.key.pem")
         governance = _GOVERNANCE.format(domain=self.domain).encode()
         files.write(self.enclaves / "governance.xml", governance)
         files.write(self.enclaves / "governance.p7s", authority.signed(governance, self._authority("permissions_ca")))
@@ -100,27 +116,42 @@ class Keystore:
             Its folder.
         """
         self.check()
+        with self._alone():
+            return self._create_enclave(name, days, renew)
+
+    def _create_enclave(self, name: str, days: float, renew: bool) -> Path:
         folder = self.folder(name)
+        pair = (folder / CERTIFICATE, folder / KEY)
+        is_there = all(each.is_file() for each in pair) and authority.is_pair(authority.load(*pair))
+        made = (
+            None if is_there and not renew else authority.make_certificate(name, self._authority("identity_ca"), days)
+        )
         files.make_folder(folder)
         for use in ("identity_ca.cert.pem", "permissions_ca.cert.pem"):
             files.link(self._public / use, folder / use)
         files.link(self.enclaves / "governance.p7s", folder / "governance.p7s")
-        if renew or not (folder / CERTIFICATE).is_file() or not (folder / KEY).is_file():
-            made = authority.make_certificate(name, self._authority("identity_ca"), days)
+        if made:
             files.write(folder / KEY, made.key, files.PRIVATE)
             files.write(folder / CERTIFICATE, made.certificate)
         if not (folder / PERMISSIONS).is_file():
-            self.permit(name, EVERYTHING)
+            self._permit(name, EVERYTHING)
         return folder
 
     def permit(self, name: str, rules: Iterable[Rule]) -> None:
         """Write and sign the permissions of an enclave that is there, from rules without actions (`expanded`)."""
         self.check()
+        with self._alone():
+            self._permit(name, rules)
+
+    def _permit(self, name: str, rules: Iterable[Rule]) -> None:
         folder = self.folder(name)
         if not (folder / CERTIFICATE).is_file():
-            raise SecurityError(f"there is no enclave '{name}' in '{self.path}'{nearest(name, self.names())}")
+            known = [each for each in self.names() if each != name]
+            raise SecurityError(f"there is no enclave '{name}' in '{self.path}'{nearest(name, known)}")
         valid = authority.validity(files.read(folder / CERTIFICATE))
         text = permissions.write(name, rules, self.domain, valid)
+        if len(text) > files.LARGEST:  # which no session would read
+            raise SecurityError(f"the permissions of '{name}' have {len(text):,} bytes, more than {files.LARGEST:,}")
         signature = authority.signed(text, self._authority("permissions_ca"))
         files.write(folder / "permissions.p7s", signature)
         files.write(folder / PERMISSIONS, text)
@@ -152,6 +183,10 @@ class Keystore:
     def folder(self, name: str) -> Path:
         """Return the folder of an enclave; raises SecurityError for a name that is none."""
         return self.enclaves / checked_enclave(name).strip("/")
+
+    def _alone(self) -> AbstractContextManager[None]:
+        """Keep other commands out: two at once would mix their keys and certificates."""
+        return files.alone(self.path)
 
     @property
     def _public(self) -> Path:

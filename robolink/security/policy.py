@@ -12,6 +12,7 @@ from typing import NamedTuple
 from robolink.exceptions import DocumentError, nearest
 from robolink.security import patterns
 from robolink.security.xmltext import Element, read
+from robolink.text.names import FULL_NAME_RULES, MAX_NAMESPACE, MAX_NODE_NAME, NODE_NAME_RULES, find_problem
 
 VERSION = "0.2.0"
 """Version of the format, the only one that there is."""
@@ -21,6 +22,9 @@ KINDS = {"topics": ("publish", "subscribe"), "services": ("reply", "request"), "
 
 MOST_INCLUDES = 200
 """Most files that a policy may include."""
+
+MOST_INCLUDED = 100_000
+"""Most elements that it may include, however often the same."""
 
 _INCLUDE = ("{http://www.w3.org/2001/XInclude}include", "{http://www.w3.org/2003/XInclude}include")
 _BASE = "{http://www.w3.org/XML/1998/namespace}base"
@@ -75,6 +79,8 @@ def _enclaves(root: Element) -> Policy:
     for enclaves in _children(root, "enclaves"):
         for enclave in _children(enclaves, "enclave"):
             path = _attribute(enclave, "path")
+            if path != "/" and (wrong := find_problem(path, FULL_NAME_RULES, MAX_NAMESPACE)):
+                raise enclave.mistake(f"'{path[:80]}' is no enclave: {wrong.message} (at index {wrong.invalid_index})")
             if path in found:
                 raise enclave.mistake(f"enclave '{path}' is there twice")
             found[path] = [
@@ -90,8 +96,10 @@ def _enclaves(root: Element) -> Policy:
 
 def _profile(element: Element) -> Profile:
     namespace, node = _attribute(element, "ns"), _attribute(element, "node")
-    if not namespace.startswith("/"):
-        raise element.mistake(f"ns is a namespace such as / or /arm, got '{namespace}'")
+    if namespace != "/" and (wrong := find_problem(namespace.replace("*", "_"), FULL_NAME_RULES, MAX_NAMESPACE)):
+        raise element.mistake(f"ns is a namespace such as / or /arm, got '{namespace[:80]}': {wrong.message}")
+    if wrong := find_problem(node.replace("*", "_"), NODE_NAME_RULES, MAX_NODE_NAME):
+        raise element.mistake(f"node is a name such as driver, got '{node[:80]}': {wrong.message}")
     rules = [rule for each in _children(element, *KINDS) for rule in _rules(each, namespace, node)]
     return Profile(namespace, node, rules)
 
@@ -114,6 +122,8 @@ def _rules(element: Element, namespace: str, node: str) -> Iterator[Rule]:
 def _full_name(element: Element, namespace: str, node: str) -> str:
     name, base = element.text, namespace.rstrip("/")
     full = name if name.startswith("/") else f"{base}/{node}{name[1:]}" if name.startswith("~") else f"{base}/{name}"
+    if name.startswith("~") and not name.startswith("~/"):
+        raise element.mistake(f"<{element.tag}>{name}: behind ~, the node, comes a /")
     if wrong := patterns.problem(full):
         raise element.mistake(f"<{element.tag}>{name}: {wrong}")
     return full
@@ -137,10 +147,10 @@ def _attribute(element: Element, name: str) -> str:
 
 
 class _Includes:
-    """The folder that includes may come from, those under way, and how many there have been."""
+    """The folder that includes may come from, those under way, and how many there have been, of how many elements."""
 
     def __init__(self, folder: Path) -> None:
-        self.folder, self.count = folder, 0
+        self.folder, self.count, self.elements = folder, 0, 0
         self.open: list[Path] = []
 
 
@@ -165,7 +175,11 @@ def _fetched(element: Element, includes: _Includes) -> list[Element]:
     if not path.is_file():
         raise element.mistake(f"xi:include: {path} is not there")
     includes.open.append(path)
-    root = _included(read(path), includes)
+    content = read(path)
+    includes.elements += content.size
+    if includes.elements > MOST_INCLUDED:
+        raise element.mistake(f"xi:include of '{href}': more than {MOST_INCLUDED} elements are included")
+    root = _included(content, includes)
     includes.open.pop()
     return _pointed(root, element)
 

@@ -33,6 +33,11 @@ class Element(NamedTuple):
         """Text between its tags, without the spaces around it."""
         return "".join(self.words).strip()
 
+    @property
+    def size(self) -> int:
+        """Number of elements within it, itself included."""
+        return 1 + sum(child.size for child in self.children)
+
     def all(self, *path: str) -> Iterator[Element]:
         """Yield the elements below it that are reached by these tags."""
         for child in self.children:
