@@ -21,13 +21,13 @@ from robolink.exceptions import OverwrittenError, TransportError
 from robolink.networks import refusals
 from robolink.qos import DurabilityPolicy, QoSProfile, resolved
 from robolink.system import heap
-from robolink.transport import addresses, certificates, lifetime, network, port_sharing
+from robolink.transport import addresses, certificates, lifetime, network, port_heir, port_sharing
 from robolink.transport import zenoh_calls as calls
 from robolink.transport import zenoh_declare as declare
 from robolink.transport import zenoh_handles as handles
 from robolink.transport import zenoh_reunion as reunion
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample, refuse_giant
-from robolink.transport.reach import Link, links_of, port_of, reach
+from robolink.transport.reach import Link, Reach, links_of, port_of, reach
 from robolink.transport.shared_pools import PoolLimit
 from robolink.transport.zenoh_sieve import Sieve
 from robolink.transport.zenoh_tokens import Changes, ZenohToken, ZenohWatch, settled
@@ -333,7 +333,7 @@ def _join(
         within = reach(config)
         moves = within.leaves_machine
         if found.meets:
-            joined = _meet(port, lambda holds: zenoh.open(load(True) if holds else config), secured=within.secured)
+            joined = _meet(port, lambda holds: zenoh.open(load(True) if holds else config), within)
             network.await_host(joined.session, found)
             return joined._replace(moves=moves)
         if wrong := certificates.faults(config):
@@ -372,7 +372,7 @@ def _listen_beside(load: Callable[[], zenoh.Config]) -> _Joined:
     raise TransportError(f"{where} is taken, and who listens there has not let this process in: {hint}")
 
 
-def _meet(port: int, open_session: Callable[[bool], zenoh.Session], *, secured: bool) -> _Joined:
+def _meet(port: int, open_session: Callable[[bool], zenoh.Session], within: Reach) -> _Joined:
     """Listen on the rendezvous port, or connect to its holder."""
     for _ in range(2):  # twice, since the holder may leave in between
         claim = port_sharing.PortClaim(port)
@@ -383,9 +383,9 @@ def _meet(port: int, open_session: Callable[[bool], zenoh.Session], *, secured: 
                 claim.release()
         session = open_session(False)
         if _linked(session):
-            return _Joined(session, claim)
+            return _Joined(session, port_heir.claim_of(claim, port, open_session, within))
         lifetime.finish(functools.partial(declare.close_session, session), CLOSE_WITHIN)
-    raise TransportError(refusals.of_holder(port, secured=secured))
+    raise TransportError(refusals.of_holder(port, secured=within.secured))
 
 
 def _linked(session: zenoh.Session) -> bool:

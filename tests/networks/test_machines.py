@@ -98,6 +98,17 @@ def test_the_processes_here_meet_each_other_too(machines: Machines) -> None:
     assert nodes_once_seen(machines, everybody, ROBOLINK_NETWORK=THERE) == everybody
 
 
+def test_newcomers_find_the_others_when_the_first_process_has_ended(machines: Machines) -> None:
+    """It has held the port, which is all that they know; another process has taken it then."""
+    first = machines.start(machines.there, NODE, "first", ROBOLINK_NETWORK="lan")
+    for name in ("second", "third"):
+        machines.start(machines.there, NODE, name, ROBOLINK_NETWORK="lan")
+    everybody = ["/first", "/second", "/third"]
+    assert nodes_once_seen(machines, everybody, ROBOLINK_NETWORK=THERE) == everybody
+    first.kill()
+    assert nodes_once_seen(machines, everybody[1:], ROBOLINK_NETWORK=THERE) == everybody[1:]
+
+
 def test_a_router_on_the_robot_opens_the_way_to_local_nodes(machines: Machines) -> None:
     machines.start(machines.there, ROUTER)
     machines.start(machines.there, NODE, "local")

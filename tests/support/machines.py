@@ -37,7 +37,7 @@ class Machines:
         self.here, self.there = stack.enter_context(stalls.two_routed_hosts())
         self.domain = stack.enter_context(free_domain())
 
-    def start(self, host: str, code: str, *arguments: str, **environ: str) -> None:
+    def start(self, host: str, code: str, *arguments: str, **environ: str) -> subprocess.Popen[str]:
         """Run a program there until the test ends; it is ready."""
         command = ["ip", "netns", "exec", host, sys.executable, "-c", code + WAIT, *arguments]
         pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
@@ -45,6 +45,7 @@ class Machines:
         self._stack.callback(child.kill)
         assert child.stdout
         assert child.stdout.readline() == "ready\n"
+        return child
 
     def command(self, host: str, *words: str) -> None:
         """Run a command of robolink there until the test ends; it has printed its first line."""

@@ -41,8 +41,9 @@ def limit(
     if zenoh:
         say_json(_nested(settings(limits, domain_id(os.environ), beyond_loopback()) if in_force.limits else {}))
         return
-    warnings = unknown(in_force, _names_there())
-    where = limits.interfaces or beyond_loopback()
+    here = beyond_loopback()
+    warnings = [*unknown(in_force, _names_there()), *absent(in_force, here)]
+    where = limits.interfaces or here
     if as_json:
         say_json({"source": in_force.source, "limits": in_force.limits, "interfaces": where, "warnings": warnings})
         return
@@ -96,6 +97,27 @@ def unknown(in_force: InForce, names: Iterable[str]) -> list[str]:
             text = f"no topic or service '{name}' is there now{nearest(name, there)}"
             warnings.append(
                 str(in_force.found.error(steps, text)) if in_force.found else f"{in_force.source}: {steps[0]}: {text}"
+            )
+    return warnings
+
+
+def absent(in_force: InForce, there: list[str] | None) -> list[str]:
+    """Return a warning for each named interface that this machine has not now: there nothing is limited.
+
+    Args:
+        in_force: What is asked for, and where.
+        there: Network interfaces of this machine but loopback; None where they cannot be known.
+    """
+    from robolink.exceptions import nearest
+
+    warnings = []
+    named = (in_force.limits.interfaces if in_force.limits else None) or ()
+    for at, name in enumerate(named if there else ()):
+        if there and name not in there:
+            text = f"no interface '{name}' is here now{nearest(name, there)}, but {', '.join(there)}"
+            steps = ("interfaces", at)
+            warnings.append(
+                str(in_force.found.error(steps, text)) if in_force.found else f"{in_force.source}: interfaces: {text}"
             )
     return warnings
 

@@ -52,6 +52,8 @@ class Description(NamedTuple):
     multicast: str
     links: list[dict[str, Any]]
     nodes: int
+    unseen: str
+    """Reason why the system could not be looked at; empty if it could."""
     errors: list[str]
     warnings: list[str]
 
@@ -82,18 +84,21 @@ def describe(facts: Facts) -> Description:
             for each in facts.seen.links
         ],
         sum(isinstance(each, NodeToken) for each in facts.seen.tokens),
+        facts.seen.error,
         [text for each in verdicts for text in each.errors],
         [text for each in verdicts for text in each.warnings],
     )
 
 
 def how(link: Link, facts: Facts) -> str:
-    """Return how a session was found: by its name, at this machine's port, by a router, or by multicast or gossip."""
+    """Return how a session was found: by its address, at the domain's port, by a router, by multicast or gossip."""
     from robolink.networks.port_probe import ROUTER
     from robolink.transport.reach import port_of
 
     if link.there in facts.reach.connects:
         return "the router on this machine" if link.role == ROUTER and not link.leaves_machine else "by its address"
+    if facts.reach.mode == "client":
+        return "by its name or address"
     if link.role == ROUTER:
         return "a router that connected"
     if port_of(link.there) == facts.settings.port or port_of(link.here) == facts.settings.port:
@@ -114,7 +119,7 @@ def lines(found: Description) -> list[str]:
         f"meets     {found.meets}",
         f"listens   {', '.join(found.listens) or 'nowhere'}",
         f"goes to   {', '.join(goes) or 'nobody'}",
-        f"found     {whom}",
+        f"found     {f'not known: {found.unseen}' if found.unseen else whom}",
     ]
     result += [f"          {each['role']} at {each['address']}: {each['found']}{_named(each)}" for each in found.links]
     result += [f"WARN      {each}" for each in found.warnings]

@@ -45,6 +45,20 @@ def test_a_word_when_nobody_answers() -> None:
     assert "say --network HOST, that machine's name" in found[5]
 
 
+def test_a_system_that_could_not_be_looked_at_is_not_empty() -> None:
+    facts = Facts(
+        settings=Settings(network="lan"), reach=LAN, seen=Seen(error="joining the network took more than 2 s")
+    )
+    assert said(facts)[4:] == ["found     not known: joining the network took more than 2 s"]
+    assert command.describe(facts)._asdict()["unseen"] == "joining the network took more than 2 s"
+
+
+def test_a_host_that_was_named_is_found_so_whatever_its_address_is() -> None:
+    link = Link("router", "tcp/10.0.0.1:5003", "tcp/10.0.0.9:7447", "dd")
+    facts = Facts(reach=Reach("client", ("tcp/robot.local:7447",)), seen=Seen("ee", links=(link,)))
+    assert command.how(link, facts) == "by its name or address"
+
+
 def test_a_router_that_listens_everywhere_is_told_and_how_to_close_it() -> None:
     facts = Facts(
         reach=Reach("peer", interfaces=("lo",)),

@@ -43,6 +43,14 @@ def test_names_that_fit_nothing() -> None:
     assert command.unknown(InForce("", None), names) == []
 
 
+def test_interfaces_that_are_not_here() -> None:
+    asked = InForce("ROBOLINK_LIMITS", Limits(interfaces=["eth0", "wlan1"]))
+    assert command.absent(asked, ["eth0", "wlan0"]) == [
+        "ROBOLINK_LIMITS: interfaces: no interface 'wlan1' is here now (did you mean 'wlan0'?), but eth0, wlan0"
+    ]
+    assert command.absent(asked, None) == command.absent(InForce("", None), ["eth0"]) == []
+
+
 def test_names_of_a_file_have_its_place(tmp_path: Path) -> None:
     path = tmp_path / "lab.yaml"
     path.write_text("limits:\n  control: [/cmd_vle]\nnodes: [{run: [python]}]\n")
