@@ -17,6 +17,8 @@ ROOMS = {
     "cv_bridge": "robolink.companions.cv_bridge",
     "cv_bridge.boost": "",
     "cv_bridge.boost.cv_bridge_boost": "robolink.companions.cv_bridge.functions",
+    "image_geometry": "robolink.companions.image_geometry",
+    "image_geometry.cameramodels": "robolink.companions.image_geometry",
     "sensor_msgs_py": "",
     "sensor_msgs_py.numpy_compat": "robolink.sensor_msgs_py.numpy_compat",
     "sensor_msgs_py.point_cloud2": "robolink.sensor_msgs_py.point_cloud2",
@@ -44,7 +46,6 @@ INSTEAD = {
     "nav2_simple_commander": "rclpy.action.ActionClient with nav2_msgs.action.NavigateToPose does what it does",
     "ros2cli": "'robolink' is the command line",
     "image_transport": "publish and subscribe to sensor_msgs.msg.Image or CompressedImage",
-    "image_geometry": "a CameraInfo holds the matrices: np.reshape(info.k, (3, 3))",
     "controller_manager": "it needs ros2_control",
     "moveit": "it needs MoveIt",
 }

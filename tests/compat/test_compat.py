@@ -112,6 +112,8 @@ def test_private_modules_have_the_parts_of_services_and_actions() -> None:
         ("cv_bridge", "CvBridge", "companions.cv_bridge"),
         ("cv_bridge.core", "CvBridgeError", "companions.cv_bridge.core"),
         ("cv_bridge.boost.cv_bridge_boost", "getCvType", "companions.cv_bridge.functions"),
+        ("image_geometry", "PinholeCameraModel", "companions.image_geometry"),
+        ("image_geometry.cameramodels", "StereoCameraModel", "companions.image_geometry"),
         ("rosidl_runtime_py", "set_message_fields", "companions.rosidl_runtime"),
         ("rosidl_runtime_py.utilities", "get_message", "companions.rosidl_runtime.utilities"),
         ("ament_index_python", "get_package_share_directory", "companions.ament_index"),

@@ -24,6 +24,7 @@ COMPANIONS = [
     "rosidl_runtime_py",
     "ament_index_python",
     "cv_bridge",
+    "image_geometry",
     "image_transport",
 ]
 
