@@ -23,8 +23,8 @@ test: $(READY)  ## Every test, on two cores; ARGS go to pytest
 	$(BIN)/python -m pytest $(PARALLEL) $(ARGS)
 
 # Four workers for two cores: a quarter of the time is waiting.
-fast: $(READY)  ## Every test that starts no process, in under a minute; ARGS go to pytest
-	$(BIN)/python -m pytest -n 4 --dist worksteal -m "not processes" --hypothesis-profile quick $(ARGS)
+fast: $(READY)  ## Every test that starts no process and is not slow; ARGS go to pytest
+	$(BIN)/python -m pytest -n 4 --dist worksteal -m "not processes and not slow" --hypothesis-profile quick $(ARGS)
 
 check: lint types floors test  ## What must be green before a commit: lint, types, floors and test
 

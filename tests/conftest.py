@@ -32,6 +32,10 @@ from tests.support.launchers import RUNTIME_VARIABLE, new_runtime_folder
 from tests.support.long_runs import LongRun
 from tests.support.transports import Network
 
+# pytest keeps what it has made of the tests, though the environment may say otherwise: else every worker takes
+# 18 s of a processor to make it again (25 instead of 7).
+sys.dont_write_bytecode = False
+
 # However slow a machine is, that is no fault of what is tested.
 settings.register_profile(
     "patient", settings(), deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow]

@@ -13,6 +13,7 @@ import pytest
 from tests.support.closed_loops import LIDARS, SETTLED, follow
 
 
+@pytest.mark.slow
 def test_from_20_random_starts_the_wall_is_kept_within_5_cm_and_nothing_is_touched() -> None:
     runs = [follow(seed, 120.0) for seed in range(20)]
     assert [run.robot.contacts for run in runs] == [0] * 20

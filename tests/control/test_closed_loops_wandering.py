@@ -9,6 +9,7 @@ import pytest
 from tests.support.closed_loops import LIDARS, wander
 
 
+@pytest.mark.slow
 def test_from_10_random_starts_among_obstacles_it_drives_on_and_touches_nothing() -> None:
     runs = [wander(seed, 300.0) for seed in range(10)]
     assert [run.robot.contacts for run in runs] == [0] * 10

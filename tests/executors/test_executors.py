@@ -360,11 +360,13 @@ def calls_of_taking_a_message(bus: Bus, subscriptions: int) -> int:
     return len(calls)
 
 
+@pytest.mark.slow
 def test_whose_callback_it_is_takes_no_search(bus: Bus) -> None:
     alone = calls_of_taking_a_message(bus, 0)
     assert 0 < alone == calls_of_taking_a_message(bus, 100)
 
 
+@pytest.mark.slow
 def test_a_hundred_idle_subscriptions_cost_nothing(bus: Bus) -> None:
     """What a tick takes of a core stands in benchmarks/executors.py."""
     alone = calls_of_a_hundred_ticks(bus, 0)

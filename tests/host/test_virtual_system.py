@@ -39,6 +39,7 @@ def laboratory(hash_seed: str) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(30)
 def test_a_minute_of_a_robots_life_is_the_same_twice_byte_for_byte(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]

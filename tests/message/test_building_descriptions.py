@@ -43,6 +43,7 @@ def messages_of(cls: Any) -> list[Any]:
     return [getattr(cls, part) for part in ("Request", "Response", "Goal", "Result", "Feedback") if hasattr(cls, part)]
 
 
+@pytest.mark.slow
 def test_every_standard_type_is_built_of_its_description() -> None:
     for cls in STANDARD:
         is_built_of_its_description(cls)

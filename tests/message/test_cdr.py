@@ -214,6 +214,7 @@ def check_against_the_oracle(message: Any) -> None:
     assert bytes(STORE.serialize_cdr(theirs, oracle_name(cls))) == data, type_name(cls)
 
 
+@pytest.mark.slow
 def test_every_type_agrees_with_rosbags() -> None:
     for cls in CLASSES:
         dice = random.Random(type_name(cls))

@@ -77,6 +77,7 @@ def live(world: World, seconds: float) -> str:
     return digest.hexdigest()
 
 
+@pytest.mark.slow
 def test_many_robots_live_as_few_do_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
     lives = []
     for many in (1000, 1):
@@ -103,6 +104,7 @@ def test_looking_at_a_robot_before_it_is_refused_a_place_changes_nothing(monkeyp
     assert ends[0] == ends[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("many", [1000, 1])
 def test_without_batch_calls_life_is_the_same(many: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fleet, "MANY", many)

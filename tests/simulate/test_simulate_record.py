@@ -69,6 +69,7 @@ def test_lines_of_the_log_have_no_places_which_differ_between_machines(folder: P
     assert not any("Traceback" in each.msg for each in lines)
 
 
+@pytest.mark.slow
 def test_the_walls_of_a_simulated_world_are_there_for_viewers(folder: Path, tmp_path: Path) -> None:
     (folder / "configs" / "lab.yaml").write_text("nodes:\n  - {node: world, parameters: {world: lab}}\n")
     bags = []

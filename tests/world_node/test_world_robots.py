@@ -256,6 +256,7 @@ def test_falling_behind_is_a_warning_and_seen_in_diagnostics(system: System, mon
     assert any("too slow for this pace" in line for line in log(system))
 
 
+@pytest.mark.slow
 def test_of_a_hundred_robots_the_log_stays_short(system: System) -> None:
     system.start(simulation.SimulatedWorld, parameters={"world": "fleet"})
     system.run(2.005)
