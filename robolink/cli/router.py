@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Annotated
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
 
 LOOK_EVERY = 0.5
 """Interval at which who has come and gone is looked at, in seconds."""
+
+LINKED_AFTER = 6
+"""Number of looks after which the routers that it connects to should be there."""
 
 app = typer.Typer()
 
@@ -43,7 +47,7 @@ def router(
     try:
         with running(here, there) as it:
             say("\n".join(opening(here, there)))
-            report(it.links, say)
+            report(it.links, say, faults=it.faults)
     except KeyboardInterrupt:
         say("the router has ended")
 
@@ -65,10 +69,18 @@ def report(
     links: Callable[[], Iterable[Link]],
     say: Callable[[str], object],
     pause: Callable[[float], object] = time.sleep,
+    faults: Callable[[], Iterable[str]] = tuple,
 ) -> None:
-    """Report who has come and who has gone, for ever."""
+    """Report who has come and who has gone, for ever.
+
+    Args:
+        links: Function that returns the connections.
+        say: Function that says a line.
+        pause: Function that waits so many seconds.
+        faults: Function that returns what is wrong with the routers to connect to; called once, after some seconds.
+    """
     known: dict[str, str] = {}
-    while True:
+    for look in itertools.count(1):
         present = {each.session: f"{each.role} {each.session[:8]} from {each.there}" for each in links()}
         for session, text in present.items():
             if session not in known:
@@ -77,4 +89,6 @@ def report(
             if session not in present:
                 say(f"- {text} ({len(present)} connected)")
         known = present
+        for text in faults() if look == LINKED_AFTER else ():
+            say(f"WARN {text}")
         pause(LOOK_EVERY)

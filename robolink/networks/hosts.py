@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from robolink.networks.asked import FIRST_PORT, ROUTER_PORT
-from robolink.networks.port_probe import STRANGER, Port, listening
+from robolink.networks.port_probe import SILENT, STRANGER, Port, listening
 from robolink.system.queues import get_within
 
 ANSWER_WITHIN = 1.0
@@ -20,6 +20,9 @@ ANSWER_WITHIN = 1.0
 
 SEEK_WITHIN = 3.0
 """Timeout of the search for a host, its name included, in seconds: a robot that just starts is found, too."""
+
+SILENT_WITHIN = 10.0
+"""The same where something has accepted the connection, in seconds: a very busy machine takes its time to answer."""
 
 MOST_ADDRESSES = 4
 """Upper bound of the addresses of a name that are tried."""
@@ -90,26 +93,35 @@ def mistake(text: str) -> str:
     return ""
 
 
-def seek(host: Host, domain: int, within: float = SEEK_WITHIN) -> Port | None:
+def seek(host: Host, domain: int, within: float = SEEK_WITHIN, silent_within: float = SILENT_WITHIN) -> Port | None:
     """Return the port of a host at which a Zenoh session answers, or with TLS anybody; None if nobody listens.
 
     If something else listens, and goes on so until the end, that port is returned: see `Port.speaks_zenoh`. With TLS
     nothing is sent: what listens can only be known to those whom it lets in.
 
-    Raises UnknownHostError for a name without an address. `domain` is the ROS domain id, and `within` the longest time
-    that it may take, in seconds.
+    Args:
+        host: The host.
+        domain: ROS domain id.
+        within: Longest time that it may take, in seconds.
+        silent_within: The same where something listens that has not answered yet; it has more time at each try.
+
+    Raises:
+        UnknownHostError: for a name without an address.
     """
-    deadline = time.monotonic() + within
+    begin = time.monotonic()
+    deadline, patience = begin + within, ANSWER_WITHIN
     addresses = _addresses(host.name, within)
     ports, other = host.ports(domain), None
     while True:
         for address in addresses:
-            left = max(0.05, min(ANSWER_WITHIN, deadline - time.monotonic()))
+            left = max(0.05, min(patience, deadline - time.monotonic()))
             with contextlib.suppress(OSError):  # a kind of address that this machine has not
                 found = listening(ports, left, address, first=ports[0], greet=not host.tls)
                 if right := _best(host, found, domain):
                     return right
                 other = next(iter(found.values()), other)
+                if any(each.role == SILENT for each in found.values()):
+                    deadline, patience = max(deadline, begin + silent_within), 2 * patience
         if time.monotonic() + _PAUSE >= deadline or (host.port and other is not None and other.role == STRANGER):
             return other
         time.sleep(_PAUSE)

@@ -18,7 +18,8 @@ from robolink.transport import lifetime, securing
 from robolink.transport import zenoh_declare as declare
 from robolink.transport.network import reason
 from robolink.transport.port_sharing import PortClaim, is_taken
-from robolink.transport.reach import Link, links_of, port_of
+from robolink.transport.reach import Link, links_of, port_of, reach
+from robolink.transport.router_faults import faults
 
 CLOSE_WITHIN = 0.5
 """Longest `close`, in seconds; then it goes on in the background, for 10 s if a handshake is not answered."""
@@ -27,7 +28,8 @@ CLOSE_WITHIN = 0.5
 class Router:
     """A running router; made by `running`."""
 
-    def __init__(self) -> None:
+    def __init__(self, connects: Sequence[str]) -> None:
+        self._connects = connects
         self._sessions: list[zenoh.Session] = []
         lifetime.watch_over(self)
 
@@ -48,6 +50,10 @@ class Router:
     def disown(self) -> None:
         """Refuse every further use in a forked child."""
         lifetime.leak(self._sessions)
+
+    def faults(self) -> list[str]:
+        """Return a line for each router to connect to that it is not linked to; each takes a second at most."""
+        return faults(self._connects, str(self._sessions[0].info.zid()), self.links())
 
 
 @contextlib.contextmanager
@@ -75,7 +81,7 @@ def running(listen: Sequence[str], connect: Sequence[str]) -> Iterator[Router]:
                     f"{each} is taken, perhaps by another router ('robolink doctor' says by whom): "
                     "stop that one, use it, or choose another port with --listen HOST:PORT"
                 )
-        router = Router()
+        router = Router(reach(config).connects)
         stack.callback(router.close)
         try:
             router.open(config)

@@ -67,6 +67,14 @@ def test_who_comes_and_goes() -> None:
     assert said == [f"+ {whom} (1 connected)", f"- {whom} (0 connected)"]
 
 
+def test_what_is_wrong_is_said_once() -> None:
+    looks: Iterator[list[Link]] = iter([[]] * (3 * router.LINKED_AFTER))
+    said: list[str] = []
+    with pytest.raises(StopIteration):
+        router.report(lambda: next(looks), said.append, lambda seconds: None, lambda: ["nobody answers"])
+    assert said == ["WARN nobody answers"]
+
+
 def test_a_taken_port_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]

@@ -66,7 +66,7 @@ def test_nobody_answers() -> None:
 def test_somebody_who_does_not_answer() -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-        assert seek(Host("127.0.0.1", port), 0, within=0.2) == Port(port, SILENT)
+        assert seek(Host("127.0.0.1", port), 0, within=0.2, silent_within=0.2) == Port(port, SILENT)
 
 
 def test_a_stranger_at_a_named_port_is_known_at_once() -> None:
@@ -90,6 +90,19 @@ def test_an_address_of_a_kind_that_this_machine_has_not(monkeypatch: pytest.Monk
     monkeypatch.setattr(hosts, "_addresses", lambda name, within: [name])
     monkeypatch.setattr(hosts, "listening", refuse)
     assert seek(Host("::1"), 0, within=0.3) is None
+
+
+def test_what_listens_has_more_time_to_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A router that was there was not found by clients of a machine on which sixty processes wanted to run."""
+    given: list[float] = []
+
+    def slow(_: object, within: float, *__: object, **___: object) -> dict[int, Port]:
+        given.append(within)
+        return {7447: Port(7447, ROUTER, "2") if within > 2.0 else Port(7447, SILENT)}
+
+    monkeypatch.setattr(hosts, "listening", slow)
+    assert seek(Host("127.0.0.1"), 0, within=0.2, silent_within=60.0) == Port(7447, ROUTER, "2")
+    assert given == [pytest.approx(0.2, abs=0.1), 2.0, 4.0]
 
 
 def test_a_name_without_an_address(monkeypatch: pytest.MonkeyPatch) -> None:
