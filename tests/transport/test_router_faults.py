@@ -7,7 +7,7 @@ import socket
 import pytest
 
 from robolink.networks import hosts
-from robolink.networks.port_probe import PEER, ROUTER, Port
+from robolink.networks.port_probe import PEER, ROUTER, STRANGER, Port
 from robolink.transport.reach import Link
 from robolink.transport.router import running
 from robolink.transport.router_faults import faults
@@ -31,10 +31,11 @@ def test_who_is_linked_has_no_fault(answering: dict[str, Port]) -> None:
 
 
 def test_nobody_and_somebody_else(answering: dict[str, Port]) -> None:
-    answering["b"] = Port(7447, PEER, "1b")
-    assert faults(["tcp/a:7447", "tcp/b:7447"], "1c", []) == [
+    answering |= {"b": Port(7447, PEER, "1b"), "c": Port(7447, STRANGER)}
+    assert faults(["tcp/a:7447", "tcp/b:7447", "tcp/c:7447"], "1c", []) == [
         "tcp/a:7447: nobody answers there; it is tried again and again",
         "tcp/b:7447: a peer answers, but is not linked",
+        "tcp/c:7447: what listens there does not answer as a router does; it is tried again and again",
     ]
 
 

@@ -92,6 +92,8 @@ class Facts(NamedTuple):
     other_domains: Mapping[int, int | None] = {}
     """Number of nodes on each other domain in use; None if they could not be counted."""
     seen: Seen = Seen()
+    by_multicast: frozenset[str] = frozenset()
+    """Ids of the sessions that answer a multicast, as far as that is used."""
     machine: shared_memory.Machine = shared_memory.Machine()
     """Limits that decide whether shared memory is used."""
     memory: shared_memory.Decision = shared_memory.Decision(False, "not looked at")

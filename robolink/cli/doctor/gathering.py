@@ -29,6 +29,9 @@ ANSWER_WITHIN = 0.3
 LOOK_WITHIN = 3.5
 """Timeout of joining the network and listing what is announced, in seconds; usually 0.2."""
 
+MULTICAST_WITHIN = 0.4
+"""Timeout of the answers to a multicast, in seconds; usually 0.02, unless somebody is known by gossip alone."""
+
 COUNT_WITHIN = 1.0
 """Timeout of the look at other domains, in seconds; usually 0.1."""
 
@@ -72,7 +75,9 @@ def gather() -> Facts:
     )
     if settings.transport == "zenoh":
         facts = _with_ports(facts)
-    return _with_graph(facts if config is None else _with_certificates(facts, config))
+    if config is None:
+        return _with_graph(facts)
+    return _with_multicast(_with_graph(_with_certificates(facts, config)), config)
 
 
 def shown(value: str) -> str:
@@ -205,6 +210,16 @@ def _with_graph(facts: Facts) -> Facts:
     for each, count in seen[0].other_domains.items():
         others[each] = max(count, others.get(each) or 0)
     return facts._replace(seen=seen[0], other_domains=others)
+
+
+def _with_multicast(facts: Facts, config: zenoh.Config) -> Facts:
+    """Add who answers a multicast, if this network uses it and anybody is linked."""
+    sought = {each.session for each in facts.seen.links}
+    if not facts.reach.multicast or not sought:
+        return facts
+    from robolink.transport import scouting  # late: it loads Zenoh, which few settings need here
+
+    return facts._replace(by_multicast=scouting.answering(config, sought, MULTICAST_WITHIN))
 
 
 def _other_domains(facts: Facts) -> list[int]:

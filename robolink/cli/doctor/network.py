@@ -102,10 +102,13 @@ def how(link: Link, facts: Facts) -> str:
     if link.role == ROUTER:
         return "a router that connected"
     if port_of(link.there) == facts.settings.port or port_of(link.here) == facts.settings.port:
-        return "the domain's port" if not link.leaves_machine else "the domain's port, by multicast or its address"
+        known = "multicast" if link.session in facts.by_multicast else "its address"
+        return f"the domain's port, by {known}" if link.leaves_machine else "the domain's port"
     if not link.leaves_machine:
         return "gossip on this machine"
-    return "multicast or gossip" if facts.reach.multicast else "gossip"
+    if link.session in facts.by_multicast:
+        return "multicast"
+    return "gossip, for it does not answer a multicast" if facts.reach.multicast else "gossip"
 
 
 def lines(found: Description) -> list[str]:

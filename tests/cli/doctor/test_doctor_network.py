@@ -34,7 +34,7 @@ def test_whom_it_has_found_and_how() -> None:
         "found     3 sessions, 1 node",
         "          peer at tcp/127.0.0.1:17447: the domain's port",
         "          router at tcp/127.0.0.1:7447: the router on this machine",
-        "          peer at tcp/10.0.0.2:33333: multicast or gossip",
+        "          peer at tcp/10.0.0.2:33333: gossip, for it does not answer a multicast",
     ]
 
 
@@ -92,7 +92,7 @@ def test_json(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str
             "role": "peer",
             "address": "tcp/10.0.0.2:33333",
             "session": "cc",
-            "found": "multicast or gossip",
+            "found": "gossip, for it does not answer a multicast",
             "certificate": "",
         }
     ]
@@ -100,6 +100,7 @@ def test_json(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str
 
 def test_with_security_each_link_has_a_name() -> None:
     keyed = Link("peer", "tls/10.0.0.1:5002", "tls/10.0.0.2:33333", "cc", "/student7")
-    assert said(Facts(settings=Settings(network="lan"), reach=LAN, seen=Seen(links=(keyed,))))[5] == (
-        "          peer at tls/10.0.0.2:33333: multicast or gossip, with the certificate of /student7"
+    facts = Facts(
+        settings=Settings(network="lan"), reach=LAN, seen=Seen(links=(keyed,)), by_multicast=frozenset(["cc"])
     )
+    assert said(facts)[5] == ("          peer at tls/10.0.0.2:33333: multicast, with the certificate of /student7")
