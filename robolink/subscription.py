@@ -23,6 +23,7 @@ from robolink.logging import get_logger
 from robolink.message import Message, decoder, message_type
 from robolink.qos import HistoryPolicy, QoSProfile, resolved
 from robolink.running.backlog import Backlog, Gaps
+from robolink.running.callback_arguments import takes_arguments
 from robolink.running.entity import ANY_TIME, Receiver
 from robolink.running.inbox import Inbox
 from robolink.system.terminal import shown
@@ -34,20 +35,10 @@ if TYPE_CHECKING:
 
 MsgT = TypeVar("MsgT", bound=Message)
 
+MANY_QUEUED = 100
+"""Number of waiting messages of a KEEP_ALL subscription from which on it is overloaded: it drops none to tell by."""
+
 _LOST = {QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST}
-
-
-def takes_arguments(function: Callable[..., Any], count: int) -> bool:
-    """True if `function` can be called with `count` arguments, or does not tell."""
-    import inspect
-
-    try:
-        inspect.signature(function).bind(*[None] * count)
-    except TypeError:
-        return False
-    except ValueError:
-        return True
-    return True
 
 
 class MessageInfo(TypedDict):
@@ -166,6 +157,8 @@ class Subscription(Receiver, Generic[MsgT]):
         waiting.append(arrived)
         if queue is not None:
             queue.ready.append(self)
+            if len(waiting) == MANY_QUEUED:
+                self.take_turns()
 
     def _check_order(self, backlog: Backlog, attachment: bytes) -> None:
         try:  # this is run once a message: `contextlib.suppress` is three calls
@@ -174,16 +167,21 @@ class Subscription(Receiver, Generic[MsgT]):
             return
         if missing > 0:
             tell_handlers(self.event_handlers, _LOST, total=missing)
-            self.overflowed()
+            self._tell_loss()
 
     def attach(self, executor: Loop, queued: int = 0) -> None:
         """Belong to this executor; the node tells others what was dropped while there was none."""
         super().attach(executor, queued)
         if self.dropped:
-            self.overflowed()
+            self._tell_loss()
 
     def overflowed(self) -> None:
-        """Let the node know that messages were dropped or lost: it tells others, later."""
+        """Leave turns to the other callbacks of the executor, and let the node tell others of the loss."""
+        if not self.gives_way:
+            self.take_turns()
+        self._tell_loss()
+
+    def _tell_loss(self) -> None:
         if self.on_loss is not None:
             self.on_loss(self._queue_)
 
@@ -192,7 +190,7 @@ class Subscription(Receiver, Generic[MsgT]):
         with self._parking.lock:  # callbacks of a reentrant group lose side by side
             self._overwritten += 1
         tell_handlers(self.event_handlers, _LOST, total=1)
-        self.overflowed()
+        self._tell_loss()
         if warn is not None and not self._has_warned:
             self._has_warned = True
             warn(

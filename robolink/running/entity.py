@@ -136,13 +136,18 @@ class Receiver(Entity):
         self.mailbox = Mailbox(depth)
         self.sink: functools.partial[Any] = parking.sink(self)
         self._gave_way = 0
+        self._takes_turns = False
+        self._void = self._unlisted = 0
+        """Number of its turns in the ready queue that stand for nothing, and of waiting arrivals without a turn."""
 
     def attach(self, executor: Loop, queued: int = 0) -> None:
         """Belong to this `executor`, which holds its lock: what arrives goes to its inbox, what waited is ready."""
         queue = executor._queue_
         self._move(self._parking, queue.inbox)
         super().attach(executor, queued)
-        queue.ready.extend([self] * (len(self.mailbox) - queued))
+        waiting = len(self.mailbox)
+        self._void, self._unlisted = max(0, queued - waiting) if self._takes_turns else 0, 0
+        queue.ready.extend([self] * (waiting - queued))
 
     def detach(self) -> None:
         """Belong to no executor: what arrives waits in the context's inbox."""
@@ -189,3 +194,28 @@ class Receiver(Entity):
         if self._gave_way:
             self._gave_way -= 1
         return waiting.popleft() if waiting else NOTHING
+
+    def take_turns(self) -> None:
+        """Note an overload, under the inbox's lock: until nothing waits, run once for each turn of all others.
+
+        Otherwise all that waits here, ten slow callbacks say, would come before a heartbeat that arrives now.
+        """
+        if not self._takes_turns:
+            self._takes_turns, self._void, self._unlisted = True, 0, 0
+            self.take = self._take_in_turn  # type: ignore[method-assign] # it costs the others nothing
+
+    def _take_in_turn(self) -> Any:
+        """Return the oldest of what waits, or NOTHING; what waits behind it has a single turn, after all others."""
+        if self._void:
+            self._void -= 1
+            return NOTHING
+        waiting, queue = self.mailbox.waiting, self._queue_
+        others = len(waiting) - 1 - self._unlisted
+        taken = waiting.popleft() if waiting else NOTHING
+        if waiting and queue is not None:
+            self._void, self._unlisted = others, len(waiting) - 1
+            queue.ready.append(self)
+        else:
+            self._takes_turns = False
+            del self.take
+        return taken

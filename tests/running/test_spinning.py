@@ -125,8 +125,8 @@ def test_nobody_starves_when_a_program_spins_once_and_again(default: Context) ->
         default.time.sleep(10**8)
         rclpy.spin_once(node)
     assert len(seldom) == 1
-    assert len(ticks) >= 3
-    assert len(busy) >= 30
+    assert len(ticks) >= 25  # half of 60 each: the busy topic drops messages, so they take turns
+    assert len(busy) >= 25
 
 
 def test_a_future_is_waited_for_from_a_constructor(default: Context) -> None:
