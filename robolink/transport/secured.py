@@ -145,6 +145,8 @@ class SecuredTransport(ZenohTransport):
             token = parse_token(text)
         except WireError:
             return ""  # nobody reads it
+        if token.domain != self._keys.security.rights.domain:
+            return f"enclave '{self.enclave}' may not announce anything in domain {token.domain}"
         if token.enclave != self.enclave:
             return f"enclave '{self.enclave}' may not announce {token.full_node_name} of enclave '{token.enclave}'"
         kind = getattr(token, "kind", None)

@@ -19,3 +19,11 @@ def test_over_the_network_allowed_topics_flow_and_no_attacker_gets_anything_thro
 
     outcome = attempts.play(patience=1.5)
     assert [*attempts.faults(outcome)] == [], outcome
+
+
+def test_a_class_that_launch_started_meets_by_a_router_and_no_student_gets_more_than_it_may() -> None:
+    from tests.support import class_attempts
+
+    rows = class_attempts.play("router", joins=False)
+    assert [*class_attempts.faults(rows)] == [], rows
+    assert len(rows) >= 50
