@@ -49,6 +49,7 @@ COMMANDS = {
     "bag": Entry("robolink.cli.bag", "Record bags of messages, look at them, convert and mend them."),
     "tf": Entry("robolink.cli.tf", "See where frames are in each other."),
     "top": Entry("robolink.cli.top", "Show what nodes use and what topics carry, again and again."),
+    "image": Entry("robolink.cli.image", "See and save what cameras publish."),
     "plot": Entry("robolink.cli.plot", "Draw where robots go, and values over time."),
     "view": Entry("robolink.cli.view", "Show a running system, or a bag, in the browser."),
     "world": Entry("robolink.cli.world", "Check, draw and list the worlds that are simulated."),

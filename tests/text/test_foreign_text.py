@@ -156,6 +156,7 @@ TRIED: dict[str, list[Tried]] = {
         Tried(["bag", "play", EVIL]),
         Tried(["bag", "play", "evil", "--topics", EVIL]),
     ],
+    "image save": [Tried(["image", "save", "/image", EVIL])],
     "world check": [tried("world check evil.world.yaml"), tried("world check evil.world.yaml --json")],
     "world draw": [tried("world draw evil.world.yaml out.svg")],
     "launch": [
@@ -187,6 +188,7 @@ EXCUSED = {
     "bag record": "names topics, which are plain, and its own counts",
     "doctor": "cuts all it has found to one line of plain letters: tests/cli/doctor/test_doctor_checks.py",
     "wtf": "is doctor",
+    "image show": "draws a picture, and names an encoding as `topic echo --image` does",
     "plot odom": "draws a picture, and names only topics",
     "plot path": "draws a picture, and names only topics",
     "plot topic": "draws a picture, and names only topics and fields",

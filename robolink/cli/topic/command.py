@@ -134,7 +134,7 @@ def echo_messages(
     opt.refuse_together(ctx, {"--csv": csv, "--json": as_json, "--raw": raw, "--image": image})
     opt.refuse_together(ctx, {"--raw": raw, "--field or --filter": field or filter_})
     if image:
-        from robolink.cli.topic.picture import check_terminal
+        from robolink.cli.shared.picture import check_terminal
 
         check_terminal(sys.stdout.isatty())
     flags = qos.flags_of(ctx.params)

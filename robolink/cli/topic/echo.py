@@ -48,7 +48,7 @@ class Format(NamedTuple):
         """Return a message as text. `info` comes first if it is wanted, in ros2's order."""
         value = show.field_of(message, self.field) if self.field else message
         if self.image:
-            from robolink.cli.topic.picture import drawn
+            from robolink.cli.shared.picture import drawn
 
             return drawn(value)
         if self.json:

@@ -1,4 +1,4 @@
-"""Pictures in the terminal for `robolink topic echo --image`: two pixels a character, half blocks in 24-bit colour."""
+"""Pictures in the terminal for `topic echo --image` and `image show`: two pixels a character, in 24-bit colour."""
 
 from __future__ import annotations
 
@@ -35,7 +35,9 @@ def check_terminal(is_terminal: bool) -> None:
         is_terminal: True if standard output is a terminal.
     """
     if not is_terminal:
-        raise PictureError("--image draws on a terminal, and the output is none: 'topic echo --raw' writes the bytes")
+        raise PictureError(
+            "an image is drawn on a terminal, and the output is none: 'robolink image save' writes files"
+        )
     if os.environ.get("COLORTERM") in ("truecolor", "24bit") or os.environ.get("WT_SESSION"):
         return
     kind = shown(os.environ.get("TERM", ""), 40)

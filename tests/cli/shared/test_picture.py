@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from robolink import Node
 from robolink.cli.main import main
-from robolink.cli.topic.picture import PictureError, check_terminal, drawn, pixels_of
+from robolink.cli.shared.picture import PictureError, check_terminal, drawn, pixels_of
 from robolink.interfaces.sensor_msgs.msg import Image
 from robolink.interfaces.std_msgs.msg import String
 from tests.support.seen_by_commands import a_node_that_commands_see, latch

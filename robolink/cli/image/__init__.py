@@ -1,0 +1,64 @@
+"""robolink image: see and save what cameras publish. Here are the arguments; the other files do the work."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from robolink.cli.shared import complete
+from robolink.cli.shared.options import seconds
+
+app = typer.Typer(no_args_is_help=True, help="See and save what cameras publish.")
+
+Topic = Annotated[
+    str,
+    typer.Argument(
+        help="Of Image or CompressedImage, such as /camera/image_raw.",
+        metavar="TOPIC",
+        autocompletion=complete.topic_names,
+    ),
+]
+Timeout = Annotated[float | None, seconds("--timeout", "End after so many seconds without an image.")]
+
+
+@app.command("save")
+def save(
+    topic: Topic,
+    file: Annotated[
+        str, typer.Argument(metavar="[FILE]", help="A .png or .jpg; {} stands for the number, from 1.")
+    ] = "image_{}.png",
+    count: Annotated[int, typer.Option("--count", "-c", metavar="N", help="So many images.", min=1, max=10**6)] = 1,
+    timeout: Timeout = None,
+) -> None:
+    """Save the next images of a topic as files. Distances (32FC1, in m) become whole millimetres of 16 bits."""
+    from robolink.cli.image.listening import each_image
+    from robolink.cli.image.saving import Files
+
+    each_image(topic, count, timeout, Files(file, count).save)
+
+
+@app.command("show")
+def show(
+    topic: Topic,
+    once: Annotated[bool, typer.Option("--once", help="Show one image and end.")] = False,
+    timeout: Timeout = None,
+) -> None:
+    """Show the images of a topic in the terminal, until Ctrl-C; `robolink view` shows them in the browser."""
+    from robolink.cli.image.listening import each_image
+    from robolink.cli.shared.output import clear, say
+    from robolink.cli.shared.picture import check_terminal, drawn
+    from robolink.image import to_array, to_message
+    from robolink.interfaces.sensor_msgs.msg import CompressedImage
+
+    check_terminal(sys.stdout.isatty())
+
+    def draw(message: object) -> None:
+        if isinstance(message, CompressedImage):
+            message = to_message(to_array(message, "bgr8"))
+        text = drawn(message)
+        clear()
+        say(text, colours=True)
+
+    each_image(topic, 1 if once else None, timeout, draw)
