@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import random
 import socket
 from collections.abc import Iterator
@@ -10,7 +9,8 @@ from contextlib import contextmanager
 
 from robolink.constants import LAST_DOMAIN
 from robolink.exceptions import TransportError
-from robolink.transport.network import FIRST_PORT
+from robolink.networks.asked import FIRST_PORT
+from robolink.transport.port_sharing import is_taken
 
 
 @contextmanager
@@ -33,11 +33,4 @@ def free_domain() -> Iterator[int]:
 
 def is_free(port: int) -> bool:
     """True if nobody listens on a port of this machine; connections that have ended do not count."""
-    with socket.socket() as probe:
-        if os.name != "nt":  # there it would let two listen
-            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind(("127.0.0.1", port))
-        except OSError:
-            return False
-        return True
+    return not is_taken(f"tcp/127.0.0.1:{port}")

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from robolink.cli.doctor.facts import Facts
 from robolink.cli.doctor.graph_checks import SILENT_TOPICS
-from robolink.transport.network import FIRST_PORT
+from robolink.networks.asked import FIRST_PORT
 from robolink.wire import EndpointKind, EndpointToken, NodeToken
 
 _ROS = ("ROS_", "RMW_", "ZENOH_", "ROBOLINK_", "AMENT_")

@@ -78,8 +78,8 @@ def make_class(
     """Make a folder of keys for each student of a class, or give one of them its turn to drive the robot."""
     import os
 
+    from robolink.networks.asked import domain_id
     from robolink.security import classroom
-    from robolink.transport.network import domain_id
 
     if not students and not turn:
         raise typer.BadParameter("name --students N, or --turn STUDENT")
@@ -141,7 +141,7 @@ def generate_policy(policy: PolicyFile) -> None:
 def _keystore(root: Path) -> Keystore:
     import os
 
+    from robolink.networks.asked import domain_id
     from robolink.security.keystore import Keystore
-    from robolink.transport.network import domain_id
 
     return Keystore(root, domain_id(os.environ))

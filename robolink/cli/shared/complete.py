@@ -198,8 +198,8 @@ def _look(texts: dict[str, bool], complete: threading.Event) -> None:
     """Collect announced tokens as they become known, and set `complete` when that is all."""
     import os
 
+    from robolink.networks.asked import domain_id
     from robolink.transport import connect
-    from robolink.transport.network import domain_id
     from robolink.wire import graph_pattern
 
     try:
