@@ -9,6 +9,7 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from robolink.companions import cv_bridge
 from robolink.companions.cv_bridge import CvBridge, CvBridgeError, core, cvtColorForDisplay, functions, getCvType
@@ -67,7 +68,7 @@ def test_there_and_back(encoding: str) -> None:
     assert isinstance(message.data, array)
     came = decode(Image, encode(message))
     seen = BRIDGE.imgmsg_to_cv2(came)
-    np.testing.assert_array_equal(seen, PICTURE)
+    assert_array_equal(seen, PICTURE)
     cv2.rectangle(seen, (0, 0), (3, 3), (1, 2, 3))
 
 
@@ -80,9 +81,7 @@ def test_passthrough_names_the_type_alone() -> None:
 def test_desired_encoding() -> None:
     message = BRIDGE.cv2_to_imgmsg(PICTURE, "rgb8")
     for wanted in ("bgr8", "mono8", "bgra16", "rgb8"):
-        np.testing.assert_array_equal(
-            BRIDGE.imgmsg_to_cv2(message, desired_encoding=wanted), by_opencv(PICTURE, "rgb8", wanted)
-        )
+        assert_array_equal(BRIDGE.imgmsg_to_cv2(message, desired_encoding=wanted), by_opencv(PICTURE, "rgb8", wanted))
 
 
 @pytest.mark.parametrize("form", ["png", "jpg", "bmp"])
@@ -90,16 +89,16 @@ def test_compressed(form: str) -> None:
     came = decode(CompressedImage, encode(BRIDGE.cv2_to_compressed_imgmsg(PICTURE, form)))
     assert came.format == form
     expected: Any = cv2.imdecode(np.frombuffer(bytes(came.data), np.uint8), cv2.IMREAD_UNCHANGED)
-    np.testing.assert_array_equal(BRIDGE.compressed_imgmsg_to_cv2(came), expected)
-    np.testing.assert_array_equal(BRIDGE.compressed_imgmsg_to_cv2(came, "rgb8"), expected[..., ::-1])
+    assert_array_equal(BRIDGE.compressed_imgmsg_to_cv2(came), expected)
+    assert_array_equal(BRIDGE.compressed_imgmsg_to_cv2(came, "rgb8"), expected[..., ::-1])
     assert BRIDGE.cv2_to_compressed_imgmsg(PICTURE).format == "jpg"
 
 
 def test_compressed_grey_of_sixteen_bits_is_converted() -> None:
     deep = some_image("16UC1", np.random.default_rng(5), 4, 6)
     came = BRIDGE.cv2_to_compressed_imgmsg(deep, "png")
-    np.testing.assert_array_equal(BRIDGE.compressed_imgmsg_to_cv2(came), deep)
-    np.testing.assert_array_equal(BRIDGE.compressed_imgmsg_to_cv2(came, "mono8"), by_opencv(deep, "mono16", "mono8"))
+    assert_array_equal(BRIDGE.compressed_imgmsg_to_cv2(came), deep)
+    assert_array_equal(BRIDGE.compressed_imgmsg_to_cv2(came, "mono8"), by_opencv(deep, "mono16", "mono8"))
 
 
 def refusals() -> dict[str, Any]:
@@ -146,8 +145,8 @@ def test_depth_is_shown_in_shades() -> None:
 
 
 def test_display_of_other_images() -> None:
-    np.testing.assert_array_equal(cvtColorForDisplay(PICTURE, "rgb8", "bgr8"), PICTURE[..., ::-1])
-    np.testing.assert_array_equal(cvtColorForDisplay(PICTURE, "8UC3"), PICTURE)
+    assert_array_equal(cvtColorForDisplay(PICTURE, "rgb8", "bgr8"), PICTURE[..., ::-1])
+    assert_array_equal(cvtColorForDisplay(PICTURE, "8UC3"), PICTURE)
     grey = cvtColorForDisplay(np.full((2, 2), 514, np.uint16), "16UC1", "mono8")
     assert grey.tolist() == [[2, 2], [2, 2]]
     even = cvtColorForDisplay(np.ones((2, 2), np.float32), "32FC1", "mono8", True)
@@ -176,4 +175,4 @@ def test_what_cannot_be_displayed_is_one_line(source: Any, encodings: tuple[str,
 def test_the_module_below_boost() -> None:
     assert functions.CV_MAT_CNWrap(cv2.CV_16SC3) == 3
     assert functions.CV_MAT_DEPTHWrap(cv2.CV_16SC3) == cv2.CV_16S
-    np.testing.assert_array_equal(functions.cvtColor2(PICTURE, "bgr8", "mono8"), by_opencv(PICTURE, "bgr8", "mono8"))
+    assert_array_equal(functions.cvtColor2(PICTURE, "bgr8", "mono8"), by_opencv(PICTURE, "bgr8", "mono8"))

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
 
 from robolink.companions.image_geometry import PinholeCameraModel, StereoCameraModel
 from robolink.image import ImageError
@@ -53,9 +54,9 @@ def test_points_to_pixels_and_back(x: float, y: float, z: float) -> None:
     model = camera()
     u, v = model.project3dToPixel((x, y, z))
     seen = cv2.projectPoints(np.array([[x, y, z]]), np.zeros(3), np.zeros(3), np.asarray(model.P)[:, :3], None)[0]
-    np.testing.assert_allclose((u, v), seen[0, 0], rtol=1e-9, atol=1e-9)
+    assert_allclose((u, v), seen[0, 0], rtol=1e-9, atol=1e-9)
     ray = np.array(model.projectPixelTo3dRay((u, v)))
-    np.testing.assert_allclose(ray * (z / ray[2]), (x, y, z), rtol=1e-9, atol=1e-9)
+    assert_allclose(ray * (z / ray[2]), (x, y, z), rtol=1e-9, atol=1e-9)
     assert np.linalg.norm(ray) == pytest.approx(1)
 
 
@@ -69,8 +70,8 @@ def test_points_are_rectified_as_opencv_does_it(lens: str) -> None:
         exact = getattr(cv2, "undistortPointsIter", cv2.undistortPoints)  # the first is OpenCV 4's
         expected = exact(point, k, d, R=r, P=p, criteria=end)[0, 0]
         found = model.rectifyPoint(uv)
-        np.testing.assert_allclose(found, expected, atol=1e-4)
-        np.testing.assert_allclose(model.unrectifyPoint(found), uv, atol=1e-5)
+        assert_allclose(found, expected, atol=1e-4)
+        assert_allclose(model.unrectifyPoint(found), uv, atol=1e-5)
 
 
 @pytest.mark.parametrize("lens", LENSES)
@@ -80,7 +81,7 @@ def test_points_go_through_the_lens_as_opencv_projects_them(lens: str) -> None:
     for x, y in [(0.0, 0.0), (0.3, -0.2), (-0.6, 0.4)]:
         raw = cv2.projectPoints(np.array([[x, y, 1.0]]), np.zeros(3), np.zeros(3), k, d)[0][0, 0]
         turned = p[:, :3] @ r @ [x, y, 1.0]
-        np.testing.assert_allclose(model.unrectifyPoint(turned[:2] / turned[2]), raw, atol=1e-8)
+        assert_allclose(model.unrectifyPoint(turned[:2] / turned[2]), raw, atol=1e-8)
 
 
 def test_a_fisheye() -> None:
@@ -89,8 +90,8 @@ def test_a_fisheye() -> None:
     for uv in [(20, 20), (311, 221), (600, 400)]:
         point = np.array([[uv]], np.float64)
         expected = cv2.fisheye.undistortPoints(point, k, coefficients, R=r, P=p[:, :3])[0, 0]
-        np.testing.assert_allclose(model.rectifyPoint(uv), expected, atol=1e-4)
-        np.testing.assert_allclose(model.unrectifyPoint(model.rectifyPoint(uv)), uv, atol=1e-6)
+        assert_allclose(model.rectifyPoint(uv), expected, atol=1e-4)
+        assert_allclose(model.unrectifyPoint(model.rectifyPoint(uv)), uv, atol=1e-6)
 
 
 @pytest.mark.parametrize("shape", [(480, 640), (480, 640, 3)])
@@ -102,10 +103,10 @@ def test_images_are_rectified_as_opencv_does_it(shape: tuple[int, ...]) -> None:
     expected = cv2.remap(raw, mapx, mapy, cv2.INTER_CUBIC)
     rectified = np.zeros_like(raw)
     model.rectifyImage(raw, rectified)
-    np.testing.assert_allclose(model.mapx, mapx, atol=1e-3)
-    np.testing.assert_allclose(model.mapy, mapy, atol=1e-3)
+    assert_allclose(model.mapx, mapx, atol=1e-3)
+    assert_allclose(model.mapy, mapy, atol=1e-3)
     assert np.abs(rectified.astype(int) - expected).max() <= 2
-    np.testing.assert_array_equal(model.rectifyImage(raw), rectified)
+    assert_array_equal(model.rectifyImage(raw), rectified)
 
 
 def test_a_region_and_binning() -> None:
@@ -210,7 +211,7 @@ def test_refusals_are_one_line(said: str) -> None:
 
 
 def test_without_a_rotation_there_is_none() -> None:
-    np.testing.assert_allclose(
+    assert_allclose(
         camera(r=np.zeros(9)).rectifyPoint((50, 60)), camera(r=np.eye(3).reshape(-1)).rectifyPoint((50, 60))
     )
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.testing import assert_array_equal
 
 from robolink.image import ImageError, to_array, to_message
 from robolink.interfaces.sensor_msgs.msg import CompressedImage, Image, LaserScan
@@ -32,7 +33,7 @@ def test_an_image_comes_back_and_can_be_drawn_on(encoding: str, seed: int, heigh
     for each in (image, image.astype(image.dtype.newbyteorder()), np.asfortranarray(image)):
         came = sent(to_message(each, encoding))
         again = to_array(came)
-        np.testing.assert_array_equal(again, image)
+        assert_array_equal(again, image)
         assert again.dtype == image.dtype
         assert again.dtype.isnative
         assert again.flags.writeable
@@ -80,9 +81,9 @@ def test_padded_rows_and_big_endian(pad: int, big: bool) -> None:
     order = ">u2" if big else "<u2"
     data = b"".join(row.astype(order).tobytes() + b"\xee" * pad for row in rows)
     message = Image(height=3, width=4, encoding="mono16", is_bigendian=big, step=8 + pad, data=data)
-    np.testing.assert_array_equal(to_array(message), rows)
+    assert_array_equal(to_array(message), rows)
     assert to_array(message).dtype == np.uint16
-    np.testing.assert_array_equal(to_array(sent(message), "mono8"), (rows + 128) // 257)
+    assert_array_equal(to_array(sent(message), "mono8"), (rows + 128) // 257)
 
 
 @pytest.mark.parametrize(
@@ -188,13 +189,13 @@ def test_another_message_is_refused(message: Any) -> None:
 def test_every_type_has_its_own_encoding_without_colours(encoding: str) -> None:
     image = some_image(encoding, np.random.default_rng(3), 3, 4)
     found = to_message(image, encoding)
-    np.testing.assert_array_equal(to_array(found), image)
+    assert_array_equal(to_array(found), image)
 
 
 def test_a_compressed_image() -> None:
     data = cv2.imencode(".png", RED)[1].tobytes()
     came = sent(CompressedImage(format="png", data=data))
     assert to_array(came, "rgb8")[0, 0].tolist() == [255, 0, 0]
-    np.testing.assert_array_equal(to_array(came), RED)
+    assert_array_equal(to_array(came), RED)
     with pytest.raises(ImageError, match="are no JPEG, PNG or other picture"):
         to_array(CompressedImage(data=b"no picture"))

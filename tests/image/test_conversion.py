@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.testing import assert_array_equal
 
 from robolink.image.conversion import convert
 from robolink.image.encodings import COLOURED, ImageError, encoding_of
@@ -29,8 +30,8 @@ def is_the_same(source: str, target: str, rng: np.random.Generator, height: int,
         return False
     converted = convert(image, source, target)
     assert (converted.dtype, converted.shape) == (expected.dtype, expected.shape), (source, target)
-    np.testing.assert_array_equal(converted, expected, f"{source} to {target}")
-    np.testing.assert_array_equal(image, before)
+    assert_array_equal(converted, expected, f"{source} to {target}")
+    assert_array_equal(image, before)
     assert not np.shares_memory(converted, image)
     assert converted.flags.c_contiguous
     assert converted.flags.writeable
@@ -62,15 +63,15 @@ def test_random_images(source: str, target: str, seed: int, half_height: int, ha
 def test_every_value_of_eight_and_sixteen_bits(source: str, target: str) -> None:
     kind = encoding_of(source).dtype
     values = np.arange(2 ** (8 * kind.itemsize)).astype(kind).reshape(16, -1)
-    np.testing.assert_array_equal(convert(values, source, target), by_opencv(values, source, target))
+    assert_array_equal(convert(values, source, target), by_opencv(values, source, target))
 
 
 def test_shades_of_every_64th_colour() -> None:
     colours = np.arange(0, 2**24, 61, dtype=np.uint32)
     image = np.stack([colours & 255, (colours >> 8) & 255, colours >> 16], axis=-1).astype(np.uint8)[None]
-    np.testing.assert_array_equal(convert(image, "rgb8", "mono8"), by_opencv(image, "rgb8", "mono8"))
+    assert_array_equal(convert(image, "rgb8", "mono8"), by_opencv(image, "rgb8", "mono8"))
     deep = (image.astype(np.uint16) << 8) | np.roll(image, 7, axis=1)
-    np.testing.assert_array_equal(convert(deep, "bgr16", "mono16"), by_opencv(deep, "bgr16", "mono16"))
+    assert_array_equal(convert(deep, "bgr16", "mono16"), by_opencv(deep, "bgr16", "mono16"))
 
 
 def test_the_bytes_are_these_on_every_machine() -> None:
@@ -113,7 +114,7 @@ def test_the_same_encoding_is_a_copy(name: str) -> None:
     image = some_image("8UC2" if name in ("uyvy", "yuyv") else name, np.random.default_rng(1), 4, 6)
     for target in (name, "", "passthrough"):
         again = convert(image, name, target)
-        np.testing.assert_array_equal(again, image)
+        assert_array_equal(again, image)
         assert not np.shares_memory(again, image)
 
 

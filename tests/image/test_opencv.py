@@ -10,6 +10,7 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from robolink.image.codecs import decoded, encoded
 from robolink.image.encodings import ImageError
@@ -72,7 +73,7 @@ def test_new_enough(monkeypatch: pytest.MonkeyPatch, version: str) -> None:
 def test_png_keeps_every_bit(shape: tuple[int, ...], name: str, kind: str) -> None:
     image = np.random.default_rng(2).integers(0, np.iinfo(kind).max, shape, kind)
     again, encoding = decoded(np.frombuffer(encoded(image, "png"), np.uint8))
-    np.testing.assert_array_equal(again, image)
+    assert_array_equal(again, image)
     assert encoding == f"{name}{8 * image.itemsize}"
 
 

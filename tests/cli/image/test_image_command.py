@@ -10,6 +10,7 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from robolink import Node
 from robolink.cli.main import main
@@ -47,7 +48,7 @@ def test_a_png_holds_every_bit(
         patch.setitem(sys.modules, "cv2", None)
         assert main(["image", "save", "/image"]) == 0
     assert capsys.readouterr().out == "image_0001.png\n"
-    np.testing.assert_array_equal(read("image_0001.png"), expected)
+    assert_array_equal(read("image_0001.png"), expected)
 
 
 @pytest.mark.parametrize("shape", [(5, 7), (5, 7, 3), (5, 7, 4)])
@@ -56,7 +57,7 @@ def test_pngs_of_our_own_are_read_by_opencv(shape: tuple[int, ...], kind: str) -
     image = np.random.default_rng(7).integers(0, np.iinfo(kind).max, shape, kind)
     again: Any = cv2.imdecode(np.frombuffer(png_of(image), np.uint8), cv2.IMREAD_UNCHANGED)
     order = [2, 1, 0, 3][: shape[2]] if len(shape) == 3 else slice(None)
-    np.testing.assert_array_equal(again[..., order], image)
+    assert_array_equal(again[..., order], image)
 
 
 def test_distances_become_millimetres(node: Node) -> None:
