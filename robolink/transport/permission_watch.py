@@ -43,23 +43,28 @@ def watch(session: Renewable) -> None:
 
 
 def _look(wanted: weakref.ref[Renewable], seen: object) -> None:
+    told = ""
     while True:
         time.sleep(LOOKS_EVERY)
         session = wanted()
         if session is None or session.has_left:
             return
-        now = session.fingerprint()
-        if now != seen:
-            seen = now
-            _renew(session)
+        with contextlib.suppress(OSError):  # files that come and go just now: the next look sees them
+            now = session.fingerprint()
+            if now != seen:
+                told = _renew(session, told)
+                seen = seen if told else now  # else who was withdrawn would stay in for good: the next look tries again
         del session  # not kept alive while this sleeps
 
 
-def _renew(session: Renewable) -> None:
+def _renew(session: Renewable, told: str) -> str:
+    """Renew a session; return why it cannot be, '' if it can. What has been told is not told again."""
     logger = get_logger("security")
     try:
         session.renew()
-        logger.info(f"enclave '{session.enclave}': permissions have changed, and count from now on")
     except TransportError as error:
-        if not session.has_left:
-            logger.error(f"permissions have changed, and this session goes on with the former ones: {error}")
+        if (why := str(error)) != told and not session.has_left:
+            logger.error(f"permissions have changed, and this session goes on with the former ones: {why}")
+        return why
+    logger.info(f"enclave '{session.enclave}': permissions have changed, and count from now on")
+    return ""
