@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import threading
 from collections.abc import Callable
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
@@ -22,7 +21,7 @@ from robolink.graph.humble import Copies, CopyError, FromHumbleKey
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, message_type
 from robolink.qos import HistoryPolicy, QoSProfile, resolved
-from robolink.running.backlog import Backlog, Gaps
+from robolink.running.backlog import Backlog, Gaps, Sequence
 from robolink.running.callback_arguments import takes_arguments
 from robolink.running.entity import ANY_TIME, Receiver
 from robolink.running.inbox import Inbox
@@ -107,7 +106,13 @@ class Subscription(Receiver, Generic[MsgT]):
         transport = self._endpoint.transport
         self._read: Callable[[Any], Sample] = transport.read
         self._read_arrived = self._read
-        self._open: Callable[[Any], Any] | None = transport.opener(check_attachment, self._decode)
+        callbacks = event_callbacks or SubscriptionEventCallbacks()
+        self._sequence: Sequence | None = None
+        self._check: Callable[[bytes], object] = check_attachment
+        if depth and (transport.threaded or callbacks.message_lost):  # others lose nothing on the way
+            self._sequence = Sequence(self._make_gaps(), self.mailbox, self._on_gap)
+            self._check = self._sequence.check
+        self._open: Callable[[Any], Any] | None = transport.opener(self._check, self._decode)
         """Function that turns what arrived into a message, the short way; None where `_read` does more."""
         self._humble_receiver: _HumbleReceiver | None = None
         self._inbox = owner.context.inbox
@@ -117,7 +122,7 @@ class Subscription(Receiver, Generic[MsgT]):
             self._backlog, self.straight = Backlog(topic, self._make_gaps(), owner.context.time.steady), False
             self._open = self._open_kept
             self.deliver = self._deliver_all  # type: ignore[method-assign] # it costs the others nothing
-        self._listen_for_events(event_callbacks or SubscriptionEventCallbacks())
+        self._listen_for_events(callbacks)
         self._endpoint.speak_humble = self._speak_humble
         for key in filter(None, (self._endpoint.key, self._endpoint.buffer_key)):
             self._handles.append(self._endpoint.transport.subscribe(key, qos_profile, self.sink))
@@ -166,8 +171,11 @@ class Subscription(Receiver, Generic[MsgT]):
         except WireError:  # told when it is taken
             return
         if missing > 0:
-            tell_handlers(self.event_handlers, _LOST, total=missing)
-            self._tell_loss()
+            self._on_gap(missing)
+
+    def _on_gap(self, missing: int) -> None:
+        tell_handlers(self.event_handlers, _LOST, total=missing)
+        self._tell_loss()
 
     def attach(self, executor: Loop, queued: int = 0) -> None:
         """Belong to this executor; the node tells others what was dropped while there was none."""
@@ -210,7 +218,9 @@ class Subscription(Receiver, Generic[MsgT]):
                 message, info = self._open_with_info(taken)
         except CopyError:
             return None
-        except OverwrittenError:
+        except OverwrittenError as error:
+            with contextlib.suppress(WireError):  # unknown, then
+                self._check(error.attachment)
             self.lose(get_logger(self.logger_name).warning)
             return None
         except (DecodeError, WireError, TransportError) as error:
@@ -226,7 +236,7 @@ class Subscription(Receiver, Generic[MsgT]):
 
     def _open_with_info(self, taken: Any) -> tuple[Any, MessageInfo | None]:
         payload, attachment = self._read(taken)
-        check_attachment(attachment)
+        self._check(attachment)
         return self._decode(payload), self._info(attachment) if self._with_info else None
 
     def _info(self, attachment: bytes) -> MessageInfo:
@@ -264,9 +274,9 @@ class Subscription(Receiver, Generic[MsgT]):
     def lost(self) -> int:
         """Number of messages that did not arrive.
 
-        With KEEP_ALL all of them, by gaps in their numbers; else those that were overwritten in shared memory.
+        By gaps in the publishers' numbers, without what was `dropped`, and with what was overwritten in shared memory.
         """
-        return self._overwritten + (self._backlog.lost if self._backlog is not None else 0)
+        return self._overwritten + sum(each.lost for each in (self._backlog, self._sequence) if each is not None)
 
     def get_publisher_count(self) -> int:
         """Return the number of publishers of this topic and type."""
@@ -280,8 +290,6 @@ class Subscription(Receiver, Generic[MsgT]):
         self._endpoint.warns = warns_of_types(callbacks)
         self._endpoint.on_disagreement = self._on_disagreement
         self._endpoint.on_other = self._on_other
-        if callbacks.message_lost and self._backlog is None:
-            self._count_lost()
 
     def _on_other(self, came: bool) -> None:
         matched = {QoSSubscriptionEventType.RCL_SUBSCRIPTION_MATCHED}
@@ -297,28 +305,6 @@ class Subscription(Receiver, Generic[MsgT]):
     def _sends_to_one_key(self, gid: bytes) -> bool:
         sender = self._endpoint.context.graph.endpoint_of(gid)
         return sender is not None and not sender.names_backends
-
-    def _count_lost(self) -> None:
-        """Look for gaps between the numbers of the messages that are taken."""
-        read, gaps = self._read, self._make_gaps()
-        lock = threading.Lock()  # callbacks of a reentrant group run side by side
-
-        def read_and_count(taken: Any) -> Sample:
-            try:
-                sample = read(taken)
-            except OverwrittenError as error:
-                count(error.attachment)
-                raise
-            count(sample.attachment)
-            return sample
-
-        def count(attachment: bytes) -> None:
-            with lock:
-                missing = gaps.before(unpack_attachment(attachment))
-            if missing > 0:
-                tell_handlers(self.event_handlers, _LOST, total=missing)
-
-        self._read, self._open = read_and_count, None
 
     # Humble peers
 

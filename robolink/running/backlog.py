@@ -1,4 +1,4 @@
-"""Backlog of a KEEP_ALL subscription: gaps in sequence numbers, and warnings when messages pile up or are lost.
+"""Gaps in the sequence numbers that a subscription gets; backlog of one with KEEP_ALL, and its warnings.
 
 Such a subscription is told about neither by its network nor by its depth, which it has not. So it counts the gaps in
 its publishers' numbers, and says once that there are some; and it says when more and more waits.
@@ -9,11 +9,13 @@ from __future__ import annotations
 import contextlib
 import itertools
 import struct
+import threading
 from collections import deque
 from collections.abc import Callable, Iterable
 from typing import Any
 
 from robolink.exceptions import WireError
+from robolink.running.inbox import Mailbox
 from robolink.wire import GID_BYTES, Attachment, fields_of, unpack_attachment
 
 MOST_SENDERS = 1000
@@ -70,6 +72,48 @@ class Gaps:
             self._missing.update(((gid, number), None) for number in missing)
             while len(self._missing) > MOST_LATE:
                 del self._missing[next(iter(self._missing))]
+
+
+class Sequence:
+    """Check of the attachments that a KEEP_LAST subscription takes: it counts what did not arrive.
+
+    Args:
+        gaps: Gaps of its publishers' numbers.
+        mailbox: Mailbox of the subscription: what it drops itself is a gap, too.
+        on_gap: Function that is called with the number of messages missing in a new gap.
+    """
+
+    def __init__(self, gaps: Gaps, mailbox: Mailbox, on_gap: Callable[[int], object]) -> None:
+        self._gaps, self._last, self._mailbox, self._on_gap = gaps, gaps.last, mailbox, on_gap
+        self._lock = threading.Lock()  # callbacks of a reentrant group run side by side
+        self._before: int | None = None
+        self._missing = self._most = 0
+
+    @property
+    def lost(self) -> int:
+        """Number of messages that did not arrive; never less than before."""
+        dropped = self._mailbox.dropped - (self._before or 0)
+        self._most = max(self._most, self._missing - dropped)
+        return self._most
+
+    def check(self, attachment: bytes) -> None:
+        """Count what is missing before a message. Raises WireError for an attachment that is not ROS 2's."""
+        try:
+            sequence, _, gid_length, gid = fields_of(attachment)
+        except struct.error:
+            gid_length = 0
+        if gid_length != GID_BYTES:
+            unpack_attachment(attachment)  # it says what is wrong
+        with self._lock:
+            if self._last.get(gid) == sequence - 1:  # the usual case of `before`
+                self._last[gid] = sequence
+                return
+            if self._before is None:  # what was dropped before the first that is taken makes no gap
+                self._before = self._mailbox.dropped
+            missing = self._gaps.before(unpack_attachment(attachment))
+            self._missing += missing
+        if missing > 0:
+            self._on_gap(missing)
 
 
 class Backlog:

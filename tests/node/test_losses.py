@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from robolink import Context, Node
+from robolink.event_handler import SubscriptionEventCallbacks
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.node_parts.losses import Losses, losses_in
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
-from tests.support.spins import spin_for
+from robolink.transport.zenoh import ZenohTransport
+from tests.support.spins import spin_for, spin_until
 
 LATCHED = QoSProfile(history=HistoryPolicy.KEEP_ALL, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -115,6 +117,42 @@ def test_a_destroyed_node_tells_nothing_more(virtual: Context, executor: SingleT
     node.destroy_node()
     spin_for(executor, 5.0)
     assert other.count_publishers("/diagnostics") == 0
+
+
+def test_what_did_not_arrive_is_counted_apart_from_what_was_dropped(
+    virtual: Context, executor: SingleThreadedExecutor
+) -> None:
+    node = Node("slow", context=virtual)
+    executor.add_node(node)
+    publisher = node.create_publisher(Int32, "/count", 10)
+    watched = SubscriptionEventCallbacks(message_lost=lambda info: None)
+    subscription = node.create_subscription(Int32, "/count", lambda message: None, 3, event_callbacks=watched)
+    for missing in (0, 4, 2):
+        for _ in range(5):
+            publisher.publish(Int32())
+        spin_for(executor, 1.0)
+        for _ in range(missing):
+            publisher._attachment()
+    publisher.publish(Int32())
+    spin_for(executor, 1.0)
+    assert (subscription.lost, subscription.dropped) == (6, 6)
+
+
+def test_what_is_lost_in_a_network_is_counted_for_any_depth(domain: int) -> None:
+    context = Context(transport=ZenohTransport(domain, environ={}))
+    context.init([], domain_id=domain)
+    with context:
+        node, got = Node("hears", context=context), list[int]()
+        subscription = node.create_subscription(Int32, "/count", lambda message: got.append(message.data), 10)
+        publisher = Node("says", context=context).create_publisher(Int32, "/count", 10)
+        publisher.publish(Int32(data=1))
+        for _ in range(3):
+            publisher._attachment()
+        publisher.publish(Int32(data=2))
+        with SingleThreadedExecutor(context=context) as executor:
+            executor.add_node(node)
+            spin_until(executor, lambda: got == [1, 2])
+        assert (subscription.lost, subscription.dropped) == (3, 0)
 
 
 def test_diagnostics_of_others_are_passed_over() -> None:
