@@ -122,7 +122,8 @@ def seek(host: Host, domain: int, within: float = SEEK_WITHIN, silent_within: fl
                 other = next(iter(found.values()), other)
                 if any(each.role == SILENT for each in found.values()):
                     deadline, patience = max(deadline, begin + silent_within), 2 * patience
-        if time.monotonic() + _PAUSE >= deadline or (host.port and other is not None and other.role == STRANGER):
+        is_other = other is not None and other.role == STRANGER and not other.hung_up
+        if time.monotonic() + _PAUSE >= deadline or (host.port and is_other):
             return other
         time.sleep(_PAUSE)
 

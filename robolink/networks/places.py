@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from robolink.exceptions import TransportError, nearest
 from robolink.networks import hosts, named
 from robolink.networks.asked import ALIASES, FIRST_PORT, NAMES, ROUTER_PORT, Wanted
-from robolink.networks.port_probe import REFUSES, ROUTER, SILENT, STRANGER
+from robolink.networks.port_probe import REFUSES, ROUTER, SILENT, STRANGER, Port
 from robolink.networks.refusals import WANTS_KEYS, wants_keys
 from robolink.networks.settings import client, settings
 
@@ -21,6 +21,8 @@ _OTHERS = {
     REFUSES: "is a Zenoh session that refuses this one: it has its most sessions, or is of another version",
 }
 """Others that may listen at a port, by their role, for an error."""
+
+_HANGS_UP = "somebody hangs up at once: it starts or ends just now, has too many connections, or is something else"
 
 
 class Place(NamedTuple):
@@ -100,10 +102,14 @@ def _asked_there(host: hosts.Host, asked: Wanted, domain: int) -> Place:
         if not host.tls and (keyed := next((each for each in host.ports(domain) if wants_keys(host.name, each)), 0)):
             raise TransportError(f"{asked.asked_by}: at {host.name}, port {keyed}, is a process {WANTS_KEYS}")
         if port is not None:
-            raise TransportError(f"{asked.asked_by}: at {host.name}, port {port.number}, {_OTHERS[port.role]}")
+            raise TransportError(f"{asked.asked_by}: at {host.name}, port {port.number}, {_other(port)}")
         raise TransportError(f"{asked.asked_by}: nobody answers at {host.name}{_what_to_do(host, domain)}")
     endpoint = host.endpoint(port.number)
     return Place((endpoint,), host.tls or port.role == ROUTER, session=port.session)
+
+
+def _other(port: Port) -> str:
+    return _HANGS_UP if port.hung_up else _OTHERS[port.role]
 
 
 def _what_to_do(host: hosts.Host, domain: int) -> str:

@@ -37,6 +37,8 @@ class Port(NamedTuple):
     session: str = ""
     """Session id, if it speaks Zenoh."""
     host: str = HOST
+    hung_up: bool = False
+    """True if it closed the connection without a word, as one with too many of them does."""
 
     @property
     def speaks_zenoh(self) -> bool:
@@ -111,7 +113,8 @@ def _advance(waiting: selectors.BaseSelector, greeting: _Greeting, found: dict[i
     greeting.received += received
     role, session, complete = read_answer(greeting.received)
     if complete or not received:
-        found[greeting.number] = Port(greeting.number, role if complete else STRANGER, session, greeting.host)
+        role, hung_up = role if complete else STRANGER, not greeting.received
+        found[greeting.number] = Port(greeting.number, role, session, greeting.host, hung_up)
         waiting.unregister(greeting.socket)
 
 

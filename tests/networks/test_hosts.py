@@ -14,7 +14,7 @@ import zenoh
 from robolink.networks import hosts
 from robolink.networks.asked import FIRST_PORT
 from robolink.networks.hosts import Host, parse, seek
-from robolink.networks.port_probe import PEER, ROUTER, SILENT, STRANGER, Port
+from robolink.networks.port_probe import PEER, ROUTER, SILENT, STRANGER, Port, listening
 from robolink.transport import network
 from robolink.transport.zenoh import ZenohTransport
 from tests.support.domains import free_domain
@@ -80,6 +80,21 @@ def test_a_stranger_at_a_named_port_is_known_at_once() -> None:
 
         done = pool.submit(hang_up)
         assert seek(Host("127.0.0.1", port), 0, within=60.0) == Port(port, STRANGER)
+        done.result()
+
+
+def test_one_that_hangs_up_is_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A router that has too many connections, or ends and starts again, does so, and answers later."""
+    answers = [{7447: Port(7447, STRANGER, hung_up=True)}, {7447: Port(7447, ROUTER, "2")}]
+    monkeypatch.setattr(hosts, "listening", lambda *_, **__: answers.pop(0))
+    assert seek(Host("127.0.0.1", 7447), 0, within=60.0) == Port(7447, ROUTER, "2")
+
+
+def test_one_that_hangs_up_is_known() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server, ThreadPoolExecutor(1) as pool:
+        port = server.getsockname()[1]
+        done = pool.submit(lambda: server.accept()[0].close())
+        assert listening([port], 60.0) == {port: Port(port, STRANGER, hung_up=True)}
         done.result()
 
 

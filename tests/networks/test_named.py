@@ -91,6 +91,7 @@ def test_nobody_answers_there(environ: dict[str, str], monkeypatch: pytest.Monke
     ("port", "said"),
     [
         (Port(8000, STRANGER), "is a program that does not speak Zenoh: is the port right?"),
+        (Port(8000, STRANGER, hung_up=True), "somebody hangs up at once: it starts or ends just now, has too many"),
         (Port(8000, SILENT), "somebody listens and does not answer: is that process stopped (Ctrl-Z), or no robolink"),
         (Port(8000, REFUSES), "is a Zenoh session that refuses this one: it has its most sessions, or is of another"),
     ],
