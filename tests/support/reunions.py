@@ -2,8 +2,9 @@
 
     python -m tests.support.reunions [SCENE ...] [--rounds 20] [--seconds 15]
 
-plays each scene for so many rounds, with KEEP_ALL at 100 Hz, and prints after how many seconds both sides heard
-something new from each other, how many messages were lost, how many of these were counted, and the longest `publish`.
+plays each scene for so many rounds at 100 Hz, with KEEP_ALL and with KEEP_LAST 10, and prints after how many seconds
+both sides heard something new from each other, how many messages were lost, how many of these were counted, whether the
+last ten of the cut and the latched message came, how late the latest was, and how late between two that were not cut.
 """
 
 from __future__ import annotations
@@ -51,6 +52,23 @@ class Reunion(NamedTuple):
     """Seconds: the longest `publish`."""
     latched: bool
     """True if the last latched message came on both sides."""
+    last_ten: bool
+    """True if the first that came afterwards was one of those that KEEP_LAST 10 keeps, or older, and all behind it."""
+    late: float
+    """Seconds: the longest way of a message that came."""
+    beside: float
+    """Seconds: the longest way of a message between two processes of the machine that was not cut."""
+
+    def __str__(self) -> str:
+        return (
+            f"back after {self.back:5.2f} s  lost {self.lost:5} (counted {self.told:5})"
+            f"  last ten {_said(self.last_ten)}  latched {_said(self.latched)}  late {self.late:5.2f} s"
+            f"  beside {self.beside:5.3f} s  publish {self.longest:5.3f} s"
+        )
+
+
+def _said(is_so: bool) -> str:
+    return "yes" if is_so else "NO "
 
 
 def play(
@@ -59,8 +77,12 @@ def play(
     network: str = "subnet",
     settles: float = SETTLES,
     before: Fault | None = None,
+    beside: bool = False,
 ) -> Reunion:
-    """Let two machines publish to each other and something happen; return how they met again."""
+    """Let two machines publish to each other and something happen; return how they met again.
+
+    With `beside` there is a third process, on the second machine, which goes on with the one there.
+    """
     with ExitStack() as stack:
         here, there = stack.enter_context(stalls.two_hosts())
         domain = stack.enter_context(free_domain())
@@ -68,7 +90,8 @@ def play(
             before(here, there)
         environ = _clean() | {"ROS_DOMAIN_ID": str(domain), "ROBOLINK_NETWORK": network}
         diaries = {}
-        for name, other, host in (("a", "b", here), ("b", "a", there)):
+        hosts = [("a", ["b"], here), ("b", ["a", "c"] if beside else ["a"], there), ("c", ["b"], there)]
+        for name, others, host in hosts if beside else hosts[:2]:
             command = [
                 "ip",
                 "netns",
@@ -79,7 +102,7 @@ def play(
                 "tests.support.diary",
                 name,
                 "--others",
-                other,
+                *others,
             ]
             diaries[name] = start(stack, [*command, *options], environ)
         for each in diaries.values():
@@ -105,7 +128,7 @@ def _settle(diaries: dict[str, subprocess.Popen[str]], longest: float) -> None:
 
 
 def _judge(reports: dict[str, Any], begin: float, ended: float, until: float) -> Reunion:
-    worst = Reunion(0.0, 0, 0, 0.0, True)
+    worst = Reunion(0.0, 0, 0, 0.0, True, True, 0.0, 0.0)
     for name, other in ("ab", "ba"):
         sent, heard = reports[other]["sent"], reports[name]["heard"]
         came = dict(heard[other])
@@ -119,8 +142,27 @@ def _judge(reports: dict[str, Any], begin: float, ended: float, until: float) ->
             max(worst.told, reports[name]["told"]),
             max(worst.longest, reports[name]["longest"]),
             worst.latched and latched >= wanted[-1] // 100 * 100,
+            worst.last_ten and _has_last(came, sent, ended),
+            max(worst.late, _latest(came, sent, begin - 1.0)),
+            worst.beside,
         )
-    return worst
+    pairs = (("b", "c"), ("c", "b")) if "c" in reports else ()
+    ways = [_latest(dict(reports[name]["heard"][other]), reports[other]["sent"], begin - 1.0) for name, other in pairs]
+    return worst._replace(beside=max(ways, default=0.0))
+
+
+def _has_last(came: dict[int, float], sent: list[float], ended: float) -> bool:
+    """True if those came that a depth of ten held when the first news of after the cut came; one may be under way."""
+    back = min((at for number, at in came.items() if number < len(sent) and sent[number] > ended), default=0.0)
+    before = [number for number, at in enumerate(sent) if at < back]
+    return len(before) >= 10 and all(number in came for number in before[-9:])
+
+
+def _latest(came: dict[int, float], sent: list[float], begin: float) -> float:
+    """Return the seconds of the longest way."""
+    return max(
+        (at - sent[number] for number, at in came.items() if number < len(sent) and sent[number] > begin), default=0.0
+    )
 
 
 def _clean() -> dict[str, str]:
@@ -188,15 +230,18 @@ def ip(host: str, *words: str) -> None:
 
 
 def scenes(seconds: float) -> dict[str, Callable[[], Reunion]]:
-    """All scenes by name."""
-    keep_all = "--keep-all"
+    """All scenes by name: each cut with KEEP_ALL, and with KEEP_LAST 10."""
+    cuts: dict[str, Callable[..., Reunion]] = {
+        "cable": partial(play, pull_out(seconds), beside=True),
+        "packets": partial(play, swallow(seconds), beside=True),
+        "address": partial(play, move(), beside=True),
+        "both-addresses": partial(play, move(both=True), beside=True),
+        "router": partial(play_router, 2.0),
+    }
     return {
-        "cable": partial(play, pull_out(seconds), keep_all),
-        "packets": partial(play, swallow(seconds), keep_all),
-        "cable-last-10": partial(play, pull_out(seconds)),
-        "address": partial(play, move(), keep_all),
-        "router": partial(play_router, 2.0, keep_all),
-        "both-addresses": partial(play, move(both=True), keep_all),
+        f"{name}{end}": partial(cut, *options)
+        for name, cut in cuts.items()
+        for end, options in (("", ["--keep-all"]), ("-last-10", list[str]()))
     }
 
 
@@ -210,7 +255,7 @@ def main() -> None:
     known = scenes(asked.seconds)
     for name in asked.scenes or known:
         for _ in range(asked.rounds):
-            print(f"{name:15} {known[name]()}", flush=True)  # noqa: T201
+            print(f"{name:22} {known[name]()}", flush=True)  # noqa: T201
 
 
 if __name__ == "__main__":
