@@ -114,8 +114,8 @@ def read(security: Security) -> Security:
 
 
 def fingerprint(security: Security) -> frozenset[tuple[str, int, int]]:
-    """Return names, times and sizes of the files of permissions, and of the own key and certificate."""
-    own = (security.folder / CERTIFICATE, security.folder / KEY)
+    """Return names, times and sizes of the files of permissions, and of the own key, certificate and authority."""
+    own = (security.folder / each for each in (CERTIFICATE, KEY, AUTHORITY))
     found = set()
     for path in (*own, *security.enclaves.rglob(PERMISSIONS)):
         with contextlib.suppress(OSError):  # gone just now

@@ -55,6 +55,16 @@ class Own(NamedTuple):
     key: str
 
 
+class Validity(NamedTuple):
+    """Time in which a certificate counts, in seconds since 1970."""
+
+    begin: float
+    end: float
+    """Its end, or that of its authority if it is earlier."""
+    file: str
+    """File of the certificate that ends first."""
+
+
 def faults(config: zenoh.Config) -> list[str]:
     """Return the errors in a configuration's own files that keep everybody out; none where no TLS is used.
 
@@ -77,8 +87,8 @@ def doubts(config: zenoh.Config) -> list[str]:
     return [doubt for own in _own(config) for doubt in _doubts_of(own, authority)]
 
 
-def end_of(certificate: str, key: str, authority: str) -> float:
-    """Return when a session's certificate ends, or the certificate of its authority, in seconds since 1970.
+def validity_of(certificate: str, key: str, authority: str) -> Validity:
+    """Return when a session's certificate ends, or the certificate of its authority if that is earlier.
 
     Args:
         certificate: Its file; the session uses it to listen and to connect.
@@ -91,8 +101,8 @@ def end_of(certificate: str, key: str, authority: str) -> float:
     uses = [Own(use, certificate, key) for use in ("listen", "connect")]
     with contextlib.suppress(OSError, ValueError):  # of which SSLError is one
         for each in _in_pem(authority):
-            if end := _end_under(uses[0], each):
-                return end
+            if valid := _valid_under(uses[0], each, authority):
+                return valid
     raise SecurityError(_why_refused(uses, authority))
 
 
@@ -168,23 +178,25 @@ def _why_refused(uses: Sequence[Own], authority: str) -> str:
     return f"root_ca_certificate {authority} {why}"
 
 
-def _end_under(own: Own, authority: str) -> float:
-    """Return the end of a certificate, or of the authority that has signed it if that is earlier; 0 if it has not."""
+def _valid_under(own: Own, authority: str, file: str) -> Validity | None:
+    """Return the validity of a certificate if an authority, which is from this file, has signed it; else None."""
     import ssl
 
     server, client = _sides(own)
     for side in (server, client):  # a handshake that judges it for both uses
         _trust(side, authority)
     try:
-        shown = _shake_hands(server, client).getpeercert()
+        shown: Mapping[str, Any] = _shake_hands(server, client).getpeercert() or {}
     except ssl.SSLError:
-        return 0.0
-    return min(_end(each) for each in (shown, *client.get_ca_certs()) if each)
+        return None
+    begin, end = _time(shown["notBefore"]), _time(shown["notAfter"])
+    last = min((_time(each["notAfter"]) for each in client.get_ca_certs()), default=end)
+    return Validity(begin, end, own.certificate) if end <= last else Validity(begin, last, file)
 
 
-def _end(shown: Mapping[str, Any]) -> float:
+def _time(text: Any) -> float:
     """Return the time of `Jan  5 09:34:43 2036 GMT`; `ssl.cert_time_to_seconds` imports strptime and locales, 10 ms."""
-    month, day, clock, year, _ = shown["notAfter"].split()
+    month, day, clock, year, _ = text.split()
     midnight = datetime.datetime(int(year), _MONTHS.index(month) // 3 + 1, int(day), tzinfo=datetime.timezone.utc)
     hours, minutes, seconds = map(int, clock.split(":"))
     return midnight.timestamp() + 3600 * hours + 60 * minutes + seconds

@@ -6,6 +6,7 @@ Zenoh drops what is denied in silence. So the rights are looked at here, before 
 from __future__ import annotations
 
 import functools
+import time
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -61,15 +62,17 @@ class _Keys:
         """Use others from now on; raises SecurityError, and changes nothing, where nobody would let a session in."""
         files = (str(security.folder / each) for each in (CERTIFICATE, KEY, session.AUTHORITY))
         try:
-            self.end = certificates.end_of(*files)
+            self.valid = certificates.validity_of(*files)
         except SecurityError as error:
             raise SecurityError(f"enclave '{security.enclave}': {error}") from None
         self.security = security
         self.refusal = functools.lru_cache(maxsize=1024)(security.rights.refusal)
 
     def secure(self, config: zenoh.Config) -> None:
-        """Close a configuration to whoever has no keys."""
+        """Close a configuration to whoever has no keys, and to everybody once the certificate has ended."""
         securing.secure(self.security, config)
+        if time.time() >= self.valid.end:
+            securing.isolate(config)
 
 
 class SecuredTransport(ZenohTransport):
@@ -100,10 +103,15 @@ class SecuredTransport(ZenohTransport):
     def renew(self) -> None:
         """Go on with the permissions and keys that the keystore has now, behind the same handles; takes some seconds.
 
-        Raises SecurityError, and changes nothing, where they allow no session.
+        Raises SecurityError, and changes nothing, where they allow no session; TransportError where nobody is met.
         """
         self._keys.take(session.read(self._keys.security))
         self.reopen()
+
+    @property
+    def validity(self) -> certificates.Validity:
+        """Time in which its certificate counts."""
+        return self._keys.valid
 
     @property
     def has_left(self) -> bool:

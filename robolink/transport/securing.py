@@ -15,10 +15,23 @@ from robolink.transport.reach import reach
 if TYPE_CHECKING:
     import zenoh
 
+_NOWHERE = {
+    "listen/endpoints": "[]",
+    "connect/endpoints": "[]",
+    "scouting/multicast/enabled": "false",
+    "mode": '"peer"',
+}
+
 
 def secure(security: Security, config: zenoh.Config) -> None:
     """Change a session's configuration by its keys and rights: see `robolink.security.session.secure`."""
     session.secure(config, security, reach(config).interfaces)
+
+
+def isolate(config: zenoh.Config) -> None:
+    """Change a session's configuration so that it neither listens nor goes anywhere."""
+    for path, value in _NOWHERE.items():
+        config.insert_json5(path, value)
 
 
 def secure_as(domain: int, environ: Mapping[str, str]) -> Callable[[zenoh.Config], None] | None:

@@ -332,7 +332,7 @@ def _join(
         config = load()
         within = reach(config)
         moves = within.leaves_machine
-        if found.meets:
+        if found.meets and within.listens:  # not if it goes nowhere, its certificate having ended
             joined = _meet(port, lambda holds: zenoh.open(load(True) if holds else config), within)
             network.await_host(joined.session, found)
             return joined._replace(moves=moves)

@@ -20,7 +20,9 @@ DAY = 86400.0
 
 
 def end_of(folder: Path) -> float:
-    return certificates.end_of(*(str(folder / name) for name in ("cert.pem", "key.pem", "identity_ca.cert.pem")))
+    return certificates.validity_of(
+        *(str(folder / name) for name in ("cert.pem", "key.pem", "identity_ca.cert.pem"))
+    ).end
 
 
 def now() -> float:

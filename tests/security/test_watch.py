@@ -6,6 +6,7 @@ import pytest
 
 from robolink.exceptions import TransportError
 from robolink.transport import permission_watch
+from robolink.transport.certificates import Validity
 from tests.support.waits import wait_until
 
 
@@ -13,6 +14,7 @@ class Fickle:
     """A session whose files cannot be read at first, and that fails to be renewed twice."""
 
     enclave, has_left = "/robot", False
+    validity = Validity(0.0, float("inf"), "cert.pem")
 
     def __init__(self) -> None:
         self.looks = self.renewals = 0
@@ -29,6 +31,9 @@ class Fickle:
         self.renewals += 1
         if self.renewals < 3:
             raise TransportError("the port is taken")
+
+    def reopen(self) -> None:
+        """Do nothing."""
 
 
 def test_a_renewal_that_fails_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
