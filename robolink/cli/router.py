@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -46,21 +46,29 @@ def router(
     there = [endpoint_of(each, "--connect") for each in connect or []]
     try:
         with running(here, there) as it:
-            say("\n".join(opening(here, there)))
+            say("\n".join(opening(it.listens, it.connects, it.enclave)))
             report(it.links, say, faults=it.faults)
     except KeyboardInterrupt:
         say("the router has ended")
 
 
-def opening(listens: list[str], connects: list[str]) -> list[str]:
-    """Return what a router says first: where it listens, and who can reach it there."""
+def opening(listens: Sequence[str], connects: Sequence[str], enclave: str = "") -> list[str]:
+    """Return what a router says first: where it listens, and who can reach it there.
+
+    Args:
+        listens: Endpoints on which it listens.
+        connects: Endpoints to which it connects.
+        enclave: Its enclave; '' without security, where nobody needs keys.
+    """
     from robolink.transport.reach import on_this_machine
 
     far = [each for each in listens if not on_this_machine(each)]
     lines = [f"robolink router: listens at {', '.join(listens)}; Ctrl-C ends it"]
-    if far:
+    if enclave:
+        lines.append(f"only enclaves of the keystore of '{enclave}' get in, each with its rights (docs/security.md)")
+    elif far:
         lines.append("whoever reaches it there may hear and command all nodes behind it (docs/networks.md)")
-    else:
+    if not far:
         lines.append("only this machine reaches it; --listen lan opens it to others")
     return [*lines, *(f"connects to {each}" for each in connects)]
 

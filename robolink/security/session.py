@@ -60,7 +60,7 @@ def wanted(environ: Mapping[str, str], domain: int, enclave: str | None = None) 
     """Return the security that the environment asks for; None where it asks for none.
 
     Args:
-        environ: Environment: ROS_SECURITYENABLE, _KEYSTORE, _STRATEGY and _ENCLAVE_OVERRIDE.
+        environ: Environment: ROS_SECURITY_ENABLE, _KEYSTORE, _STRATEGY and _ENCLAVE_OVERRIDE.
         domain: Domain of the session.
         enclave: Enclave of `--enclave`; None is `/`.
 

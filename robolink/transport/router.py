@@ -14,8 +14,10 @@ from robolink.exceptions import TransportError
 from robolink.networks import limits
 from robolink.networks.asked import domain_id
 from robolink.networks.router import router_settings
+from robolink.security.session import Security
 from robolink.transport import lifetime, securing
 from robolink.transport import zenoh_declare as declare
+from robolink.transport.enclave_keys import Keys
 from robolink.transport.network import reason
 from robolink.transport.port_sharing import PortClaim, is_taken
 from robolink.transport.reach import Link, links_of, port_of, reach
@@ -26,20 +28,46 @@ CLOSE_WITHIN = 0.5
 
 
 class Router:
-    """A running router; made by `running`."""
+    """A running router; made by `running`.
 
-    def __init__(self, connects: Sequence[str]) -> None:
-        self._connects = connects
+    Args:
+        listen: Zenoh's endpoints on which it listens.
+        connect: Those to which it connects.
+        security: Keys and rights; None for a router without.
+
+    Raises:
+        SecurityError: where nobody would let a router with these keys in.
+    """
+
+    def __init__(self, listen: Sequence[str], connect: Sequence[str], security: Security | None) -> None:
+        self._asked = listen, connect
+        self._keys = Keys(security) if security else None
+        self._reach = reach(self._config())
         self._sessions: list[zenoh.Session] = []
         lifetime.watch_over(self)
 
-    def open(self, config: zenoh.Config) -> None:
+    @property
+    def enclave(self) -> str:
+        """Its enclave; '' without security."""
+        return self._keys.security.enclave if self._keys else ""
+
+    @property
+    def listens(self) -> Sequence[str]:
+        """Endpoints on which it listens: those of TLS, if it has keys."""
+        return self._reach.listens
+
+    @property
+    def connects(self) -> Sequence[str]:
+        """Endpoints to which it connects."""
+        return self._reach.connects
+
+    def open(self) -> None:
         """Open its session; raises ZError. A Ctrl-C meanwhile must not free it, since closing may take 10 s."""
-        self._sessions.extend(map(zenoh.open, [config]))  # one step of C
+        self._sessions.extend(map(zenoh.open, [self._config()]))  # one step of C
 
     def links(self) -> list[Link]:
         """Return the connections to others."""
-        return links_of(self._sessions[0])
+        return links_of(self._sessions[-1])
 
     def close(self) -> None:
         """Leave the network. Safe to call twice."""
@@ -53,7 +81,15 @@ class Router:
 
     def faults(self) -> list[str]:
         """Return a line for each router to connect to that it is not linked to; each takes a second at most."""
-        return faults(self._connects, str(self._sessions[0].info.zid()), self.links())
+        return faults(self.connects, str(self._sessions[-1].info.zid()), self.links())
+
+    def _config(self) -> zenoh.Config:
+        config: zenoh.Config = zenoh.Config.from_json5(json.dumps(router_settings(*self._asked)))
+        if limited := limits.wanted(os.environ):
+            limits.apply(config, limited, domain_id(os.environ))
+        if self._keys:
+            self._keys.secure(config)
+        return config
 
 
 @contextlib.contextmanager
@@ -68,10 +104,7 @@ def running(listen: Sequence[str], connect: Sequence[str]) -> Iterator[Router]:
         TransportError: if a port is taken, or if it cannot listen there; SecurityError if the environment asks for
             security, and keys are missing.
     """
-    config = zenoh.Config.from_json5(json.dumps(router_settings(listen, connect)))
-    if limited := limits.wanted(os.environ):
-        limits.apply(config, limited, domain_id(os.environ))
-    securing.secure_router(config, os.environ)
+    router = Router(listen, connect, securing.router_security(os.environ))
     with contextlib.ExitStack() as stack:
         for each in listen:
             claim = PortClaim(port_of(each))
@@ -81,10 +114,9 @@ def running(listen: Sequence[str], connect: Sequence[str]) -> Iterator[Router]:
                     f"{each} is taken, perhaps by another router ('robolink doctor' says by whom): "
                     "stop that one, use it, or choose another port with --listen HOST:PORT"
                 )
-        router = Router(reach(config).connects)
         stack.callback(router.close)
         try:
-            router.open(config)
+            router.open()
         except zenoh.ZError as error:
             raise TransportError(f"cannot listen at {' and '.join(listen)}: {reason(error)}") from None
         yield router

@@ -5,24 +5,19 @@ Zenoh drops what is denied in silence. So the rights are looked at here, before 
 
 from __future__ import annotations
 
-import functools
-import time
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from robolink.exceptions import SecurityError, TransportError, WireError
 from robolink.logging import get_logger
 from robolink.qos import QoSProfile
 from robolink.security import session
-from robolink.security.keystore import CERTIFICATE, KEY
 from robolink.security.session import Security
-from robolink.transport import certificates, network, permission_watch, securing
+from robolink.transport import certificates, network, permission_watch
 from robolink.transport.base import Handle, Outlet, Sample, Sink
+from robolink.transport.enclave_keys import Keys
 from robolink.transport.zenoh import ZenohTransport
 from robolink.wire import parse_token
-
-if TYPE_CHECKING:
-    import zenoh
 
 
 def open_session(domain: int, asked: str | None, environ: Mapping[str, str], enclave: str | None) -> ZenohTransport:
@@ -49,32 +44,6 @@ def open_session(domain: int, asked: str | None, environ: Mapping[str, str], enc
     return SecuredTransport(security, asked, {**environ, session.OVERRIDE: security.enclave})
 
 
-class _Keys:
-    """Keys and rights of a session at present. They do not refer to it, so that it is freed when nobody holds it.
-
-    Raises SecurityError where nobody would let a session with these keys in.
-    """
-
-    def __init__(self, security: Security) -> None:
-        self.take(security)
-
-    def take(self, security: Security) -> None:
-        """Use others from now on; raises SecurityError, and changes nothing, where nobody would let a session in."""
-        files = (str(security.folder / each) for each in (CERTIFICATE, KEY, session.AUTHORITY))
-        try:
-            self.valid = certificates.validity_of(*files)
-        except SecurityError as error:
-            raise SecurityError(f"enclave '{security.enclave}': {error}") from None
-        self.security = security
-        self.refusal = functools.lru_cache(maxsize=1024)(security.rights.refusal)
-
-    def secure(self, config: zenoh.Config) -> None:
-        """Close a configuration to whoever has no keys, and to everybody once the certificate has ended."""
-        securing.secure(self.security, config)
-        if time.time() >= self.valid.end:
-            securing.isolate(config)
-
-
 class SecuredTransport(ZenohTransport):
     """A session of an enclave, which refuses what the enclave has no right to.
 
@@ -86,7 +55,7 @@ class SecuredTransport(ZenohTransport):
 
     def __init__(self, security: Security, asked: str | None, environ: Mapping[str, str]) -> None:
         self.enclave = security.enclave
-        self._keys = _Keys(security)
+        self._keys = Keys(security)
         domain = security.rights.domain
         try:
             super().__init__(domain, asked, environ, self._keys.secure)

@@ -6,6 +6,7 @@ import functools
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
+from robolink.logging import get_logger
 from robolink.networks.asked import domain_id
 from robolink.security import session
 from robolink.security.keystore import ROUTER
@@ -48,11 +49,16 @@ def secure_as(domain: int, environ: Mapping[str, str]) -> Callable[[zenoh.Config
     return None if security is None else functools.partial(secure, security)
 
 
-def secure_router(config: zenoh.Config, environ: Mapping[str, str]) -> None:
-    """Change a router's configuration as the environment asks; its enclave is `/router` unless that names another.
+def router_security(environ: Mapping[str, str]) -> Security | None:
+    """Return the security of a router; None where the environment asks for none, or has no keys and is Permissive.
 
-    It passes on what each enclave may send, in the domain of ROS_DOMAIN_ID and in no other.
+    Its enclave is `/router` unless the environment names another. It passes on what each enclave may send, in the
+    domain of ROS_DOMAIN_ID and in no other. Raises SecurityError where it must have keys and cannot.
     """
-    named = {session.OVERRIDE: environ.get(session.OVERRIDE) or ROUTER}
-    if change := secure_as(domain_id(environ), {**environ, **named}):
-        change(config)
+    security = session.wanted(environ, domain_id(environ), ROUTER)
+    if security is None and session.is_on(environ):
+        get_logger("security").warning(
+            f"enclave '{environ.get(session.OVERRIDE) or ROUTER}' has no keys, and "
+            "ROS_SECURITY_STRATEGY is not Enforce: this router is open to everybody"
+        )
+    return security

@@ -57,6 +57,15 @@ def test_it_says_who_can_reach_it() -> None:
     ]
 
 
+def test_it_says_who_gets_in_with_keys() -> None:
+    assert router.opening(["tls/0.0.0.0:7447"], ["tls/10.0.0.1:7447"], "/router") == [
+        "robolink router: listens at tls/0.0.0.0:7447; Ctrl-C ends it",
+        "only enclaves of the keystore of '/router' get in, each with its rights (docs/security.md)",
+        "connects to tls/10.0.0.1:7447",
+    ]
+    assert router.opening(["tls/127.0.0.1:7447"], [], "/router")[2].startswith("only this machine reaches it")
+
+
 def test_who_comes_and_goes() -> None:
     peer = Link("peer", "tcp/127.0.0.1:7447", "tcp/127.0.0.1:5000", "aaaaaaaabbbb")
     looks: Iterator[list[Link]] = iter([[], [peer], [peer], []])

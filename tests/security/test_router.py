@@ -43,7 +43,9 @@ def key(name: str) -> str:
 def test_a_router_passes_on_what_an_enclave_may_send(store: Keystore) -> None:
     store.create_enclave("/router")
     port = free_port()
-    with router.running([f"tcp/127.0.0.1:{port}"], []):
+    with router.running([f"tcp/127.0.0.1:{port}"], ["tcp/127.0.0.1:1"]) as running:
+        assert (running.listens, running.connects) == ((f"tls/127.0.0.1:{port}",), ("tls/127.0.0.1:1",))
+        assert running.enclave == "/router"
         place = f"tls/127.0.0.1:{port}"
         robot = connect("zenoh://", 0, network=place, enclave="/robot")
         student = connect("zenoh://", 0, network=place, enclave="/student")
@@ -70,3 +72,16 @@ def test_a_router_passes_on_what_an_enclave_may_send(store: Keystore) -> None:
 def test_a_router_without_keys_does_not_start(store: Keystore) -> None:
     with pytest.raises(SecurityError, match="enclave '/router' has no keys"), router.running(["tcp/127.0.0.1:1"], []):
         pass
+
+
+def test_a_router_that_is_permissive_says_that_it_is_open(
+    store: Keystore, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("ROS_SECURITY_STRATEGY", "Permissive")
+    with router.running([f"tcp/127.0.0.1:{free_port()}"], []) as running:
+        assert running.enclave == ""
+        assert running.listens[0].startswith("tcp/")
+    said = capsys.readouterr().err
+    assert "enclave '/router' has no keys" in said
+    assert "this router is open to everybody" in said
+    assert said.count("\n") == 1
