@@ -47,7 +47,7 @@ def router(
     try:
         with running(here, there) as it:
             say("\n".join(opening(it.listens, it.connects, it.enclave)))
-            report(it.links, say, faults=it.faults)
+            report(it.links, say, faults=it.faults, follow=it.follow)
     except KeyboardInterrupt:
         say("the router has ended")
 
@@ -78,6 +78,7 @@ def report(
     say: Callable[[str], object],
     pause: Callable[[float], object] = time.sleep,
     faults: Callable[[], Iterable[str]] = tuple,
+    follow: Callable[[], object] = tuple,
 ) -> None:
     """Report who has come and who has gone, for ever.
 
@@ -86,9 +87,11 @@ def report(
         say: Function that says a line.
         pause: Function that waits so many seconds.
         faults: Function that returns what is wrong with the routers to connect to; called once, after some seconds.
+        follow: Function that is called before each look: it takes over permissions and keys that have changed.
     """
     known: dict[str, str] = {}
     for look in itertools.count(1):
+        follow()
         present = {each.session: f"{each.role} {each.session[:8]} from {each.there}" for each in links()}
         for session, text in present.items():
             if session not in known:

@@ -57,13 +57,13 @@ class Renewable(Protocol):
 
 def watch(session: Renewable) -> None:
     """Call `session.renew` when its files have changed, on a background thread, for as long as it is open."""
-    watched = _Watch(session)
+    watched = Watch(session)
     thread = threading.Thread(target=watched.run, name="robolink permissions", daemon=True)
     with contextlib.suppress(RuntimeError):  # Python 3.12 starts no threads any more at exit
         thread.start()
 
 
-class _Watch:
+class Watch:
     """The looks at the files of one session, which it does not keep alive."""
 
     def __init__(self, session: Renewable) -> None:
@@ -75,15 +75,14 @@ class _Watch:
 
     def run(self) -> None:
         """Look until the session is closed, or nobody has it any more."""
-        while True:
-            session = self._session()
-            if session is None or session.has_left:
-                return
-            self._look(session)
-            del session  # not kept alive while this sleeps
+        while self.look():
             time.sleep(LOOKS_EVERY)
 
-    def _look(self, session: Renewable) -> None:
+    def look(self) -> bool:
+        """Look once, and renew the session if its files have changed; return False once it is closed."""
+        session = self._session()
+        if session is None or session.has_left:
+            return False
         with contextlib.suppress(OSError):  # files that come and go just now: the next look sees them
             now = session.fingerprint()
             if now != self._seen:
@@ -92,6 +91,7 @@ class _Watch:
                 if self._renew(session):
                     self._seen = now  # else who was withdrawn would stay in for good: the next look tries again
         self._judge(session)
+        return True
 
     def _renew(self, session: Renewable) -> bool:
         """Renew a session; return whether it could be. Why it cannot be is told once."""
@@ -100,7 +100,7 @@ class _Watch:
             session.renew()
         except TransportError as error:
             if (why := str(error)) != self._told and not session.has_left:
-                logger.error(f"permissions or keys have changed, and this session goes on with the former ones: {why}")
+                logger.error(f"permissions or keys have changed, and do not count yet: {why}")
             self._told = why
             return False
         self._told, self._has_ended = "", time.time() >= session.validity.end

@@ -6,6 +6,7 @@ import contextlib
 import functools
 import json
 import os
+import time
 from collections.abc import Iterator, Sequence
 
 import zenoh
@@ -14,9 +15,11 @@ from robolink.exceptions import TransportError
 from robolink.networks import limits
 from robolink.networks.asked import domain_id
 from robolink.networks.router import router_settings
+from robolink.security import session
 from robolink.security.session import Security
-from robolink.transport import lifetime, securing
+from robolink.transport import lifetime, permission_watch, securing
 from robolink.transport import zenoh_declare as declare
+from robolink.transport.certificates import Validity
 from robolink.transport.enclave_keys import Keys
 from robolink.transport.network import reason
 from robolink.transport.port_sharing import PortClaim, is_taken
@@ -25,6 +28,9 @@ from robolink.transport.router_faults import faults
 
 CLOSE_WITHIN = 0.5
 """Longest `close`, in seconds; then it goes on in the background, for 10 s if a handshake is not answered."""
+
+REOPENS_WITHIN, REOPENS_EVERY = 10.0, 0.05
+"""Longest wait for the own ports to be free again, and interval of the attempts to listen there, in seconds."""
 
 
 class Router:
@@ -42,14 +48,13 @@ class Router:
     def __init__(self, listen: Sequence[str], connect: Sequence[str], security: Security | None) -> None:
         self._asked = listen, connect
         self._keys = Keys(security) if security else None
+        self.enclave = security.enclave if security else ""
+        """Its enclave; '' without security."""
         self._reach = reach(self._config())
         self._sessions: list[zenoh.Session] = []
+        self.has_left = False
+        self._watch = permission_watch.Watch(self) if security else None
         lifetime.watch_over(self)
-
-    @property
-    def enclave(self) -> str:
-        """Its enclave; '' without security."""
-        return self._keys.security.enclave if self._keys else ""
 
     @property
     def listens(self) -> Sequence[str]:
@@ -66,14 +71,59 @@ class Router:
         self._sessions.extend(map(zenoh.open, [self._config()]))  # one step of C
 
     def links(self) -> list[Link]:
-        """Return the connections to others."""
-        return links_of(self._sessions[-1])
+        """Return the connections to others; none while its session could not be opened again."""
+        return [] if self._sessions[-1].is_closed() else links_of(self._sessions[-1])
 
     def close(self) -> None:
         """Leave the network. Safe to call twice."""
+        self.has_left = True
+        self._close_sessions()
+        lifetime.forget(self)
+
+    def follow(self) -> None:
+        """Go on with the permissions and keys of the files, if they have changed: every link is made anew then."""
+        if self._watch:
+            self._watch.look()
+
+    def fingerprint(self) -> object:
+        """Return something that differs as soon as permissions or keys have changed."""
+        return session.fingerprint(self._secured.security)
+
+    @property
+    def validity(self) -> Validity:
+        """Time in which its certificate counts."""
+        return self._secured.valid
+
+    def renew(self) -> None:
+        """Go on with the permissions and keys that the keystore has now.
+
+        Raises SecurityError, and changes nothing, where they allow no router; TransportError as `reopen` does.
+        """
+        self._secured.take(session.read(self._secured.security))
+        self.reopen()
+
+    def reopen(self) -> None:
+        """Go on in a new session at the same ports; raises TransportError where they are not free in time."""
+        self._close_sessions()
+        deadline = time.monotonic() + REOPENS_WITHIN
+        while True:
+            try:
+                self.open()
+                del self._sessions[:-1]
+                return
+            except zenoh.ZError as error:
+                if time.monotonic() > deadline:
+                    raise TransportError(f"cannot listen at {' and '.join(self.listens)}: {reason(error)}") from None
+            time.sleep(REOPENS_EVERY)
+
+    @property
+    def _secured(self) -> Keys:
+        assert self._keys, "only a router with keys is watched"
+        return self._keys
+
+    def _close_sessions(self) -> None:
         for each in self._sessions:
             lifetime.finish(functools.partial(declare.close_session, each), CLOSE_WITHIN)
-        lifetime.forget(self)
 
     def disown(self) -> None:
         """Refuse every further use in a forked child."""

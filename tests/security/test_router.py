@@ -15,6 +15,7 @@ from robolink.transport import connect, router
 from robolink.transport.zenoh import ZenohTransport
 from robolink.wire import DataKey, format_key
 from tests.support.ports import free_port
+from tests.support.waits import wait_until
 
 pytest.importorskip("cryptography", reason="needs the extra `security`")
 
@@ -84,4 +85,43 @@ def test_a_router_that_is_permissive_says_that_it_is_open(
     said = capsys.readouterr().err
     assert "enclave '/router' has no keys" in said
     assert "this router is open to everybody" in said
+    assert said.count("\n") == 1
+
+
+def test_a_router_follows_its_permissions(store: Keystore, capsys: pytest.CaptureFixture[str]) -> None:
+    store.create_enclave("/router")
+    port = free_port()
+    with router.running([f"tcp/127.0.0.1:{port}"], []) as running:
+        place = f"tls/127.0.0.1:{port}"
+        robot, student = (connect("zenoh://", 0, network=place, enclave=each) for each in ("/robot", "/student"))
+        try:
+            heard: queue.SimpleQueue[object] = queue.SimpleQueue()
+            robot.subscribe(key("/cmd_vel"), QOS, heard.put)
+            assert isinstance(student, ZenohTransport)
+            outlet = ZenohTransport.advertise(student, key("/cmd_vel"), QOS)
+            store.permit("/student", [Rule("publish", True, "/cmd_vel")])
+
+            def is_heard() -> bool:
+                running.follow()
+                outlet.put(b"its turn", b"")
+                return not heard.empty()
+
+            wait_until(is_heard, LONG)
+        finally:
+            student.close()
+            robot.close()
+    assert "enclave '/router': permissions or keys have changed, and count from now on" in capsys.readouterr().err
+
+
+def test_a_router_whose_new_files_are_broken_goes_on_as_it_was(
+    store: Keystore, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = store.create_enclave("/router")
+    with router.running([f"tcp/127.0.0.1:{free_port()}"], []) as running:
+        (folder / "permissions.xml").write_text("no permissions")
+        for _ in range(3):
+            running.follow()
+        assert running.links() == []
+    said = capsys.readouterr().err
+    assert "permissions or keys have changed, and do not count yet: enclave '/router': " in said
     assert said.count("\n") == 1
