@@ -84,7 +84,8 @@ def wanted(environ: Mapping[str, str], domain: int, enclave: str | None = None) 
             return None
         known = [enclave_of(each, enclaves) for each in enclaves.rglob(KEY)]
         raise SecurityError(
-            f"enclave '{name}' has no keys in {store}{nearest(name, known)}: {folder / KEY} is not there"
+            f"enclave '{name}' has no keys in {store}{nearest(name, known)}: make them with "
+            f"'robolink security create_enclave KEYSTORE {name}', or name another by {OVERRIDE}"
         )
     return _loaded(name, folder, enclaves, domain)
 

@@ -93,7 +93,8 @@ def test_an_enclave_without_keys_is_found(home: Path, store: Keystore) -> None:
     [mistake] = found(home, SYSTEM.replace("/driver", "/drivr")).mistakes
     assert str(mistake) == (
         f"{home}/configs/lap.yaml:4:39: nodes[1].enclave: 'driver' cannot be started: enclave '/drivr' has no keys in "
-        f"{store.path} (did you mean '/driver'?): {store.path / 'enclaves' / 'drivr' / 'key.pem'} is not there"
+        f"{store.path} (did you mean '/driver'?): make them with "
+        "'robolink security create_enclave KEYSTORE /drivr', or name another by ROS_SECURITY_ENCLAVE_OVERRIDE"
     )
     assert "enclave '/' has no keys" in str(found(home, "nodes: [node: mine]\n").mistakes[0])
 
