@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -145,11 +146,14 @@ def valid_for(seconds: float, *, before: float = 100 * DAY) -> Validity:
 
 
 def watched(session: Renewed, monkeypatch: pytest.MonkeyPatch, until: int) -> None:
-    """Watch a session until it has been renewed so often, and has been looked at once more."""
+    """Watch a session until it has been renewed so often, and nobody looks any more: a look's line may come last."""
     monkeypatch.setattr(permission_watch, "LOOKS_EVERY", 0.01)
+    before = {*threading.enumerate()}
     permission_watch.watch(session)
     wait_until(lambda: session.renewed >= until, LONG)
     session.has_left = True
+    for thread in {*threading.enumerate()} - before:
+        thread.join(LONG)
 
 
 def test_a_key_and_its_certificate_that_come_one_by_one_are_taken_together(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 
 from robolink.exceptions import TransportError
@@ -38,10 +40,12 @@ class Fickle:
 
 def test_a_renewal_that_fails_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(permission_watch, "LOOKS_EVERY", 0.005)
-    session = Fickle()
+    session, before = Fickle(), {*threading.enumerate()}
     try:
         permission_watch.watch(session)
         wait_until(lambda: session.looks > 8)
     finally:
         session.has_left = True
+    for thread in {*threading.enumerate()} - before:
+        thread.join(60.0)  # its last line may come late
     assert session.renewals == 3
