@@ -59,6 +59,14 @@ def most_pending() -> int:
     return MOST_PENDING if files == resource.RLIM_INFINITY else min(MOST_PENDING, files // 2)
 
 
+HEARTBEATS = {"congestion_control": "drop", "priority": "data_high"}
+"""Options of the messages by which a latched topic's publisher tells its last number: others see what they lost.
+
+Zenoh sends them on the one thread that serves all links which a session has dialed, and has them wait for room in a
+full buffer, for 5 s: a machine out of reach stopped for so long what came from the others. Dropped instead, in a buffer
+that little else uses, they stop nothing, and pass beside what fills a slow link.
+"""
+
 _PATIENCE = {"wait_before_drop": WAIT_BEFORE_DROP_US, "max_wait_before_drop_fragments": WAIT_FOR_THE_REST_US}
 
 _BASE: dict[str, Any] = {
@@ -77,6 +85,7 @@ _BASE: dict[str, Any] = {
         },
     },
     "adminspace": {"enabled": False},
+    "qos": {"publication": [{"key_exprs": ["**/@adv/**"], "config": HEARTBEATS}]},
 }
 
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import queue
 import threading
 from pathlib import Path
 
 import pytest
+import zenoh
 
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.transport import lifetime
 from robolink.transport.zenoh import ZenohTransport
 from tests.support.programs import Program
+from tests.support.transports import CHATTER, PATIENCE
 
 LATCHED = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -64,3 +67,18 @@ def test_the_exit_waits_for_every_thread_that_is_inside_zenoh(domain: int) -> No
     for thread in started:
         thread.join(30.0)
         assert not thread.is_alive()
+
+
+def test_what_tells_a_latched_topics_last_number_waits_for_no_full_link(domain: int) -> None:
+    """Zenoh's own would stop, for 5 s, all that comes by links which its session has dialed."""
+    transport = ZenohTransport(domain)
+    arrived: queue.SimpleQueue[zenoh.Sample] = queue.SimpleQueue()
+    heartbeats = transport._session.declare_subscriber(f"{CHATTER}/@adv/pub/**", arrived.put)
+    transport.advertise(CHATTER, LATCHED).put(b"x", b"")
+    try:
+        heartbeat = arrived.get(timeout=PATIENCE)
+        assert heartbeat.congestion_control == zenoh.CongestionControl.DROP
+        assert heartbeat.priority == zenoh.Priority.DATA_HIGH  # not in the buffer that images fill
+    finally:
+        heartbeats.undeclare()
+        transport.close()
