@@ -1,7 +1,4 @@
-"""Watch of this machine's addresses and connections: a session must know when it has to be opened again.
-
-Others find it by an address, which may change; and a connection may stand still though packets pass again.
-"""
+"""Watch of this machine's addresses: a session that others find by an address must know when it gets another one."""
 
 from __future__ import annotations
 
@@ -15,7 +12,6 @@ from typing import TYPE_CHECKING, Protocol
 
 from robolink.transport.lifetime import all_of
 from robolink.transport.reach import host_of, mode_of, port_of, read
-from robolink.transport.stuck_links import Waiting, waiting
 
 if TYPE_CHECKING:
     import zenoh
@@ -38,9 +34,6 @@ class Movable(Protocol):
     def move(self, addresses: frozenset[str]) -> object:
         """Go on from these addresses, if any of them is new; must not block for long."""
 
-    def unstick(self, waiting: list[Waiting]) -> object:
-        """Go on by other connections, if it has some of these and they could be there; must not block for long."""
-
 
 def current() -> frozenset[str]:
     """Return this machine's IPv4 addresses but for loopback's: Zenoh's discovery uses no others."""
@@ -52,7 +45,7 @@ def current() -> frozenset[str]:
 
 
 def watch(session: Movable) -> None:
-    """Call `session.move` and `session.unstick` again and again, on a background thread, for as long as it exists."""
+    """Call `session.move` with each new set of addresses, on a background thread, for as long as it exists."""
     global _thread
     with _lock:
         _watched.add(session)
@@ -84,9 +77,6 @@ def _look() -> None:
             known = now
             for session in sessions:
                 session.move(now)
-        stuck = waiting()
-        for session in sessions:
-            session.unstick(stuck)
         del sessions  # not kept alive while this sleeps
         time.sleep(LOOKS_EVERY)
 

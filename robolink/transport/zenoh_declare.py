@@ -74,11 +74,11 @@ def declare_subscriber(session: zenoh.Session, key: str, gate: Sink, qos: QoSPro
         recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if reliable else None,
         subscriber_detection=True,
     )
-    follow(subscriber.handler, gate, "robolink latched")
+    _follow(subscriber.handler, gate, "robolink latched")
     return subscriber
 
 
-def follow(channel: Any, sink: Sink, name: str) -> None:
+def _follow(channel: Any, sink: Sink, name: str) -> None:
     """Pass items of a channel to the sink, on a background thread, until the channel's declaration is gone.
 
     Zenoh would start such a thread too, but nobody could wait for that one, and it aborts a process whose interpreter
@@ -136,7 +136,7 @@ def declare_watch(session: zenoh.Session, pattern: str, changed: Sink) -> tuple[
     Returns the gate that leads to it, too.
     """
     watch, feed = _declare_tokens(session, pattern, zenoh.handlers.FifoChannel(MOST_BETWEEN)), make_gate(changed)
-    follow(watch.handler, feed, "robolink watch")
+    _follow(watch.handler, feed, "robolink watch")
     return watch, feed
 
 

@@ -20,9 +20,7 @@ from robolink.exceptions import TransportError
 from robolink.logging import get_logger
 from robolink.system.queues import get_within
 from robolink.transport import lifetime
-from robolink.transport.port_sharing import PortClaim
-from robolink.transport.reach import Link, host_of, port_of
-from robolink.transport.stuck_links import Place, Probes, Waiting
+from robolink.transport.reach import Link, host_of
 from robolink.transport.zenoh_declare import ask
 from robolink.transport.zenoh_handles import Declared, Holdings, ZenohSubscription
 from robolink.transport.zenoh_tokens import ZenohWatch
@@ -67,18 +65,6 @@ class Former:
         lifetime.leak((self._session, self.entities))
 
 
-class Joined(NamedTuple):
-    """A session that has joined a network."""
-
-    session: Any
-    claim: PortClaim | None = None
-    holds_port: bool = False
-    moves: bool = False
-    """True if others may be met at addresses that change."""
-    thinned: list[str] | None = None
-    """Key expressions of the topics of which nothing is sent again after a cut; None if nothing at all is."""
-
-
 class Opened(NamedTuple):
     """A new session, and how to use it instead of the present one."""
 
@@ -94,9 +80,6 @@ class State:
         self.moving = threading.Lock()
         self.addresses: frozenset[str] | None = None
         self.told = ""
-        self.probes = Probes()
-        self.stuck: set[Place] = set()
-        """Other ends of the links that stand still."""
 
     def is_news(self, now: frozenset[str]) -> bool:
         """True if an address is new, and nothing is being done about it; the first ones are those of the start."""
@@ -130,49 +113,25 @@ class Mover:
         self._end_calls, self._has_left = end_calls, has_left
         self._state = state
 
-    def move(self, now: frozenset[str], *, again: bool = False) -> None:
+    def move(self, now: frozenset[str]) -> None:
         """Do `reopen` on a background thread."""
-        arguments = {"again": again}
         with contextlib.suppress(RuntimeError):  # Python 3.12 starts no threads any more at exit
-            threading.Thread(
-                target=self._go_on, args=(now,), kwargs=arguments, name="robolink reunion", daemon=True
-            ).start()
+            threading.Thread(target=self._go_on, args=(now,), name="robolink reunion", daemon=True).start()
 
-    def unstick(self, waiting: list[Waiting]) -> bool:
-        """Do `reopen` on a background thread if links are among these connections, though packets pass again.
-
-        Returns True if another one than before stands still.
-        """
-        if self._state.moving.locked():
-            return False
-        ends = {each for link in self._links() for each in (link.here, link.there)} if waiting else set[str]()
-        places = {(host_of(each).partition("%")[0], port_of(each)) for each in ends}
-        stuck = [each for each in waiting if {each.here, each.there} <= places]
-        before, self._state.stuck = self._state.stuck, {each.there for each in stuck}
-        if self._state.probes.passes(stuck):
-            get_logger("robolink.transport").info("packets pass again, but TCP still waits: links are made again")
-            self.move(self._state.addresses or frozenset(), again=True)
-        return not self._state.stuck <= before
-
-    def _go_on(self, now: frozenset[str], *, again: bool) -> None:
+    def _go_on(self, now: frozenset[str]) -> None:
         try:
-            self.reopen(now, again=again)
+            self.reopen(now)
         except TransportError as error:  # the next look tries again
             if (text := str(error)) != self._state.told:
                 self._state.told = text
                 get_logger("robolink.transport").warning(
-                    f"this machine is to be found at {', '.join(sorted(now))}, but is not yet: {text}"
+                    f"this machine has another address, {', '.join(sorted(now))}; not found there yet: {text}"
                 )
 
-    def reopen(self, named: frozenset[str] = frozenset(), *, again: bool = False) -> None:
-        """Go on in a new session that is found at these addresses; returns when all has settled.
-
-        Args:
-            named: Addresses; none for those that Zenoh knows.
-            again: True does it also where none of them is new.
-        """
+    def reopen(self, named: frozenset[str] = frozenset()) -> None:
+        """Go on in a new session that is found at these addresses; returns when all has settled."""
         with self._state.moving:
-            if not again and self._state.addresses is not None and named and named <= self._state.addresses:
+            if self._state.addresses is not None and named and named <= self._state.addresses:
                 return
             begin, watches = time.monotonic(), self._replace(named)
         self._wait(begin + SETTLED_AFTER - time.monotonic())
@@ -183,7 +142,6 @@ class Mover:
         with lifetime.inside:
             peers = {each.session for each in self._links() if _is_alive(each, named)}
         opened = self._open_beside(named)
-        is_news = named != self._state.addresses
         if named:
             self._state.addresses, self._state.told = named, ""
         subscriptions = [each for each in self._declared() if isinstance(each, ZenohSubscription)]
@@ -197,9 +155,7 @@ class Mover:
             former.entities += handle.adopt(entity, opened.session)
         for handle in self._declared():  # those that were declared meanwhile
             former.entities += handle.move_to(opened.session)
-        for handle in self._declared():
-            handle.settle_in()
-        if named and is_news:
+        if named:
             where = ", ".join(sorted(named))
             get_logger("robolink.transport").info(f"this machine's addresses have changed: found at {where} now")
         self._wait(OVERLAP)
