@@ -80,5 +80,5 @@ def test_what_tells_a_latched_topics_last_number_waits_for_no_full_link(domain: 
         assert heartbeat.congestion_control == zenoh.CongestionControl.DROP
         assert heartbeat.priority == zenoh.Priority.DATA_HIGH  # not in the buffer that images fill
     finally:
-        heartbeats.undeclare()
+        heartbeats.undeclare()  # type: ignore[no-untyped-call]
         transport.close()
