@@ -75,7 +75,7 @@ def test_shades_of_every_64th_colour() -> None:
 
 
 def test_the_bytes_are_these_on_every_machine() -> None:
-    """What OpenCV 4.14 and 5.0 give, stored: where OpenCV is of another make, this still holds."""
+    """Stored results of OpenCV 4.14 and 5.0: where OpenCV is of another make, this still holds."""
     values = (np.arange(20 * 30 * 3, dtype=np.uint32) * 2654435761 >> 13).astype(np.uint8).reshape(20, 30, 3)
     made = b"".join(convert(values, "bgr8", each).tobytes() for each in ("mono8", "rgba16", "mono16", "bgra8"))
     assert hashlib.sha256(made).hexdigest()[:16] == "29fea978777ac2fc"

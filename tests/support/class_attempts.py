@@ -59,7 +59,7 @@ class Row(NamedTuple):
     what: str
     refused: bool
     told: str
-    """What robolink's own session says; '' where it cannot be asked this."""
+    """Message of robolink's own session; '' where it cannot be asked this."""
 
 
 def attack(domain: int, folder: Path, place: str, wished: str, joins: str) -> None:

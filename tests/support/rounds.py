@@ -46,7 +46,7 @@ ROUTER = "from robolink.cli.main import main; main(['router', '--listen', 'lan']
 
 
 class Round(NamedTuple):
-    """What has come of one round."""
+    """Result of one round."""
 
     back: float
     """Seconds from the end of the fault until each had heard something new from each."""
@@ -96,7 +96,7 @@ class System:
         await_line(self.router, "robolink router", READY_WITHIN)
 
     def all(self, word: str, answer: str = "") -> None:
-        """Tell all of them a word, and wait for the answers."""
+        """Send all of them a command, and wait for the answers."""
         for each in self.ends.values():
             tell(each, word)
         if answer:
@@ -216,7 +216,7 @@ def freeze(system: System, seconds: float) -> None:
 
 
 def unplug(system: System, seconds: float) -> None:
-    """Have the robot's cable out."""
+    """Take the robot's cable out for some seconds."""
     stalls.pull_out(system.hosts[NAMES[0]])
     time.sleep(seconds)
     stalls.plug_in(system.hosts[NAMES[0]])

@@ -35,7 +35,7 @@ TOPICS = {"all": QoSProfile(history=HistoryPolicy.KEEP_ALL), "ten": TEN, CAMERA:
 
 RATES = {"all": 100.0, "ten": 100.0, CAMERA: 15.0}
 LIFE = 1_000_000_000
-"""What the numbers of one life of a process begin with; the next life of its name begins with twice as much."""
+"""First number of one life of a process; the next life of its name begins with twice as much."""
 
 CALL_WITHIN = 2.0
 """Timeout of a call, in seconds."""
@@ -145,7 +145,7 @@ class End(robolink.Node):
 
 
 def main() -> None:
-    """Be one end."""
+    """Run one end."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("name")
     parser.add_argument("--others", nargs="+", default=[])

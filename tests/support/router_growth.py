@@ -64,7 +64,7 @@ class Member(NamedTuple):
 
 
 class Heard(NamedTuple):
-    """What was published, and what of it has come."""
+    """Counts of what was published, and of what has come."""
 
     sent: int
     """Messages of all nodes; each is heard by one node, or by none that is there yet."""
@@ -116,14 +116,14 @@ class Fleet:
         return sum(Cost.of(psutil.Process(each.process.pid)).cpu for each in self.members)
 
     def talk(self) -> Heard:
-        """Have all publish for SECONDS."""
+        """Let all publish for SECONDS."""
         for each in self.members:
             tell(each.process, f"talk {RATE} {SECONDS}")
         time.sleep(SECONDS)
         return self._heard()
 
     def flood(self, node: int) -> Heard:
-        """Have one node of the first process publish as fast as it can, for SECONDS."""
+        """Let one node of the first process publish as fast as it can, for SECONDS."""
         tell(self.members[0].process, f"flood {node} {SECONDS}")
         time.sleep(SECONDS)
         return self._heard()
@@ -177,7 +177,7 @@ def _delays(delays: Sequence[float]) -> str:
 
 @contextlib.contextmanager
 def watched(fleet: Fleet, what: str) -> Iterator[None]:
-    """Say what the routers have used while a `with` lasts."""
+    """Print the CPU and memory of the routers over a `with` block."""
     before, begin = {name: Cost.of(each) for name, each in fleet.routers.items()}, time.monotonic()
     yield
     took = time.monotonic() - begin
@@ -227,7 +227,7 @@ def measure(steps: Sequence[int], *, alone: bool, traffic: bool) -> None:
 
 
 def say(text: str) -> None:
-    """Say a line."""
+    """Print a line."""
     print(text, flush=True)  # noqa: T201
 
 

@@ -129,7 +129,7 @@ def main() -> None:
 
 
 def say(text: str) -> None:
-    """Say a line."""
+    """Print a line."""
     print(text, flush=True)  # noqa: T201
 
 

@@ -29,7 +29,7 @@ LOOK_EVERY = 0.2
 """Interval in seconds at which the number of nodes is looked at."""
 
 TEXT = "x" * 80
-"""What a message carries, beside its time."""
+"""Filling of a message, beside its time."""
 
 A_DAY = 86_400.0
 
@@ -95,7 +95,7 @@ class Swarm:
 
 
 def main() -> None:
-    """Be one process of a swarm."""
+    """Run one process of a swarm."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="+", metavar="NODE")
     parser.add_argument("--hear", nargs="*", default=[], metavar="NODE")
