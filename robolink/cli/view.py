@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from robolink.cli.shared.options import Enclave
 from robolink.cli.shared.output import say, tell
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ def view(
     token: Annotated[
         str, typer.Option("--token", metavar="TEXT", help="Secret in the address; by default a new one each time.")
     ] = "",
+    enclave: Enclave = "",
 ) -> None:
     """Show a running system, or a bag, in the browser: the world from above, topics, plots, images, logs, parameters.
 
@@ -43,15 +45,15 @@ def view(
     if bag is not None:
         _show_bag(bag, settings, browser)
     else:
-        _show_system(settings, browser)
+        _show_system(settings, browser, enclave)
 
 
-def _show_system(settings: Settings, browser: bool) -> None:
+def _show_system(settings: Settings, browser: bool, enclave: str) -> None:
     from robolink.cli.shared.session import node_of, opened
     from robolink.view.server import View
     from robolink.view.sources.live import LiveSource
 
-    with opened() as context, View(LiveSource(node_of(context)), settings) as server:
+    with opened(enclave) as context, View(LiveSource(node_of(context)), settings) as server:
         _announce(server, browser)
         context.graph.wait_for(lambda: not context.ok(), None)
 

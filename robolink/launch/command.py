@@ -6,11 +6,12 @@ import contextlib
 import functools
 import itertools
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robolink.exceptions import SecurityError
 from robolink.launch.planning import Launched, as_process, core_errors, processes
 from robolink.launch.readiness import waiting
 from robolink.launch.reading.entry import Entry
@@ -43,6 +44,7 @@ def launch(
     shows_figures: bool = False,
     record: str | None = None,
     shows_view: bool = False,
+    enclave: str = "",
 ) -> int:
     """Run a system until Ctrl-C, the end of `duration`, or the end of a process that ends the system.
 
@@ -56,6 +58,8 @@ def launch(
         record: Folder of a bag that gets all that the system publishes, '' for one with the date in its name; None
             records nothing.
         shows_view: True runs `robolink view` beside the nodes; its end does not end the system.
+        enclave: Enclave with whose keys it is recorded, viewed and waited for, where security is on. '' is `/`, and for
+            the launcher that of the file's first node that has one.
 
     Returns:
         The exit code of the system.
@@ -63,6 +67,7 @@ def launch(
     Raises:
         DocumentError: if nodes cannot run as the file says; nothing was started then.
         BagError: (a ValueError) if the bag's folder is there already.
+        SecurityError: if recorder or view cannot have keys that they must have; nothing was started then.
     """
     from robolink.supervisor.control.server import Control
 
@@ -72,13 +77,14 @@ def launch(
     held = {each.name: each.held_by for each in launched if each.held_by}
     members = {each.name: [entry.name for entry in each.entries] for each in launched if each.entries[0].node.process}
     to_run = _to_run(launched, watches)
+    _check_keys(enclave, {"recorder": record is not None, "view": shows_view})
     if record is not None:
         from robolink.launch import recording
 
-        to_run = [recording.recorder(record), *recording.behind(to_run)]
+        to_run = [recording.recorder(record, enclave), *recording.behind(to_run)]
         held = {each.name: (*each.held_by, recording.READY) for each in launched}
     if shows_view:
-        to_run.append(_view({each.name for each in to_run}))
+        to_run.append(_view({each.name for each in to_run}, enclave))
     with contextlib.ExitStack() as stack:
         output = None if on_event is None else stack.enter_context(Path(os.devnull).open("w", encoding="utf-8"))
         server = None if watches else _fork_server(to_run)  # whoever saves files may save robolink's own
@@ -97,13 +103,26 @@ def launch(
             from robolink.supervisor.monitoring.resources import Figures
 
             beside.append(Figures(supervisor.status, say=supervisor.say))
-        watch = waiting(held, supervisor.release, supervisor.say, enclave=_enclave(entries))
+        watch = waiting(held, supervisor.release, supervisor.say, enclave=enclave or _enclave(entries))
         return supervisor.run(duration, [*beside, watch])
 
 
 def _enclave(entries: Iterable[Entry]) -> str:
     """Return the enclave of a node, by whose keys the launcher sees when the others are there; '' if none has one."""
     return next((each.node.enclave for each in entries if each.node.enclave), "")
+
+
+def _check_keys(enclave: str, started: Mapping[str, bool]) -> None:
+    """Raise SecurityError, once for all that is started beside the nodes, if it cannot have keys that it must have."""
+    from robolink.networks.asked import domain_id
+    from robolink.security import session
+
+    names = [name for name, is_started in started.items() if is_started]
+    try:
+        if names:
+            session.wanted(os.environ, domain_id(os.environ), enclave or None)
+    except SecurityError as error:
+        raise SecurityError(f"--enclave NAME gives the {' and the '.join(names)} keys: {error}") from None
 
 
 def _to_run(launched: Iterable[Launched], watches: bool) -> list[Process]:
@@ -113,11 +132,12 @@ def _to_run(launched: Iterable[Launched], watches: bool) -> list[Process]:
     return list(mended) if watches else found
 
 
-def _view(taken: set[str]) -> Process:
+def _view(taken: set[str], enclave: str) -> Process:
     """Return the process of the view: a part of the system that may fail without the others."""
     names = itertools.chain(["view"], (f"view-{number}" for number in itertools.count(2)))
     name = next(each for each in names if each not in taken)
-    return Process(name, [*own_command(), "view"], rules=Rules(on_exit="ignore"))
+    keys = ["--enclave", enclave] if enclave else []
+    return Process(name, [*own_command(), "view", *keys], rules=Rules(on_exit="ignore"))
 
 
 def _fork_server(to_run: Iterable[Process]) -> ForkServer | None:

@@ -19,11 +19,12 @@ READY = Awaited("service", ("/rosbag2_recorder/is_paused",))
 """Condition under which the others start: the recorder serves this once it listens."""
 
 
-def recorder(path: str) -> Process:
+def recorder(path: str, enclave: str = "") -> Process:
     """Return the process that records all topics, services and actions.
 
     Args:
         path: Folder of the bag; '' for one with the date in its name.
+        enclave: Enclave whose keys and rights it has, where security is on; '' for `/`.
 
     Raises:
         BagError: (a ValueError) if there is something already.
@@ -32,7 +33,8 @@ def recorder(path: str) -> Process:
     if path and folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
         raise BagError(f"record: '{path}' exists already: choose another folder for the bag, or delete it")
     where = ["-o", path] if path else []
-    words = [*own_command(), "bag", "record", "-a", *where, "--disable-keyboard-controls"]
+    keys = ["--enclave", enclave] if enclave else []
+    words = [*own_command(), "bag", "record", "-a", *where, "--disable-keyboard-controls", *keys]
     return Process(NAME, words, rules=Rules(on_exit="ignore"))
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from robolink.arguments.command_line import parse_arguments
+from robolink.bag.reader import open_bag
 from robolink.exceptions import DocumentError
 from robolink.launch.looking.look import End, Look
 from robolink.launch.looking.validate import Report, judged
@@ -184,6 +185,18 @@ def test_a_class_and_its_robot_are_launched_together(home: Path, domain: int, mo
     said = done.stdout + done.stderr
     assert "the robot is seen" in said, said
     assert "enclave '/student1' may not publish /cmd_vel" in said
+    recorded = [*command, "--record", "bag"]
+    viewed = [*recorded, "--view"]
+    refused = subprocess.run(viewed, cwd=home, env=whole, capture_output=True, text=True, check=False, timeout=300)
+    [line] = refused.stderr.splitlines()
+    assert "--enclave NAME gives the recorder and the view keys: enclave '/' has no keys in" in line
+    assert refused.stdout == ""
+    recorded = [*recorded, "--enclave", "/teacher"]
+    done = subprocess.run(recorded, cwd=home, env=whole, capture_output=True, text=True, check=False, timeout=300)
+    assert "the robot is seen" in done.stdout + done.stderr, done.stdout + done.stderr
+    assert "has no keys" not in done.stdout + done.stderr
+    with open_bag(home / "bag") as bag:
+        assert [each.topic for each in bag.messages(["/map"])] == ["/map"]
     checked = subprocess.run(
         [*command, "--validate"], cwd=home, env=whole, capture_output=True, text=True, check=False, timeout=300
     )

@@ -24,6 +24,11 @@ def test_processes_wait_for_the_recorder(tmp_path: Path) -> None:
     assert recorder(str(tmp_path / "bag")).argv[-3:-1] == ["-o", str(tmp_path / "bag")]
 
 
+def test_the_recorder_has_the_keys_of_an_enclave() -> None:
+    assert recorder("bag", "/teacher").argv[-2:] == ["--enclave", "/teacher"]
+    assert "--enclave" not in recorder("bag").argv
+
+
 def test_a_folder_that_is_there_is_refused_before_anything_starts(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(BagError, match="exists already"):

@@ -13,6 +13,7 @@ import typer
 from robolink.cli.bag import options as shared
 from robolink.cli.bag import play_options as opt
 from robolink.cli.shared.listed_options import ListedOptions
+from robolink.cli.shared.options import Enclave
 
 if TYPE_CHECKING:
     from robolink.bag.playing import PlaySettings
@@ -85,6 +86,7 @@ def play(
     read_ahead: opt.ReadAhead = 1000,
     node_name: opt.NodeName = "rosbag2_player",
     log_level: shared.LogLevel = "info",
+    enclave: Enclave = "",
 ) -> None:
     """Publish what a bag has recorded: `bag play walk`, `bag play walk -r 2 --topics /scan /odom`.
 
@@ -94,7 +96,7 @@ def play(
 
     paths = _paths(ctx, words, inputs)
     settings = _settings(ctx)
-    wish = Wish(node_name, log_level, not no_keys, progress_rate, tuple(remap or ()))
+    wish = Wish(node_name, log_level, not no_keys, progress_rate, tuple(remap or ()), enclave)
     raise typer.Exit(run(paths, settings, wish))
 
 

@@ -36,6 +36,7 @@ class Wish(NamedTuple):
     progress_rate: float = 3.0
     """Progress lines in a second; 0 is one for each look, below 0 none."""
     remappings: Sequence[str] = ()
+    enclave: str = ""
 
 
 def run(paths: Sequence[str], settings: PlaySettings, wish: Wish) -> int:
@@ -43,7 +44,7 @@ def run(paths: Sequence[str], settings: PlaySettings, wish: Wish) -> int:
 
     Raises BagError and PlayError (ValueErrors) for bags that cannot be played.
     """
-    with opened() as context, ProgressLine() as line:
+    with opened(wish.enclave) as context, ProgressLine() as line:
         command = _Command(context, paths, settings, wish)
         try:
             command.run(line)

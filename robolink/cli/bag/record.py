@@ -10,6 +10,7 @@ import typer
 
 from robolink.cli.bag import options as shared
 from robolink.cli.bag import record_options as opt
+from robolink.cli.shared.options import Enclave
 
 if TYPE_CHECKING:
     from robolink.bag.recording import RecordSettings
@@ -57,6 +58,7 @@ def record(
     repeat: opt.Repeat = None,
     repeat_all_latched: opt.RepeatAll = False,
     log_level: shared.LogLevel = "info",
+    enclave: Enclave = "",
     compression_mode: opt.CompressionMode = "none",
     compression_format: opt.CompressionFormat = "",
     preset: opt.Preset = "",
@@ -80,7 +82,7 @@ def record(
             " --topic-types, --static-topics-path or --regex"
         )
     path = output or time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S")
-    code = run(path, selection, settings, Wish(node_name, log_level, not no_keys, as_json))
+    code = run(path, selection, settings, Wish(node_name, log_level, not no_keys, as_json, enclave))
     raise typer.Exit(code)
 
 

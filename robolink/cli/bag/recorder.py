@@ -36,6 +36,7 @@ class Wish(NamedTuple):
     log_level: str = "info"
     keys: bool = True
     json: bool = False
+    enclave: str = ""
 
 
 def run(path: str | Path, selection: Selection, settings: RecordSettings, wish: Wish) -> int:
@@ -43,7 +44,7 @@ def run(path: str | Path, selection: Selection, settings: RecordSettings, wish: 
 
     Raises BagError (a ValueError) if the bag cannot be made, SelectionError if nothing is selected.
     """
-    with opened() as context, ProgressLine() as line:
+    with opened(wish.enclave) as context, ProgressLine() as line:
         command = _Command(context, path, selection, settings, wish)
         try:
             command.run(line)

@@ -12,6 +12,7 @@ from robolink.cli.launching.completion import launch_words
 from robolink.cli.launching.launch_arguments import ASSIGN, LaunchFile, launch_file
 from robolink.cli.shared.layout import aligned
 from robolink.cli.shared.options import GRAPH_FORMATS, choice, seconds
+from robolink.cli.shared.options import enclave as enclave_option
 from robolink.cli.shared.output import say, tell
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 BY_DATE = "rosbag2_DATE"
 """Value of a `--record` without a folder."""
 
-VALUED = ("--duration", "--workspace", "--graph")
+VALUED = ("--duration", "--workspace", "--graph", "--enclave")
 """Options whose next word is their value."""
 
 app = typer.Typer()
@@ -77,6 +78,7 @@ class Options(NamedTuple):
     watch: bool
     view: bool
     record: str | None
+    enclave: str
 
 
 @app.command(cls=LaunchCommand)
@@ -113,6 +115,7 @@ def launch(
     record: Annotated[
         str | None, typer.Option("--record", metavar="[FOLDER]", help="Record all that is published into a bag.")
     ] = None,
+    enclave: Annotated[str, enclave_option("Whose keys --record, --view and the launcher have; / by default.")] = "",
 ) -> None:
     """Run a system of nodes until the first of them ends, Ctrl-C, or for a while: `launch follow --duration 60`.
 
@@ -120,7 +123,7 @@ def launch(
     names. A launch file that is called stop or restart is launched by its path.
     """
     given = words or []
-    options = Options(duration, workspace or None, json, top, watch, view, record)
+    options = Options(duration, workspace or None, json, top, watch, view, record, enclave)
     if show_list:
         _list(options.workspace)
     elif status or given[:1] in (["stop"], ["restart"]) or (top and not given):
@@ -250,6 +253,7 @@ def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
         shows_figures=options.top,
         shows_view=options.view,
         record="" if record == BY_DATE else record,
+        enclave=options.enclave,
     )
 
 

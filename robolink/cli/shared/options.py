@@ -1,9 +1,9 @@
-"""Factories of options that several commands take: seconds, and one of a few names."""
+"""Options that several commands take: seconds, one of a few names, and the enclave whose keys they have."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
@@ -42,3 +42,24 @@ def choice(flag: str, choices: list[str], text: str, *, short: str = "") -> Any:
     return typer.Option(
         *flags, metavar="NAME", help=f"{text}: {', '.join(choices)}.", callback=check, autocompletion=lambda: choices
     )
+
+
+def enclave(text: str) -> Any:
+    """Return the option that names an enclave; `text` is its help."""
+
+    def check(value: str) -> str:
+        if value:
+            from robolink.exceptions import SecurityError
+            from robolink.security.keystore import checked_enclave
+
+            try:
+                checked_enclave(value)
+            except SecurityError as error:
+                raise typer.BadParameter(str(error)) from None
+        return value
+
+    return typer.Option("--enclave", metavar="NAME", help=text, callback=check)
+
+
+Enclave = Annotated[str, enclave("Enclave whose keys and rights it has; / by default.")]
+"""Option of commands that have one session."""

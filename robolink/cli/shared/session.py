@@ -18,9 +18,13 @@ _left: list[Context] = []
 
 
 @contextlib.contextmanager
-def opened() -> Iterator[Context]:
-    """Open a context for the block, with a handler for Ctrl-C, and shut it down at the end."""
-    context = _initialized()
+def opened(enclave: str = "") -> Iterator[Context]:
+    """Open a context for the block, with a handler for Ctrl-C, and shut it down at the end.
+
+    Args:
+        enclave: Enclave whose keys and rights it has, where security is on; '' for `/`.
+    """
+    context = _initialized(enclave)
     try:
         yield context
     finally:
@@ -49,9 +53,9 @@ def any_looks() -> bool:
     return bool(_left)
 
 
-def _initialized() -> Context:
+def _initialized(enclave: str = "") -> Context:
     context = Context()
-    context.init(args=[])
+    context.init(args=["--ros-args", "--enclave", enclave] if enclave else [])
     install_signal_handlers()
     return context
 
