@@ -13,7 +13,7 @@ from robolink.sim.description import RobotDescription, Wall
 from robolink.sim.driving.drive import Driver
 from robolink.sim.driving.fleet import Fleet, Member
 from robolink.sim.driving.motion import Motion
-from robolink.sim.driving.odometry_noise import OdometryNoise
+from robolink.sim.driving.odometry_errors import OdometryErrors
 from robolink.sim.physics.bodies import body_at, placed, solids
 from robolink.sim.physics.contacts import Contacts, Touches
 from robolink.sim.physics.placing import WorldError, check_place, check_pose
@@ -43,7 +43,7 @@ class Robot:
         self._driver = Driver(description, self._body, parts.dt)
         noise = description.odom.noise
         random = stream(parts.seed, self.name, "odom")
-        self._noise = OdometryNoise(noise, random) if noise.v or noise.w else None
+        self._noise = OdometryErrors(noise, random) if noise.v or noise.w else None
         self._member = Member(self._body, self._driver.motion, self._noise)
         carrier = self._carrier()
         self._devices = {each.topic: device(each, carrier) for each in description.sensors}

@@ -12,7 +12,7 @@ from robolink.geometry.plane import wrapped
 from robolink.sim.arrays import Array
 from robolink.sim.driving.arithmetic import ARRAYS, FLOATS
 from robolink.sim.driving.motion import NEVER, Motion, fetch, motion_of_many, speeds, store
-from robolink.sim.driving.odometry_noise import BLOCK, OdometryNoise
+from robolink.sim.driving.odometry_errors import BLOCK, OdometryErrors
 from robolink.sim.physics.body_columns import BodyColumns
 from robolink.sim.quantities import Pose
 from robolink.sim.readings import Velocity
@@ -29,7 +29,7 @@ class Member(NamedTuple):
 
     body: pymunk.Body
     motion: Motion[float]
-    noise: OdometryNoise | None
+    noise: OdometryErrors | None
 
 
 class Fleet:
@@ -188,7 +188,7 @@ class _Columns:
 
 
 def _advanced(
-    motion: Motion[float], noise: OdometryNoise | None, state: Sequence[float], step: int
+    motion: Motion[float], noise: OdometryErrors | None, state: Sequence[float], step: int
 ) -> tuple[float, float, float]:
     """Advance one robot; return its force and torque."""
     if step >= motion.expiry:

@@ -11,7 +11,7 @@ BLOCK = 256
 """Number of steps whose errors are drawn at once, which is cheaper than one by one."""
 
 
-class OdometryNoise:
+class OdometryErrors:
     """The errors of one robot's odometry: factors of its speeds v, s and w, drawn for each step."""
 
     def __init__(self, noise: OdomNoise, random: np.random.Generator) -> None:
