@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, Struct
 
-from robolink.sim.quantities import Length, Limit, Mass, Point, Pose, Rate, Share
+from robolink.sim.quantities import Factor, Length, Limit, Mass, Point, Pose, Rate, Share
 from robolink.sim.sensors import Sensor
 
 GRAVITY = 9.81
@@ -184,11 +184,33 @@ class OdomNoise(Struct, frozen=True, forbid_unknown_fields=True):
     w: Share = 0.0
 
 
+class OdomScale(Struct, frozen=True, forbid_unknown_fields=True):
+    """Systematic error of the speeds of odometry: what it measures as a share of the true `v` and of the true `w`.
+
+    `v` errs by the radius of the wheels (1.02: they are 2 % smaller than odometry takes them for), `w` also by the
+    distance between them.
+    """
+
+    v: Factor = 1.0
+    w: Factor = 1.0
+
+
 class Odom(Struct, frozen=True, forbid_unknown_fields=True):
-    """Odometry, published `rate` times a second."""
+    """Odometry, published `rate` times a second, with its errors.
+
+    `drift` is the turn in rad, counter-clockwise, that it sees in each metre ahead: one wheel is larger than the other.
+    Going back undoes it.
+    """
 
     rate: Rate = 50.0
     noise: OdomNoise = OdomNoise()
+    scale: OdomScale = OdomScale()
+    drift: Annotated[float, Meta(ge=-1.0, le=1.0)] = 0.0
+
+    @property
+    def errs(self) -> bool:
+        """True if it has an error of any kind."""
+        return bool(self.noise != OdomNoise() or self.scale != OdomScale() or self.drift)
 
 
 class GroundTruth(Struct, frozen=True, forbid_unknown_fields=True):

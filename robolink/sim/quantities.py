@@ -18,6 +18,7 @@ Mass: TypeAlias = Annotated[float, Meta(ge=0.001, le=100_000.0)]
 Rate: TypeAlias = Annotated[float, Meta(ge=0.001, le=10_000.0)]
 Limit: TypeAlias = Annotated[float, Meta(ge=0.001, le=1000.0)]
 Share: TypeAlias = Annotated[float, Meta(ge=0.0, le=1.0)]
+Factor: TypeAlias = Annotated[float, Meta(ge=0.5, le=2.0)]  # near 1: who writes 0.03 meant 1.03
 Point: TypeAlias = tuple[Coordinate, Coordinate]
 
 

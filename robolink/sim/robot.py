@@ -41,10 +41,9 @@ class Robot:
         x, y = description.pose.x, description.pose.y
         self._area = Area(x, y, x, y)
         self._driver = Driver(description, self._body, parts.dt)
-        noise = description.odom.noise
-        random = stream(parts.seed, self.name, "odom")
-        self._noise = OdometryErrors(noise, random) if noise.v or noise.w else None
-        self._member = Member(self._body, self._driver.motion, self._noise)
+        odom, random = description.odom, stream(parts.seed, self.name, "odom")
+        self._errors = OdometryErrors(odom, random) if odom.errs else None
+        self._member = Member(self._body, self._driver.motion, self._errors)
         carrier = self._carrier()
         self._devices = {each.topic: device(each, carrier) for each in description.sensors}
 
@@ -176,14 +175,14 @@ class Robot:
 
     @property
     def odometry_twist(self) -> Velocity:
-        """The speeds by odometry: with its noise, and without slipping."""
+        """The speeds by odometry: with its errors, and without slipping."""
         v, w, sideways = self.twist
         if self.description.drive.type != "omni":
             sideways = 0.0
-        if self._noise is None:
+        if self._errors is None:
             return Velocity(v, w, sideways)
-        of_v, of_s, of_w = self._noise.at(self._scene.step)
-        return Velocity(v * of_v, w * of_w, sideways * of_s)
+        of_v, of_s, of_w, drift = self._errors.at(self._scene.step)
+        return Velocity(v * of_v, w * of_w + v * drift, sideways * of_s)
 
     @property
     def wheels(self) -> tuple[WheelState, ...]:

@@ -12,7 +12,7 @@ from robolink.geometry.plane import wrapped
 from robolink.sim.arrays import Array
 from robolink.sim.driving.arithmetic import ARRAYS, FLOATS
 from robolink.sim.driving.motion import NEVER, Motion, fetch, motion_of_many, speeds, store
-from robolink.sim.driving.odometry_errors import BLOCK, OdometryErrors
+from robolink.sim.driving.odometry_errors import BLOCK, COLUMNS, OdometryErrors
 from robolink.sim.physics.body_columns import BodyColumns
 from robolink.sim.quantities import Pose
 from robolink.sim.readings import Velocity
@@ -25,11 +25,11 @@ _set_force, _set_torque = (vars(pymunk.Body)[name].fset for name in ("force", "t
 
 
 class Member(NamedTuple):
-    """A robot's body, its own motion, and the noise of its odometry."""
+    """A robot's body, its own motion, and the errors of its odometry."""
 
     body: pymunk.Body
     motion: Motion[float]
-    noise: OdometryErrors | None
+    errors: OdometryErrors | None
 
 
 class Fleet:
@@ -98,15 +98,18 @@ class Fleet:
             self._bodies.write(self._columns.advance(step, self._columns.states(self._bodies)))
             return
         if not self._bodies.batched:
-            for body, motion, noise in self._members:
+            for body, motion, errors in self._members:
                 (vx, vy), w = body.velocity, body.angular_velocity
-                force_x, force_y, torque = _advanced(motion, noise, (body.angle, vx, vy, w), step)
+                force_x, force_y, torque = _advanced(motion, errors, (body.angle, vx, vy, w), step)
                 _set_force(body, (force_x, force_y))
                 _set_torque(body, torque)
             return
         states = self._bodies.read_rows()
         self._bodies.write(
-            [_advanced(motion, noise, row, step) for (_, motion, noise), row in zip(self._members, states, strict=True)]
+            [
+                _advanced(motion, errors, row, step)
+                for (_, motion, errors), row in zip(self._members, states, strict=True)
+            ]
         )
 
     def _disband(self) -> None:
@@ -127,9 +130,10 @@ class _Columns:
 
     def __init__(self, members: list[Member]) -> None:
         self.motion = motion_of_many([member.motion for member in members])
-        self._noises = [member.noise for member in members]
-        self._noisy = any(noise is not None for noise in self._noises)
-        self._errors, self._block = np.ones((3, BLOCK, len(members))), -1
+        self._each = [member.errors for member in members]
+        self._err = any(errors is not None for errors in self._each)
+        self._errors, self._block = np.ones((COLUMNS, BLOCK, len(members))), -1
+        self._errors[3] = 0.0
         self._odometry: list[Pose] | None = None
         self._states: Array | None = None
         self._twists: list[Velocity] | None = None
@@ -165,7 +169,7 @@ class _Columns:
         if step >= motion.expiry:
             self._stop_late(step)
         forces: Array = np.array(motion.push(rows[:, 1], rows[:, 2], rows[:, 0], rows[:, 3])).T
-        motion.count(self._errors_at(step) if self._noisy else None)
+        motion.count(self._errors_at(step) if self._err else None)
         self._odometry = None
         return forces
 
@@ -177,18 +181,18 @@ class _Columns:
         motion.deadline[late] = NEVER
         motion.expiry = float(motion.deadline.min())
 
-    def _errors_at(self, step: int) -> tuple[Array, Array, Array]:
+    def _errors_at(self, step: int) -> tuple[Array, Array, Array, Array]:
         if step // BLOCK != self._block:
             self._block = step // BLOCK
-            for row, noise in enumerate(self._noises):
-                if noise is not None:
-                    self._errors[:, :, row] = noise.block(step).T
-        v, s, w = self._errors[:, step % BLOCK]
-        return v, s, w
+            for row, errors in enumerate(self._each):
+                if errors is not None:
+                    self._errors[:, :, row] = errors.block(step).T
+        v, s, w, drift = self._errors[:, step % BLOCK]
+        return v, s, w, drift
 
 
 def _advanced(
-    motion: Motion[float], noise: OdometryErrors | None, state: Sequence[float], step: int
+    motion: Motion[float], errors: OdometryErrors | None, state: Sequence[float], step: int
 ) -> tuple[float, float, float]:
     """Advance one robot; return its force and torque."""
     if step >= motion.expiry:
@@ -196,5 +200,5 @@ def _advanced(
         motion.deadline = motion.expiry = NEVER
     angle, vx, vy, w = state
     force = motion.push(vx, vy, angle, w)
-    motion.count(None if noise is None else noise.at(step))
+    motion.count(None if errors is None else errors.at(step))
     return force

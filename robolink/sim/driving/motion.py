@@ -147,8 +147,8 @@ class Motion(Generic[Number]):
         tangent = self.arithmetic.sin(self.steer) / self.arithmetic.cos(self.steer)
         return self.ramp_v * tangent / self.wheelbase
 
-    def count(self, errors: tuple[Number, Number, Number] | None) -> None:
-        """Add the step's arc to the odometry; `errors` are factors of v, s and w, None for 1.
+    def count(self, errors: tuple[Number, Number, Number, Number] | None) -> None:
+        """Add the step's arc to the odometry; `errors` are factors of v, s and w, and the drift in rad/m; None: none.
 
         Wheels that only roll ahead do not notice how a robot slips. The true way is added up too, if there are wheels
         that measure it.
@@ -158,7 +158,7 @@ class Motion(Generic[Number]):
         if self.wheeled:
             self.rolled, self.slid, self.turned = self.rolled + v * dt, self.slid + s * dt, self.turned + turn
         if errors is not None:
-            v, s, turn = v * errors[0], s * errors[1], turn * errors[2]
+            v, s, turn = v * errors[0], s * errors[1], turn * errors[2] + v * dt * errors[3]
             chord = self.arithmetic.sinc(turn / 2)
         chord, middle = chord * dt, self.theta + turn / 2
         cos, sin, ahead = self.arithmetic.cos(middle), self.arithmetic.sin(middle), v * chord
