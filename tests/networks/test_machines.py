@@ -8,61 +8,31 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
 
 import pytest
 
+from robolink.cli.main import main
 from tests.support import stalls
 from tests.support.machines import NODE, ROUTER, THERE, Machines, nodes
+from tests.support.robot_and_laptop import ALL
 
 pytestmark = [
     pytest.mark.processes,
     pytest.mark.skipif(bool(stalls.no_hosts()), reason=stalls.no_hosts() or "there are two hosts"),
 ]
 
-MAP = 10_000_000
+PLAY = "from tests.support import robot_and_laptop\nrobot_and_laptop.main()"
 
-ROBOT = f"""
-import os, sys, threading
-import robolink as rclpy
-from robolink.interfaces.nav_msgs.msg import OccupancyGrid
-from robolink.interfaces.std_srvs.srv import Trigger
-from robolink.node import Node
-from robolink.qos import DurabilityPolicy, QoSProfile
+ENCLAVES = ("robot", "router", "laptop")
 
-rclpy.init()
-node = Node("robot")
-node.declare_parameter("speed", 0.5)
-latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-publisher = node.create_publisher(OccupancyGrid, "map", latched)
-publisher.publish(OccupancyGrid(data=bytes({MAP})))
-node.create_service(Trigger, "go", lambda request, response: Trigger.Response(success=True, message="gone"))
-threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
-"""
-
-LAPTOP = """
-import json
-import robolink as rclpy
-from robolink.interfaces.nav_msgs.msg import OccupancyGrid
-from robolink.interfaces.std_srvs.srv import Trigger
-from robolink.node import Node
-from robolink.parameter_client import AsyncParameterClient
-from robolink.qos import DurabilityPolicy, QoSProfile
-
-rclpy.init()
-node = Node("laptop")
-sizes = []
-latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-node.create_subscription(OccupancyGrid, "map", lambda message: sizes.append(len(message.data)), latched)
-service, parameters = node.create_client(Trigger, "go"), AsyncParameterClient(node, "robot")
-assert service.wait_for_service(60)
-called = service.call_async(Trigger.Request())
-rclpy.spin_until_future_complete(node, called, timeout_sec=60)
-assert parameters.wait_for_services(60)
-asked = parameters.get_parameters(["speed"])
-rclpy.spin_until_future_complete(node, asked, timeout_sec=60)
-while not sizes:
-    rclpy.spin_once(node, timeout_sec=60)
-print(json.dumps([called.result().message, asked.result().values[0].double_value, sizes]))
+POLICY = """
+<policy version="0.2.0"><enclaves><enclave path="/laptop"><profiles><profile ns="/" node="laptop">
+  <topics subscribe="ALLOW"><topic>map</topic><topic>/tf</topic><topic>/tf_static</topic></topics>
+  <services request="ALLOW"><service>go</service><service>/robot/*</service></services>
+  <actions call="ALLOW"><action>fibonacci</action></actions>
+</profile></profiles></enclave></enclaves></policy>
 """
 
 
@@ -70,6 +40,15 @@ print(json.dumps([called.result().message, asked.result().values[0].double_value
 def machines() -> Iterator[Machines]:
     with ExitStack() as stack:
         yield Machines(stack)
+
+
+def used_by_laptop(machines: Machines, network: str, **environ: str) -> dict[str, Any]:
+    """Return what a laptop here, which names the network, got from the robot there."""
+    done = machines.run_here([sys.executable, "-c", PLAY, "laptop"], ROBOLINK_NETWORK=network, **environ)
+    assert done.stderr == ""
+    got: dict[str, Any] = json.loads(done.stdout)
+    del got["seconds"]  # a figure for whoever runs it by hand
+    return got
 
 
 def nodes_once_seen(machines: Machines, expected: list[str], **environ: str) -> list[str]:
@@ -81,13 +60,39 @@ def nodes_once_seen(machines: Machines, expected: list[str], **environ: str) -> 
 
 
 def test_a_host_named_on_one_side_suffices(machines: Machines) -> None:
-    """Services, parameters and a latched map, from a robot of two processes on `lan`."""
+    """Services, parameters, actions, transforms and a latched map, from a robot of two processes on `lan`."""
     machines.start(machines.there, NODE, "first", ROBOLINK_NETWORK="lan")  # which holds the port
-    machines.start(machines.there, ROBOT, ROBOLINK_NETWORK="lan")
-    done = machines.run_here([sys.executable, "-c", LAPTOP], ROBOLINK_NETWORK=THERE)
-    assert done.stderr == ""
-    assert json.loads(done.stdout) == ["gone", 0.5, [MAP]]
+    machines.start(machines.there, PLAY, "robot", ROBOLINK_NETWORK="lan")
+    assert used_by_laptop(machines, THERE) == ALL
     assert nodes_once_seen(machines, ["/first", "/robot"], ROBOLINK_NETWORK=THERE) == ["/first", "/robot"]
+
+
+def test_the_same_by_a_router(machines: Machines) -> None:
+    machines.command(machines.there, "router", "--listen", "lan")
+    machines.start(machines.there, PLAY, "robot")
+    assert used_by_laptop(machines, THERE) == ALL
+
+
+@pytest.mark.parametrize("way", ["direct", "router"])
+def test_the_same_with_keys(machines: Machines, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str) -> None:
+    """A keystore of `robolink security`: the laptop may use what the policy says, by its name with `tls/` before it."""
+    keys = tmp_path / "keys"
+    policy = tmp_path / "policy.xml"
+    policy.write_text(POLICY)
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(machines.domain))  # of which permissions are
+    for words in (["create_keystore", str(keys)], *(["create_enclave", str(keys), f"/{each}"] for each in ENCLAVES)):
+        assert main(["security", *words]) == 0
+    assert main(["security", "create_permission", str(keys), "/laptop", str(policy)]) == 0
+
+    def enclave(name: str) -> dict[str, str]:
+        given = {"ENABLE": "true", "STRATEGY": "Enforce", "KEYSTORE": str(keys), "ENCLAVE_OVERRIDE": f"/{name}"}
+        return {f"ROS_SECURITY_{variable}": value for variable, value in given.items()}
+
+    if way == "router":
+        machines.command(machines.there, "router", "--listen", "lan", **enclave("router"))
+    own = "lan" if way == "direct" else "localhost"
+    machines.start(machines.there, PLAY, "robot", ROBOLINK_NETWORK=own, **enclave("robot"))
+    assert used_by_laptop(machines, f"tls/{THERE}", **enclave("laptop")) == ALL
 
 
 def test_the_processes_here_meet_each_other_too(machines: Machines) -> None:

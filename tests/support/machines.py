@@ -47,10 +47,10 @@ class Machines:
         assert child.stdout.readline() == "ready\n"
         return child
 
-    def command(self, host: str, *words: str) -> None:
+    def command(self, host: str, *words: str, **environ: str) -> None:
         """Run a command of robolink there until the test ends; it has printed its first line."""
         command = ["ip", "netns", "exec", host, sys.executable, "-m", "robolink", *words]
-        process = subprocess.Popen(command, env=self.environ({}), stdout=subprocess.PIPE, text=True)
+        process = subprocess.Popen(command, env=self.environ(environ), stdout=subprocess.PIPE, text=True)
         self._stack.enter_context(process)
         self._stack.callback(process.kill)
         assert process.stdout
