@@ -148,7 +148,9 @@ def root(
 ) -> None:
     """ROS 2 nodes from pip install: run them, launch them, see and send what they publish."""
     if network:
-        os.environ["ROBOLINK_NETWORK"] = network  # for the processes that a launch starts, too
+        from robolink.networks.asked import ask
+
+        ask(os.environ, network, "--network")
 
 
 @functools.cache

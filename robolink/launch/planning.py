@@ -15,6 +15,7 @@ from robolink.launch.reading.description import Respawn
 from robolink.launch.reading.entries import read_launch_file
 from robolink.launch.reading.entry import Entry
 from robolink.launch.shared_process import COMMAND, Member, written
+from robolink.networks.asked import NETWORK
 from robolink.supervisor import Process
 from robolink.supervisor.rules import Restarts, Rules
 from robolink.system.own_command import own_command
@@ -22,9 +23,6 @@ from robolink.workspace import VARIABLE, Folder, own_process_needed
 
 _ROOM = 16_000
 """Longest command line, in characters: Windows allows 32,767 with quotes, Linux 131,071 for each argument."""
-
-NETWORK = "ROBOLINK_NETWORK"
-"""Environment variable of the network on which processes are."""
 
 LIMITS = "ROBOLINK_LIMITS"
 """Environment variable of the limits of slow links."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, MutableMapping
 from typing import NamedTuple
 
 from robolink.constants import LAST_DOMAIN
@@ -26,6 +26,15 @@ ALIASES = {"subnet": "lan"}
 
 ENDPOINT = re.compile(r"(tcp|tls|quic|ws)/\S+:\d+")
 """Pattern of Zenoh's endpoints, `tcp/HOST:PORT`."""
+
+NETWORK = "ROBOLINK_NETWORK"
+"""Variable that names a network."""
+
+ASKED_BY = "ROBOLINK_NETWORK_ASKED_BY"
+"""Variable beside it, `WORD=VALUE`, with the word that a person used for this value: errors name that one."""
+
+RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+"""ROS 2's variable for how far nodes look for others; it counts where no network is named."""
 
 OVERRIDE = "ZENOH_CONFIG_OVERRIDE"
 """Variable with Zenoh's settings, `path=json5;path=json5`, that have the last word."""
@@ -73,15 +82,31 @@ def wanted(network: str | None, environ: Mapping[str, str]) -> Wanted:
 def _asked_for(network: str | None, environ: Mapping[str, str]) -> Wanted:
     if network:
         return Wanted("network", network)
-    for variable in ("ROBOLINK_NETWORK", "ZENOH_SESSION_CONFIG_URI"):
-        if environ.get(variable):
-            return Wanted(variable, environ[variable])
-    variable = "ROS_AUTOMATIC_DISCOVERY_RANGE"
-    reach = environ.get(variable, "")
+    if value := environ.get(NETWORK):
+        return Wanted(_word_for(value, environ), value)
+    if value := environ.get("ZENOH_SESSION_CONFIG_URI"):
+        return Wanted("ZENOH_SESSION_CONFIG_URI", value)
+    reach = environ.get(RANGE, "")
     if reach.upper() not in _RANGES:
         known = ", ".join(filter(None, _RANGES))
-        raise TransportError(f"{variable} must be one of {known}, got {reach[:40]!r}")
-    return Wanted(variable, _RANGES[reach.upper()])
+        raise TransportError(f"{RANGE} must be one of {known}, got {reach[:40]!r}")
+    return Wanted(RANGE, _RANGES[reach.upper()])
+
+
+def ask(environ: MutableMapping[str, str], value: str, asked_by: str) -> None:
+    """Set the variables of a network, for this process and those that it starts.
+
+    Args:
+        environ: Variables, which are changed.
+        value: The network.
+        asked_by: Word by which a person asked for it, such as an option of the command line, to name in an error.
+    """
+    environ[NETWORK], environ[ASKED_BY] = value, f"{asked_by}={value}"
+
+
+def _word_for(value: str, environ: Mapping[str, str]) -> str:
+    word = environ.get(ASKED_BY, "").removesuffix(f"={value}")
+    return word if word and word != environ[ASKED_BY] else NETWORK  # else somebody has set another one since
 
 
 def overrides(environ: Mapping[str, str]) -> list[tuple[str, str]]:

@@ -83,8 +83,9 @@ def test_a_network_is_asked_for_before_the_command(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("ROBOLINK_NETWORK", "localhost")
+    monkeypatch.setenv("ROBOLINK_NETWORK_ASKED_BY", "")
     assert main(["--network", "no/where", "topic", "list"]) == 1
-    assert "no network, host or file 'no/where'" in capsys.readouterr().err
+    assert capsys.readouterr().err.startswith("robolink: --network: no network, host or file 'no/where'")
     assert main(["--network", "off", "topic", "list"]) == 0
     assert capsys.readouterr() == ("", "")
 

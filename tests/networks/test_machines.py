@@ -133,7 +133,7 @@ def test_nobody_answers(machines: Machines) -> None:
     machines.start(machines.there, NODE, "local")  # whom nobody reaches
     done = machines.run_here([sys.executable, "-m", "robolink", "--network", THERE, "topic", "list"])
     assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr.startswith(f"robolink: ROBOLINK_NETWORK: nobody answers at {THERE}, no robolink process (port ")
+    assert done.stderr.startswith(f"robolink: --network: nobody answers at {THERE}, no robolink process (port ")
     assert done.stderr.count("\n") == 1
 
 
@@ -147,7 +147,7 @@ def test_a_launch_joins_its_files_network_once(machines: Machines, tmp_path_fact
     done = machines.run_here([sys.executable, "-m", "robolink", "launch", os.fspath(folder / "look.yaml")])
     assert done.returncode == 1
     assert done.stderr.count("\n") == 1
-    assert "nobody answers at 10.78.0.1, port 9" in done.stderr
+    assert "network, in the launch file: nobody answers at 10.78.0.1, port 9" in done.stderr
 
 
 def test_our_router_opens_the_way_to_local_nodes(machines: Machines) -> None:

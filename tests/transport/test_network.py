@@ -11,6 +11,7 @@ import pytest
 import zenoh
 
 from robolink.exceptions import TransportError
+from robolink.networks import asked
 from robolink.networks.settings import client, most_pending
 from robolink.transport import network
 
@@ -43,6 +44,15 @@ def test_no_domain(text: str) -> None:
 def test_which_network(argument: str | None, environ: dict[str, str], asked_by: str | None, value: str) -> None:
     found = network.wanted(argument, environ)
     assert found == (asked_by or "ZENOH_SESSION_CONFIG_URI", value)
+
+
+def test_an_error_names_the_word_that_was_used() -> None:
+    """The option of the command line is handed on in variables, also to processes that a launch starts."""
+    environ = {"ROBOLINK_NETWORK": "localhost"}
+    asked.ask(environ, "sub/nett", "--network")
+    assert refusal(environ).startswith("--network: no network, host or file 'sub/nett'")
+    environ["ROBOLINK_NETWORK"] = "no=where"  # which a node's own environment says
+    assert refusal(environ).startswith("ROBOLINK_NETWORK: no network, host or file 'no=where'")
 
 
 def test_an_unknown_range() -> None:

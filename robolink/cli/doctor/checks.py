@@ -6,6 +6,7 @@ import re
 
 from robolink.cli.doctor.facts import ClockOffset, Facts
 from robolink.cli.doctor.verdict import Check, Verdict, count, listed
+from robolink.networks.asked import NETWORK
 from robolink.networks.port_probe import REFUSES, ROUTER, SILENT, Port
 from robolink.networks.refusals import HAS_NO_KEYS, WANTS_KEYS
 from robolink.transport.reach import on_this_machine
@@ -24,7 +25,7 @@ _NO_EFFECT = {
     "ROS_DISCOVERY_SERVER": "it is DDS's; say ROBOLINK_NETWORK=HOST to meet another machine",
 }
 _NOTED = (
-    *("ROBOLINK_NETWORK", "ROBOLINK_TRANSPORT", "ROBOLINK_ROS_DISTRO", "ROBOLINK_SHARED_MEMORY"),
+    *(NETWORK, "ROBOLINK_TRANSPORT", "ROBOLINK_ROS_DISTRO", "ROBOLINK_SHARED_MEMORY"),
     "ROBOLINK_LIMITS",
     *("ZENOH_SESSION_CONFIG_URI", "ZENOH_CONFIG_OVERRIDE", "ROS_AUTOMATIC_DISCOVERY_RANGE"),
     *("ZENOH_RUNTIME", "RUST_LOG"),
@@ -71,7 +72,8 @@ def settings(facts: Facts) -> Verdict:
         )
     if wanted.transport != "zenoh":
         warnings.append(f"ROBOLINK_TRANSPORT={wanted.transport[:80]}: nodes see only their own process")
-    noted = [name for name in _NOTED if environ.get(name) and name != wanted.asked_by]
+    said = wanted.asked_by if wanted.asked_by in _NOTED else NETWORK  # which the command line or a launch file sets
+    noted = [name for name in _NOTED if environ.get(name) and name != said]
     in_force = [f"{name}={environ[name][:80]}" for name in noted]
     domain = f"domain {wanted.domain} ({'ROS_DOMAIN_ID' if environ.get('ROS_DOMAIN_ID') else 'the default'})"
     network = f"network {wanted.network} ({wanted.asked_by or 'the default'})"

@@ -15,6 +15,7 @@ from robolink.cli.doctor.look import count_nodes, look
 from robolink.cli.doctor.ports import also_open_at, ascii_only, holder, loopback_works, owner
 from robolink.constants import LAST_DOMAIN
 from robolink.exceptions import TransportError
+from robolink.networks.asked import RANGE
 from robolink.networks.port_probe import HOST, STRANGER, Port, listening
 from robolink.networks.refusals import wants_keys
 from robolink.transport import certificates, lifetime, network, shared_memory
@@ -98,7 +99,7 @@ def read_settings(environ: Mapping[str, str]) -> tuple[Settings, zenoh.Config | 
     settings = Settings(
         domain=domain,
         network=value,
-        asked_by=asked_by if environ.get(asked_by) else "",
+        asked_by="" if asked_by == RANGE and not environ.get(asked_by) else asked_by,
         transport=environ.get("ROBOLINK_TRANSPORT") or "zenoh",
         meets=network.meets_at_port(value, environ) if found is None else found.meets,
         shared_memory=config is None or config.get_json(network.SHARES_MEMORY) == "true",

@@ -261,10 +261,13 @@ def _join_network(entries: Sequence[Entry]) -> None:
     """Put this process and all that it starts on the system's network; raises TransportError if there is none."""
     import os
 
-    from robolink.launch.planning import NETWORK, network_of
-    from robolink.networks.asked import ALIASES, NAMES, domain_id
+    from robolink.launch.planning import network_of
+    from robolink.networks.asked import ALIASES, NAMES, NETWORK, ask, domain_id
 
-    os.environ.update(network_of(entries, os.environ))  # not in each node's `env`, with which none can be forked
+    given = network_of(entries, os.environ)
+    os.environ.update(given)  # not in each node's `env`, with which none can be forked
+    if NETWORK in given:
+        ask(os.environ, given[NETWORK], "network, in the launch file")
     if os.environ.get(NETWORK, "localhost") not in (*NAMES, *ALIASES):
         from robolink.transport import network
 
