@@ -23,22 +23,28 @@ def problem(pattern: str) -> str:
 
 
 def fits(pattern: str, name: str) -> bool:
-    """True if a name fits a pattern.
+    """True if a name fits a pattern; takes a time that grows with the product of their parts at most.
 
     >>> fits("/arm/*", "/arm/left/joint"), fits("/arm/*", "/arm"), fits("/scan*", "/scan_2")
     (True, False, True)
     """
     if "*" not in pattern:
         return pattern == name
-    parts = pattern.split("/")[1:]
-    texts = [_part(part, is_last=index == len(parts) - 1) for index, part in enumerate(parts)]
-    return re.fullmatch("".join(f"/{text}" for text in texts), name) is not None
-
-
-def _part(part: str, *, is_last: bool) -> str:
-    if part == "*":
-        return "[^/]+(?:/[^/]+)*"
-    return re.escape(part.removesuffix("*")) + ("[^/]*(?:/[^/]+)*" if part.endswith("*") and is_last else "")
+    parts = name.split("/")
+    if parts[0] or not all(parts[1:]) or len(parts) == 1:
+        return False
+    reached = {1}  # parts of the name with which what is left of the pattern may go on
+    *inner, last = pattern.split("/")[1:]
+    for part in inner:
+        if part == "*":
+            reached = set(range(min(reached) + 1, len(parts)))
+        else:
+            reached = {index + 1 for index in reached if index + 1 < len(parts) and parts[index] == part}
+        if not reached:
+            return False
+    if last.endswith("*"):
+        return any(parts[index].startswith(last[:-1]) for index in reached)
+    return len(parts) - 1 in reached and parts[-1] == last
 
 
 def keys(pattern: str, domain: int) -> list[str]:
