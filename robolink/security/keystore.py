@@ -148,11 +148,12 @@ class Keystore:
         if not (folder / CERTIFICATE).is_file():
             known = [each for each in self.names() if each != name]
             raise SecurityError(f"there is no enclave '{name}' in '{self.path}'{nearest(name, known)}")
-        valid = authority.validity(files.read(folder / CERTIFICATE))
-        text = permissions.write(name, rules, self.domain, valid)
+        signer = self._authority("permissions_ca")
+        # As long as the authority: a renewed certificate needs no new permissions, which would concern all sessions.
+        text = permissions.write(name, rules, self.domain, authority.validity(signer.certificate))
         if len(text) > files.LARGEST:  # which no session would read
             raise SecurityError(f"the permissions of '{name}' have {len(text):,} bytes, more than {files.LARGEST:,}")
-        signature = authority.signed(text, self._authority("permissions_ca"))
+        signature = authority.signed(text, signer)
         files.write(folder / "permissions.p7s", signature)
         files.write(folder / PERMISSIONS, text)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import math
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -26,6 +27,7 @@ _IMPLIED = (
     *(("subscribe", "/clock"), ("reply", COMMANDS)),
 )
 _GOALS, _NEWS = ("send_goal", "cancel_goal", "get_result"), ("feedback", "status")
+_TIME = re.compile(r"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d)(?:\.\d+)?(Z|[+-]\d\d:\d\d)?", re.ASCII)
 _SCHEMA = "http://www.omg.org/spec/DDS-SECURITY/20170901/omg_shared_ca_permissions.xsd"
 
 
@@ -41,10 +43,18 @@ class Permission(NamedTuple):
     """First and last of the domains in which it holds."""
     place: str
     """File and line."""
+    begin: float = -math.inf
+    """Time from which it holds, in seconds since 1970."""
+    end: float = math.inf
+    """Time from which it holds no longer."""
 
     def holds_in(self, domain: int) -> bool:
         """True if it holds in a domain."""
         return any(first <= domain <= last for first, last in self.domains)
+
+    def holds_at(self, moment: float) -> bool:
+        """True if it holds at a time in seconds since 1970. A denial holds at any."""
+        return not self.allows or self.begin <= moment < self.end
 
 
 def expanded(profiles: Iterable[Profile]) -> list[Rule]:
@@ -132,13 +142,43 @@ def load(path: Path) -> list[Permission]:
         raise root.mistake(f"expected <dds>, got <{root.tag}>")
     found: list[Permission] = []
     for grant in root.all("permissions", "grant"):
+        begin, end = _validity(grant)
         for block in grant.children:
             if block.tag in ("allow_rule", "deny_rule"):
-                found += _permissions(block)
+                found += _permissions(block, begin, end)
     return found
 
 
-def _permissions(block: Element) -> Iterator[Permission]:
+def outside(given: Iterable[Permission], moment: float) -> str:
+    """Return why some of an enclave's permissions do not hold at a time in seconds since 1970; '' if all do."""
+    for each in given:
+        if not each.holds_at(moment):
+            word, when = ("ended", each.end) if moment >= each.end else ("begin", each.begin)
+            spelled = datetime.datetime.fromtimestamp(when, datetime.timezone.utc).strftime("%Y-%m-%d %H:%M:%S")
+            return f"{each.place.rpartition(':')[0]}: these permissions {word} at {spelled} UTC, and count only within"
+    return ""
+
+
+def _validity(grant: Element) -> tuple[float, float]:
+    """Return the times between which a grant holds; without them, as in no file of SROS2's, it always does."""
+    begin = [_moment(each) for each in grant.all("validity", "not_before")]
+    end = [_moment(each) for each in grant.all("validity", "not_after")]
+    return max(begin, default=-math.inf), min(end, default=math.inf)
+
+
+def _moment(element: Element) -> float:
+    """Return a time of XML Schema in seconds since 1970: UTC, unless it names its zone."""
+    found = _TIME.fullmatch(element.text)
+    try:
+        if found:
+            zone = (found[2] or "Z").replace("Z", "+00:00")
+            return datetime.datetime.fromisoformat(found[1] + zone).timestamp()
+    except (ValueError, OverflowError):  # 31 February; before the year 1
+        pass
+    raise element.mistake(f"<{element.tag}> is a time such as 2036-01-31T12:00:00, got '{element.text[:40]}'")
+
+
+def _permissions(block: Element, begin: float, end: float) -> Iterator[Permission]:
     domains = tuple(_domains(block))
     for way in ("publish", "subscribe"):
         for topic in block.all(way, "topics", "topic"):
@@ -147,7 +187,8 @@ def _permissions(block: Element) -> Iterator[Permission]:
                 continue
             if wrong := patterns.problem(name):
                 raise topic.mistake(f"<topic>{topic.text}: {wrong}")
-            yield Permission(kind, block.tag == "allow_rule", name, domains, f"{topic.file}:{topic.line}")
+            place = f"{topic.file}:{topic.line}"
+            yield Permission(kind, block.tag == "allow_rule", name, domains, place, begin, end)
 
 
 def _right(way: str, topic: str) -> tuple[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -24,11 +25,23 @@ class Rights:
         given: Its permissions, in any order.
         domain: Domain in which they are asked for.
         source: File that they come from, to name in errors.
+        moment: Time at which they are asked for, in seconds since 1970; None is now.
     """
 
-    def __init__(self, enclave: str, given: Iterable[Permission], domain: int, source: str = "") -> None:
+    def __init__(
+        self,
+        enclave: str,
+        given: Iterable[Permission],
+        domain: int,
+        source: str = "",
+        moment: float | None = None,
+    ) -> None:
         self.enclave, self.domain, self.source = enclave, domain, source
-        held = [each for each in given if each.holds_in(domain)]
+        here = [each for each in given if each.holds_in(domain)]
+        self.turns = {each.begin for each in here if each.allows} | {each.end for each in here if each.allows}
+        """Times at which a permission begins or ends to hold."""
+        now = time.time() if moment is None else moment
+        held = [each for each in here if each.holds_at(now)]
         self.allowed = [each for each in held if each.allows]
         self.denied = [each for each in held if not each.allows]
 
@@ -67,10 +80,11 @@ class Rights:
 
 
 def load_rights(enclaves: Path, domain: int) -> tuple[dict[str, Rights], list[str]]:
-    """Return the rights of all enclaves below a folder, by name, and the mistakes in their files.
+    """Return the rights of all enclaves below a folder, by name, and what is wrong with their files.
 
-    An enclave whose file has a mistake has no rights.
+    An enclave whose file has a mistake has no rights, nor has one whose permissions have ended or not begun.
     """
+    now = time.time()
     found: dict[str, Rights] = {}
     mistakes: list[str] = []
     for path in sorted(enclaves.rglob(PERMISSIONS)):
@@ -80,7 +94,9 @@ def load_rights(enclaves: Path, domain: int) -> tuple[dict[str, Rights], list[st
         except DocumentError as error:
             mistakes.append(str(error))
             given = []
-        found[name] = Rights(name, given, domain, str(path))
+        if why := permissions.outside((each for each in given if each.holds_in(domain)), now):
+            mistakes.append(why)
+        found[name] = Rights(name, given, domain, str(path), now)
     return found, mistakes
 
 

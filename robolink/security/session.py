@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import re
+import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -115,13 +116,20 @@ def read(security: Security) -> Security:
 
 
 def fingerprint(security: Security) -> frozenset[tuple[str, int, int]]:
-    """Return names, times and sizes of the files of permissions, and of the own key, certificate and authority."""
+    """Return what differs as soon as permissions or keys count otherwise.
+
+    These are names, times and sizes of the files of permissions and of the own key, certificate and authority, and
+    for each enclave how many times have come at which permissions begin or end.
+    """
     own = (security.folder / each for each in (CERTIFICATE, KEY, AUTHORITY))
     found = set()
     for path in (*own, *security.enclaves.rglob(PERMISSIONS)):
         with contextlib.suppress(OSError):  # gone just now
             status = path.stat()
             found.add((str(path), status.st_mtime_ns, status.st_size))
+    now = time.time()
+    for rights in security.everybody.values():
+        found.add((rights.enclave, sum(turn <= now for turn in rights.turns), 0))
     return frozenset(found)
 
 
