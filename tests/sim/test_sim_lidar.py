@@ -19,8 +19,8 @@ from robolink.sim.sensing.lidar import Beams, distances, distances_batch, limite
 from robolink.sim.sensing.scene import Scene
 from robolink.sim.sensing.surroundings import FIXED, NOBODY, Edges, Surroundings, circles_of, standing
 from robolink.sim.sensing.tiles import Tiles, columns
-from robolink.sim.sensing.trigonometry import cos_and_sin
 from robolink.sim.sensors import Lidar
+from robolink.sim.trigonometry import cos_and_sin
 
 NO_CIRCLES = np.zeros((0, 3))
 NO_SEGMENTS = np.zeros((0, 4))

@@ -17,8 +17,8 @@ from robolink.sim.arrays import Array, Indices, Place
 from robolink.sim.quantities import Pose
 from robolink.sim.sensing.surroundings import NOBODY, Circles, Surroundings
 from robolink.sim.sensing.tiles import NORMAL, REFLECTANCE, X, Y
-from robolink.sim.sensing.trigonometry import cos_and_sin
 from robolink.sim.sensors import Lidar
+from robolink.sim.trigonometry import cos_and_sin
 
 Numbers: TypeAlias = "float | Array"
 """One number for all sensors, or one for each."""
