@@ -199,6 +199,11 @@ class Context:
         """Forget `node`, which is destroyed."""
         self._nodes.pop(id(node), None)
 
+    @property
+    def nodes(self) -> list[Any]:
+        """Nodes that were made in this context and are not destroyed, in the order of making."""
+        return list(self._nodes.values())
+
     # The end
 
     def ok(self) -> bool:
@@ -268,7 +273,7 @@ class Context:
 
     def _close(self) -> None:
         try:
-            for node in list(self._nodes.values()):
+            for node in self.nodes:
                 node.destroy_node()
             self.given_parameters.warn_of_rest()
         finally:  # a node's own destroy_node is anybody's code

@@ -4,9 +4,10 @@
     import rclpy  # is robolink: the very same modules and classes
     from geometry_msgs.msg import Twist
 
-`robolink run` does the same for what it runs. There are rclpy, the message packages, tf2_ros, tf2_py,
-tf2_geometry_msgs, tf2_sensor_msgs, tf_transformations, message_filters, sensor_msgs_py, cv_bridge, image_geometry,
-rosidl_runtime_py, ament_index_python, rosbag2_py and webots_ros2_driver (its WebotsController alone).
+`robolink run` does the same for what it runs, and prepares OpenCV for machines without a screen. There are rclpy, the
+message packages, tf2_ros, tf2_py, tf2_geometry_msgs, tf2_sensor_msgs, tf_transformations, message_filters,
+sensor_msgs_py, cv_bridge, image_geometry, rosidl_runtime_py, ament_index_python, rosbag2_py and webots_ros2_driver
+(its WebotsController alone).
 
 **All or none.** These modules hand each other their classes, so they are robolink's together or not at all. Where a
 real rclpy is installed, the import above leaves all of them alone. `robolink run` does not: whoever asks robolink to
@@ -23,6 +24,7 @@ import os
 import sys
 
 from robolink.compat.maker import MAKER, has_rclpy, hidden
+from robolink.compat.opencv import prepare_opencv
 from robolink.exceptions import RobolinkError
 from robolink.workspace.modules import FINDER
 
@@ -30,7 +32,7 @@ VARIABLE = "ROBOLINK_COMPAT"
 """Environment variable that overrules the mode."""
 AUTO, ALWAYS, NEVER = MODES = ("auto", "always", "never")
 
-__all__ = ["ALWAYS", "AUTO", "NEVER", "VARIABLE", "CompatError", "activate", "is_active"]
+__all__ = ["ALWAYS", "AUTO", "NEVER", "VARIABLE", "CompatError", "activate", "is_active", "prepare_opencv"]
 
 
 class CompatError(RobolinkError, ImportError):

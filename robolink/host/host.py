@@ -250,7 +250,8 @@ class Host:
 
 
 def _part(member: Member) -> Part:
-    compat.activate(compat.ALWAYS)
+    if compat.activate(compat.ALWAYS):
+        compat.prepare_opencv()
     source = find_node(member.node)
     return Part(member.name, source, [str(source.path or source.name), *member.args])
 

@@ -52,12 +52,12 @@ def lacking(
     """
     if name.startswith("__"):  # Python's own questions: nobody reads the answer
         return AttributeError(f"module '{module}' has no attribute '{name}'")
-    if asker is not None and _imports_a_name(asker):
+    if asker is not None and imports_a_name(asker):
         return LackingImportError(f"{module}.{name}", known, hint)
     return LackingAttributeError(f"{module}.{name}", known, hint)
 
 
-def _imports_a_name(frame: FrameType) -> bool:
+def imports_a_name(frame: FrameType) -> bool:
     """True if a frame is just importing one name in a `from ... import` statement."""
     from opcode import opmap
 

@@ -1,4 +1,7 @@
-"""Import finder for modules that are no files, with functions that know names and how each module is made."""
+"""Import finder for modules that are no files, with functions that know names and how each module is made.
+
+It also changes modules of others, once they are loaded.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import sys
 from collections.abc import Callable, Sequence
 from importlib.machinery import ModuleSpec
 from types import ModuleType
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 Fill: TypeAlias = Callable[[ModuleType], None]
 """Function that fills a new, empty module; or puts another module in its place in `sys.modules`."""
@@ -26,11 +29,22 @@ class ModuleFinder:
     def __init__(self) -> None:
         self.makers: list[Maker] = []
         self.hides: Callable[[str], bool] = lambda _: False
+        self.changes: dict[str, Fill] = {}
+        """Functions that change a module of others after it was loaded, by its name."""
+        self._changing: set[str] = set()
+
+    def change(self, fullname: str, act: Fill) -> None:
+        """Call `act(module)` whenever a module of others with this name has been loaded."""
+        self.changes[fullname] = act
+        self._ask_first()
 
     def add(self, maker: Maker, *, first: bool = False) -> None:
         """Add a maker, before or after those that are there; make Python ask this finder first."""
         if maker not in self.makers:
             self.makers.insert(0 if first else len(self.makers), maker)
+        self._ask_first()
+
+    def _ask_first(self) -> None:
         if self not in sys.meta_path:
             sys.meta_path.insert(0, self)
 
@@ -38,6 +52,8 @@ class ModuleFinder:
         self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
         """Return the spec from which Python makes a module, None for a name of others."""
+        if fullname in self.changes and fullname not in self._changing:
+            return self._changed(fullname, path, target)
         fill = next(filter(None, (maker(fullname) for maker in self.makers)), None)
         if fill is None:
             return None
@@ -47,6 +63,13 @@ class ModuleFinder:
         spec = ModuleSpec(fullname, Filling(fill), is_package=True)  # type: ignore[arg-type]
         if real is not None and real.submodule_search_locations:
             spec.submodule_search_locations = list(real.submodule_search_locations)
+        return spec
+
+    def _changed(self, fullname: str, path: Sequence[str] | None, target: ModuleType | None) -> ModuleSpec | None:
+        """Return the spec of a module that is changed once it is loaded."""
+        spec = self.real(fullname, path, target)
+        if spec is not None and spec.loader is not None and hasattr(spec.loader, "exec_module"):
+            spec.loader = Changing(spec.loader, self.changes[fullname], self._changing)  # type: ignore[assignment]
         return spec
 
     def real(
@@ -73,6 +96,38 @@ class Filling:
     def exec_module(self, module: ModuleType) -> None:
         """Fill it."""
         self.fill(module)
+
+
+class Changing:
+    """Loader that loads a module as another one does, and then changes it; the module remembers the other one only.
+
+    cv2, for one, imports its library by its own name while it is loaded: that one is not changed, hence `busy`, the
+    names of the modules that are being loaded.
+    """
+
+    def __init__(self, loader: Any, act: Fill, busy: set[str]) -> None:
+        self._loader, self._act, self._busy = loader, act, busy
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._loader, name)  # who asks for a module's spec may want its file or its code
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
+        """Make the module as the other loader does."""
+        made: ModuleType | None = self._loader.create_module(spec)
+        return made
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Load it, and change it."""
+        name = module.__name__
+        module.__loader__ = self._loader
+        if module.__spec__ is not None:
+            module.__spec__.loader = self._loader
+        self._busy.add(name)
+        try:
+            self._loader.exec_module(module)
+        finally:
+            self._busy.discard(name)
+        self._act(module)
 
 
 FINDER = ModuleFinder()

@@ -104,6 +104,7 @@ def outcome(act: Callable[[], Any], terminated: list[int]) -> int:
         return 1 if _is_logged(error) else complain(error, place=_place(error))
     except Exception as error:  # noqa: BLE001 - it is the user's, and they want to see where
         _show(error)
+        _advise(error)
         return 1
 
 
@@ -192,7 +193,8 @@ def take_names() -> None:
     """Make the names rclpy and those of its companions stand for robolink, for the program that is run."""
     from robolink import compat  # late: its import takes names already
 
-    compat.activate(compat.ALWAYS)
+    if compat.activate(compat.ALWAYS):
+        compat.prepare_opencv()
 
 
 def pass_over_imports() -> None:
@@ -301,6 +303,18 @@ def _show(error: Exception) -> None:
     if isinstance(error, LackingNameError):
         _end_in_users_code(trace)
     tell(formatted(error, trace), colours=True)
+
+
+def _advise(error: Exception) -> None:
+    """Print what to install if the program's import of OpenCV failed."""
+    if isinstance(error, ImportError) and (error.name or "").partition(".")[0] == "cv2":
+        from robolink.image.encodings import ImageError
+        from robolink.image.opencv import opencv
+
+        try:
+            opencv("this program")
+        except ImageError as reason:
+            complain(reason)
 
 
 def _end_in_users_code(trace: TracebackType | None) -> None:
