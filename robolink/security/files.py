@@ -7,7 +7,7 @@ import functools
 import os
 import stat
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from robolink.exceptions import SecurityError
@@ -104,6 +104,41 @@ def exposure(path: Path) -> str:
     if not found.st_mode & (stat.S_IRWXG | stat.S_IRWXO):
         return ""
     return f"{path} may be read or changed by others (mode {stat.S_IMODE(found.st_mode):04o}): chmod 600 {path}"
+
+
+def changeable(paths: Iterable[Path]) -> list[Path]:
+    """Return those files and folders that others than their owner may change. Windows cannot say: none.
+
+    A group is the owner's own if it has its name, as users of Debian and Ubuntu have. In a folder with the sticky bit
+    others may make files, but replace none.
+    """
+    return [] if sys.platform == "win32" else [path for path in paths if _is_changeable(path)]
+
+
+def _is_changeable(path: Path) -> bool:
+    try:
+        found = path.stat()
+    except OSError:
+        return False
+    if stat.S_ISDIR(found.st_mode) and found.st_mode & stat.S_ISVTX:
+        return False
+    by_group = found.st_mode & stat.S_IWGRP and not _is_own_group(found.st_uid, found.st_gid)
+    return bool(found.st_mode & stat.S_IWOTH or by_group)
+
+
+@functools.cache
+def _is_own_group(user: int, group: int) -> bool:
+    """True if a group is that of one user alone."""
+    if sys.platform == "win32":
+        return False
+    import grp  # late: neither is on Windows
+    import pwd
+
+    try:
+        name, found = pwd.getpwuid(user).pw_name, grp.getgrgid(group)
+    except KeyError:
+        return False
+    return found.gr_name == name and not {*found.gr_mem} - {name}
 
 
 def _reason(error: Exception) -> str:

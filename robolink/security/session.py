@@ -54,7 +54,7 @@ class Security(NamedTuple):
     everybody: dict[str, Rights]
     """Rights of all enclaves of the keystore."""
     warnings: list[str]
-    """Mistakes that do not matter to this enclave, one line each."""
+    """Mistakes and open files of the keystore that do not keep this enclave out, one line each."""
 
 
 def wanted(environ: Mapping[str, str], domain: int, enclave: str | None = None) -> Security | None:
@@ -107,7 +107,20 @@ def _loaded(name: str, folder: Path, enclaves: Path, domain: int) -> Security:
         raise SecurityError(f"enclave '{name}': {mine[0]}")
     if own.is_withdrawn:
         raise SecurityError(f"enclave '{name}' has been withdrawn: everything is denied to it ({own.source})")
-    return Security(name, folder, enclaves, own, everybody, mistakes)
+    warnings = [f"{each}: this enclave has no rights" for each in mistakes]
+    return Security(name, folder, enclaves, own, everybody, [*warnings, *_open_to_change(folder, enclaves)])
+
+
+def _open_to_change(folder: Path, enclaves: Path) -> list[str]:
+    """Return a line if others may change what says who gets in, and what each may do: files, or folders of these."""
+    rights = sorted(enclaves.rglob(PERMISSIONS))
+    files_ = [*rights, *(folder / each for each in (CERTIFICATE, AUTHORITY)), enclaves / "governance.p7s"]
+    found = files.changeable(dict.fromkeys([enclaves.parent, enclaves, *files_, *(each.parent for each in rights)]))
+    if not found:
+        return []
+    more = f" and {len(found) - 1} more" if found[1:] else ""
+    whose = f"{found[0]}{more} may be changed by other users of this machine"
+    return [f"{whose}, and so what each enclave may do: chmod -R go-w {enclaves.parent}"]
 
 
 def read(security: Security) -> Security:

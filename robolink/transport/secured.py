@@ -40,7 +40,7 @@ def open_session(domain: int, asked: str | None, environ: Mapping[str, str], enc
         )
         return ZenohTransport(domain, asked, {**environ, session.ENABLE: "false"})
     for warning in security.warnings:
-        get_logger("security").warning(f"{warning}: this enclave has no rights")
+        get_logger("security").warning(warning)
     return SecuredTransport(security, asked, {**environ, session.OVERRIDE: security.enclave})
 
 

@@ -61,4 +61,6 @@ def router_security(environ: Mapping[str, str]) -> Security | None:
             f"enclave '{environ.get(session.OVERRIDE) or ROUTER}' has no keys, and "
             "ROS_SECURITY_STRATEGY is not Enforce: this router is open to everybody"
         )
+    for warning in security.warnings if security else ():
+        get_logger("security").warning(warning)
     return security

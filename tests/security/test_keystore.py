@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.main import main
-from robolink.security import authority, files, permissions
+from robolink.security import authority, files, permissions, session
 from robolink.security.keystore import Keystore
+from tests.support.domains import free_domain
 
 pytest.importorskip("cryptography", reason="needs the extra `security`")
 
@@ -52,6 +53,50 @@ def test_keys_are_read_by_their_owner_alone(store: Path) -> None:
         assert files.exposure(path) == ""
     path.chmod(0o640)
     assert f"mode 0640): chmod 600 {path}" in files.exposure(path)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no modes")
+def test_files_that_others_may_change_are_told_in_one_line(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who may write permissions may do everything, and who may write the authority's certificate lets anybody in."""
+    for name in ("/a", "/b"):
+        main(["security", "create_enclave", str(store), name])
+    environ = {"ROS_SECURITY_ENABLE": "true", "ROS_SECURITY_KEYSTORE": str(store)}
+
+    def told() -> list[str]:
+        found = session.wanted(environ, 0, "/a")
+        assert found is not None
+        return found.warnings
+
+    assert told() == []
+    said = f"may be changed by other users of this machine, and so what each enclave may do: chmod -R go-w {store}"
+    permitted = store / "enclaves" / "b" / "permissions.xml"
+    permitted.chmod(0o666)
+    assert told() == [f"{permitted} {said}"]
+    permitted.parent.chmod(0o777)
+    (store / "public" / "ca.cert.pem").chmod(0o646)  # to which that of the enclave is a link
+    assert told() == [f"{permitted} and 2 more {said}"]
+    for path in (permitted, permitted.parent, store / "public" / "ca.cert.pem"):
+        path.chmod(path.stat().st_mode & ~0o022)
+    store.chmod(0o1777)
+    assert told() == [], "nobody replaces another's file in a sticky folder"
+    for is_own, lines in ((True, 0), (False, 1)):
+        monkeypatch.setattr(files, "_is_own_group", lambda user, group, is_own=is_own: is_own)
+        permitted.chmod(0o664)
+        assert len(told()) == lines
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no modes")
+def test_doctor_tells_files_that_others_may_change(
+    store: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(["security", "create_enclave", str(store), "/a"])
+    for name, value in {"ENABLE": "true", "KEYSTORE": str(store), "ENCLAVE_OVERRIDE": "/a"}.items():
+        monkeypatch.setenv(f"ROS_SECURITY_{name}", value)
+    (store / "enclaves" / "governance.p7s").chmod(0o666)
+    with free_domain() as domain:
+        monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+        main(["doctor"])
+    assert f"chmod -R go-w {store}" in capsys.readouterr().out
 
 
 def test_certificates_are_those_of_sros2(store: Path) -> None:

@@ -59,7 +59,7 @@ def test_permissions_that_have_ended_or_not_begun_give_no_rights_and_a_line(stor
         assert line.startswith(f"{path}: these permissions {word} at {when:%Y-%m-%d %H:}")
         own = session.wanted(os.environ, 0, "/robot")
         assert own is not None
-        assert own.warnings == [line]
+        assert own.warnings == [f"{line}: this enclave has no rights"]
         with pytest.raises(SecurityError, match=re.escape(f"enclave '/student': {line}")):
             session.wanted(os.environ, 0, "/student")
 

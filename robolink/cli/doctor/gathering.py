@@ -18,6 +18,7 @@ from robolink.exceptions import TransportError
 from robolink.networks.asked import RANGE
 from robolink.networks.port_probe import HOST, STRANGER, Port, listening
 from robolink.networks.refusals import wants_keys
+from robolink.security import session
 from robolink.transport import certificates, lifetime, network, shared_memory
 from robolink.transport.reach import Reach, reach
 
@@ -167,10 +168,13 @@ def _with_ports(facts: Facts) -> Facts:
 
 
 def _with_certificates(facts: Facts, config: zenoh.Config) -> Facts:
-    """Add the problems of the settings' certificates."""
-    errors = certificates.faults(config) or certificates.refusals(config)
+    """Add the problems of the settings' certificates, and of the keystore's files."""
+    errors = [*(certificates.faults(config) or certificates.refusals(config))]
+    doubts = [] if errors else certificates.doubts(config)
+    security = _try(errors, None, lambda: session.wanted(os.environ, facts.settings.domain))
     return facts._replace(
-        certificate_errors=tuple(errors), certificate_warnings=tuple(certificates.doubts(config) if not errors else ())
+        certificate_errors=tuple(errors),
+        certificate_warnings=(*doubts, *(security.warnings if security else ())),
     )
 
 
