@@ -6,12 +6,12 @@ import contextlib
 import functools
 import itertools
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robolink.exceptions import SecurityError
+from robolink.launch import protection
 from robolink.launch.planning import Launched, as_process, core_errors, processes
 from robolink.launch.readiness import waiting
 from robolink.launch.reading.entry import Entry
@@ -77,7 +77,7 @@ def launch(
     held = {each.name: each.held_by for each in launched if each.held_by}
     members = {each.name: [entry.name for entry in each.entries] for each in launched if each.entries[0].node.process}
     to_run = _to_run(launched, watches)
-    _check_keys(enclave, {"recorder": record is not None, "view": shows_view})
+    protection.check_keys(enclave, {"recorder": record is not None, "view": shows_view})
     if record is not None:
         from robolink.launch import recording
 
@@ -92,6 +92,8 @@ def launch(
         if server is not None:
             start = functools.partial(Child, server=stack.enter_context(contextlib.closing(server)))
         supervisor = Supervisor(to_run, output=output, logs=RunLogs(path.stem), on_event=on_event, start=start)
+        for line in protection.unprotected(entries, os.environ):
+            supervisor.say(line)
         if server is not None:
             server.is_asked_to_end = lambda: supervisor.is_asked_to_end
         beside: list[contextlib.AbstractContextManager[object]] = [
@@ -110,19 +112,6 @@ def launch(
 def _enclave(entries: Iterable[Entry]) -> str:
     """Return the enclave of a node, by whose keys the launcher sees when the others are there; '' if none has one."""
     return next((each.node.enclave for each in entries if each.node.enclave), "")
-
-
-def _check_keys(enclave: str, started: Mapping[str, bool]) -> None:
-    """Raise SecurityError, once for all that is started beside the nodes, if it cannot have keys that it must have."""
-    from robolink.networks.asked import domain_id
-    from robolink.security import session
-
-    names = [name for name, is_started in started.items() if is_started]
-    try:
-        if names:
-            session.wanted(os.environ, domain_id(os.environ), enclave or None)
-    except SecurityError as error:
-        raise SecurityError(f"--enclave NAME gives the {' and the '.join(names)} keys: {error}") from None
 
 
 def _to_run(launched: Iterable[Launched], watches: bool) -> list[Process]:

@@ -26,7 +26,10 @@ AUTHORITY = "identity_ca.cert.pem"
 ENABLE, OVERRIDE = "ROS_SECURITY_ENABLE", "ROS_SECURITY_ENCLAVE_OVERRIDE"
 """Variables that switch security on, and that name the enclave in place of `--enclave`."""
 
-_STRATEGY, _KEYSTORE = "ROS_SECURITY_STRATEGY", "ROS_SECURITY_KEYSTORE"
+STRATEGY = "ROS_SECURITY_STRATEGY"
+"""Variable that decides about an enclave without keys: `Enforce` opens no session, `Permissive` an open one."""
+
+_KEYSTORE = "ROS_SECURITY_KEYSTORE"
 
 _HARMLESS = re.compile(
     r"|iface|bind|so_(snd|rcv)buf|retry_period_\w+|exit_on_failure|timeout_ms|tls_handshake_timeout_ms"
@@ -71,7 +74,7 @@ def wanted(environ: Mapping[str, str], domain: int, enclave: str | None = None) 
     """
     if not is_on(environ):
         return None
-    enforces = _flag(environ, _STRATEGY, ("enforce", "permissive"), "permissive") == "enforce"
+    enforces = _flag(environ, STRATEGY, ("enforce", "permissive"), "permissive") == "enforce"
     name = checked_enclave(environ.get(OVERRIDE) or enclave or "/")
     store = environ.get(_KEYSTORE, "")
     if not store:

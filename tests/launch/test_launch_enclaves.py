@@ -124,6 +124,40 @@ def test_what_the_environment_says_otherwise_is_noted(
     assert "enclaves were not looked into: ROS_SECURITY_ENABLE is not true" in report.notes
 
 
+OPEN = """
+nodes:
+- {node: mine, name: robot}
+- {node: mine, name: camera, env: {ROS_SECURITY_ENABLE: false, ROS_SECURITY_STRATEGY: Permissive}}
+- {run: [python], name: helper, env: {ROS_SECURITY_ENABLE: ""}}
+"""
+
+
+def test_who_is_without_security_is_told(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not any("security" in note for note in found(home, OPEN).notes), "nobody has any"
+    monkeypatch.setenv("ROS_SECURITY_ENABLE", "True")
+    off = "security is off for camera, helper: the launch file's `env` sets ROS_SECURITY_ENABLE"
+    weak = "security does not insist on keys for camera: the launch file's `env` sets ROS_SECURITY_STRATEGY"
+    notes = found(home, OPEN).notes
+    assert off in notes
+    assert weak not in notes, "nobody does"
+    monkeypatch.setenv("ROS_SECURITY_STRATEGY", "Enforce")
+    notes = found(home, OPEN).notes
+    assert off in notes
+    assert weak in notes
+    assert not any("launch file's" in note for note in found(home, SYSTEM).notes)
+
+
+@pytest.mark.processes
+def test_a_launch_tells_who_is_without_security(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = "nodes: [{run: [python, --version], env: {ROS_SECURITY_ENABLE: false}}]\n"
+    (home / "configs" / "open.yaml").write_text(text, encoding="utf-8")
+    monkeypatch.setenv("ROS_SECURITY_ENABLE", "true")
+    command = [sys.executable, "-m", "robolink", "launch", "open"]
+    done = subprocess.run(command, cwd=home, capture_output=True, text=True, check=False, timeout=300)
+    said = done.stdout + done.stderr
+    assert said.count("security is off for python: the launch file's `env` sets ROS_SECURITY_ENABLE") == 1, said
+
+
 ROBOT = """
 from robolink import Node
 from robolink.interfaces.std_msgs.msg import String

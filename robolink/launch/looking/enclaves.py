@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from robolink.exceptions import DocumentError, RobolinkError
 from robolink.launch.looking.look import End, Look
+from robolink.launch.protection import unprotected
 from robolink.launch.reading.entry import Entry
 from robolink.networks.asked import domain_id
 from robolink.security import session
@@ -39,8 +40,9 @@ def enclave_errors(entries: Iterable[Entry], looks: Mapping[str, Look]) -> Itera
                 yield each.error(["enclave"], f"'{each.name}': {reason}")
 
 
-def enclave_notes(entries: Iterable[Entry]) -> Iterator[str]:
+def enclave_notes(entries: Sequence[Entry]) -> Iterator[str]:
     """Yield a note where the environment switches off what a launch file says of enclaves, or says otherwise."""
+    yield from unprotected(entries, os.environ)
     named = [each for each in entries if each.node.enclave]
     for each in named:
         environ = {**os.environ, **each.node.env}
