@@ -49,6 +49,12 @@ def student(number: int) -> str:
     return f"/student{number}"
 
 
+def domain_of(folder: Path, domain: int) -> int:
+    """Return the domain of a class, which it keeps from its beginning on; `domain` for one that is not there yet."""
+    store = Keystore(folder / "keys", domain)
+    return store.written_domain() if store.is_valid else domain
+
+
 def make(folder: Path, students: int, topics: Class, domain: int) -> list[Path]:
     """Make the keystore of a class in `folder/keys`, and a folder beside it for the robot and for each student.
 
@@ -58,14 +64,14 @@ def make(folder: Path, students: int, topics: Class, domain: int) -> list[Path]:
         folder: Folder of the class.
         students: Number of students, 1 to MOST.
         topics: Topics that they see and drive.
-        domain: ROS domain.
+        domain: ROS domain of a new class.
 
     Returns:
         The folders to hand out, that of the robot first.
     """
     if not 1 <= students <= MOST:
         raise SecurityError(f"a class has 1 to {MOST} students, got {students}")
-    store = Keystore(folder / "keys", domain)
+    store = Keystore(folder / "keys", domain_of(folder, domain))
     if not store.is_valid:
         store.create()
     for name in (ROBOT, TEACHER, ROUTER):
@@ -88,7 +94,7 @@ def rules(name: str, topics: Class, *, may_drive: bool) -> list[Rule]:
     return expanded([Profile(name, "node", [*own, *sees, *drives, *asks])])
 
 
-def give_turn(folder: Path, name: str, topics: Class, domain: int) -> list[Path]:
+def give_turn(folder: Path, name: str, topics: Class) -> list[Path]:
     """Let one student drive, and no other; an empty `name` is for none. Returns the folders to hand out again.
 
     Who has been withdrawn stays so, and enclaves that are no student's keep their permissions.
@@ -97,9 +103,8 @@ def give_turn(folder: Path, name: str, topics: Class, domain: int) -> list[Path]
         folder: Folder of the class.
         name: Enclave of the student, or its number.
         topics: Topics of the class.
-        domain: ROS domain.
     """
-    store = Keystore(folder / "keys", domain)
+    store = Keystore(folder / "keys", domain_of(folder, 0))
     there = [each for each in store.names() if re.fullmatch(r"/student[0-9]+", each)]
     wished = student(int(name)) if name.isdigit() else name
     if wished and wished not in there:

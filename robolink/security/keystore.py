@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 from robolink.exceptions import DocumentError, SecurityError, nearest
 from robolink.security import authority, files, permissions, policy
 from robolink.security.policy import Profile, Rule
+from robolink.security.xmltext import read
 from robolink.text.names import FULL_NAME_RULES, MAX_NAMESPACE, find_problem
 
 KEY, CERTIFICATE, PERMISSIONS = "key.pem", "cert.pem", "permissions.xml"
@@ -66,6 +68,15 @@ class Keystore:
         self.path, self.domain = path, domain
         self.enclaves = path / "enclaves"
         """Folder with one folder for each enclave."""
+
+    def written_domain(self) -> int:
+        """Return the domain for which it was made, which its governance file names; its own where that names none."""
+        try:
+            found = [*read(self.enclaves / "governance.xml").all("domain_access_rules", "domain_rule", "domains", "id")]
+        except DocumentError:
+            return self.domain
+        text = found[0].text if len(found) == 1 else ""
+        return int(text) if re.fullmatch("[0-9]{1,3}", text, re.ASCII) else self.domain
 
     @property
     def is_valid(self) -> bool:

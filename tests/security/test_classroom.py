@@ -78,6 +78,23 @@ def test_one_student_at_a_time_drives(folder: Path) -> None:
     assert may_drive(folder) == others
 
 
+def test_a_class_keeps_its_domain(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "class"
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    assert main(["security", "class", str(folder), "--students", "2"]) == 0
+    assert capsys.readouterr().err == ""
+    for domain, words, lines in (("8", "--turn 2", 1), ("8", "--students 3 --turn 1", 1), ("", "--turn none", 0)):
+        monkeypatch.setenv("ROS_DOMAIN_ID", domain)
+        assert main(["security", "class", str(folder), *words.split()]) == 0
+        told = capsys.readouterr().err
+        assert told.count("keeps its domain, 7; ROS_DOMAIN_ID is 8") == told.count("\n") == lines
+        found, _ = load_rights(folder / "robot" / "enclaves", 7)
+        assert all(each.allowed for each in found.values())
+        assert "ROS_DOMAIN_ID=7\n" in (folder / "robot" / "security.env").read_text("utf-8")
+
+
 def test_no_turn_and_no_new_student_brings_back_who_was_withdrawn(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -261,7 +261,7 @@ def _make(folder: Path, domain: int) -> None:
     store = Keystore(folder / "lab" / "keys", domain)
     store.create_enclave("/expired", days=-1)
     store.withdraw("/student3")
-    classroom.give_turn(folder / "lab", "2", classroom.Class(), domain)
+    classroom.give_turn(folder / "lab", "2", classroom.Class())
     (folder / "robot.py").write_text(
         "from tests.support import class_roles\n\n\nclass Robot(class_roles.Robot):\n    pass\n"
     )

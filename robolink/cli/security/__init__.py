@@ -84,12 +84,14 @@ def make_class(
     if not students and not turn:
         raise typer.BadParameter("name --students N, or --turn STUDENT")
     topics = classroom.topics_of(see or classroom.SEEN, drive or classroom.DRIVEN)
-    domain = domain_id(os.environ)
+    asked = domain_id(os.environ)
+    if (domain := classroom.domain_of(folder, asked)) != asked and os.environ.get("ROS_DOMAIN_ID"):
+        tell(f"{folder} keeps its domain, {domain}; ROS_DOMAIN_ID is {asked}. Another domain needs a class of its own")
     if students:
         made = classroom.make(folder, students, topics, domain)
         say(f"{folder}: folders for the robot, the teacher, a router and {students} students: {made[3]} ...")
     if turn:
-        classroom.give_turn(folder, "" if turn == "none" else turn, topics, domain)
+        classroom.give_turn(folder, "" if turn == "none" else turn, topics)
         say(
             "nobody may drive"
             if turn == "none"
