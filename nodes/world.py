@@ -25,6 +25,9 @@ PUBLISH_MAP = described(
     "Whether the frame map is joined to odom; turn it off where a node localizes the robot.", read_only=True
 )
 SEED = described("The seed of all noise: of sensors and of odometry.", 0, 2**63 - 1, read_only=True)
+ALL_IMAGES = described(
+    "Whether cameras publish images also while nobody listens, so that bags and traces have them.", read_only=True
+)
 RTF = described("How many times as fast as real time the world runs; 0 is as fast as it goes.", 0.0, 1000.0)
 
 
@@ -41,9 +44,17 @@ class SimulatedWorld(Node):
         publish_clock = self.declare_parameter("publish_clock", False, PUBLISH_CLOCK).value
         publish_map = self.declare_parameter("publish_map", True, PUBLISH_MAP).value
 
+        all_images = self.declare_parameter("all_images", False, ALL_IMAGES).value
+
         epoch = 0 if publish_clock else self.get_clock().now().nanoseconds
         self.simulation = Simulation(
-            self, description, epoch, publish_clock=publish_clock, publish_map=publish_map, seed=seed
+            self,
+            description,
+            epoch,
+            publish_clock=publish_clock,
+            publish_map=publish_map,
+            seed=seed,
+            all_images=all_images,
         )
         self.runner = Runner(self, self.simulation, rtf)
         Services(self, self.simulation, self.runner)

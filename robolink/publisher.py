@@ -100,6 +100,11 @@ class Publisher(Destroyable, Generic[MsgT]):
     def _on_disagreement(self) -> None:
         tell_handlers(self.event_handlers, {QoSPublisherEventType.RCL_PUBLISHER_INCOMPATIBLE_TYPE}, total=1)
 
+    @property
+    def _is_heard_(self) -> bool:
+        """True if anybody gets what is published: a subscription, or a recorder that is no node."""
+        return self._outlets.matched
+
     def get_subscription_count(self) -> int:
         """Return the number of subscriptions of this topic and type."""
         return self._endpoint.count_others()
@@ -158,6 +163,11 @@ class _Outlets:
             self.put = self._put_and_keep
         else:
             self.put_numbered = getattr(first, "put_numbered", None)
+
+    @property
+    def matched(self) -> bool:
+        """True if anybody listens to one of the keys."""
+        return any(outlet.matched for outlet in self._all)
 
     def add(self, key: str) -> None:
         """Send to this key too from now on, and at once what late joiners get."""

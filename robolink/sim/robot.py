@@ -64,7 +64,7 @@ class Robot:
         """Add the robot to the world."""
         self._parts.space.add(self._body, *self._shapes)
         self._parts.contacts.add(self._touches, self._shapes)
-        self._scene.add(self._body, self.description.shape)
+        self._scene.add(self._body, self.description.shape, thing=self.description)
         self._parts.fleet.add(self._member)
 
     def _leave(self) -> None:

@@ -18,7 +18,7 @@ class Reading(NamedTuple):
 
     `value` is what the sensor's device in sensing/devices.py returns: a `Scan` of a lidar, of a bumper True if it was
     touched since its last reading, the `Inertia` of an imu, the metres of a range finder (inf and -inf as of a scan),
-    the `WheelState` of each wheel that has an encoder.
+    the `WheelState` of each wheel that has an encoder, the `Shot` of a camera.
     """
 
     robot: Robot

@@ -14,6 +14,7 @@ from robolink.sim.quantities import Length, Pose, Rate, Share
 
 Deviation: TypeAlias = Annotated[float, Meta(ge=0.0, le=100.0)]
 Nearest: TypeAlias = Annotated[float, Meta(ge=0.0, le=10_000.0)]
+ImageEncoding: TypeAlias = Literal["rgb8", "bgr8", "rgba8", "bgra8", "mono8"]
 Bearing: TypeAlias = Annotated[float, Meta(ge=-360.0, le=360.0)]
 
 
@@ -161,6 +162,38 @@ class Lidar(Looking, Struct, frozen=True, forbid_unknown_fields=True):
         return _range_problems(self.range)
 
 
+class Camera(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
+    """A pinhole camera without distortion, on the topics `camera`/image_raw and `camera`/camera_info.
+
+    It stands at `offset` on the robot, `z` metres above the floor, and looks ahead, `pitch` degrees downwards. `fov` is
+    horizontal. With `depth` there is a depth image, too, of distances ahead within `range`. The right camera of a
+    stereo pair stands `baseline` metres to the right of the left one, whose key is 0.
+    """
+
+    camera: str
+    rate: Rate = 10.0
+    width: Annotated[int, Meta(ge=1, le=4096, description="Columns of an image.")] = 320
+    height: Annotated[int, Meta(ge=1, le=4096, description="Rows of an image.")] = 240
+    fov: Annotated[float, Meta(ge=1.0, le=170.0, description="Horizontal field of view in degrees.")] = 70.0
+    offset: Pose = Pose(0.0, 0.0, 0.0)
+    z: Annotated[float, Meta(ge=0.005, le=1000.0, description="Height above the floor in metres.")] = 0.2
+    pitch: Annotated[float, Meta(ge=-90.0, le=90.0, description="Degrees by which it looks downwards.")] = 0.0
+    noise: Annotated[float, Meta(ge=0.0, le=255.0, description="Standard deviation of colours, of 255.")] = 0.0
+    encoding: Annotated[ImageEncoding, Meta(description="Encoding of the image.")] = "rgb8"
+    depth: Annotated[bool, Meta(description="True: a depth image, too.")] = False
+    range: Annotated[
+        tuple[Annotated[float, Meta(ge=0.001, le=10_000.0)], Length],
+        Meta(description="Nearest and farthest depth in metres."),
+    ] = (0.05, 20.0)
+    baseline: Annotated[
+        float, Meta(ge=0.0, le=100.0, description="Metres to the left camera, if this is the right one of two.")
+    ] = 0.0
+
+    def problems(self, wheels: int) -> Iterator[tuple[str, str]]:
+        """Yield the mistake of an empty range."""
+        return _range_problems(self.range)
+
+
 def _range_problems(limits: tuple[float, float]) -> Iterator[tuple[str, str]]:
     near, far = limits
     if near >= far:
@@ -168,7 +201,7 @@ def _range_problems(limits: tuple[float, float]) -> Iterator[tuple[str, str]]:
 
 
 SENSORS: dict[str, type[Sensor]] = {
-    each.__struct_fields__[0]: each for each in (Lidar, Bumper, Imu, RangeFinder, Encoders)
+    each.__struct_fields__[0]: each for each in (Lidar, Bumper, Imu, RangeFinder, Encoders, Camera)
 }
 """Sensor classes by kind, the key that names it in a world file.
 

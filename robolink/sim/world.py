@@ -173,7 +173,7 @@ class World:
             self._contacts.add_pushable(body)
             self._space.add(*floor_friction(body, self._space.static_body, obstacle))
         if body.body_type != pymunk.Body.STATIC:
-            self._scene.add(body, obstacle, obstacle.reflectance)
+            self._scene.add(body, obstacle, obstacle.reflectance, len(self._obstacles) - 1)
 
 
 def _space(description: WorldDescription) -> pymunk.Space:

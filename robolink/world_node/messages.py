@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from robolink.image import to_message
 from robolink.interfaces.builtin_interfaces.msg import Time
 from robolink.interfaces.geometry_msgs.msg import (
     Point,
@@ -22,13 +23,14 @@ from robolink.interfaces.geometry_msgs.msg import (
 )
 from robolink.interfaces.geometry_msgs.msg import Pose as PoseMessage
 from robolink.interfaces.nav_msgs.msg import Odometry
+from robolink.interfaces.sensor_msgs.msg import CameraInfo, Image, JointState, LaserScan, Range
 from robolink.interfaces.sensor_msgs.msg import Imu as ImuMessage
-from robolink.interfaces.sensor_msgs.msg import JointState, LaserScan, Range
 from robolink.interfaces.std_msgs.msg import Bool, Header
 from robolink.message import Message
-from robolink.sim import Inertia, Pose, Scan, Velocity, WheelState
+from robolink.sim import Inertia, Pose, Scan, Shot, Velocity, WheelState
 from robolink.sim.description import GRAVITY
-from robolink.sim.sensors import Bumper, Encoders, Imu, Lidar, RangeFinder, Sensor
+from robolink.sim.rendering.pinhole import Pinhole
+from robolink.sim.sensors import Bumper, Camera, Encoders, Imu, Lidar, RangeFinder, Sensor
 from robolink.world_node.uncertainty import Covariance
 
 NANOSECONDS = 1_000_000_000
@@ -146,11 +148,54 @@ def facing(theta: float) -> Quaternion:
     return Quaternion(z=math.sin(theta / 2), w=math.cos(theta / 2))
 
 
+def image_message(shot: Shot, header: Header, sensor: Camera) -> Image:
+    """Make the message of a camera's image."""
+    return to_message(shot.image(), sensor.encoding, header)
+
+
+def depth_message(depths: np.ndarray[Any, np.dtype[np.float32]], header: Header) -> Image:
+    """Make the message of a depth image, in metres; inf is nothing, -inf too near (REP 118)."""
+    return to_message(depths, "32FC1", header)
+
+
+def camera_info_message(header: Header, sensor: Camera) -> CameraInfo:
+    """Make the message of a camera's calibration: a pinhole without distortion.
+
+    The right camera of a stereo pair has the left one's distance times the focal length in P (sensor_msgs/CameraInfo).
+    """
+    pinhole = Pinhole(sensor.width, sensor.height, sensor.fov)
+    focal, (u, v) = pinhole.focal, pinhole.centre
+    return CameraInfo(
+        header=header,
+        height=sensor.height,
+        width=sensor.width,
+        distortion_model="plumb_bob",
+        d=[0.0] * 5,
+        k=np.array((focal, 0.0, u, 0.0, focal, v, 0.0, 0.0, 1.0)),
+        r=np.eye(3).ravel(),
+        p=np.array((focal, 0.0, u, -focal * sensor.baseline, 0.0, focal, v, 0.0, 0.0, 0.0, 1.0, 0.0)),
+    )
+
+
+def camera_transforms(stamp: Time, base: str, link: str, optical: str, sensor: Camera) -> tuple[TransformStamped, ...]:
+    """Make the transforms of a camera's body (x ahead) on the robot, and of its optical frame (z ahead, REP 103)."""
+    mount, half = sensor.offset, math.radians(sensor.pitch) / 2
+    yaw, pitch = (math.cos(mount.theta / 2), math.sin(mount.theta / 2)), (math.cos(half), math.sin(half))
+    turned = Quaternion(x=-yaw[1] * pitch[1], y=yaw[0] * pitch[1], z=yaw[1] * pitch[0], w=yaw[0] * pitch[0])
+    there = Transform(translation=Vector3(x=mount.x, y=mount.y, z=sensor.z), rotation=turned)
+    ahead = Transform(rotation=Quaternion(x=-0.5, y=0.5, z=-0.5, w=0.5))
+    return (
+        TransformStamped(header=Header(stamp=stamp, frame_id=base), child_frame_id=link, transform=there),
+        TransformStamped(header=Header(stamp=stamp, frame_id=link), child_frame_id=optical, transform=ahead),
+    )
+
+
 SENSOR_MESSAGES: dict[type[Sensor], tuple[type[Message], Callable[[Any, Header, Any], Message]]] = {
     Lidar: (LaserScan, scan_message),
     Bumper: (Bool, bumper_message),
     Imu: (ImuMessage, imu_message),
     RangeFinder: (Range, range_message),
     Encoders: (JointState, joint_state_message),
+    Camera: (Image, image_message),
 }
 """Message type and converter by the class of the sensor: one for each entry of `robolink.sim.sensors.SENSORS`."""

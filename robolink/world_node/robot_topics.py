@@ -15,10 +15,11 @@ from robolink.interfaces.sensor_msgs.msg import JointState
 from robolink.interfaces.std_msgs.msg import Header
 from robolink.node import Node
 from robolink.publisher import Publisher
-from robolink.sim import Pose, Robot, Scan
+from robolink.sim import Pose, Robot, Scan, Shot
 from robolink.sim.checks.robots import tells_joints
 from robolink.sim.description import OdomNoise, steps_between
-from robolink.sim.sensors import Lidar, Sensor
+from robolink.sim.sensors import Camera, Lidar, Sensor
+from robolink.world_node.camera_topics import CameraTopics
 from robolink.world_node.messages import (
     joint_state_message,
     sensor_message,
@@ -37,9 +38,11 @@ class RobotTopics:
     """The topics of one robot; `prefix` goes before their names and those of the robot's frames.
 
     Wheels without encoders are published on joint_states, with the odometry, as they truly turn.
+
+    With `all_images` cameras render also what nobody listens to.
     """
 
-    def __init__(self, node: Node, robot: Robot, prefix: str) -> None:
+    def __init__(self, node: Node, robot: Robot, prefix: str, *, all_images: bool = False) -> None:
         description = robot.description
         self.odom_frame, self.base_frame = f"{prefix}odom", f"{prefix}base_link"
         self.commands = RobotCommands(node, robot, prefix)
@@ -54,6 +57,12 @@ class RobotTopics:
         self._sensors = {
             each.topic: (self._publisher(sensor_type(each), each.topic), self._frame_of(each))
             for each in description.sensors
+            if not isinstance(each, Camera)
+        }
+        self._cameras = {
+            each.topic: CameraTopics(each, prefix, self._publisher, always=all_images)
+            for each in description.sensors
+            if isinstance(each, Camera)
         }
         self._joints = self._publisher(JointState, "joint_states") if tells_joints(description) else None
         self._odom_steps = steps_between(description.odom.rate, robot.dt)
@@ -83,6 +92,10 @@ class RobotTopics:
             publisher.publish(self._prepared_scan(sensor, value, frame).payload(stamp, value))
         else:
             publisher.publish(sensor_message(sensor, value, Header(stamp=stamp.message, frame_id=frame)))
+
+    def publish_shot(self, sensor: Sensor, shot: Shot, stamp: Stamp) -> None:
+        """Publish what a camera sees, if anybody listens."""
+        self._cameras[sensor.topic].publish(shot, stamp)
 
     def _prepared_scan(self, lidar: Lidar, scan: Scan, frame: str) -> PreparedScan:
         found = self._scans.get(lidar.topic)
@@ -122,7 +135,9 @@ class RobotTopics:
         if on_map:
             yield transform_message(Header(stamp=stamp, frame_id=MAP), self.odom_frame, self._odom_on_map)
         for each in self.robot.description.sensors:
-            if each.mount is not None:
+            if each.topic in self._cameras:
+                yield from self._cameras[each.topic].transforms(stamp, self.base_frame)
+            elif each.mount is not None:
                 header = Header(stamp=stamp, frame_id=self.base_frame)
                 yield transform_message(header, self._frame_of(each), each.mount)
 

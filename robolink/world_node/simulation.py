@@ -10,7 +10,7 @@ from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.node import Node
 from robolink.qos import DurabilityPolicy, QoSProfile
-from robolink.sim import Pose, Reading, Robot, World, WorldDescription
+from robolink.sim import Pose, Reading, Robot, Shot, World, WorldDescription
 from robolink.sim.description import RobotDescription
 from robolink.system.terminal import shown
 from robolink.world_node.messages import time_message
@@ -34,6 +34,7 @@ class Simulation:
         publish_clock: True: publish the simulated time on /clock.
         publish_map: True: publish the transforms from the frame `map` to those of odometry.
         seed: Seed of all noise; None: the description's.
+        all_images: True: cameras render and publish also what nobody listens to.
     """
 
     def __init__(
@@ -45,12 +46,14 @@ class Simulation:
         publish_clock: bool = False,
         publish_map: bool = True,
         seed: int | None = None,
+        all_images: bool = False,
     ) -> None:
         self.description, self.world = description, World(description, seed=seed)
         self.robots: dict[str, RobotTopics] = {}
         self._wheeled: list[RobotCommands] = []
         self._contacts, self._state_steps = 0, 1
         self._node, self._epoch, self._publish_map, self._seed = node, epoch, publish_map, seed
+        self._all_images = all_images
         self._clock = node.create_publisher(Clock, "/clock", 10) if publish_clock else None
         self._tf = node.create_publisher(TFMessage, "/tf", 100)
         self._tf_static = node.create_publisher(TFMessage, "/tf_static", LATCHED)
@@ -79,12 +82,16 @@ class Simulation:
         stamp = Stamp.of(self.now)
         if self._clock is not None:
             self._clock.publish(stamp.beginning)  # a Clock is nothing but a stamp
+        shots = [each for each in readings if isinstance(each.value, Shot)]
         for robot, sensor, value in readings:
-            self.robots[robot.name].publish_reading(sensor, value, stamp)
+            if not isinstance(value, Shot):
+                self.robots[robot.name].publish_reading(sensor, value, stamp)
         if step % self._state_steps == 0:
             moved = [each.publish_state(step, stamp) for each in self.robots.values()]
             if transforms := [found for found in moved if found is not None]:
                 self._tf.publish(transforms_payload(stamp, transforms))
+        for robot, sensor, shot in shots:  # last, since rendering takes time
+            self.robots[robot.name].publish_shot(sensor, shot, stamp)
 
     def reset(self) -> None:
         """Reset the world: every robot of the world file is where it started, others are gone; time goes on."""
@@ -138,7 +145,8 @@ class Simulation:
         self._publish_static()
 
     def _topics(self, robot: Robot) -> RobotTopics:
-        return RobotTopics(self._node, robot, "" if robot.name == self._only else f"{robot.name}/")
+        prefix = "" if robot.name == self._only else f"{robot.name}/"
+        return RobotTopics(self._node, robot, prefix, all_images=self._all_images)
 
     def _warn_of_contacts(self) -> None:
         for topics in self.robots.values():

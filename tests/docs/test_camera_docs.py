@@ -47,6 +47,15 @@ def test_the_program_for_points() -> None:
     assert scope["camera"].project3dToPixel((0.1, 0.0, 2.0)) == (55.0, 40.0)
 
 
+def test_the_program_for_shots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (line,) = (each for each in PAGE.splitlines() if each.startswith("  - {camera: camera"))
+    Path("my_world.yaml").write_text(f"robots:\n- name: robot\n  pose: [0, 0]\n  sensors:\n  {line}\n")
+    scope: dict[str, Any] = {}
+    exec(PROGRAMS[3], scope)
+    assert (scope["image"].shape, scope["depths"].shape) == ((240, 320, 3), (240, 320))
+
+
 def test_so_many_pairs_are_compared() -> None:
     count = len(ENCODINGS)
     assert f"all {count**2:,} pairs of {count} encodings" in " ".join(PAGE.split())

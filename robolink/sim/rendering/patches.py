@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from robolink.sim.rendering.arrays import Array, Bytes, Indices, Packed, cross, dot, packed
+from robolink.sim.rendering.mipmaps import Level, mipmaps
 from robolink.sim.scene.surfaces import Cylinder, Face, Picture, Surfaces
 from robolink.sim.trigonometry import cos_and_sin
 
@@ -54,17 +55,24 @@ class Textures:
     """Textures of patches by number; -1 has none. Pictures that are the same object are one texture."""
 
     def __init__(self) -> None:
-        self.pictures: list[Picture] = []
+        self._pictures: list[Picture] = []
         self._numbers: dict[int, int] = {}
+        self._levels: dict[int, list[Level]] = {}
 
     def number(self, picture: Picture | None) -> int:
         """Return the number of a picture, a new one if it has not been seen before; -1 for None."""
         if picture is None:
             return -1
         if id(picture) not in self._numbers:
-            self._numbers[id(picture)] = len(self.pictures)
-            self.pictures.append(picture)
+            self._numbers[id(picture)] = len(self._pictures)
+            self._pictures.append(picture)
         return self._numbers[id(picture)]
+
+    def levels(self, number: int) -> list[Level]:
+        """Return the mipmaps of a texture, made once it is seen."""
+        if number not in self._levels:
+            self._levels[number] = mipmaps(self._pictures[number])
+        return self._levels[number]
 
 
 def patches_of(things: Sequence[tuple[int, Surfaces]], textures: Textures) -> Patches:

@@ -1,6 +1,6 @@
 """Renderer of a camera: what it sees of a setting, the surfaces of a world with those that move at their places.
 
-setting = Setting(scenery.floor, scenery.sky, [(FIXED, scenery.fixed), (0, surfaces_of_a_robot)])
+setting = Setting(Backdrop(scenery), [(0, robot_surfaces(robot))])
 renderer = Renderer(Pinhole(320, 240, fov=70.0))
 canvas = renderer.render(setting, view_from((1.0, 2.0, 0.2), yaw=0.0, pitch=0.1), places)
 """
@@ -16,7 +16,6 @@ from robolink.sim.rendering.canvas import Canvas
 from robolink.sim.rendering.columns import draw_cylinders
 from robolink.sim.rendering.drawing import draw_patches
 from robolink.sim.rendering.ground import Ground
-from robolink.sim.rendering.mipmaps import Level, mipmaps
 from robolink.sim.rendering.patches import (
     FIXED,
     Cylinders,
@@ -31,30 +30,35 @@ from robolink.sim.rendering.patches import (
 from robolink.sim.rendering.pinhole import Pinhole, View
 from robolink.sim.rendering.projection import Seen, seen_patches, spans
 from robolink.sim.rendering.signs import Box, draw_sign
-from robolink.sim.scene.surfaces import Colour, Surfaces
+from robolink.sim.scene.surfaces import Scenery, Surfaces
+
+
+class Backdrop:
+    """Things that never move, ready to be drawn: the floor, the sky, and the surfaces `fixed`; and all textures."""
+
+    def __init__(self, scenery: Scenery) -> None:
+        self.ground, self.sky = Ground(scenery.floor), int(packed(np.array(scenery.sky, dtype=np.uint8)))
+        self.textures = Textures()
+        fixed = [(FIXED, scenery.fixed)]
+        self.patches, self.cylinders = patches_of(fixed, self.textures), cylinders_of(fixed)
 
 
 class Setting:
     """Surfaces that are ready to be drawn.
 
     Args:
-        ground: The floor.
-        sky: Colour where nothing is.
-        things: Surfaces, each with the row of its place; those with the owner `FIXED` are in the world's frame.
+        backdrop: What never moves.
+        things: Surfaces of what moves in their own frames, each with the row of its place.
     """
 
-    def __init__(self, ground: Ground, sky: Colour, things: Sequence[tuple[int, Surfaces]]) -> None:
-        self.ground, self.sky = ground, int(packed(np.array(sky, dtype=np.uint8)))
-        fixed = [each for each in things if each[0] == FIXED]
-        moving = [each for each in things if each[0] != FIXED]
-        textures = Textures()
-        self._fixed = patches_of(fixed, textures), cylinders_of(fixed)
-        self._moving = patches_of(moving, textures), cylinders_of(moving)
-        self._textures, self._levels = textures.pictures, dict[int, list[Level]]()
+    def __init__(self, backdrop: Backdrop, things: Sequence[tuple[int, Surfaces]]) -> None:
+        self.backdrop = backdrop
+        self._moving = patches_of(things, backdrop.textures), cylinders_of(things)
 
     def at(self, rows: Array) -> tuple[Patches, Cylinders]:
         """Return all surfaces in the world, owners at these places (rows x, y, heading)."""
-        (patches, cylinders), (own_patches, own_cylinders) = self._fixed, self._moving
+        patches, cylinders = self.backdrop.patches, self.backdrop.cylinders
+        own_patches, own_cylinders = self._moving
         places = Places(rows)
         if len(own_patches.outline):
             patches = joined(patches, places.patches(own_patches))
@@ -62,12 +66,6 @@ class Setting:
             moved = places.cylinders(own_cylinders)
             cylinders = joined_cylinders(cylinders, moved)
         return patches, cylinders
-
-    def levels(self, texture: int) -> list[Level]:
-        """Return the mipmaps of a texture, made once it is seen."""
-        if texture not in self._levels:
-            self._levels[texture] = mipmaps(self._textures[texture])
-        return self._levels[texture]
 
 
 class Renderer:
@@ -85,8 +83,8 @@ class Renderer:
             rows: Places of what moves: x, y, heading.
         """
         canvas, pinhole = self.canvas, self.pinhole
-        canvas.clear(setting.sky)
-        setting.ground.draw(canvas, view, pinhole)
+        canvas.clear(setting.backdrop.sky)
+        setting.backdrop.ground.draw(canvas, view, pinhole)
         patches, cylinders = setting.at(rows)
         if len(patches.outline):
             seen = seen_patches(patches, view, pinhole)
@@ -112,6 +110,6 @@ class Renderer:
             box = Box(left, right, top, bottom)
             if self.canvas.inverse[top:bottom, left:right].min() < seen.nearest[each] * 1.001:
                 which = int(seen.which[each])
-                levels = setting.levels(int(patches.textured[which]))
+                levels = setting.backdrop.textures.levels(int(patches.textured[which]))
                 outline = int(patches.outline[which])
                 draw_sign(self.canvas, seen.gradients[:, :, each], levels, box, self.pinhole, outline=outline)

@@ -16,11 +16,13 @@ from robolink.sim.driving.motion import Motion
 from robolink.sim.physics.contacts import Sector
 from robolink.sim.quantities import Pose
 from robolink.sim.readings import Inertia, Scan, WheelState
+from robolink.sim.rendering.pinhole import view_from
+from robolink.sim.rendering.shooting import Shooter, Shot
 from robolink.sim.sensing.lidar import Beams, limited, measured
 from robolink.sim.sensing.random_streams import LidarNoise, stream
 from robolink.sim.sensing.range_finder import nearest_in_cone
 from robolink.sim.sensing.scene import Scene
-from robolink.sim.sensors import Bumper, Encoders, Imu, Lidar, RangeFinder, Sensor
+from robolink.sim.sensors import Bumper, Camera, Encoders, Imu, Lidar, RangeFinder, Sensor
 
 
 class Carrier(NamedTuple):
@@ -192,12 +194,29 @@ class EncodersSensor:
         )
 
 
+class CameraSensor:
+    """A camera; what it sees is rendered only if somebody wants to see it."""
+
+    def __init__(self, camera: Camera, carrier: Carrier) -> None:
+        self.description, self._carrier = camera, carrier
+        self._shooter = Shooter(camera, f"{carrier.seed}/{carrier.robot.name}/{camera.topic}")
+        self._pitch = math.radians(camera.pitch)
+
+    def measure(self) -> Shot:
+        """Take a shot, which is rendered when it is asked for its image."""
+        scene, pose = self._carrier.scene, self._carrier.pose(self.description)
+        setting, places = scene.sight(self._carrier.body)
+        view = view_from((pose.x, pose.y, self.description.z), pose.theta, self._pitch)
+        return Shot(self._shooter, setting, view, places, scene.step)
+
+
 DEVICES: dict[type[Sensor], Callable[[Any, Carrier], Device]] = {
     Lidar: LidarSensor,
     Bumper: BumperSensor,
     Imu: ImuSensor,
     RangeFinder: RangeFinderSensor,
     Encoders: EncodersSensor,
+    Camera: CameraSensor,
 }
 """Device classes by the class of the sensor's description: one for each entry of `robolink.sim.sensors.SENSORS`."""
 

@@ -10,9 +10,11 @@ import numpy as np
 import pymunk
 
 from robolink.sim.arrays import Array, Place
-from robolink.sim.description import Shape, WorldDescription
+from robolink.sim.description import RobotDescription, Shape, WorldDescription
 from robolink.sim.physics.body_columns import BodyPlaces
+from robolink.sim.rendering.renderer import Setting
 from robolink.sim.sensing.fixed import fixed_circles, fixed_reflectances, fixed_segments
+from robolink.sim.sensing.sights import Sights
 from robolink.sim.sensing.surroundings import FIXED, Circles, Edges, Surroundings, circles_of
 from robolink.sim.sensing.tiles import Tiles, columns
 
@@ -37,10 +39,20 @@ class Scene:
         self._rows: Array = np.empty((0, 3))
         self._places: dict[pymunk.Body, Place] = {}
         self._surroundings: Surroundings | None = None
+        self._sights = Sights(description)
 
-    def add(self, body: pymunk.Body, shape: Shape, reflectance: float = 1.0) -> None:
-        """Add a shape that moves."""
-        self._moving[body] = _Moving(body, shape, reflectance, self._next_number)
+    def add(
+        self, body: pymunk.Body, shape: Shape, reflectance: float = 1.0, thing: RobotDescription | int | None = None
+    ) -> None:
+        """Add a shape that moves.
+
+        Args:
+            body: Its body.
+            shape: Its outline.
+            reflectance: Share of light that it sends back.
+            thing: What cameras see there: a robot, or an obstacle by its place in the description; None: nothing.
+        """
+        self._moving[body] = _Moving(body, shape, reflectance, self._next_number, thing)
         self._next_number += 1
         self._sort()
 
@@ -70,6 +82,13 @@ class Scene:
             self._look()
         return self._places
 
+    def sight(self, body: pymunk.Body) -> tuple[Setting, Array]:
+        """Return what a camera on a body sees, all but this body itself, and the present places of what moves."""
+        self.poses()
+        number = self.number(body)
+        things = [(row, each.thing) for row, each in enumerate(self._moving.values()) if each.number != number]
+        return self._sights.setting(number, things), self._rows
+
     def _look(self) -> None:
         if self._bodies is None:
             self._bodies = BodyPlaces(self._space, list(self._moving))
@@ -82,6 +101,7 @@ class Scene:
         self._discs = _Discs(self._standing, moving)
         self._polygons = _Polygons([each for each in moving if each.shape.circle is None])
         self._bodies = None
+        self._sights.forget()
         self.moved()
 
 
@@ -95,6 +115,7 @@ class _Moving(NamedTuple):
     shape: Shape
     reflectance: float
     number: int
+    thing: RobotDescription | int | None
 
 
 class _Discs:

@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 
 from robolink.sim.rendering.canvas import Canvas
-from robolink.sim.rendering.ground import Ground
-from robolink.sim.rendering.patches import FIXED
 from robolink.sim.rendering.pinhole import Pinhole, view_from
 from robolink.sim.rendering.pixels import write_colours, write_depths
-from robolink.sim.rendering.renderer import Renderer, Setting
-from robolink.sim.scene.surfaces import Cylinder, Face, Floor, Outline, Surfaces
+from robolink.sim.rendering.renderer import Backdrop, Renderer, Setting
+from robolink.sim.scene.surfaces import Cylinder, Face, Floor, Outline, Scenery, Surfaces
 from tests.support.raycasting import Array, depths, rays
 
 SKY = (190, 205, 225)
@@ -32,7 +30,7 @@ def rendered(
     floor: Floor | None = None,
 ) -> Canvas:
     """Return the canvas of a camera at a place."""
-    setting = Setting(Ground(floor or Floor((150, 145, 140))), SKY, [(FIXED, surfaces)])
+    setting = Setting(Backdrop(Scenery(floor or Floor((150, 145, 140)), SKY, surfaces, {}, {})), ())
     return Renderer(Pinhole(*size, fov)).render(setting, view_from(eye, yaw, pitch), NOWHERE)
 
 
