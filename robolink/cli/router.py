@@ -39,11 +39,11 @@ def router(
     It listens on this machine only, unless --listen says more: --listen lan opens it to everybody who reaches its port.
     Both options may be there several times.
     """
-    from robolink.networks.router import endpoint_of
+    from robolink.networks.router import endpoint_of, target_of
     from robolink.transport.router import running
 
     here = [endpoint_of(each, "--listen") for each in listen or ["localhost"]]
-    there = [endpoint_of(each, "--connect") for each in connect or []]
+    there = [target_of(each) for each in connect or []]
     try:
         with running(here, there) as it:
             say("\n".join(opening(it.listens, it.connects, it.enclave)))

@@ -14,7 +14,7 @@ from robolink.networks.settings import LEASE_MS, MOST_PENDING, RETRY, most_pendi
 EVERYWHERE = ("0.0.0.0", "::")
 """Addresses that stand for all of this machine's."""
 
-_WORDS = {"localhost": "127.0.0.1", "lan": "0.0.0.0"}
+_WORDS = {"localhost": "127.0.0.1", "lan": "0.0.0.0", "subnet": "0.0.0.0", "off": ""}
 _PROTOCOLS = ("tcp/", "quic/", "ws/")
 _FOR_ROS_MS = 60_000
 _QUERIES_MS = 600_000
@@ -37,6 +37,22 @@ def endpoint_of(text: str, option: str) -> str:
     if host is None:
         raise TransportError(f"{option}: '{text[:80]}' is no address: write HOST, HOST:PORT or tls/HOST:PORT")
     return host.endpoint(host.port or ROUTER_PORT)
+
+
+def target_of(text: str) -> str:
+    """Return Zenoh's endpoint of another router, as `endpoint_of`; raises TransportError also where it names no other.
+
+    >>> target_of("robot")
+    'tcp/robot:7447'
+    """
+    endpoint = endpoint_of(text, "--connect")
+    host = hosts.parse(endpoint.partition("/")[2])
+    if host and host.name in EVERYWHERE:
+        raise TransportError(
+            f"--connect: '{text[:80]}' is this machine and no other router: name its HOST, such as robot.local "
+            "(what opens this router to others is --listen lan)"
+        )
+    return endpoint
 
 
 def router_settings(listen: Sequence[str], connect: Sequence[str]) -> dict[str, Any]:

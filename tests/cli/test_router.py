@@ -24,6 +24,7 @@ from robolink.transport.reach import Link
     [
         ("localhost", "tcp/127.0.0.1:7447"),
         ("lan", "tcp/0.0.0.0:7447"),
+        ("subnet", "tcp/0.0.0.0:7447"),
         ("10.0.0.1", "tcp/10.0.0.1:7447"),
         ("[::]:8000", "tcp/[::]:8000"),
         ("tls/gate.example.org:443", "tls/gate.example.org:443"),
@@ -35,10 +36,20 @@ def test_addresses(text: str, endpoint: str) -> None:
     assert endpoint_of(text, "--listen") == endpoint
 
 
-@pytest.mark.parametrize("text", ["", "a b", "tcp/10.0.0.1", "x/y:1", "host:99999"])
+@pytest.mark.parametrize("text", ["", "a b", "tcp/10.0.0.1", "x/y:1", "host:99999", "off"])
 def test_no_addresses(text: str) -> None:
     with pytest.raises(TransportError, match=r"--listen: '.*' is no address: write HOST, HOST:PORT or tls/HOST:PORT"):
         endpoint_of(text, "--listen")
+
+
+@pytest.mark.parametrize("text", ["lan", "subnet", "0.0.0.0:8000", "[::]", "tls/0.0.0.0", "tcp/[::]:7447"])
+def test_a_router_connects_to_none_that_has_no_name(text: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """It dialled 0.0.0.0, which is itself."""
+    assert main(["router", "--connect", text, "--listen", "127.0.0.1:1"]) == 1
+    assert capsys.readouterr().err == (
+        f"robolink: --connect: '{text}' is this machine and no other router: name its HOST, such as robot.local "
+        "(what opens this router to others is --listen lan)\n"
+    )
 
 
 def test_zenoh_accepts_the_settings() -> None:
