@@ -45,16 +45,30 @@ class _Header(NamedTuple):
         return (self.width * _CHANNELS[self.colour] * self.depth + 7) // 8
 
 
-def read_png(raw: bytes) -> Image:
-    """Read a PNG file's bytes. Raises `ImageError`."""
+class _Content(NamedTuple):
+    """A PNG file: samples of each pixel (line, column, channel), the palette, and what of them is transparent."""
+
+    header: _Header
+    samples: npt.NDArray[Any]
+    palette: memoryview
+    clear: npt.NDArray[np.uint8]
+
+
+def _content(raw: bytes) -> _Content:
     chunks: dict[bytes, list[memoryview]] = {}
     for kind, body in _chunks(memoryview(raw)):
         chunks.setdefault(kind, []).append(body)
     header = _header(chunks.get(b"IHDR", [_NOTHING])[0])
     samples = _samples(header, _lines(header, chunks.get(b"IDAT", [])))
     clear = np.frombuffer(chunks.get(b"tRNS", [_NOTHING])[0], np.uint8)
+    return _Content(header, samples, chunks.get(b"PLTE", [_NOTHING])[0], clear)
+
+
+def read_png(raw: bytes) -> Image:
+    """Read a PNG file's bytes as shades of gray. Raises `ImageError`."""
+    header, samples, palette, clear = _content(raw)
     if header.colour == _PALETTE:
-        return _from_palette(samples[..., 0], chunks.get(b"PLTE", [_NOTHING])[0], clear)
+        return _from_palette(samples[..., 0], palette, clear)
     transparent = None
     if header.colour in (_GRAY_ALPHA, _RGBA):
         transparent = samples[..., -1] < 2**header.depth - 1
@@ -63,6 +77,47 @@ def read_png(raw: bytes) -> Image:
         transparent = np.all(samples == clear.view(">u2"), axis=2)
     largest = 2**header.depth - 1
     return Image(in_blocks(lambda block: _shades(eight_bits(block, largest)), samples), transparent)
+
+
+def read_png_colours(raw: bytes) -> Shades:
+    """Read a PNG file's bytes as red, green and blue (line, column, channel), on white where it is transparent.
+
+    Raises `ImageError`.
+    """
+    header, samples, palette, clear = _content(raw)
+    if header.colour == _PALETTE:
+        painted: Shades = _coloured(palette, clear)[_index(samples[..., 0], palette)]
+        return painted
+    largest = 2**header.depth - 1
+    seen = None
+    if header.colour in (_GRAY_ALPHA, _RGBA):
+        seen, samples = eight_bits(samples[..., -1], largest), samples[..., :-1]
+    elif len(clear) == 2 * samples.shape[2]:
+        seen = np.where(np.all(samples == clear.view(">u2"), axis=2), 0, 255).astype(np.uint8)
+    colours = np.broadcast_to(eight_bits(samples, largest), (header.height, header.width, 3))
+    return np.ascontiguousarray(colours) if seen is None else on_white(colours, seen[..., None])
+
+
+def on_white(colours: Shades, seen: Shades) -> Shades:
+    """Return colours as they are on white, where `seen` is 0 for transparent to 255 for opaque."""
+    opaque = seen.astype(np.uint16)
+    mixed: Shades = ((colours * opaque + 255 * (255 - opaque) + 127) // 255).astype(np.uint8)
+    return mixed
+
+
+def _coloured(palette: memoryview, clear: npt.NDArray[np.uint8]) -> Shades:
+    """Return the colours of a palette, on white."""
+    colours = np.frombuffer(palette, np.uint8, count=len(palette) // 3 * 3).reshape(-1, 3)
+    seen = np.full((len(colours), 1), 255, np.uint8)
+    seen[: len(clear), 0] = clear[: len(colours)]
+    return on_white(colours, seen)
+
+
+def _index(index: npt.NDArray[Any], palette: memoryview) -> npt.NDArray[Any]:
+    """Return the places of pixels in a palette, all of which there are."""
+    if int(index.max()) >= len(palette) // 3:
+        raise ImageError(f"it is damaged: colour {index.max()} of a palette of {len(palette) // 3}")
+    return index
 
 
 def _chunks(raw: memoryview) -> Iterator[tuple[bytes, memoryview]]:
@@ -165,8 +220,7 @@ def _samples(header: _Header, lines: npt.NDArray[np.uint8]) -> npt.NDArray[Any]:
 
 def _from_palette(index: npt.NDArray[Any], palette: memoryview, clear: npt.NDArray[np.uint8]) -> Image:
     colours = np.frombuffer(palette, np.uint8, count=len(palette) // 3 * 3).reshape(-1, 3)
-    if int(index.max()) >= len(colours):
-        raise ImageError(f"it is damaged: colour {index.max()} of a palette of {len(colours)}")
+    index = _index(index, palette)
     opaque = np.full(256, 255, np.uint8)
     opaque[: len(clear)] = clear[:256]
     shades = _shades(colours)
