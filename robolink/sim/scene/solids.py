@@ -7,10 +7,11 @@ from itertools import pairwise
 from math import cos, sin
 
 from robolink.geometry.plane import Pose
+from robolink.sim.colours import Colour
 from robolink.sim.description import Shape
 from robolink.sim.physics.convex import convex_parts
 from robolink.sim.quantities import Point
-from robolink.sim.scene.surfaces import Colour, Cylinder, Face, Surfaces
+from robolink.sim.scene.surfaces import Cylinder, Face, Surfaces
 
 HERE = Pose()
 """Pose of a thing in its own frame."""
@@ -37,7 +38,7 @@ def solid(shape: Shape, pose: Pose, z0: float, z1: float, colour: Colour) -> Sur
         radius = shape.circle
         lids = tuple(_disc(pose.x, pose.y, z, radius, colour) for z in levels)
         return Surfaces(lids, (Cylinder(pose.x, pose.y, radius, z0, z1, colour),))
-    corners = _placed(shape.corners(), pose)
+    corners = placed_corners(shape, pose)
     sides = [upright(p, q, z0, z1, colour) for p, q in zip(corners, [*corners[1:], corners[0]], strict=True)]
     if shape.box is not None:
         p, q, _, s = corners
@@ -47,9 +48,10 @@ def solid(shape: Shape, pose: Pose, z0: float, z1: float, colour: Colour) -> Sur
     return Surfaces((*sides, *lids))
 
 
-def _placed(corners: Sequence[Point], pose: Pose) -> list[Point]:
+def placed_corners(shape: Shape, pose: Pose) -> list[Point]:
+    """Return the corners of an outline whose origin is at a pose."""
     c, s = cos(pose.theta), sin(pose.theta)
-    return [(pose.x + c * x - s * y, pose.y + s * x + c * y) for x, y in corners]
+    return [(pose.x + c * x - s * y, pose.y + s * x + c * y) for x, y in shape.corners()]
 
 
 def _disc(x: float, y: float, z: float, radius: float, colour: Colour) -> Face:

@@ -6,18 +6,18 @@ white light: shading is a renderer's business.
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
-import numpy as np
-import numpy.typing as npt
+from robolink.sim.colours import Colour
 
-Colour: TypeAlias = tuple[int, int, int]
-"""Red, green and blue, 0 to 255 each."""
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 Vector: TypeAlias = tuple[float, float, float]
 """A point or a direction in space: x, y, z in metres."""
 
-Picture: TypeAlias = npt.NDArray[np.uint8]
+Picture: TypeAlias = "npt.NDArray[np.uint8]"
 """Image of shape (rows, columns, 3): red, green, blue; read-only, and shared by all that show it."""
 
 Outline: TypeAlias = Literal["parallelogram", "ellipse", "triangle"]
