@@ -7,33 +7,54 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeAlias
 
 from msgspec import Meta, Struct
 
-from robolink.sim.quantities import Factor, Length, Limit, Mass, Point, Pose, Rate, Share
+from robolink.sim.quantities import FARTHEST, Factor, Height, Length, Limit, Mass, Point, Pose, Rate, Share
 from robolink.sim.sensors import Sensor
 
 GRAVITY = 9.81
 """Acceleration of gravity, in m/s²."""
 
 
+class FloorSettings(Struct, frozen=True, forbid_unknown_fields=True):
+    """Look of the floor: a colour, and on it the picture `image`, whose lower left corner lies at `origin`.
+
+    `resolution` is the side of a pixel in metres, of the picture and of all that is painted.
+    """
+
+    colour: str | None = None
+    image: str | None = None
+    resolution: Annotated[float, Meta(ge=0.0001, le=10.0)] | None = None
+    origin: Point = (0.0, 0.0)
+
+
 class Settings(Struct, frozen=True, forbid_unknown_fields=True):
-    """The world as a whole: step `dt`, real-time factor `rtf` (0 is as fast as it goes), the `size` that holds all."""
+    """The world as a whole.
+
+    It has the step `dt`, the real-time factor `rtf` (0 is as fast as it goes), the `size` that holds all, and `floor`.
+    """
 
     name: str = ""
     size: tuple[Length, Length] | None = None
     dt: Annotated[float, Meta(ge=0.0001, le=0.1)] = 0.01
     rtf: Annotated[float, Meta(ge=0.0, le=1000.0)] = 1.0
     seed: Annotated[int, Meta(ge=0, le=2**63 - 1)] = 0
+    floor: FloorSettings = FloorSettings()
 
 
 class Wall(Struct, frozen=True, forbid_unknown_fields=True):
-    """A line of walls from point to point, without thickness; `closed` joins the last to the first."""
+    """A line of walls from point to point, without thickness; `closed` joins the last to the first.
+
+    A camera sees its `height` in metres and its `colour`.
+    """
 
     polyline: Annotated[tuple[Point, ...], Meta(min_length=2)]
     closed: bool = False
     reflectance: Share = 1.0
+    height: Height | None = None
+    colour: str | None = None
 
     def segments(self) -> list[tuple[Point, Point]]:
         """Return the wall as pairs of end points."""
@@ -120,11 +141,46 @@ def _inner_radius(corners: Sequence[Point]) -> float:
     return nearest if inside else 0.0
 
 
+class Paint(Shape, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Paint on the floor, which only cameras see: a line, or what lies within an outline at `pose`.
+
+    A `line` joins its points, the last and the first too if it is `closed`. It is `width` metres wide, and its
+    corners are arcs of `radius` metres. `dashes` are the lengths of a dash and of the gap behind it.
+    """
+
+    colour: str = "white"
+    line: Annotated[tuple[Point, ...], Meta(min_length=2, max_length=10_000)] | None = None
+    width: Length = 0.05
+    closed: bool = False
+    radius: Annotated[float, Meta(ge=0.0, le=FARTHEST)] = 0.0
+    dashes: tuple[Length, Length] | None = None
+    pose: Pose = Pose(0.0, 0.0)
+
+
+class Sign(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """An upright sign, which only cameras see: a fiducial marker (`tag`, such as 36h11/3) or a picture (`image`).
+
+    It looks to where its `pose` heads, its middle is `z` metres above the floor. `size` is the side of a tag's black
+    square, without the white margin around it, or the width of a picture. On a robot or an obstacle its pose is in the
+    frame of that. A sign of the world that hangs on no wall has a pole.
+    """
+
+    pose: Pose
+    tag: str | None = None
+    image: str | None = None
+    z: Annotated[float, Meta(ge=0.0, le=1000.0)] = 0.3
+    size: Length = 0.2
+
+
+Signs: TypeAlias = Annotated[tuple[Sign, ...], Meta(max_length=1000)]
+
+
 class Obstacle(Shape, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """An obstacle: fixed, or with a `mass` one that can be pushed, or one that moves along a `path` by itself.
 
     It goes along its path at `speed` m/s whatever is in its way, to the end and back, or round and round if the
-    path is `closed`. `reflectance` is the share of light that it sends back.
+    path is `closed`. `reflectance` is the share of light that it sends back. A camera sees its `height` in metres, its
+    `colour` and its `signs`.
     """
 
     pose: Pose | None = None
@@ -133,6 +189,9 @@ class Obstacle(Shape, frozen=True, forbid_unknown_fields=True, kw_only=True):
     speed: Limit = 0.5
     closed: bool = False
     reflectance: Share = 1.0
+    height: Height | None = None
+    colour: str | None = None
+    signs: Signs = ()
 
     @property
     def start(self) -> Pose:
@@ -141,9 +200,14 @@ class Obstacle(Shape, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
 
 class Map(Struct, frozen=True, forbid_unknown_fields=True):
-    """A map of ROS's map_server: the path of its YAML file, from the world file's folder."""
+    """A map of ROS's map_server: the path of its YAML file, from the world file's folder.
+
+    A camera sees its walls' `height` in metres and their `colour`.
+    """
 
     yaml: str
+    height: Height | None = None
+    colour: str | None = None
 
 
 class Drive(Struct, frozen=True, forbid_unknown_fields=True):
@@ -236,6 +300,9 @@ class RobotDescription(Struct, frozen=True, forbid_unknown_fields=True):
         odom: Odometry, with its noise.
         ground_truth: True pose, as it is published.
         sensors: Sensors.
+        height: Height in metres, for cameras.
+        colour: Colour, for cameras.
+        signs: Signs on it, in its own frame.
     """
 
     name: str
@@ -247,16 +314,21 @@ class RobotDescription(Struct, frozen=True, forbid_unknown_fields=True):
     odom: Odom = Odom()
     ground_truth: GroundTruth = GroundTruth()
     sensors: Annotated[tuple[Sensor, ...], Meta(max_length=MOST_SENSORS)] = ()
+    height: Height | None = None
+    colour: str | None = None
+    signs: Signs = ()
 
 
 class WorldDescription(Struct, frozen=True, forbid_unknown_fields=True):
-    """Whole world file: settings of the `world`, its `map`, `walls`, `obstacles` and `robots`."""
+    """Whole world file: settings of the `world`, its `map`, `walls`, `obstacles` and `robots`, `paint` and `signs`."""
 
     world: Settings = Settings()
     map: Map | None = None
     walls: Annotated[tuple[Wall, ...], Meta(max_length=MOST_WALLS)] = ()
     obstacles: Annotated[tuple[Obstacle, ...], Meta(max_length=MOST_OBSTACLES)] = ()
     robots: Annotated[tuple[RobotDescription, ...], Meta(max_length=MOST_ROBOTS)] = ()
+    paint: Annotated[tuple[Paint, ...], Meta(max_length=1000)] = ()
+    signs: Signs = ()
 
 
 def steps_between(rate: float, dt: float) -> int:

@@ -14,6 +14,7 @@ FARTHEST = 100_000.0
 Coordinate: TypeAlias = Annotated[float, Meta(ge=-FARTHEST, le=FARTHEST)]
 Angle: TypeAlias = Annotated[float, Meta(ge=-6.2832, le=6.2832)]  # one turn: who writes 90 meant degrees
 Length: TypeAlias = Annotated[float, Meta(ge=0.001, le=100_000.0)]
+Height: TypeAlias = Annotated[float, Meta(ge=0.001, le=1000.0)]
 Mass: TypeAlias = Annotated[float, Meta(ge=0.001, le=100_000.0)]
 Rate: TypeAlias = Annotated[float, Meta(ge=0.001, le=10_000.0)]
 Limit: TypeAlias = Annotated[float, Meta(ge=0.001, le=1000.0)]

@@ -24,6 +24,23 @@ MEANINGS = {
     "WorldDescription.walls": "Lines of walls, without thickness.",
     "WorldDescription.obstacles": "Obstacles: fixed, pushed, or moving along a path.",
     "WorldDescription.robots": "The robots; with several, each one's name is the namespace of its topics.",
+    "WorldDescription.paint": "Lines and outlines painted on the floor, which cameras see.",
+    "WorldDescription.signs": "Upright signs, which cameras see: fiducial markers and pictures.",
+    "Settings.floor": "Look of the floor, for cameras.",
+    "FloorSettings.image": "Picture on the floor: PNG, JPEG or PGM, from the world file's folder.",
+    "FloorSettings.resolution": "Side of a pixel in metres; 0.005 by default.",
+    "FloorSettings.origin": "The picture's lower left corner: [x, y].",
+    "Paint.line": "Points [x, y] in metres, joined by a line.",
+    "Paint.width": "Width of the line in metres.",
+    "Paint.closed": "True: the last point is joined to the first.",
+    "Paint.radius": "Radius in metres of the arcs that round the line's corners.",
+    "Paint.dashes": "Lengths of a dash and of the gap behind it, in metres.",
+    "Paint.pose": "Pose of the outline: [x, y, theta].",
+    "Sign.pose": "Where it stands, and where it looks to: [x, y, theta].",
+    "Sign.tag": "Fiducial marker, such as 36h11/3: family and number.",
+    "Sign.image": "Picture: PNG, JPEG or PGM, from the world file's folder.",
+    "Sign.z": "Height of its middle in metres.",
+    "Sign.size": "Side of a tag's black square in metres, without the white margin, or width of a picture.",
     "Settings.name": "Name of the world.",
     "Settings.size": "Width and height in metres, from [0, 0]; everything must lie within.",
     "Settings.dt": "Length of a step in seconds.",
@@ -72,12 +89,15 @@ MEANINGS = {
     "box": "Length along x and width along y in metres.",
     "circle": "Radius in metres.",
     "polygon": "Corners [x, y] in metres, in their order round the outline.",
+    "colour": "Colour, for cameras: '#rrggbb' in quotes, or a name such as red.",
     "fov": "Field of view in degrees.",
+    "height": "Height in metres, for cameras.",
     "noise": "Standard deviation in metres.",
     "offset": "Pose on the robot: [x, y, theta].",
     "range": "Shortest and longest range in metres.",
     "rate": "Rate in Hz; the period must be a whole number of steps.",
     "reflectance": "Share of light that it reflects, for a lidar's intensities.",
+    "signs": "Signs on it, in its own frame.",
     "start": "Right end of the field of view in degrees; by default half of it to the right.",
 }
 """Descriptions of keys: by Struct and key, or by a key that means the same everywhere; those of sensors stand there."""
@@ -92,6 +112,8 @@ def world_schema() -> Schema:
     definitions = {name: _described(name, _draft_7(part)) for name, part in sorted(parts.items())}
     for shape in ("Shape", "Obstacle"):
         definitions[shape]["oneOf"] = _OUTLINES
+    definitions["Paint"]["oneOf"] = [{"required": ["line"]}, *_OUTLINES]
+    definitions["Sign"]["oneOf"] = [{"required": ["tag"]}, {"required": ["image"]}]
     whole = definitions.pop("WorldDescription")
     return {"$schema": DRAFT, **whole, "title": "A world of robolink", "definitions": definitions}
 

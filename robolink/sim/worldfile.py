@@ -17,6 +17,7 @@ from robolink.documents import yamlfile
 from robolink.documents.limits import MOST_TOLD, first_mistakes
 from robolink.documents.yamlfile import Document
 from robolink.exceptions import DocumentError, RobolinkError, nearest
+from robolink.sim.checks.pictures import picture_problems, with_paths
 from robolink.sim.checks.worlds import mass_problems, misfits, problems
 from robolink.sim.description import WorldDescription
 from robolink.sim.sensors import SENSORS, Sensor
@@ -44,7 +45,7 @@ def load_world(path: str | os.PathLike[str], *, text: str | None = None) -> Worl
     description = _with_map(document, grid)
     for error in _mistakes(document, description, grid):
         raise error
-    return description
+    return with_paths(description, Path(path).parent)
 
 
 class Checked(NamedTuple):
@@ -77,7 +78,7 @@ def check_world(path: str | os.PathLike[str], *, text: str | None = None) -> Che
     except DocumentError as error:
         errors.append(error)
     errors += first_mistakes(_mistakes(document, description, grid), MOST_TOLD + 2)  # finding what overlaps takes time
-    return Checked(None if errors else description, errors)
+    return Checked(None if errors else with_paths(description, Path(path).parent), errors)
 
 
 def _is_webots(path: str | os.PathLike[str]) -> bool:
@@ -103,7 +104,8 @@ def _mistakes(
     """Yield the mistakes of a world file whose every value is of the right type and in its range."""
     data: Any = document.data
     masses = mass_problems(description.robots, description.obstacles)
-    for each in itertools.chain(misfits(data), problems(description, grid), masses):
+    pictures = picture_problems(description, Path(document.name).parent)
+    for each in itertools.chain(misfits(data), problems(description, grid), masses, pictures):
         yield document.error(each.path, each.message, key=each.key)
 
 
@@ -128,7 +130,8 @@ def _with_map(document: Document[WorldDescription], grid: GridMap | None) -> Wor
     from robolink.sim.maps.gridmap import map_walls
 
     try:
-        walls = map_walls(grid)
+        look = document.value.map
+        walls = map_walls(grid, look.height, look.colour) if look else map_walls(grid)
     except ValueError as error:
         raise document.error("$.map", str(error)) from None
     return msgspec.structs.replace(document.value, walls=(*document.value.walls, walls))

@@ -254,7 +254,7 @@ def test_all_that_is_wrong_is_found_at_once() -> None:
         "robots[0].sensors[0].lidar: expected str, got '3'",
         "robots[0].sensors[1].fov: unknown key 'fov'",
         "robots[0].sensors[2]: this sensor has no kind (did you mean 'lidar'?): one of its keys must be " + KINDS,
-        "robots[0].color: unknown key 'color'",
+        "robots[0].color: unknown key 'color' (did you mean 'colour'?)",
         "robots[1].nam: unknown key 'nam' (did you mean 'name'?)",
         "wals: unknown key 'wals' (did you mean 'walls'?)",
     ]

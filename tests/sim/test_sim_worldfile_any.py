@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from robolink.exceptions import DocumentError
 from robolink.sim import World, WorldDescription, load_world
 from robolink.sim.description import RobotDescription
+from robolink.sim.scene.scenery import scenery
 from robolink.sim.worldfile import check_world
 
 
@@ -46,6 +47,26 @@ SENSED: dict[str, st.SearchStrategy[Any]] = {
     "radiation": st.sampled_from(["ultrasound", "radio"]),
 }
 LIMITS = ("v_max", "w_max", "a_max", "alpha_max", "timeout", "wheelbase", "steer_max", "steer_rate")
+COLOURS = st.sampled_from(["red", "#00ff00", "#0f0", "rod", ""])
+SIGNS = mapping(
+    pose=POSES,
+    tag=st.sampled_from(["36h11/3", "4x4_50/50", "36h11"]),
+    image=st.sampled_from(["w.png", "", ".", "a\0b"]),
+    z=NUMBERS,
+    size=NUMBERS,
+)
+SOME_SIGNS = st.lists(SIGNS, max_size=1)
+PAINT = mapping(
+    line=PATHS,
+    width=NUMBERS,
+    radius=NUMBERS,
+    closed=st.booleans(),
+    dashes=PAIRS,
+    pose=POSES,
+    colour=COLOURS,
+    **SHAPES,
+)
+FLOORS = mapping(colour=COLOURS, image=st.sampled_from(["w.png", ""]), resolution=NUMBERS, origin=PAIRS)
 ROBOTS = mapping(
     name=st.just("r"),
     pose=POSES,
@@ -54,13 +75,21 @@ ROBOTS = mapping(
     drive=mapping(type=st.sampled_from(["diff", "omni", "ackermann"]), **dict.fromkeys(LIMITS, NUMBERS)),
     wheels=st.lists(mapping(motor=st.sampled_from("ab"), at=POSES, radius=NUMBERS), max_size=4),
     sensors=st.lists(mapping(**SENSED), max_size=2),
+    colour=COLOURS,
+    height=NUMBERS,
+    signs=SOME_SIGNS,
 )
 FILES = mapping(
-    world=mapping(dt=st.sampled_from([0.01, 0.1]) | NUMBERS, size=PAIRS, seed=NUMBERS),
+    world=mapping(dt=st.sampled_from([0.01, 0.1]) | NUMBERS, size=PAIRS, seed=NUMBERS, floor=FLOORS),
     map=mapping(yaml=st.sampled_from(["w.yaml", "", ".", "a\0b"])),
-    walls=st.lists(mapping(polyline=PATHS, closed=st.booleans()), max_size=2),
-    obstacles=st.lists(mapping(pose=POSES, mass=NUMBERS, path=PATHS, speed=NUMBERS, **SHAPES), max_size=3),
+    walls=st.lists(mapping(polyline=PATHS, closed=st.booleans(), colour=COLOURS, height=NUMBERS), max_size=2),
+    obstacles=st.lists(
+        mapping(pose=POSES, mass=NUMBERS, path=PATHS, speed=NUMBERS, colour=COLOURS, signs=SOME_SIGNS, **SHAPES),
+        max_size=3,
+    ),
     robots=st.lists(ROBOTS, max_size=2),
+    paint=st.lists(PAINT, max_size=2),
+    signs=SOME_SIGNS,
 )
 ANYTHING = st.recursive(
     SCALARS,
@@ -118,11 +147,23 @@ GOOD_ROBOTS = st.fixed_dictionaries(
     {"name": st.just("r"), "pose": PLACES, "sensors": st.just([{"lidar": "scan", "noise": 0.01}])},
     optional={"shape": OUTLINES, "mass": MASSES, "drive": st.just(SHARP)},
 )
+GOOD_LINES = st.fixed_dictionaries(
+    {"line": POLYLINES},
+    optional={
+        "width": st.floats(0.001, 1.0),
+        "radius": st.floats(0.0, 9.0),
+        "closed": st.booleans(),
+        "dashes": st.tuples(st.floats(0.02, 1.0), st.floats(0.02, 1.0)),
+    },
+)
 GOOD_FILES = st.fixed_dictionaries(
     {
         "walls": st.lists(GOOD_WALLS, max_size=2),
         "obstacles": st.lists(GOOD_OBSTACLES, max_size=2),
         "robots": st.lists(GOOD_ROBOTS, max_size=1),
+        "paint": st.lists(GOOD_LINES | OUTLINES, max_size=2),
+        "signs": st.lists(st.fixed_dictionaries({"tag": st.just("36h11/3"), "pose": PLACES}), max_size=2),
+        "world": st.just({"floor": {"resolution": 0.02}}),
     }
 )
 
@@ -141,6 +182,8 @@ def test_a_file_that_is_not_refused_can_be_simulated(content: Any) -> None:
     for robot in world.robots.values():
         assert math.isfinite(robot.pose.x + robot.pose.theta)
         assert not np.isnan(robot.scan().ranges).any()
+    faces = scenery(description).fixed.faces
+    assert np.isfinite([number for face in faces for vector in face[:3] for number in vector]).all()
 
 
 @given(st.text(st.sampled_from("[]{}:-,&*!|>'\"#%@ \n\t0a\x00é\ud800") | st.characters(), max_size=40))

@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from robolink.sim.checks.appearance import colour_problems, null_colour, sign_problems
 from robolink.sim.checks.problem import Problem, repeated_names, under
 from robolink.sim.checks.shapes import shape_problems, speed_problems
 from robolink.sim.description import Drive, RobotDescription, Wheel, steps_between
@@ -42,6 +43,7 @@ _ONLY_ACKERMANN = ("wheelbase", "steer_max", "steer_rate")
 
 def robot_misfits(data: Mapping[str, Any]) -> Iterator[Problem]:
     """Yield the keys of a robot's plain data, valid otherwise, that mean nothing there."""
+    yield from null_colour(data)
     drive = data.get("drive", {})
     kind = drive.get("type", Drive().type)
     for key in _ONLY_ACKERMANN if kind != "ackermann" else ():
@@ -56,6 +58,8 @@ def robot_problems(robot: RobotDescription, dt: float) -> Iterator[Problem]:
         yield Problem(".name", _bad_name(robot.name))
     shape = list(_outline_problems(robot))
     yield from under(".shape", iter(shape))
+    yield from colour_problems(robot.colour)
+    yield from sign_problems(robot.signs)
     yield from under(".drive", _drive_problems(robot, dt, has_shape=not shape))
     yield from under(".wheels", _wheel_problems(robot))
     yield from under(".odom.rate", _rate_problems(robot.odom.rate, dt))

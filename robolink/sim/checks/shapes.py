@@ -28,10 +28,17 @@ def wall_problems(wall: Wall) -> Iterator[Problem]:
     if wall.closed and len(points) < 3:
         yield Problem(".polyline", f"a closed wall needs 3 points or more, got {len(points)}")
         return
-    yield from under(".polyline", _repeated_points(points, "a wall", "closed: true" if wall.closed else ""))
+    yield from under(".polyline", repeated_points(points, "a wall", "closed: true" if wall.closed else ""))
 
 
-def _repeated_points(points: Sequence[Point], what: str, closing: str) -> Iterator[Problem]:
+def repeated_points(points: Sequence[Point], what: str, closing: str) -> Iterator[Problem]:
+    """Yield a problem for each point that is where the one before is.
+
+    Args:
+        points: The points.
+        what: Name of what joins two points.
+        closing: Key that joins the last point to the first, such as 'closed: true'; '' if nothing does.
+    """
     for index in repeated(points, closed=bool(closing)):
         at = f"[{points[index][0]:g}, {points[index][1]:g}]"
         if closing and index == len(points) - 1 and math.dist(points[index], points[index - 1]) >= SHORTEST:
@@ -50,7 +57,7 @@ def shape_problems(shape: Shape) -> Iterator[Problem]:
 
 
 def _polygon_problems(polygon: Sequence[Point]) -> Iterator[Problem]:
-    same = list(_repeated_points(polygon, "an edge", "polygon"))
+    same = list(repeated_points(polygon, "an edge", "polygon"))
     if same:
         yield from same
     elif in_line(polygon):
@@ -83,7 +90,7 @@ def obstacle_problems(obstacle: Obstacle, dt: float) -> Iterator[Problem]:
         yield Problem(
             ".pose", f"its path begins at {there}: leave out 'pose', or let it begin with [{there[1:-1]}, ...]"
         )
-    yield from under(".path", _repeated_points(obstacle.path, "a way", "closed: true" if obstacle.closed else ""))
+    yield from under(".path", repeated_points(obstacle.path, "a way", "closed: true" if obstacle.closed else ""))
     if not shape:
         yield from under(".speed", speed_problems(obstacle.speed, dt, obstacle, "what it meets"))
 

@@ -5,6 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from robolink.sim.checks.appearance import (
+    appearance_misfits,
+    colour_problems,
+    floor_problems,
+    paint_problems,
+    sign_problems,
+)
 from robolink.sim.checks.overlaps import overlaps
 from robolink.sim.checks.problem import Problem, repeated_names, under
 from robolink.sim.checks.robots import robot_misfits, robot_problems
@@ -29,6 +36,7 @@ def misfits(data: Mapping[str, Any]) -> Iterator[Problem]:
         yield from under(f"$.obstacles[{index}]", obstacle_misfits(obstacle))
     for index, robot in enumerate(data.get("robots", ())):
         yield from under(f"$.robots[{index}]", robot_misfits(robot))
+    yield from appearance_misfits(data)
 
 
 def problems(
@@ -43,6 +51,7 @@ def problems(
         found = True
         yield problem
     if not found:
+        yield from under("$.world.floor", floor_problems(description))
         yield from overlaps(description, grid, fixed_too=fixed_too)
 
 
@@ -51,11 +60,18 @@ def _local_problems(description: WorldDescription) -> Iterator[Problem]:
     for index, wall in enumerate(description.walls):
         if not isinstance(wall, MapWalls):
             yield from under(f"$.walls[{index}]", wall_problems(wall))
+            yield from under(f"$.walls[{index}]", colour_problems(wall.colour))
+    yield from under("$.map", colour_problems(description.map.colour if description.map else None))
     for index, obstacle in enumerate(description.obstacles):
         yield from under(f"$.obstacles[{index}]", obstacle_problems(obstacle, dt))
+        yield from under(f"$.obstacles[{index}]", colour_problems(obstacle.colour))
+        yield from under(f"$.obstacles[{index}]", sign_problems(obstacle.signs))
     for index, robot in enumerate(description.robots):
         yield from under(f"$.robots[{index}]", robot_problems(robot, dt))
     yield from repeated_names([each.name for each in description.robots], "$.robots[{}].name", "two robots are called")
+    for index, paint in enumerate(description.paint):
+        yield from under(f"$.paint[{index}]", paint_problems(paint))
+    yield from under("$", sign_problems(description.signs))
     yield from _size_problems(description)
 
 
@@ -94,3 +110,9 @@ def _places(description: WorldDescription) -> Iterator[tuple[str, Point]]:
         yield from ((f"$.obstacles[{index}].path[{at}]", point) for at, point in enumerate(obstacle.path or ()))
     for index, robot in enumerate(description.robots):
         yield f"$.robots[{index}].pose", (robot.pose.x, robot.pose.y)
+    for index, paint in enumerate(description.paint):
+        if paint.line is None:
+            yield f"$.paint[{index}].pose", (paint.pose.x, paint.pose.y)
+        yield from ((f"$.paint[{index}].line[{at}]", point) for at, point in enumerate(paint.line or ()))
+    for index, sign in enumerate(description.signs):
+        yield f"$.signs[{index}].pose", (sign.pose.x, sign.pose.y)

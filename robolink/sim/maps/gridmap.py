@@ -95,12 +95,18 @@ def load_map(path: Path) -> GridMap:
     return GridMap(cells, occupied, file.resolution, Pose(*file.origin))
 
 
-def map_walls(grid: GridMap) -> MapWalls:
-    """Return a map's walls as a part of a world. Raises ValueError if they are too many."""
+def map_walls(grid: GridMap, height: float | None = None, colour: str | None = None) -> MapWalls:
+    """Return a map's walls as a part of a world. Raises ValueError if they are too many.
+
+    Args:
+        grid: The map.
+        height: Height of the walls in metres.
+        colour: Colour of the walls, as in a world file.
+    """
     segments = grid.walls()
     if len(segments) > MOST_PIECES:
         raise ValueError(_too_many(len(segments)))
-    return MapWalls(tuple((x, y) for x, y in segments.reshape(-1, 2).tolist()))
+    return MapWalls(tuple((x, y) for x, y in segments.reshape(-1, 2).tolist()), height=height, colour=colour)
 
 
 def occupancy(image: Image, file: MapFile) -> npt.NDArray[np.int8]:

@@ -5,24 +5,38 @@ scene = scenery(load_world("configs/worlds/lab.yaml"))
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
+from functools import cache
+from itertools import chain
+from typing import TypeAlias
 
-from robolink.geometry.plane import Pose
-from robolink.sim.description import Obstacle, RobotDescription, WorldDescription
+import msgspec
+
+from robolink.geometry import plane
+from robolink.sim.colours import Colour, colour_of
+from robolink.sim.description import Obstacle, RobotDescription, Sign, Wall, WorldDescription
+from robolink.sim.quantities import Pose
+from robolink.sim.scene.floor import painted_floor
+from robolink.sim.scene.pictures import read_picture
+from robolink.sim.scene.signs import sign_surfaces
 from robolink.sim.scene.solids import HERE, solid, upright
-from robolink.sim.scene.surfaces import Colour, Floor, Scenery, Surfaces
+from robolink.sim.scene.surfaces import Picture, Scenery, Surfaces
 
 SKY: Colour = (190, 205, 225)
-FLOOR: Colour = (150, 145, 140)
 WALL: Colour = (200, 195, 185)
-OBSTACLE: Colour = (140, 110, 80)
-ROBOT: Colour = (70, 70, 80)
+FIXED: Colour = (168, 168, 168)
+PUSHABLE: Colour = (230, 159, 0)
+MOVING: Colour = (86, 180, 233)
+ROBOT: Colour = (0, 158, 115)
+"""Colours where a world file has none; those of obstacles and robots are those of `robolink world draw`."""
 
 WALL_HEIGHT, OBSTACLE_HEIGHT, ROBOT_HEIGHT = 1.0, 0.5, 0.2
 """Heights in metres where a world file has none."""
 
 GROUND_CLEARANCE = 0.02
-"""Height of a robot's underside above the floor, in metres."""
+"""Height of a robot's underside above the floor, in metres; of a flatter robot it is half its height."""
+
+_Read: TypeAlias = Callable[[str], Picture]
 
 
 def scenery(description: WorldDescription) -> Scenery:
@@ -30,34 +44,87 @@ def scenery(description: WorldDescription) -> Scenery:
 
     Args:
         description: The world, as from `load_world`.
+
+    Raises:
+        OSError: if a picture cannot be read.
+        ImageError: if a picture is none.
+        ValueError: for a colour or a tag that is none, which `load_world` refuses.
     """
-    obstacles = list(enumerate(description.obstacles))
-    walls = [
-        upright(start, end, 0.0, WALL_HEIGHT, WALL) for wall in description.walls for start, end in wall.segments()
-    ]
-    fixed = [_obstacle(each, each.start.place) for _, each in obstacles if not _movable(each)]
+    read = cache(read_picture)
+    fixed = [each for each in description.obstacles if not _moves(each)]
+    standing = _joined([_walls(description.walls), *(_obstacle(each, each.start.place) for each in fixed)])
+    signs = [sign_surfaces(each, read, standing) for each in description.signs]
+    signs += [sign_surfaces(_placed(sign, each.start), read) for each in fixed for sign in each.signs]
+    settings = description.world.floor
     return Scenery(
-        Floor(FLOOR),
+        painted_floor(settings, description.paint, None if settings.image is None else read(settings.image)),
         SKY,
-        _joined([Surfaces(tuple(walls)), *fixed]),
-        {index: _obstacle(each, HERE) for index, each in obstacles if _movable(each)},
-        {each.name: robot_surfaces(each) for each in description.robots},
+        _joined([standing, *signs]),
+        {
+            index: _with_signs(_obstacle(each, HERE), each.signs, read)
+            for index, each in enumerate(description.obstacles)
+            if _moves(each)
+        },
+        {each.name: _robot(each, read) for each in description.robots},
     )
 
 
 def robot_surfaces(robot: RobotDescription) -> Surfaces:
-    """Return the surfaces of a robot in its own frame."""
-    return solid(robot.shape, HERE, GROUND_CLEARANCE, ROBOT_HEIGHT, ROBOT)
+    """Return the surfaces of a robot in its own frame. Raises as `scenery`."""
+    return _robot(robot, read_picture)
 
 
-def _movable(obstacle: Obstacle) -> bool:
+def wall_colour(wall: Wall) -> Colour:
+    """Return the colour of a wall."""
+    return WALL if wall.colour is None else colour_of(wall.colour)
+
+
+def obstacle_colour(obstacle: Obstacle) -> Colour:
+    """Return the colour of an obstacle; one that has none is coloured by its kind."""
+    if obstacle.colour is not None:
+        return colour_of(obstacle.colour)
+    if obstacle.path is not None:
+        return MOVING
+    return FIXED if obstacle.mass is None else PUSHABLE
+
+
+def robot_colour(robot: RobotDescription) -> Colour:
+    """Return the colour of a robot."""
+    return ROBOT if robot.colour is None else colour_of(robot.colour)
+
+
+def _moves(obstacle: Obstacle) -> bool:
     return obstacle.path is not None or obstacle.mass is not None
 
 
-def _obstacle(obstacle: Obstacle, pose: Pose) -> Surfaces:
-    return solid(obstacle, pose, 0.0, OBSTACLE_HEIGHT, OBSTACLE)
+def _walls(walls: Sequence[Wall]) -> Surfaces:
+    faces = (
+        upright(start, end, 0.0, wall.height or WALL_HEIGHT, wall_colour(wall))
+        for wall in walls
+        for start, end in wall.segments()
+    )
+    return Surfaces(tuple(faces))
+
+
+def _obstacle(obstacle: Obstacle, pose: plane.Pose) -> Surfaces:
+    return solid(obstacle, pose, 0.0, obstacle.height or OBSTACLE_HEIGHT, obstacle_colour(obstacle))
+
+
+def _robot(robot: RobotDescription, read: _Read) -> Surfaces:
+    height = robot.height or ROBOT_HEIGHT
+    body = solid(robot.shape, HERE, min(GROUND_CLEARANCE, height / 2), height, robot_colour(robot))
+    return _with_signs(body, robot.signs, read)
+
+
+def _with_signs(body: Surfaces, signs: Sequence[Sign], read: _Read) -> Surfaces:
+    return _joined([body, *(sign_surfaces(each, read) for each in signs)])
+
+
+def _placed(sign: Sign, origin: Pose) -> Sign:
+    """Return a sign of an obstacle as one of the world."""
+    return msgspec.structs.replace(sign, pose=Pose(*plane.placed_on(origin.place, sign.pose.place)))
 
 
 def _joined(parts: Iterable[Surfaces]) -> Surfaces:
     faces, cylinders = zip(*parts, strict=True)
-    return Surfaces(tuple(each for part in faces for each in part), tuple(each for part in cylinders for each in part))
+    return Surfaces(tuple(chain.from_iterable(faces)), tuple(chain.from_iterable(cylinders)))
