@@ -204,18 +204,27 @@ def test_one_line_says_what_to_do(cv2: Any, capfd: pytest.CaptureFixture[str]) -
     )
 
 
-def test_names_that_opencv_has_no_more(cv2: Any) -> None:
+def test_names_that_opencv_has_no_more(cv2: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(AttributeError, match=r"has no CascadeClassifier any more, and this is 5\.0\.0: pip install"):
         _ = cv2.CascadeClassifier
     with pytest.raises(AttributeError, match=r"'cv2' has no attribute 'imsho'$"):
         _ = cv2.imsho
     assert not hasattr(cv2, "face")
-    sys.modules["cv2_of_test"] = cv2
-    try:
-        with pytest.raises(ImportError, match="OpenCV 5 has no HOGDescriptor"):
-            exec("from cv2_of_test import HOGDescriptor")
-    finally:
-        del sys.modules["cv2_of_test"]
+    monkeypatch.setitem(sys.modules, "cv2_of_test", cv2)
+    with pytest.raises(ImportError, match="OpenCV 5 has no HOGDescriptor"):
+        exec("from cv2_of_test import HOGDescriptor")
+
+
+def test_names_of_aruco_before_opencv_4_7() -> None:
+    made = opencv()
+    made.aruco = ModuleType("cv2.aruco")
+    prepare(made)
+    with pytest.raises(
+        AttributeError, match=r"no more since 4\.7, and this is 5\.0\.0: write .*getPredefinedDictionary"
+    ):
+        _ = made.aruco.Dictionary_get
+    with pytest.raises(AttributeError, match=r"'cv2\.aruco' has no attribute 'CascadeClassifier'$"):
+        _ = made.aruco.CascadeClassifier
 
 
 # Topics

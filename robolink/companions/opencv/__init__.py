@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from types import ModuleType
 
-from robolink.companions.opencv.lost_names import lost_name
+from robolink.companions.opencv.lost_names import advise
 from robolink.companions.opencv.window_system import lack_of_windows
 from robolink.companions.opencv.windows import NoWindows
 
@@ -20,5 +20,4 @@ def prepare(cv2: ModuleType) -> None:
     """
     if lack_of_windows(cv2):
         NoWindows(cv2).replace_functions()
-    if "__getattr__" not in vars(cv2):
-        cv2.__getattr__ = lambda name: lost_name(cv2, name)  # type: ignore[method-assign]
+    advise(cv2)
