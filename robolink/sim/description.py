@@ -215,7 +215,7 @@ class Drive(Struct, frozen=True, forbid_unknown_fields=True):
 
     `diff` goes ahead and turns; `omni` goes sideways too; `ackermann` steers like a car, its reference point in the
     middle of the rear axle, `wheelbase` metres behind the front axle, and turns its wheels by `steer_max` radians at
-    most, `steer_rate` radians a second.
+    most, `steer_rate` radians a second. With `stamped` its commands are of the type TwistStamped.
     """
 
     type: Literal["diff", "omni", "ackermann"] = "diff"
@@ -227,6 +227,7 @@ class Drive(Struct, frozen=True, forbid_unknown_fields=True):
     wheelbase: Length = 0.3
     steer_max: Annotated[float, Meta(ge=0.01, le=1.5)] = 0.5
     steer_rate: Limit = 2.0
+    stamped: bool = False
 
 
 class Wheel(Struct, frozen=True, forbid_unknown_fields=True):

@@ -75,6 +75,7 @@ MEANINGS = {
     "Drive.wheelbase": "Distance between the axles in metres (ackermann).",
     "Drive.steer_max": "Largest steering angle in radians (ackermann).",
     "Drive.steer_rate": "Largest steering speed in rad/s (ackermann).",
+    "Drive.stamped": "True: cmd_vel has the type TwistStamped, as a TurtleBot3 since Jazzy; false: Twist.",
     "Wheel.motor": "The motor's name.",
     "Wheel.at": "Position on the robot and rolling direction: [x, y, theta].",
     "Wheel.radius": "Radius in metres.",

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from robolink.exceptions import nearest
-from robolink.interfaces.geometry_msgs.msg import Twist
+from robolink.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from robolink.interfaces.sensor_msgs.msg import JointState
 from robolink.node import Node
 from robolink.sim import Robot
@@ -32,7 +34,11 @@ class RobotCommands:
         self._warned: set[str] = set()
         self._timeout = max(1, round(robot.description.drive.timeout / robot.dt))
         self.follow(robot)
-        self._cmd_vel = node.create_subscription(Twist, f"{prefix}cmd_vel", self._on_cmd_vel, 10)
+        self._cmd_vel: Subscription[Any]
+        if robot.description.drive.stamped:
+            self._cmd_vel = node.create_subscription(TwistStamped, f"{prefix}cmd_vel", self._on_stamped, 10)
+        else:
+            self._cmd_vel = node.create_subscription(Twist, f"{prefix}cmd_vel", self._on_cmd_vel, 10)
         self._joint_command: Subscription[JointState] | None = None
         if self.motors:
             topic = f"{prefix}joint_command"
@@ -54,6 +60,9 @@ class RobotCommands:
         self._node.destroy_subscription(self._cmd_vel)
         if self._joint_command is not None:
             self._node.destroy_subscription(self._joint_command)
+
+    def _on_stamped(self, command: TwistStamped) -> None:
+        self._on_cmd_vel(command.twist)
 
     def _on_cmd_vel(self, twist: Twist) -> None:
         if not sane(twist):

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
+from robolink.interfaces.geometry_msgs.msg import Twist, TwistStamped, Vector3
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import Imu, JointState, LaserScan, Range
 from robolink.interfaces.std_msgs.msg import Bool
@@ -154,6 +154,21 @@ def test_wheels_stop_half_a_second_after_their_last_command(system: System, tmp_
     turning = [each.header.stamp.nanosec for each in states if each.velocity[0] > 1.9]
     assert turning[-1] == pytest.approx(500_000_000, abs=20_000_000)
     assert states[-1].velocity[0] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_robot_that_takes_stamped_commands_obeys_no_others(system: System, tmp_path: Path) -> None:
+    text = "robots: [{name: r, pose: [0, 0], drive: {stamped: true}}]"
+    world = system.start(simulation.SimulatedWorld, parameters={"world": world_of(text, tmp_path)})
+    drive(system, "/cmd_vel", 0.0, 1.0)
+    stamped = system.node.create_publisher(TwistStamped, "/cmd_vel", 10)
+    system.node.create_timer(0.1, lambda: stamped.publish(TwistStamped(twist=Twist(linear=Vector3(x=0.2)))))
+    system.run(2.0)
+    pose = world.simulation.world.robots["r"].pose
+    assert pose.x > 0.2
+    assert pose.theta == 0.0
+    stamped.publish(TwistStamped(twist=Twist(linear=Vector3(x=math.inf))))
+    system.run(0.1)
+    assert any("ignored a cmd_vel that is not finite" in line for line in log(system))
 
 
 def test_cmd_vel_is_left_to_whoever_turns_the_wheels(system: System, tmp_path: Path) -> None:
