@@ -55,6 +55,7 @@ class SimulatedWorld(Node):
             publish_map=publish_map,
             seed=seed,
             all_images=all_images,
+            in_background=rtf > 0.0 and not isinstance(self.context.time, VirtualTime),
         )
         self.runner = Runner(self, self.simulation, rtf)
         Services(self, self.simulation, self.runner)
@@ -66,6 +67,12 @@ class SimulatedWorld(Node):
         self.add_post_set_parameters_callback(self.on_parameters)
         robots = listed(list(self.simulation.world.robots))
         self.get_logger().info(f"world '{description.world.name or wanted}' with {robots}")
+
+    def destroy_node(self) -> None:
+        """End the thread of the cameras, too."""
+        if hasattr(self, "simulation"):  # not if the world could not be read
+            self.simulation.close()
+        super().destroy_node()
 
     def on_parameters(self, parameters: list[Parameter[Any]]) -> None:
         """Set the real-time factor."""

@@ -153,11 +153,6 @@ def image_message(shot: Shot, header: Header, sensor: Camera) -> Image:
     return to_message(shot.image(), sensor.encoding, header)
 
 
-def depth_message(depths: np.ndarray[Any, np.dtype[np.float32]], header: Header) -> Image:
-    """Make the message of a depth image, in metres; inf is nothing, -inf too near (REP 118)."""
-    return to_message(depths, "32FC1", header)
-
-
 def camera_info_message(header: Header, sensor: Camera) -> CameraInfo:
     """Make the message of a camera's calibration: a pinhole without distortion.
 

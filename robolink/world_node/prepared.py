@@ -9,9 +9,13 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
 
 from robolink.interfaces.builtin_interfaces.msg import Time
+from robolink.interfaces.sensor_msgs.msg import Image
 from robolink.interfaces.std_msgs.msg import Header
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.message import encode
@@ -114,6 +118,18 @@ class PreparedScan:
     def payload(self, stamp: Stamp, scan: Scan) -> bytes:
         """Return the payload of `scan_message`."""
         return b"".join((stamp.beginning, self._begin, _floats(scan.ranges), self._count, _floats(scan.intensities)))
+
+
+class PreparedImage:
+    """The images of a camera, all of them like `image` but for their stamps and pixels."""
+
+    def __init__(self, image: Image) -> None:
+        whole = encode(image)
+        self._begin = whole[_HEAD + _STAMP : len(whole) - len(image.data)]
+
+    def payload(self, stamp: Stamp, pixels: npt.NDArray[Any]) -> bytes:
+        """Return the payload of an image of these pixels, which are contiguous."""
+        return b"".join((stamp.beginning, self._begin, pixels.reshape(-1).view(np.uint8).data))
 
 
 def _floats(values: Array | None) -> bytes:

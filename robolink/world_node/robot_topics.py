@@ -15,11 +15,12 @@ from robolink.interfaces.sensor_msgs.msg import JointState
 from robolink.interfaces.std_msgs.msg import Header
 from robolink.node import Node
 from robolink.publisher import Publisher
-from robolink.sim import Pose, Robot, Scan, Shot
+from robolink.sim import Pose, Robot, Scan
 from robolink.sim.checks.robots import tells_joints
 from robolink.sim.description import OdomNoise, steps_between
 from robolink.sim.sensors import Camera, Lidar, Sensor
 from robolink.world_node.camera_topics import CameraTopics
+from robolink.world_node.compression import Compression
 from robolink.world_node.messages import (
     joint_state_message,
     sensor_message,
@@ -39,10 +40,12 @@ class RobotTopics:
 
     Wheels without encoders are published on joint_states, with the odometry, as they truly turn.
 
-    With `all_images` cameras render also what nobody listens to.
+    With `all_images` cameras render also what nobody listens to; `compression` is that of their images.
     """
 
-    def __init__(self, node: Node, robot: Robot, prefix: str, *, all_images: bool = False) -> None:
+    def __init__(
+        self, node: Node, robot: Robot, prefix: str, *, compression: Compression, all_images: bool = False
+    ) -> None:
         description = robot.description
         self.odom_frame, self.base_frame = f"{prefix}odom", f"{prefix}base_link"
         self.commands = RobotCommands(node, robot, prefix)
@@ -60,7 +63,7 @@ class RobotTopics:
             if not isinstance(each, Camera)
         }
         self._cameras = {
-            each.topic: CameraTopics(each, prefix, self._publisher, always=all_images)
+            each.topic: CameraTopics(each, prefix, self._publisher, always=all_images, compression=compression)
             for each in description.sensors
             if isinstance(each, Camera)
         }
@@ -93,9 +96,9 @@ class RobotTopics:
         else:
             publisher.publish(sensor_message(sensor, value, Header(stamp=stamp.message, frame_id=frame)))
 
-    def publish_shot(self, sensor: Sensor, shot: Shot, stamp: Stamp) -> None:
-        """Publish what a camera sees, if anybody listens."""
-        self._cameras[sensor.topic].publish(shot, stamp)
+    def camera(self, sensor: Sensor) -> CameraTopics:
+        """Return the topics of a camera."""
+        return self._cameras[sensor.topic]
 
     def _prepared_scan(self, lidar: Lidar, scan: Scan, frame: str) -> PreparedScan:
         found = self._scans.get(lidar.topic)

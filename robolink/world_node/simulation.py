@@ -13,6 +13,9 @@ from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.sim import Pose, Reading, Robot, Shot, World, WorldDescription
 from robolink.sim.description import RobotDescription
 from robolink.system.terminal import shown
+from robolink.world_node.camera_topics import CameraTopics
+from robolink.world_node.compression import Compression
+from robolink.world_node.darkroom import Darkroom
 from robolink.world_node.messages import time_message
 from robolink.world_node.prepared import Stamp, transforms_payload
 from robolink.world_node.robot_commands import RobotCommands
@@ -35,6 +38,7 @@ class Simulation:
         publish_map: True: publish the transforms from the frame `map` to those of odometry.
         seed: Seed of all noise; None: the description's.
         all_images: True: cameras render and publish also what nobody listens to.
+        in_background: True: images are rendered on a thread of their own, and left out if that falls behind.
     """
 
     def __init__(
@@ -47,6 +51,7 @@ class Simulation:
         publish_map: bool = True,
         seed: int | None = None,
         all_images: bool = False,
+        in_background: bool = False,
     ) -> None:
         self.description, self.world = description, World(description, seed=seed)
         self.robots: dict[str, RobotTopics] = {}
@@ -54,6 +59,8 @@ class Simulation:
         self._contacts, self._state_steps = 0, 1
         self._node, self._epoch, self._publish_map, self._seed = node, epoch, publish_map, seed
         self._all_images = all_images
+        warn = node.get_logger().warning
+        self._compression, self._darkroom = Compression(warn), Darkroom(warn) if in_background else None
         self._clock = node.create_publisher(Clock, "/clock", 10) if publish_clock else None
         self._tf = node.create_publisher(TFMessage, "/tf", 100)
         self._tf_static = node.create_publisher(TFMessage, "/tf_static", LATCHED)
@@ -91,7 +98,24 @@ class Simulation:
             if transforms := [found for found in moved if found is not None]:
                 self._tf.publish(transforms_payload(stamp, transforms))
         for robot, sensor, shot in shots:  # last, since rendering takes time
-            self.robots[robot.name].publish_shot(sensor, shot, stamp)
+            self._publish_shot(self.robots[robot.name].camera(sensor), shot, stamp)
+
+    def _publish_shot(self, camera: CameraTopics, shot: Shot, stamp: Stamp) -> None:
+        camera.publish_infos(stamp)
+        if not camera.is_wanted:
+            return
+        if self._darkroom is None:
+            camera.publish(shot, stamp)
+        elif not self._darkroom.submit(camera, lambda: camera.publish(shot, stamp)):
+            self._node.get_logger().warning(
+                f"rendering for {camera.frame} takes longer than from one image to the next: images are left out",
+                throttle_duration_sec=5.0,
+            )
+
+    def close(self) -> None:
+        """Publish the images that are still to be rendered. Safe to call twice."""
+        if self._darkroom is not None:
+            self._darkroom.close()
 
     def reset(self) -> None:
         """Reset the world: every robot of the world file is where it started, others are gone; time goes on."""
@@ -146,7 +170,7 @@ class Simulation:
 
     def _topics(self, robot: Robot) -> RobotTopics:
         prefix = "" if robot.name == self._only else f"{robot.name}/"
-        return RobotTopics(self._node, robot, prefix, all_images=self._all_images)
+        return RobotTopics(self._node, robot, prefix, compression=self._compression, all_images=self._all_images)
 
     def _warn_of_contacts(self) -> None:
         for topics in self.robots.values():

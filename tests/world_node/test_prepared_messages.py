@@ -8,6 +8,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robolink.image import to_message
 from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.interfaces.std_msgs.msg import Header
 from robolink.interfaces.tf2_msgs.msg import TFMessage
@@ -16,6 +17,7 @@ from robolink.sim import Pose, Scan, Velocity
 from robolink.sim.sensors import Lidar
 from robolink.world_node.messages import odometry_message, scan_message, transform_message
 from robolink.world_node.prepared import (
+    PreparedImage,
     PreparedOdometry,
     PreparedScan,
     PreparedTransform,
@@ -36,6 +38,16 @@ LIGHT = np.array([0.25, 0.5, 1.0])
 @given(times)
 def test_a_clock(time: int) -> None:
     assert Stamp.of(time).beginning == encode(Clock(clock=Stamp.of(time).message))
+
+
+@given(times, frames, st.sampled_from(["rgb8", "mono8", "32FC1"]), st.integers(1, 9), st.integers(1, 9))
+def test_an_image(time: int, frame: str, encoding: str, height: int, width: int) -> None:
+    stamp, kind = Stamp.of(time), np.float32 if encoding == "32FC1" else np.uint8
+    shape = (height, width, 3) if encoding == "rgb8" else (height, width)
+    first, second = (np.arange(math.prod(shape)).reshape(shape) * factor % 100 for factor in (1, 7))
+    prepared = PreparedImage(to_message(first.astype(kind), encoding, Header(frame_id=frame)))
+    wanted = to_message(second.astype(kind), encoding, Header(stamp=stamp.message, frame_id=frame))
+    assert prepared.payload(stamp, second.astype(kind)) == encode(wanted)
 
 
 @given(times, frames, frames, poses, speeds)

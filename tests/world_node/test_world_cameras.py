@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -12,6 +13,7 @@ import pytest
 
 from robolink.clock_type import ClockType
 from robolink.image import to_array
+from robolink.interfaces.sensor_msgs.msg import CompressedImage
 from robolink.launch import read_launch_file
 from robolink.sim import Pose, Shot, World, load_world
 from robolink.sim.rendering.canvas import Canvas
@@ -21,6 +23,7 @@ from robolink.testing import System
 from robolink.tf2 import Buffer, TransformListener
 from robolink.time import Time
 from tests.support.halls import simulation
+from tests.support.systems import log
 
 ROOM = """
 walls:
@@ -183,3 +186,26 @@ def test_other_robots_are_seen_where_they_are(system: System, tmp_path: Path) ->
     world.simulation.delete("b")
     system.run(0.1)
     assert to_array(depths[-1])[15].min() > 3.0
+
+
+def test_a_compressed_image_is_made_for_who_subscribes(system: System, room: Room, renderings: list[int]) -> None:
+    system.start(simulation.SimulatedWorld, parameters={"world": room("encoding: mono8")})
+    found: list[CompressedImage] = []
+    system.node.create_subscription(CompressedImage, "/camera/image_raw/compressed", found.append, 10)
+    system.run(0.205)
+    assert [each.format for each in found] == ["mono8; jpeg compressed mono8"] * 2
+    assert to_array(found[0]).shape == (48, 64)
+    assert len(renderings) == 2
+
+
+def test_without_opencv_one_line_says_that_there_are_no_compressed_images(
+    system: System, room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    images = system.messages("/camera/image_raw")
+    system.start(simulation.SimulatedWorld, parameters={"world": room("")})
+    found: list[CompressedImage] = []
+    system.node.create_subscription(CompressedImage, "/camera/image_raw/compressed", found.append, 10)
+    system.run(0.505)
+    assert (len(images), found) == (5, [])
+    assert sum("no compressed images" in each and "OpenCV" in each for each in log(system)) == 1
