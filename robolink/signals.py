@@ -11,6 +11,7 @@ from types import FrameType, TracebackType
 from typing import Any, Protocol
 
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser
+from robolink.system import exit_code
 from robolink.text.tracebacks import misspelt_field
 
 
@@ -111,7 +112,9 @@ def _end_quietly() -> None:
 
     def on_error(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         if _received and issubclass(kind, _ENDS):
-            raise SystemExit(128 + (signal.SIGTERM if _received == signal.SIGTERM else signal.SIGINT))
+            code = 128 + (signal.SIGTERM if _received == signal.SIGTERM else signal.SIGINT)
+            exit_code.note(code)
+            raise SystemExit(code)
         field = misspelt_field(error)
         if field:
             error.args = (f"{error}{field}",)

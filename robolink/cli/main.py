@@ -14,6 +14,7 @@ from robolink.cli.launching.hashing import begin_steadily
 from robolink.cli.shared.interrupts import not_lost
 from robolink.cli.shared.output import complain
 from robolink.exceptions import RobolinkError
+from robolink.system import exit_code
 
 if TYPE_CHECKING:
     from robolink.interfaces import Source
@@ -41,7 +42,9 @@ def main(args: Sequence[str] | None = None) -> int:
         _open_closed_streams()
         _write_any_letter()
         with not_lost():
-            return _main(given, ends_here=True)
+            code = _main(given, ends_here=True)
+        exit_code.note(code)
+        return code
     return _main(given, ends_here=False)
 
 

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from typing import Protocol, TypeVar
 
 from robolink.exceptions import TransportError
+from robolink.system import exit_code
 
 _Kept = TypeVar("_Kept")
 
@@ -35,8 +36,12 @@ LAST_WAIT = 3.0
 One with 30 peers takes 0.3 s; four that leave a busy machine at once take 0.7 s and more.
 """
 
+OPENING_WAIT = 0.3
+"""The same for sessions that are being opened for nobody any more, in seconds; Zenoh waits 10 s for a silent router."""
+
 _open: weakref.WeakSet[Mortal] = weakref.WeakSet()
 _unfinished: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
+_opening: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
 _last: list[object] = []
 """Sessions at the exit, and the exceptions that end daemon threads: kept alive, since freeing them runs Zenoh."""
 _inside: set[int] = set()
@@ -79,6 +84,46 @@ def finish(work: Callable[[], object], within: float) -> None:
         work()
         return
     done.wait(within)  # no join: before 3.13 Python takes a thread for ended when a Ctrl-C breaks into that
+
+
+def interruptible(make: Callable[[], _Kept], undo: Callable[[_Kept], object]) -> _Kept:
+    """Return what `make()` returns or raises; a Ctrl-C ends the wait for it at once, and not when Zenoh comes back.
+
+    Args:
+        make: Function that may be inside Zenoh for seconds; in the main thread it is run on a thread beside.
+        undo: Function that gets what was made, if nobody waits for it any more.
+    """
+    if threading.current_thread() is not threading.main_thread() or _ending:
+        return make()
+    made, errors, done, is_left = list[_Kept](), list[BaseException](), threading.Event(), threading.Event()
+
+    def drop() -> None:
+        with contextlib.suppress(IndexError):  # the other thread has done it
+            undo(made.pop())
+
+    def work() -> None:
+        try:
+            made.append(make())
+        except BaseException as error:  # noqa: BLE001 - raised where it is waited for
+            errors.append(error)
+        done.set()
+        if is_left.is_set():
+            drop()
+
+    thread = threading.Thread(target=work, name="robolink open", daemon=True)
+    _opening.add(thread)
+    try:
+        thread.start()
+        while not done.wait(0.05):  # Windows notices a Ctrl-C between two waits
+            pass
+        if errors:
+            raise errors.pop()
+        return made.pop()
+    except BaseException:
+        is_left.set()
+        if done.is_set():
+            drop()
+        raise
 
 
 class Inside:
@@ -149,6 +194,7 @@ def close_all() -> None:
             with contextlib.suppress(Exception):
                 mortal.close()
         _wait_for_the_unfinished(_deadline)
+        _end_if_stuck()
 
 
 @contextlib.contextmanager
@@ -171,9 +217,22 @@ def _undisturbed() -> Iterator[None]:
 def _wait_for_the_unfinished(deadline: float) -> None:
     # A thread that comes back from Zenoh while the interpreter ends aborts the process (Python < 3.14). So most get
     # the time that they need; what takes longer, 10 s for a frozen peer, is not back before the process is gone.
-    for thread in all_of(_unfinished):
+    # Where the exit code is known, the process can end without asking them.
+    soon = deadline if exit_code.noted() is None else min(deadline, time.monotonic() + OPENING_WAIT)
+    for thread in (*all_of(_unfinished), *all_of(_opening)):
         with contextlib.suppress(RuntimeError):  # not started: a Ctrl-C came before, or it is about to be
-            thread.join(max(0, deadline - time.monotonic()))
+            thread.join(max(0, (soon if thread in _opening else deadline) - time.monotonic()))
+
+
+def _end_if_stuck() -> None:
+    """End the process now if threads are still inside Zenoh, and its exit code is known: they would abort it."""
+    code, own = exit_code.noted(), threading.current_thread()
+    waiting = [*all_of(_unfinished), *all_of(_opening)]
+    if code is not None and (_inside - {own.ident} or any(each.is_alive() for each in waiting)):
+        for stream in (sys.stdout, sys.stderr):
+            with contextlib.suppress(OSError, ValueError, AttributeError):  # closed, or None
+                stream.flush()
+        os._exit(code)
 
 
 def all_of(them: weakref.WeakSet[_Kept]) -> list[_Kept]:
@@ -187,6 +246,7 @@ def _disown_all() -> None:
     global _forked
     _forked = True
     _unfinished.clear()
+    _opening.clear()
     _inside.clear()
     for mortal in list(_open):
         mortal.disown()

@@ -357,7 +357,7 @@ def _listen_beside(load: Callable[[], zenoh.Config]) -> _Joined:
             if claim:
                 undo.callback(claim.release)
             try:
-                session = zenoh.open(config)
+                session = declare.open_session(config)
             except zenoh.ZError:
                 if taken or not any(map(port_sharing.is_taken, fixed)):
                     raise

@@ -14,6 +14,7 @@ import zenoh
 from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from robolink.transport import lifetime
 from robolink.transport.base import Sink
+from robolink.transport.reach import mode_of
 
 MOST_BETWEEN = 1 << 16
 """Capacity of the queue of a latched topic, or of token changes; when it is full, Zenoh waits."""
@@ -184,6 +185,14 @@ def quietly(action: Callable[[], object]) -> None:
             action()
     except (zenoh.ZError, RuntimeError):
         pass
+
+
+def open_session(config: zenoh.Config) -> zenoh.Session:
+    """Open a session. A client waits for its router in it, for up to 10 s if that is silent: Ctrl-C ends that wait."""
+    is_client = mode_of(config) == "client"
+    opens = functools.partial(zenoh.open, config)
+    made: zenoh.Session = lifetime.interruptible(opens, close_session) if is_client else opens()
+    return made
 
 
 def close_session(session: Any) -> None:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import signal
+import socket
+import subprocess
+import sys
 import textwrap
 import threading
 import time
@@ -168,3 +171,79 @@ def test_other_errors_that_reach_nobody_are_told_as_ever(tmp_path: Path) -> None
     assert (code, said) == (0, [])
     assert complaint.startswith("Exception ignored in")
     assert "ZeroDivisionError" in complaint
+
+
+# --- threads that do not come back ----------------------------------------------------------------------------------
+
+
+def test_a_ctrl_c_ends_the_wait_for_what_is_opened_and_it_is_closed_when_it_comes() -> None:
+    may_open, closed = threading.Event(), threading.Event()
+
+    def make() -> str:
+        signal.raise_signal(signal.SIGINT)
+        may_open.wait(PATIENCE)
+        return "session"
+
+    with pytest.raises(KeyboardInterrupt):
+        lifetime.interruptible(make, lambda made: closed.set() if made == "session" else None)
+    [thread] = [each for each in lifetime._opening if each.is_alive()]
+    assert not closed.is_set()
+    may_open.set()
+    thread.join(PATIENCE)
+    assert closed.is_set()
+
+
+def test_what_is_opened_is_returned_and_errors_are_raised() -> None:
+    def fails() -> None:
+        raise OSError("no such network")
+
+    closed: list[object] = []
+    assert lifetime.interruptible(lambda: "session", closed.append) == "session"
+    with pytest.raises(OSError, match="no such network"):
+        lifetime.interruptible(fails, closed.append)
+    assert closed == []
+
+
+@pytest.mark.processes
+def test_a_thread_that_stays_inside_zenoh_neither_holds_nor_changes_a_known_end() -> None:
+    """Python would end it in Rust's midst, which aborts the process: FATAL: exception not rethrown."""
+    text = """
+        from robolink.system import exit_code
+        lifetime.LAST_WAIT = 0.2
+        thread = threading.Thread(target=lambda: time.sleep(60), daemon=True)
+        lifetime.outlive(thread)
+        thread.start()
+        import atexit
+        atexit._clear()
+        atexit.register(lambda: print("Python would end now"))
+        atexit.register(lifetime.close_all)
+        exit_code.note(143)
+        print("ending")
+        sys.exit(0)
+    """
+    code, said, complaint = program(text)
+    assert (code, complaint) == (143, "")
+    assert said == ["ending"]
+
+
+@pytest.mark.processes
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows sends no SIGINT to one process")
+def test_a_ctrl_c_ends_a_client_whose_router_is_silent(tmp_path: Path) -> None:
+    """Zenoh waits for its handshake, as long as its file says."""
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        network = tmp_path / "client.json5"
+        place = f"tcp/127.0.0.1:{silent.getsockname()[1]}"
+        network.write_text(
+            f'{{mode: "client", connect: {{endpoints: ["{place}"], timeout_ms: -1}}, '
+            "transport: {unicast: {open_timeout: 600000}}}"
+        )
+        command = [sys.executable, "-m", "robolink", "--network", str(network), "topic", "list"]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            try:
+                accepted, _ = silent.accept()
+                process.send_signal(signal.SIGINT)
+                with accepted:
+                    out, err = process.communicate(timeout=PATIENCE)
+            finally:
+                process.kill()
+    assert (process.returncode, out, err) == (130, "", "")
