@@ -38,7 +38,8 @@ def painted_floor(settings: FloorSettings, paint: Sequence[Paint], picture: Pict
         return Floor(colour)
     side = resolution_of(settings)
     image = np.empty((there.rows, there.columns, 3), np.uint8)
-    image[:] = colour
+    for channel, value in enumerate(colour):
+        image[..., channel] = value
     if picture is not None:
         column, row = round((settings.origin[0] - there.x) / side), round((settings.origin[1] - there.y) / side)
         image[row : row + size[1], column : column + size[0]] = picture[::-1]

@@ -87,10 +87,14 @@ class Layer:
 
     def blend(self, colour: Colour) -> None:
         """Mix a colour into the image wherever something is covered."""
-        covered = self._cover > 0.0
-        share = np.minimum(self._cover[covered], np.float32(1.0))[:, None]
-        below = self._image[covered].astype(np.float32)
-        self._image[covered] = np.rint(below + share * (np.array(colour, np.float32) - below)).astype(np.uint8)
+        whole = self._cover >= 1.0
+        partly = np.nonzero((self._cover > 0.0) & ~whole)
+        share = self._cover[partly]
+        for channel, value in enumerate(colour):  # one by one: numpy takes ten times as long for triples
+            plane = self._image[..., channel]
+            below = plane[partly].astype(np.float32)
+            plane[partly] = np.rint(below + share * (np.float32(value) - below)).astype(np.uint8)
+            np.copyto(plane, np.uint8(value), where=whole)
 
     def _box(self, x0: float, y0: float, x1: float, y1: float) -> tuple[npt.NDArray[np.float32], Any, Any] | None:
         """Return the cover within a box, one pixel wider, and the middles of its pixels: a row and a column."""
