@@ -144,11 +144,15 @@ def summary(description: WorldDescription) -> str:
     drawn = sum(len(each.segments()) for each in description.walls if not isinstance(each, MapWalls))
     mapped = sum(len(each.segments()) for each in description.walls if isinstance(each, MapWalls))
     sensors = sum(len(each.sensors) for each in description.robots)
+    signs = len(description.signs) + sum(len(each.signs) for each in description.obstacles)
+    signs += sum(len(each.signs) for each in description.robots)
     with_sensors = f" with {_counted(sensors, 'sensor')}" if sensors else ""
     parts = [
         _counted(drawn, "wall") if drawn or not mapped else "",
         f"a map of {_counted(mapped, 'wall')}" if mapped else "",
         _counted(len(description.obstacles), "obstacle") if description.obstacles else "",
+        f"{painted} painted" if (painted := len(description.paint)) else "",
+        _counted(signs, "sign") if signs else "",
         _counted(len(description.robots), "robot") + with_sensors,
     ]
     return ", ".join(filter(None, parts))

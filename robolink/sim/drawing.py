@@ -9,13 +9,14 @@ matplotlib is an optional part: `pip install matplotlib`.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import RobolinkError
 from robolink.geometry.plane import Area, Pose, placed_on
-from robolink.sim.description import MapWalls, Obstacle, RobotDescription, Shape, WorldDescription
+from robolink.sim.colours import colour_of, hex_of
+from robolink.sim.description import MapWalls, Obstacle, RobotDescription, Shape, Sign, WorldDescription
 from robolink.sim.quantities import Point
 from robolink.sim.sensors import Bumper, Looking
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 FORMATS = (".png", ".svg", ".pdf")
 
 # Okabe and Ito's colours, which people who see few colours can tell apart.
-WALL, ROBOT, TOUCH = "#222222", "#009E73", "#E69F00"
+WALL, ROBOT, TOUCH, SIGN = "#222222", "#009E73", "#E69F00", "#C2185B"
 KINDS = {"fixed": "#A8A8A8", "can be pushed": "#E69F00", "moves by itself": "#56B4E9"}
 """Colours of obstacles by kind."""
 
@@ -43,7 +44,10 @@ _NOWHERE = ((0.0,), (0.0,))
 """Place of an empty world: x and y."""
 
 _NAMED = 30
-"""Most robots whose names are written beside them."""
+"""Most robots whose names are written beside them, and most tags."""
+
+_FINEST = 2000
+"""Most pixels of the floor's image along a side, of which others are left out."""
 
 
 class DrawingError(RobolinkError, ValueError):
@@ -85,7 +89,7 @@ def save_world(description: WorldDescription, path: Path, size: int = 1000) -> N
 
 
 def draw_world(axes: Axes, description: WorldDescription) -> list[Patch]:
-    """Draw a world at its start: walls, obstacles and their paths, robots with their headings and sensors.
+    """Draw a world at its start: floor, walls, obstacles and their paths, signs, robots with headings and sensors.
 
     One metre is as long in both directions.
 
@@ -94,13 +98,16 @@ def draw_world(axes: Axes, description: WorldDescription) -> list[Patch]:
         description: The world.
 
     Returns:
-        Handles for a legend: one for each kind of obstacle that there is.
+        Handles for a legend: one for each kind of obstacle that there is without a colour of its own.
     """
     from matplotlib.patches import Patch
 
+    _draw_floor(axes, description)
     _draw_walls(axes, description)
     for obstacle in description.obstacles:
         _draw_obstacle(axes, obstacle)
+    for sign, origin in _signs(description):
+        _draw_sign(axes, sign, origin, named=len(description.signs) <= _NAMED)
     for robot in description.robots:
         _draw_robot(axes, robot, named=len(description.robots) <= _NAMED)
     area = _extent(description)
@@ -111,16 +118,68 @@ def draw_world(axes: Axes, description: WorldDescription) -> list[Patch]:
     axes.set_ylabel("y [m]")
     axes.set_axisbelow(True)
     axes.grid(color="#E5E5E5", linewidth=0.6)
-    kinds = {_kind(each) for each in description.obstacles}
+    kinds = {_kind(each) for each in description.obstacles if each.colour is None}
     return [Patch(facecolor=KINDS[kind], edgecolor=WALL, label=kind) for kind in KINDS if kind in kinds]
+
+
+def _draw_floor(axes: Axes, description: WorldDescription) -> None:
+    """Draw the floor's colour, and its image with all paint."""
+    settings = description.world.floor
+    if settings.colour is not None:
+        axes.set_facecolor(hex_of(colour_of(settings.colour)))
+    if not description.paint and settings.image is None:
+        return
+    from robolink.sim.scene.floor import painted_floor
+    from robolink.sim.scene.pictures import read_picture
+
+    picture = None if settings.image is None else read_picture(settings.image)
+    floor = painted_floor(settings, description.paint, picture)
+    if floor.image is None:
+        return
+    (rows, columns), (x, y) = floor.image.shape[:2], floor.origin
+    every = -(-max(rows, columns) // _FINEST)
+    extent = (x, x + columns * floor.resolution, y, y + rows * floor.resolution)
+    axes.imshow(floor.image[::every, ::every], extent=extent, origin="lower", zorder=0)
+
+
+def _signs(description: WorldDescription) -> Iterator[tuple[Sign, Pose]]:
+    """Yield all signs, each with the pose of the frame that its own pose is in."""
+    yield from ((sign, Pose()) for sign in description.signs)
+    for obstacle in description.obstacles:
+        yield from ((sign, obstacle.start.place) for sign in obstacle.signs)
+    for robot in description.robots:
+        yield from ((sign, robot.pose.place) for sign in robot.signs)
+
+
+def _draw_sign(axes: Axes, sign: Sign, origin: Pose, *, named: bool) -> None:
+    """Draw a sign's plate from above, with a short line to where it looks."""
+    from matplotlib.patheffects import withStroke
+
+    at = placed_on(origin, sign.pose.place)
+    for end, width in ((Pose(0.0, sign.size / 2), 3.0), (Pose(0.0, -sign.size / 2), 3.0), (Pose(sign.size / 2), 1.5)):
+        there = placed_on(at, end)
+        axes.plot([at.x, there.x], [at.y, there.y], color=SIGN, linewidth=width, zorder=5, solid_capstyle="butt")
+    if named and sign.tag is not None:
+        beside = placed_on(at, Pose(sign.size))
+        text = axes.text(beside.x, beside.y, sign.tag, size=7, color=SIGN, ha="center", va="center", zorder=9)
+        text.set_path_effects([withStroke(linewidth=2, foreground="white")])
+
+
+def _colour(own: str | None, default: str) -> str:
+    """Return the colour of a part of the world, for matplotlib."""
+    return default if own is None else hex_of(colour_of(own))
 
 
 def _draw_walls(axes: Axes, description: WorldDescription) -> None:
     from matplotlib.collections import LineCollection
+    from matplotlib.patheffects import withStroke
 
     for wall in description.walls:
         width = 1.0 if isinstance(wall, MapWalls) else 2.0
-        lines = LineCollection(wall.segments(), colors=WALL, linewidths=width, capstyle="round", zorder=3)
+        colour = _colour(wall.colour, WALL)
+        lines = LineCollection(wall.segments(), colors=colour, linewidths=width, capstyle="round", zorder=3)
+        if wall.colour is not None:  # a light one is seen on a light floor, too
+            lines.set_path_effects([withStroke(linewidth=width + 1.5, foreground=WALL)])
         axes.add_collection(lines, autolim=True)
 
 
@@ -136,7 +195,12 @@ def _draw_obstacle(axes: Axes, obstacle: Obstacle) -> None:
         axes.plot(
             *zip(*points, strict=True), linestyle=(0, (5, 4)), color=KINDS[_kind(obstacle)], linewidth=1.2, zorder=2
         )
-    style = {"facecolor": KINDS[_kind(obstacle)], "edgecolor": WALL, "linewidth": 0.8, "zorder": 4}
+    style = {
+        "facecolor": _colour(obstacle.colour, KINDS[_kind(obstacle)]),
+        "edgecolor": WALL,
+        "linewidth": 0.8,
+        "zorder": 4,
+    }
     axes.add_patch(_outline(obstacle, obstacle.start.place, style))
 
 
@@ -144,7 +208,7 @@ def _draw_robot(axes: Axes, robot: RobotDescription, *, named: bool) -> None:
     for sensor in robot.sensors:
         if isinstance(sensor, Looking):
             _draw_view(axes, robot, sensor)
-    style = {"facecolor": ROBOT, "edgecolor": WALL, "linewidth": 0.8, "zorder": 6}
+    style = {"facecolor": _colour(robot.colour, ROBOT), "edgecolor": WALL, "linewidth": 0.8, "zorder": 6}
     parts = [_outline(robot.shape, robot.pose.place, style)]
     for wheel in robot.wheels:
         tyre = Shape(box=(2 * wheel.radius, max(wheel.radius / 2, 0.005)))
@@ -211,6 +275,7 @@ def _extent(description: WorldDescription) -> Area:
     points += [(each.start.x, each.start.y) for each in description.obstacles]
     points += [point for each in description.obstacles for point in each.path or ()]
     points += [(each.pose.x, each.pose.y) for each in description.robots]
+    points += [(each.pose.x, each.pose.y) for each in description.signs]
     least = _LEAST_RADII * max((each.shape.outer_radius() for each in description.robots), default=0.1)
     (x_min, x_max), (y_min, y_max) = (
         _widened(each, least) for each in (zip(*points, strict=True) if points else _NOWHERE)

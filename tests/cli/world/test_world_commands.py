@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from matplotlib.text import Annotation
@@ -259,6 +260,36 @@ def test_everything_is_where_it_is_in_the_world() -> None:
     assert (x1 < 0.0, x2 > 10.0, y1 < 0.0, y2 > 8.0) == (True, True, True, True)
     table = next(each for each in axes.patches if isinstance(each, Polygon))
     assert table.get_xy()[:4] == pytest.approx(np.array([[2.0, 7.55], [0.4, 7.55], [0.4, 6.85], [2.0, 6.85]]))
+
+
+SEEN = """
+world: {floor: {colour: navy}}
+walls: [{polyline: [[0, 0], [4, 0]], colour: red}]
+obstacles: [{circle: 0.2, pose: [1, 1], colour: lime}]
+robots: [{name: r, pose: [3, 1], colour: '#010203', signs: [{tag: 36h11/1, pose: [0.2, 0], size: 0.1}]}]
+paint: [{box: [1, 0.5], pose: [2, 2], colour: yellow}]
+signs: [{tag: 36h11/7, pose: [4, 3, 3.14159265], size: 0.5, z: 0.5}]
+"""
+
+
+def test_colours_paint_and_signs_are_drawn() -> None:
+    axes = Figure().add_subplot()
+    assert drawing.draw_world(axes, load_world("w.yaml", text=SEEN)) == []
+    assert to_hex(axes.get_facecolor()) == "#000080"
+    assert [to_hex(each.get_facecolor()) for each in axes.patches] == ["#00ff00", "#010203"]
+    (image,) = axes.images
+    assert image.get_extent() == pytest.approx((1.5, 2.5, 1.75, 2.25))
+    assert np.asarray(image.get_array())[10, 10].tolist() == [255, 255, 0]
+    assert sorted(each.get_text() for each in axes.texts) == ["36h11/1", "36h11/7", "r"]
+    plates = [np.asarray(each.get_xydata()) for each in axes.lines if each.get_color() == drawing.SIGN]
+    assert plates[2].tolist() == [pytest.approx([4.0, 3.0]), pytest.approx([3.75, 3.0])]
+    assert len(plates) == 6
+
+
+def test_paint_and_signs_are_counted(workspace: Path, capsys: Captured) -> None:
+    Path("seen.yaml").write_text(SEEN, encoding="utf-8")
+    assert main(["world", "check", "seen.yaml"]) == 0
+    assert "1 wall, 1 obstacle, 1 painted, 2 signs, 1 robot" in capsys.readouterr().out
 
 
 def test_an_outline_is_turned_with_its_pose() -> None:
