@@ -2,6 +2,7 @@
 
     python -m tests.support.router_growth                      # 24, 48, 100, 196 and 200 nodes, four in each process
     python -m tests.support.router_growth --processes 50       # 200 nodes in 50 processes that start at once
+    python -m tests.support.router_growth --processes 50 --every 0.6    # one after the other, so many seconds apart
     python -m tests.support.router_growth --alone              # the same processes, none of which meets another
 
 Machines are network namespaces between which the kernel forwards, and no multicast passes. `a1` and `b1` have a
@@ -99,10 +100,11 @@ class Fleet:
         threading.Thread(target=_drain, args=(process,), daemon=True).start()
         self.routers[machine] = psutil.Process(process.pid)
 
-    def grow(self, processes: int) -> list[Member]:
-        """Start processes until there are so many; returns the new ones, of which none is ready yet."""
-        known = len(self.members)
+    def grow(self, processes: int, every: float = 0.0) -> list[Member]:
+        """Start processes, `every` so many seconds, until there are so many; returns the new ones, not all ready."""
+        known, first = len(self.members), time.monotonic()
         for number in range(known, processes):
+            time.sleep(max(0.0, first + (number - known) * every - time.monotonic()))
             machine = MACHINES[number % len(MACHINES)]
             words = [sys.executable, "-m", "tests.support.swarm", *nodes_of(number), "--hear", *heard_by(number)]
             network = "off" if self._alone else "localhost" if machine[1] == "1" else ADDRESSES[f"{machine[0]}1"]
@@ -187,10 +189,10 @@ def watched(fleet: Fleet, what: str) -> Iterator[None]:
         say(f"  router {name}, {what}: {cpu / took:.1%} of a core ({cpu:.2f} s in {took:.1f} s), {now.memory:.0f} MB")
 
 
-def grow(fleet: Fleet, processes: int) -> None:
+def grow(fleet: Fleet, processes: int, every: float = 0.0) -> None:
     """Start processes until there are so many, and say when they were there, and when all saw all."""
     before, begin = fleet.cpu(), time.monotonic()
-    new = fleet.grow(processes)
+    new = fleet.grow(processes, every)
     spawned = new[-1].started
     ready = [json.loads(line(each.process)) for each in new]
     made = max(each["time"] for each in ready)
@@ -205,13 +207,13 @@ def grow(fleet: Fleet, processes: int) -> None:
     say(f"{text}; CPU {fleet.cpu() - before:.1f} s in {time.monotonic() - begin:.1f} s")
 
 
-def measure(steps: Sequence[int], *, alone: bool, traffic: bool) -> None:
+def measure(steps: Sequence[int], *, alone: bool, traffic: bool, every: float = 0.0) -> None:
     """Grow by these steps, and say how it went."""
     with ExitStack() as stack:
         fleet = Fleet(stack, alone=alone)
         for processes in steps:
             with watched(fleet, "start"):
-                grow(fleet, processes)
+                grow(fleet, processes, every)
             if alone or not traffic:
                 continue
             with watched(fleet, "idle"):
@@ -237,10 +239,11 @@ def main() -> None:
     parser.add_argument("--processes", type=int, nargs="+", default=STEPS, help="how many there are at each step")
     parser.add_argument("--alone", action="store_true", help="no router, and no process that meets another")
     parser.add_argument("--no-traffic", action="store_true", help="the start alone")
+    parser.add_argument("--every", type=float, default=0.0, help="seconds from the start of a process to the next")
     asked = parser.parse_args()
     if reason := stalls.no_hosts():
         sys.exit(reason)
-    measure(asked.processes, alone=asked.alone, traffic=not asked.no_traffic)
+    measure(asked.processes, alone=asked.alone, traffic=not asked.no_traffic, every=asked.every)
 
 
 if __name__ == "__main__":
