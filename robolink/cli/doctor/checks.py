@@ -15,6 +15,8 @@ from robolink.wire import NodeToken
 
 OLDEST_PYTHON = (3, 10)
 OLDEST_ZENOH = (1, 10)
+FIRST_FOR_NUMPY_2 = (4, 10)
+"""First version of OpenCV whose wheels were built for numpy 2."""
 
 LATE, WRONG = 0.1, 1.0
 """Offsets of two clocks, in seconds, from which transforms are disturbed and impossible."""
@@ -49,6 +51,27 @@ def versions(facts: Facts) -> Verdict:
         for each in facts.namesakes
     )
     return Verdict(", ".join([*shown[:1], f"Python {_dotted(facts.python)}", *shown[1:4]]), tuple(errors), warnings)
+
+
+def opencv(facts: Facts) -> Verdict:
+    """Check that OpenCV, if it is installed, is there once, is new enough, and fits numpy."""
+    from robolink.image.opencv import OLDEST
+
+    found = facts.opencv
+    if not found:
+        return Verdict(
+            "OpenCV is not installed: only images need it, for JPEG and in programs (pip install opencv-python)"
+        )
+    names, warnings = " and ".join(found), []
+    if len(found) > 1:
+        again = f"pip uninstall {' '.join(found)}, then pip install one of them"
+        warnings.append(f"{names} overwrite each other's files: {again}")
+    for name, version in found.items():
+        if _numbers(version) < OLDEST:
+            warnings.append(f"{name} {version} is too old for robolink's images: pip install -U {name}")
+        if _numbers(version) < FIRST_FOR_NUMPY_2 and _numbers(facts.versions.get("numpy", "")) >= (2,):
+            warnings.append(f"{name} {version} does not load with numpy 2: pip install -U {name}, or 'numpy<2'")
+    return Verdict(", ".join(f"{name} {version}" for name, version in found.items()), (), tuple(warnings))
 
 
 def _dotted(version: tuple[int, ...]) -> str:
@@ -261,6 +284,7 @@ def _apart(offset: ClockOffset) -> str:
 
 CHECKS = (
     Check("versions", "platform", versions),
+    Check("opencv", "platform", opencv),
     Check("settings", "network", settings),
     Check("loopback", "network", loopback),
     Check("reach", "network", reach),

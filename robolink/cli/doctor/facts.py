@@ -68,6 +68,8 @@ class Facts(NamedTuple):
     """Versions of the distributions, by name; empty if not installed."""
     namesakes: tuple[str, ...] = ()
     """Other distributions, with their versions, that install a module `robolink`."""
+    opencv: Mapping[str, str] = {}
+    """Versions of the distributions that install the module cv2, by name."""
     settings: Settings = Settings()
     reach: Reach = Reach()
     """Range of a session with these settings: which others it can meet."""

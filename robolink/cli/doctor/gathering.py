@@ -7,7 +7,7 @@ import os
 import re
 import sys
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, TypeVar
 
 from robolink.cli.doctor.facts import Facts, Seen, Settings
@@ -40,6 +40,9 @@ COUNT_WITHIN = 1.0
 MOST_DOMAINS = 8
 """Upper bound of the other domains that are looked at."""
 
+OPENCV = tuple(f"opencv{contrib}-python{headless}" for contrib in ("", "-contrib") for headless in ("", "-headless"))
+"""Distributions that install the module cv2, all in the same folder."""
+
 DISTRIBUTIONS = (
     "robolink",
     "eclipse-zenoh",
@@ -68,6 +71,7 @@ def gather() -> Facts:
         python=tuple(sys.version_info[:3]),
         versions=versions(),
         namesakes=namesakes(),
+        opencv={name: found for name, found in versions(OPENCV).items() if found},
         settings=settings,
         reach=found,
         loopback=loopback_works(),
@@ -126,12 +130,12 @@ def _memory(settings: Settings, machine: shared_memory.Machine, mode: str) -> sh
     return shared_memory.Decision(settings.shared_memory, by, forced=True)
 
 
-def versions() -> dict[str, str]:
-    """Return the versions of robolink and its dependencies."""
+def versions(names: Iterable[str] = DISTRIBUTIONS) -> dict[str, str]:
+    """Return the versions of distributions by name, '' for those that are missing."""
     from importlib.metadata import PackageNotFoundError, version
 
     found = {}
-    for name in DISTRIBUTIONS:
+    for name in names:
         try:
             found[name] = version(name)
         except PackageNotFoundError:

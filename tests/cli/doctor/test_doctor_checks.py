@@ -48,6 +48,26 @@ def test_versions_that_are_too_old_or_missing_are_errors() -> None:
 
 
 @pytest.mark.parametrize(
+    ("found", "numpy", "said"),
+    [
+        ({"opencv-python": "5.0.0.93"}, "2.4.6", ()),
+        ({"opencv-contrib-python-headless": "4.8.1.78"}, "1.26.4", ()),
+        (
+            {"opencv-python": "4.12.0.88", "opencv-python-headless": "4.12.0.88"},
+            "2.0.0",
+            ("opencv-python and opencv-python-headless overwrite each other's files: pip uninstall opencv-python ",),
+        ),
+        ({"opencv-python": "4.7.0.72"}, "1.26.4", ("opencv-python 4.7.0.72 is too old for robolink's images",)),
+        ({"opencv-python": "4.9.0.80"}, "2.1.0", ("opencv-python 4.9.0.80 does not load with numpy 2",)),
+    ],
+)
+def test_opencv_is_there_once_and_fits(found: dict[str, str], numpy: str, said: tuple[str, ...]) -> None:
+    verdict = checks.opencv(Facts(opencv=found, versions={"numpy": numpy}))
+    assert [each.startswith(begin) for each, begin in zip(verdict.warnings, said, strict=True)] == [True] * len(said)
+    assert all(f"{name} {version}" in verdict.summary for name, version in found.items())
+
+
+@pytest.mark.parametrize(
     ("environ", "expected"),
     [
         ({}, Settings()),
