@@ -12,18 +12,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from robolink.exceptions import TransportError
 from robolink.networks.asked import (
     ENDPOINT,
-    FIRST_PORT,
     NAMES,
     OVERRIDE,
-    ROS_ROUTER,
     Wanted,
-    checked_domain,
-    domain_id,
     network_of_overrides,
     overrides,
     wanted,
 )
-from robolink.networks.settings import LONGEST_WAIT, OFTEN, SOUGHT_EVERY, as_ros, client, settings
+from robolink.networks.settings import as_ros, client, settings
 from robolink.system.paths import expanded, is_file
 from robolink.system.terminal import shown
 from robolink.transport import shared_memory
@@ -34,29 +30,6 @@ if TYPE_CHECKING:
 
     from robolink.networks.limits import Limits
     from robolink.networks.places import Place
-
-__all__ = [
-    "FIRST_PORT",
-    "LONGEST_WAIT",
-    "NAMES",
-    "OFTEN",
-    "ROS_ROUTER",
-    "SHARES_MEMORY",
-    "SOUGHT_EVERY",
-    "Plan",
-    "Wanted",
-    "await_host",
-    "checked_domain",
-    "domain_id",
-    "file_of",
-    "limits_wanted",
-    "load",
-    "meets_at_port",
-    "plan",
-    "reason",
-    "settings",
-    "wanted",
-]
 
 SHARES_MEMORY = "transport/shared_memory/enabled"
 """Path of the setting that offers shared memory to others and accepts it."""

@@ -10,6 +10,7 @@ from typing import Any
 
 from robolink.exceptions import SecurityError, TransportError, WireError
 from robolink.logging import get_logger
+from robolink.networks.asked import FIRST_PORT, checked_domain
 from robolink.qos import QoSProfile
 from robolink.security import session
 from robolink.security.session import Security
@@ -29,7 +30,7 @@ def open_session(domain: int, asked: str | None, environ: Mapping[str, str], enc
         environ: Environment.
         enclave: Enclave of `--enclave`; None is `/`.
     """
-    network.checked_domain(domain)
+    checked_domain(domain)
     security = session.wanted(environ, domain, enclave)
     if not session.is_on(environ):  # False, written otherwise
         return ZenohTransport(domain, asked, environ)
@@ -145,6 +146,6 @@ def _named(sink: Sink) -> Sink:
 
 def _reasons(domain: int, asked: str | None, environ: Mapping[str, str]) -> str:
     """Return why who listens at the rendezvous port refuses this enclave, after a semicolon; '' if he does not."""
-    place = f"tls/127.0.0.1:{network.FIRST_PORT + domain}"
+    place = f"tls/127.0.0.1:{FIRST_PORT + domain}"
     found = certificates.refusals(network.load(asked, domain, environ, holds_port=False), [place])
     return f"; {found[0]}" if found else ""

@@ -19,6 +19,8 @@ import zenoh
 
 from robolink.exceptions import OverwrittenError, TransportError
 from robolink.networks import refusals
+from robolink.networks.asked import FIRST_PORT, ROS_ROUTER, checked_domain
+from robolink.networks.settings import OFTEN, SOUGHT_EVERY
 from robolink.qos import DurabilityPolicy, QoSProfile, resolved
 from robolink.system import heap
 from robolink.transport import addresses, certificates, lifetime, network, port_heir, port_sharing
@@ -38,7 +40,7 @@ CLOSE_WITHIN = 0.15
 LINK_WITHIN = 3.0
 """Timeout of the rendezvous port's holder, in seconds; it takes 2 ms, and 1 s on a very busy machine."""
 
-REUNION = network.SOUGHT_EVERY + 0.05
+REUNION = SOUGHT_EVERY + 0.05
 """Time in which the peers of an earlier holder of the rendezvous port find the new one, in seconds."""
 
 SMALL = 4096
@@ -51,7 +53,7 @@ _Handle = TypeVar("_Handle", bound=handles.Declared)
 class ZenohTransport(Transport):
     """A session on a Zenoh network: this machine's, or what `network` or the environment asks for.
 
-    See `robolink.transport.network.wanted`. `secure` closes each configuration to whoever has no keys, in place of what
+    See `robolink.networks.asked.wanted`. `secure` closes each configuration to whoever has no keys, in place of what
     the environment says of security. Raises TransportError when there is no joining it.
     """
 
@@ -322,7 +324,7 @@ def _join(
     if "RUST_LOG" in environ:
         show_log: Callable[[], object] = zenoh.try_init_log_from_env
         show_log()
-    port = network.FIRST_PORT + network.checked_domain(domain)
+    port = FIRST_PORT + checked_domain(domain)
     found = network.plan(asked, domain, environ, secure)
 
     def load(holds_port: bool = False) -> zenoh.Config:  # usually nobody looks for it at the rendezvous port
@@ -352,7 +354,7 @@ def _listen_beside(load: Callable[[], zenoh.Config]) -> _Joined:
         fixed = port_sharing.fixed_listeners(config)
         claim = port_sharing.PortClaim(port_of(fixed[0])) if fixed else None
         taken = [each for each in fixed if (claim and not claim.granted) or port_sharing.is_taken(each)]
-        holders = port_sharing.step_aside(config, taken, network.OFTEN) if taken else []
+        holders = port_sharing.step_aside(config, taken, OFTEN) if taken else []
         with contextlib.ExitStack() as undo:
             if claim:
                 undo.callback(claim.release)
@@ -391,7 +393,7 @@ def _meet(port: int, open_session: Callable[[bool], zenoh.Session], within: Reac
 def _linked(session: zenoh.Session) -> bool:
     deadline = time.monotonic() + LINK_WITHIN
     while time.monotonic() < deadline:
-        if any(str(link.dst)[4:] != network.ROS_ROUTER[4:] for link in session.info.links()):  # after tcp/ or tls/
+        if any(str(link.dst)[4:] != ROS_ROUTER[4:] for link in session.info.links()):  # after tcp/ or tls/
             return True
         time.sleep(0.002)
     return False

@@ -14,10 +14,11 @@ import zenoh
 
 from robolink.exceptions import TransportClosedError, TransportError
 from robolink.logging import get_logger
+from robolink.networks.settings import LONGEST_WAIT
 from robolink.system import heap
 from robolink.transport import lifetime
 from robolink.transport.base import Sample, Sink, refuse_giant
-from robolink.transport.network import LONGEST_WAIT, reason
+from robolink.transport.network import reason
 from robolink.transport.zenoh_declare import Publishers, aim_gate, close_gate, is_matching, quietly
 from robolink.transport.zenoh_sieve import Sieve
 

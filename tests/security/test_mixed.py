@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 
 from robolink.exceptions import SecurityError, TransportError
+from robolink.networks.asked import FIRST_PORT
 from robolink.networks.refusals import of_holder, wants_keys
 from robolink.security.keystore import Keystore
-from robolink.transport import connect, network
+from robolink.transport import connect
 from tests.support.domains import free_domain
 from tests.support.ports import free_port, stranger
 
@@ -34,7 +35,7 @@ def test_without_keys_beside_one_that_has_some(store: Keystore, monkeypatch: pyt
     monkeypatch.setenv("ROS_SECURITY_ENABLE", "true")
     holder = connect("zenoh://", store.domain, enclave="/robot")
     monkeypatch.delenv("ROS_SECURITY_ENABLE")
-    port = network.FIRST_PORT + store.domain
+    port = FIRST_PORT + store.domain
     with pytest.raises(TransportError) as caught:
         connect("zenoh://", store.domain)
     assert str(caught.value) == (
@@ -52,7 +53,7 @@ def test_with_keys_beside_one_that_has_none(store: Keystore, monkeypatch: pytest
     monkeypatch.setenv("ROS_SECURITY_ENABLE", "true")
     with pytest.raises(SecurityError) as caught:
         connect("zenoh://", store.domain, enclave="/robot")
-    port = network.FIRST_PORT + store.domain
+    port = FIRST_PORT + store.domain
     assert str(caught.value) == (
         f"port {port} is taken by a process which has no keys, while ROS_SECURITY_ENABLE is "
         "true here: end it and start it again with security, or choose another ROS_DOMAIN_ID"

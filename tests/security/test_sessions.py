@@ -19,6 +19,7 @@ from robolink.context import Context
 from robolink.exceptions import SecurityError
 from robolink.interfaces.std_msgs.msg import String
 from robolink.interfaces.std_srvs.srv import Trigger
+from robolink.networks.asked import FIRST_PORT
 from robolink.parameter_client import AsyncParameterClient
 from robolink.security import session
 from robolink.security.keystore import Keystore
@@ -266,6 +267,6 @@ def test_doctor_looks_with_keys_and_says_who_has_some(store: Keystore, monkeypat
         assert look("zenoh://", store.domain).error == ""
         wait_until(lambda: any(isinstance(each, NodeToken) for each in look("zenoh://", store.domain).tokens))
         facts = gather()
-        assert (set(facts.keyed_ports), facts.seen.error) == ({network.FIRST_PORT + store.domain}, "")
+        assert (set(facts.keyed_ports), facts.seen.error) == ({FIRST_PORT + store.domain}, "")
         monkeypatch.delenv("ROS_SECURITY_ENABLE")
         assert "with security" in gather().seen.error

@@ -12,11 +12,12 @@ import pytest
 import zenoh
 
 from robolink.exceptions import SecurityError
+from robolink.networks.asked import FIRST_PORT
 from robolink.qos import QoSProfile
 from robolink.security import session
 from robolink.security.keystore import Keystore
 from robolink.security.policy import Rule
-from robolink.transport import Transport, connect, network
+from robolink.transport import Transport, connect
 from robolink.wire import DataKey, format_key
 from tests.support.domains import free_domain
 from tests.support.waits import wait_until
@@ -58,7 +59,7 @@ def attacker(store: Keystore, robot: Transport) -> Iterator[Any]:
     own = session.wanted(environ, store.domain, "/student")
     assert own is not None
     config = zenoh.Config()
-    place = f"tls/127.0.0.1:{network.FIRST_PORT + store.domain}"
+    place = f"tls/127.0.0.1:{FIRST_PORT + store.domain}"
     plain = {"access_control": {"enabled": False}, "mode": "client", "connect/endpoints": [place]}
     for path, value in {**session.settings(own), **plain, "scouting/multicast/enabled": False}.items():
         config.insert_json5(path, json.dumps(value))

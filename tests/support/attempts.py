@@ -28,11 +28,12 @@ from typing import Any, NamedTuple
 
 import zenoh
 
+from robolink.networks.asked import FIRST_PORT
 from robolink.networks.port_probe import listening
 from robolink.qos import QoSProfile
 from robolink.security.keystore import Keystore
 from robolink.security.policy import Rule
-from robolink.transport import connect, network
+from robolink.transport import connect
 from robolink.wire import DataKey, format_key
 from tests.support import obedient, stalls
 from tests.support.domains import free_domain
@@ -131,7 +132,7 @@ def student(domain: int) -> None:
 
 def attack(domain: int, folder: Path, patience: float) -> None:
     """Try everything at once; then, as long as others ask, say what has been heard."""
-    port = network.FIRST_PORT + domain
+    port = FIRST_PORT + domain
     tries = Tries(domain, folder, f"{ROBOT}:{port}", patience)
     control = tries.attacker("keys", "student", CONTROL, LONG)
     for _ in range(int(LONG / 0.01)):  # so that the others have ears as good

@@ -23,9 +23,10 @@ from typing import Any, NamedTuple
 import zenoh
 
 from robolink.exceptions import RobolinkError
+from robolink.networks.asked import FIRST_PORT
 from robolink.security import authority, classroom, files, session
 from robolink.security.keystore import Keystore
-from robolink.transport import connect, network
+from robolink.transport import connect
 from tests.support import obedient, stalls
 from tests.support.class_roles import (
     ADMIN,
@@ -231,7 +232,7 @@ def play(way: str, *, joins: bool = True) -> list[Row]:
         domain = stack.enter_context(free_domain())
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         _make(folder, domain)
-        port = ROUTER_PORT if way == "router" else network.FIRST_PORT + domain
+        port = ROUTER_PORT if way == "router" else FIRST_PORT + domain
         place = f"tls/{ROBOT}:{port}"
         wished = place if way == "router" else ROBOT
         robolink = [sys.executable, "-m", "robolink"]

@@ -24,9 +24,9 @@ from pathlib import Path
 
 import psutil
 
+from robolink.networks.asked import FIRST_PORT
 from robolink.supervisor.reporting.logs import KEPT_RUNS
 from robolink.transport.free_domain import free_domain, is_free
-from robolink.transport.network import FIRST_PORT
 
 NODES = 5
 PATIENCE = 30.0

@@ -12,20 +12,21 @@ import zenoh
 
 from robolink.exceptions import TransportError
 from robolink.networks import asked
-from robolink.networks.settings import client, most_pending
+from robolink.networks.asked import FIRST_PORT, NAMES, ROS_ROUTER, checked_domain, domain_id, wanted
+from robolink.networks.settings import client, most_pending, settings
 from robolink.transport import network
 
 
 def test_domains() -> None:
-    assert network.domain_id({}) == network.domain_id({"ROS_DOMAIN_ID": " "}) == 0
-    assert network.domain_id({"ROS_DOMAIN_ID": "42"}) == 42
-    assert network.checked_domain(232) == 232
+    assert domain_id({}) == domain_id({"ROS_DOMAIN_ID": " "}) == 0
+    assert domain_id({"ROS_DOMAIN_ID": "42"}) == 42
+    assert checked_domain(232) == 232
 
 
 @pytest.mark.parametrize("text", ["x", "-1", "233", "1.5", "9" * 5000, "²"])
 def test_no_domain(text: str) -> None:
     with pytest.raises(TransportError, match="ROS_DOMAIN_ID must be a number from 0 to 232, got ") as caught:
-        network.domain_id({"ROS_DOMAIN_ID": text})
+        domain_id({"ROS_DOMAIN_ID": text})
     assert len(str(caught.value)) < 120
 
 
@@ -42,7 +43,7 @@ def test_no_domain(text: str) -> None:
     ],
 )
 def test_which_network(argument: str | None, environ: dict[str, str], asked_by: str | None, value: str) -> None:
-    found = network.wanted(argument, environ)
+    found = wanted(argument, environ)
     assert found == (asked_by or "ZENOH_SESSION_CONFIG_URI", value)
 
 
@@ -57,12 +58,12 @@ def test_an_error_names_the_word_that_was_used() -> None:
 
 def test_an_unknown_range() -> None:
     with pytest.raises(TransportError, match="LOCALHOST, SUBNET, OFF, got 'WORLD'"):
-        network.wanted(None, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "WORLD"})
+        wanted(None, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "WORLD"})
 
 
 @pytest.mark.parametrize(("platform", "interface"), [("linux", "lo"), ("darwin", "lo0")])
 def test_this_machine_only(platform: str, interface: str) -> None:
-    found = network.settings("localhost", 5, platform=platform)
+    found = settings("localhost", 5, platform=platform)
     assert found["listen"]["endpoints"] == ["tcp/127.0.0.1:17452", "tcp/127.0.0.1:0"]
     assert found["connect"]["endpoints"] == ["tcp/127.0.0.1:7447"]
     assert found["scouting"]["multicast"] == {"enabled": False}
@@ -71,34 +72,34 @@ def test_this_machine_only(platform: str, interface: str) -> None:
 
 
 def test_windows_does_not_seek_what_could_lead_elsewhere() -> None:
-    found = network.settings("localhost", 0, holds_port=False, platform="win32")
+    found = settings("localhost", 0, holds_port=False, platform="win32")
     assert [each.partition("#")[0] for each in found["connect"]["endpoints"]] == ["tcp/127.0.0.1:17447"]
-    assert network.settings("localhost", 0, platform="win32")["connect"]["endpoints"] == []
+    assert settings("localhost", 0, platform="win32")["connect"]["endpoints"] == []
     assert "access_control" not in found
 
 
 def test_a_taken_port_is_left_alone() -> None:
     for name in ("localhost", "lan"):
-        found = network.settings(name, 0, holds_port=False, platform="linux")
+        found = settings(name, 0, holds_port=False, platform="linux")
         assert [endpoint.rpartition(":")[2] for endpoint in found["listen"]["endpoints"]] == ["0"]
         assert found["connect"]["endpoints"][0].startswith("tcp/127.0.0.1:17447#retry_period")
 
 
 def test_the_subnet_has_its_own_multicast_group() -> None:
-    found = network.settings("lan", 1)
+    found = settings("lan", 1)
     assert found["listen"]["endpoints"][0] == "tcp/0.0.0.0:17448"
     assert found["scouting"]["multicast"] == {"enabled": True, "address": "224.0.0.224:17448"}
 
 
 def test_off_and_a_router() -> None:
-    off = network.settings("off", 0)
+    off = settings("off", 0)
     assert (off["listen"]["endpoints"], off["scouting"]["gossip"]) == ([], {"enabled": False})
     found = client("tls/robot.local:7447")
     assert (found["mode"], found["connect"]["endpoints"]) == ("client", ["tls/robot.local:7447"])
     assert "listen" not in found
 
 
-@pytest.mark.parametrize("value", [*network.NAMES, "tcp/10.0.0.1:7447"])
+@pytest.mark.parametrize("value", [*NAMES, "tcp/10.0.0.1:7447"])
 def test_zenoh_accepts_all_of_them(value: str) -> None:
     config = network.load(value, 7, {})
     assert json.loads(config.get_json("timestamping/enabled")) is True
@@ -120,34 +121,34 @@ def test_a_file_of_ones_own(tmp_path: Path) -> None:
 def test_overrides_that_name_a_network_are_asked_for_that(override: str) -> None:
     """Nothing stays on that keeps a session on this machine: neither the access control nor the rendezvous."""
     environ = {"ZENOH_CONFIG_OVERRIDE": f"scouting/delay=7; {override}"}
-    found = network.wanted("localhost", environ)
+    found = wanted("localhost", environ)
     assert found == ("ZENOH_CONFIG_OVERRIDE", override)
     assert not network.meets_at_port(found.value, environ)
     config = network.load(None, 0, environ)
     assert not json.loads(config.get_json("access_control/enabled"))
-    assert str(network.FIRST_PORT) not in config.get_json("connect/endpoints")
+    assert str(FIRST_PORT) not in config.get_json("connect/endpoints")
     assert config.get_json("scouting/delay") == "7"
 
 
 def test_overrides_that_name_a_mode_only_go_where_ros_2_goes() -> None:
     for mode in ("peer", "client"):
         config = network.load(None, 0, {"ZENOH_CONFIG_OVERRIDE": f'mode="{mode}"'})
-        assert json.loads(config.get_json("connect/endpoints")) == [network.ROS_ROUTER]
+        assert json.loads(config.get_json("connect/endpoints")) == [ROS_ROUTER]
         assert config.get_json("mode") == f'"{mode}"'
         assert "0.0.0.0" not in config.get_json("listen/endpoints")
 
 
 def test_another_network_that_was_named_stays_what_it_is() -> None:
     environ = {"ZENOH_CONFIG_OVERRIDE": 'connect/endpoints=["tcp/10.0.0.1:7447"]'}
-    assert network.wanted("subnet", environ) == ("network", "lan")
-    assert network.wanted("off", environ) == ("network", "off")
+    assert wanted("subnet", environ) == ("network", "lan")
+    assert wanted("off", environ) == ("network", "off")
 
 
 def test_overridden_access_control_is_not_mixed_with_ours() -> None:
     environ = {"ZENOH_CONFIG_OVERRIDE": 'access_control/enabled=true;access_control/default_permission="allow"'}
     found = json.loads(network.load(None, 0, environ).get_json("access_control"))
     assert (found["enabled"], found["default_permission"], found["rules"]) == (True, "allow", None)
-    assert network.meets_at_port(network.wanted(None, environ).value, environ)
+    assert network.meets_at_port(wanted(None, environ).value, environ)
 
 
 def test_overrides_have_the_last_word() -> None:
@@ -232,7 +233,7 @@ def test_silent_connections_leave_a_process_half_of_its_files(
 
 def test_the_settings_are_those_that_were_tried() -> None:
     """Guards the parts without which a session listens to the world, hangs at close or misses the graph."""
-    found: dict[str, Any] = network.settings("localhost", 0, platform="linux")
+    found: dict[str, Any] = settings("localhost", 0, platform="linux")
     assert "retry" not in found["listen"]
     assert found["connect"]["timeout_ms"] == -1
     assert set(found["access_control"]["rules"][0]["key_exprs"]) == {"**", "@ros2_lv/**", "**/@adv/**"}

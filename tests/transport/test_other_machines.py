@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from robolink.transport import network
+from robolink.networks.asked import FIRST_PORT
 from tests.support import stalls
 from tests.support.authority import can_make, make_authority, make_certificate
 from tests.support.machines import HERE, NODE, ROUTER, THERE, Machines, nodes
@@ -30,7 +30,7 @@ def machines() -> Iterator[Machines]:
 def test_an_override_that_names_an_endpoint_joins_it(machines: Machines, mode: str) -> None:
     for name in "ab":
         machines.start(machines.there, NODE, name, ROBOLINK_NETWORK="lan")
-    override = f'{mode}connect/endpoints=["tcp/{THERE}:{network.FIRST_PORT + machines.domain}"]'
+    override = f'{mode}connect/endpoints=["tcp/{THERE}:{FIRST_PORT + machines.domain}"]'
     assert nodes(machines.doctor(ZENOH_CONFIG_OVERRIDE=override)) == ["/a", "/b"]
 
 
@@ -48,7 +48,7 @@ def test_doctor_says_that_multicast_does_not_pass_and_what_does(machines: Machin
     assert said.startswith("network lan: no other machine has answered (the local network (multicast 224.0.0.224:")
     assert "multicast does not pass" in said
     assert said.endswith("here, say --network HOST, that machine's name")
-    for name in (THERE, f"tcp/{THERE}:{network.FIRST_PORT + machines.domain}"):
+    for name in (THERE, f"tcp/{THERE}:{FIRST_PORT + machines.domain}"):
         found = machines.doctor(ROBOLINK_NETWORK=name)
         assert (nodes(found), found["checks"]["reach"]["level"]) == (["/far"], "ok")
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.exceptions import TransportError
-from robolink.networks.settings import only_on
+from robolink.networks.settings import only_on, settings
 from robolink.transport import certificates, network, port_sharing
 from robolink.transport.reach import Link, Reach, host_of, on_this_machine, reach
 
@@ -39,13 +39,13 @@ def test_networks_say_whom_they_reach(name: str, override: str, leaves: bool, sa
     ("platform", "said"), [("linux", " (interface lo)"), ("darwin", " (interface lo0)"), ("win32", "")]
 )
 def test_nobody_leaves_this_machine_unless_asked_to(platform: str, said: str) -> None:
-    config = zenoh.Config.from_json5(json.dumps(network.settings("localhost", 0, platform=platform)))
+    config = zenoh.Config.from_json5(json.dumps(settings("localhost", 0, platform=platform)))
     found = reach(config)
     assert (found.leaves_machine, str(found)) == (False, f"those on this machine only{said}")
 
 
 def test_access_control_for_other_interfaces_too_confines_nobody() -> None:
-    wished = network.settings("lan", 0) | {"access_control": only_on("lo")}
+    wished = settings("lan", 0) | {"access_control": only_on("lo")}
     assert not reach(zenoh.Config.from_json5(json.dumps(wished))).leaves_machine
     wished["access_control"]["subjects"] += [{"id": "wlan", "interfaces": ["wlan0"]}]
     assert reach(zenoh.Config.from_json5(json.dumps(wished))).leaves_machine

@@ -16,6 +16,7 @@ import pytest
 import zenoh
 
 from robolink.exceptions import TransportError
+from robolink.networks.asked import FIRST_PORT
 from robolink.networks.settings import most_pending
 from robolink.transport import network
 from robolink.transport.zenoh import ZenohTransport
@@ -220,7 +221,7 @@ def test_a_forked_child_is_told_and_exits(domain: int) -> None:
 def test_nothing_listens_beyond_this_machine(zenoh_net: Network, domain: int) -> None:
     Ear(zenoh_net.session())
     zenoh_net.session()
-    assert f"127.0.0.1:{network.FIRST_PORT + domain}" in listening()
+    assert f"127.0.0.1:{FIRST_PORT + domain}" in listening()
     assert {address.rpartition(":")[0] for address in listening()} == {"127.0.0.1"}
 
 
@@ -290,7 +291,7 @@ except ConnectionError as error:
 
 def test_a_port_held_by_something_else(domain: int) -> None:
     with socket.socket() as squatter:
-        port = network.FIRST_PORT + domain
+        port = FIRST_PORT + domain
         if os.name != "nt":  # else connections that have ended keep the port for a minute
             squatter.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         squatter.bind(("127.0.0.1", port))
@@ -307,7 +308,7 @@ def test_silent_connections_keep_nobody_out(domain: int) -> None:
     """Zenoh lets 100 of them wait for 10 s, and nobody else in meanwhile."""
     with process(domain, "session.announce('@ros2_lv/0/a/x')" + WAIT), ExitStack() as stack:
         for _ in range(SILENT):
-            stack.enter_context(socket.create_connection(("127.0.0.1", network.FIRST_PORT + domain), PATIENCE))
+            stack.enter_context(socket.create_connection(("127.0.0.1", FIRST_PORT + domain), PATIENCE))
         begin = time.monotonic()
         with closing(ZenohTransport(domain, environ={})) as session:
             assert session.tokens(GRAPH) == ["@ros2_lv/0/a/x"]

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import pytest
 
 from robolink.impl.log_output import Record
+from robolink.networks.settings import LONGEST_WAIT
 from robolink.transport import zenoh_handles
-from robolink.transport.network import LONGEST_WAIT
 from robolink.transport.zenoh_declare import Publishers
 from robolink.transport.zenoh_handles import LARGE, Holdings, Made, ZenohOutlet
 from tests.support.transports import CHATTER

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from robolink.cli.doctor.ports import Holder
+from robolink.networks.asked import FIRST_PORT
 from robolink.networks.port_probe import Port
-from robolink.transport import network, shared_memory
+from robolink.transport import shared_memory
 from robolink.transport.reach import Link, Reach
 from robolink.wire import EndpointToken, NodeToken
 
@@ -31,7 +32,7 @@ class Settings(NamedTuple):
     @property
     def port(self) -> int:
         """Rendezvous port of the domain."""
-        return network.FIRST_PORT + self.domain
+        return FIRST_PORT + self.domain
 
 
 class ClockOffset(NamedTuple):

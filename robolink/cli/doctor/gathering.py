@@ -15,7 +15,7 @@ from robolink.cli.doctor.look import count_nodes, look
 from robolink.cli.doctor.ports import also_open_at, ascii_only, holder, loopback_works, owner
 from robolink.constants import LAST_DOMAIN
 from robolink.exceptions import TransportError
-from robolink.networks.asked import RANGE
+from robolink.networks.asked import FIRST_PORT, RANGE, ROS_ROUTER, Wanted, domain_id, wanted
 from robolink.networks.port_probe import HOST, STRANGER, Port, listening
 from robolink.networks.refusals import wants_keys
 from robolink.security import session
@@ -75,7 +75,7 @@ def gather() -> Facts:
         settings=settings,
         reach=found,
         loopback=loopback_works(),
-        router_port=int(network.ROS_ROUTER.rpartition(":")[2]),
+        router_port=int(ROS_ROUTER.rpartition(":")[2]),
         machine=machine,
         memory=_memory(settings, machine, found.mode),
     )
@@ -97,8 +97,8 @@ def read_settings(environ: Mapping[str, str]) -> tuple[Settings, zenoh.Config | 
     What nodes would refuse is in the settings' `errors`. A host that is named is asked what it is, once.
     """
     errors: list[str] = []
-    domain = _try(errors, 0, lambda: network.domain_id(environ))
-    asked_by, value = _try(errors, network.Wanted("", "localhost"), lambda: network.wanted(None, environ))
+    domain = _try(errors, 0, lambda: domain_id(environ))
+    asked_by, value = _try(errors, Wanted("", "localhost"), lambda: wanted(None, environ))
     found = None if errors else _try(errors, None, lambda: network.plan(None, domain, environ))
     config = None if found is None else _try(errors, None, found.config)
     settings = Settings(
@@ -157,7 +157,7 @@ def namesakes() -> tuple[str, ...]:
 
 def _with_ports(facts: Facts) -> Facts:
     """Add what listens: on the ports of all domains, the ROS 2 router's, and that of the router in the settings."""
-    numbers = [facts.router_port, *(network.FIRST_PORT + domain for domain in range(LAST_DOMAIN + 1))]
+    numbers = [facts.router_port, *(FIRST_PORT + domain for domain in range(LAST_DOMAIN + 1))]
     ports = listening(numbers, ANSWER_WITHIN)
     router = ports.get(facts.router_port)
     meant = [ports[number] for number in (facts.router_port, facts.settings.port) if number in ports]
@@ -233,7 +233,7 @@ def _with_multicast(facts: Facts, config: zenoh.Config) -> Facts:
 
 def _other_domains(facts: Facts) -> list[int]:
     """Return the domains whose rendezvous port a Zenoh session holds."""
-    domains = (number - network.FIRST_PORT for number, port in facts.ports.items() if port.speaks_zenoh)
+    domains = (number - FIRST_PORT for number, port in facts.ports.items() if port.speaks_zenoh)
     return sorted(each for each in domains if 0 <= each <= LAST_DOMAIN and each != facts.settings.domain)
 
 

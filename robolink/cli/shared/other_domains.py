@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from robolink.cli.shared.announced import is_hidden
 from robolink.exceptions import RobolinkError, nearest
+from robolink.networks.asked import FIRST_PORT, wanted
 from robolink.system.terminal import shown
 from robolink.wire import EndpointKind, EndpointToken, graph_pattern, parse_token
 
@@ -70,12 +71,12 @@ def _met_on_this_machine(own: int) -> list[int]:
     from robolink.networks.port_probe import listening
     from robolink.transport import network
 
-    if not network.meets_at_port(network.wanted(None, os.environ).value, os.environ):
+    if not network.meets_at_port(wanted(None, os.environ).value, os.environ):
         return []
-    ports = (network.FIRST_PORT + each for each in range(LAST_DOMAIN + 1) if each != own)
+    ports = (FIRST_PORT + each for each in range(LAST_DOMAIN + 1) if each != own)
     with contextlib.suppress(OSError):
         there = listening(ports, PORTS_WITHIN)
-        return [number - network.FIRST_PORT for number in sorted(there) if there[number].speaks_zenoh][:MOST]
+        return [number - FIRST_PORT for number in sorted(there) if there[number].speaks_zenoh][:MOST]
     return []
 
 

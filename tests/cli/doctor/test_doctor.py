@@ -26,8 +26,9 @@ from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.interfaces.std_srvs.srv import SetBool, Trigger
+from robolink.networks.asked import FIRST_PORT
 from robolink.qos import QoSProfile
-from robolink.transport import Query, Transport, network, shared_memory
+from robolink.transport import Query, Transport, shared_memory
 from robolink.wire import (
     DataKey,
     EndpointKind,
@@ -268,7 +269,7 @@ def test_nodes_of_another_process_are_seen(on_domain: int, routers_port: int, tm
         assert talker.line() == "ready"
         assert main(["doctor", "-iw"]) == 0
         out = capsys.readouterr().out
-    assert f"port {network.FIRST_PORT + on_domain} of domain {on_domain} is held by a Zenoh peer" in out
+    assert f"port {FIRST_PORT + on_domain} of domain {on_domain} is held by a Zenoh peer" in out
     assert f"domain {on_domain} has 1 node" in out
     assert "1 node asked" in out
     if sys.platform == "linux":
@@ -297,7 +298,7 @@ def test_nodes_on_another_domain_are_pointed_at(
 def test_a_stranger_on_the_rendezvous_port_is_named_at_once(
     on_domain: int, routers_port: int, says: bytes | None, capsys: Captured
 ) -> None:
-    with stranger(network.FIRST_PORT + on_domain, says):
+    with stranger(FIRST_PORT + on_domain, says):
         code, found = outcome(capsys)
     assert (code, found["rendezvous"], found["announcements"]) == (1, "error", "error")
     assert "taken by a stranger" in found["checks"][-1]["errors"][0]  # so joining was not even tried

@@ -8,8 +8,8 @@ import pytest
 
 from robolink.interfaces.example_interfaces.srv import AddTwoInts
 from robolink.interfaces.std_msgs.msg import String
+from robolink.networks.asked import FIRST_PORT
 from robolink.qos import DurabilityPolicy, QoSProfile
-from robolink.transport.network import FIRST_PORT
 from tests.support.interop import Robot, robot, until
 from tests.support.ros2_peer import ADD_TWO_INTS, LATCHED, STRING, Peer, free_port, packed_ints, packed_string
 from tests.system.interop_wire.calls import add, replies_to, serve_sums, sum_of, until_heard
