@@ -12,11 +12,12 @@ import msgspec
 from robolink.exceptions import DocumentError
 from robolink.sim.checks.overlaps import CROWDED
 from robolink.sim.checks.worlds import mass_problems, problems
-from robolink.sim.description import Obstacle, Settings, Wall, WorldDescription
+from robolink.sim.description import FloorSettings, Obstacle, Settings, Wall, WorldDescription
+from robolink.sim.webots.appearance import first_colour
 from robolink.sim.webots.footprint import footprint, merged
-from robolink.sim.webots.geometry import ORIGIN, Placement
+from robolink.sim.webots.geometry import HEIGHTS, ORIGIN, Placement, rounded
 from robolink.sim.webots.robots import Converted, robot
-from robolink.sim.webots.scene_tree import Found, Thing
+from robolink.sim.webots.scene_tree import Arena, Found, Thing
 from robolink.sim.webots.vrml_node import Node
 
 FLAT = 0.02
@@ -52,16 +53,16 @@ def convert(nodes: list[Node], name: str) -> tuple[WorldDescription, tuple[str, 
     Raises `DocumentError` with the place in the file.
     """
     found = Found(nodes, ORIGIN)
-    settings = _settings(found.information)
-    robots = _robots(found, settings.dt)
+    settings = msgspec.structs.replace(_settings(found.information), floor=FloorSettings(colour=found.floor_colour))
     floor = found.floors[0] if found.floors else 0.0
+    robots = _robots(found, settings.dt, floor)
     height = max((each.height for each in robots), default=HEIGHT)
     low, high = floor + FLAT, floor + max(height, LOWEST_ROBOT)
     under = [placement for _, placement in found.robots]
     things = [each for thing in found.things if (each := _standing(thing, low, high, under))]
     description = WorldDescription(
         world=settings,
-        walls=tuple(Wall(tuple(each.corners), closed=True) for each in found.arenas if each.height[1] > low),
+        walls=tuple(_wall(each, floor) for each in found.arenas if each.height[1] > low),
         obstacles=tuple(each.obstacle for each in things),
         robots=tuple(each.description for each in robots),
     )
@@ -84,13 +85,13 @@ def _settings(information: Node | None) -> Settings:
     return Settings(name=title, dt=step / math.ceil(step / STEPS[1] - 1e-9), seed=int(min(max(seed, 0.0), 2.0**62)))
 
 
-def _robots(found: Found, dt: float) -> list[Converted]:
-    """Convert the robots, and leave in `found` those that there are."""
+def _robots(found: Found, dt: float, floor: float) -> list[Converted]:
+    """Convert the robots, and leave in `found` those that there are; `floor` is the height of the floor."""
     converted: list[Converted] = []
     kept = []
     for node, placement in found.robots:
         names = [each.description.name for each in converted]
-        if made := robot(found, node, placement, names, dt):
+        if made := robot(found, node, placement, names, dt, floor):
             converted.append(made)
             kept.append((node, placement))
     found.robots = kept
@@ -99,13 +100,31 @@ def _robots(found: Found, dt: float) -> list[Converted]:
 
 def _standing(thing: Thing, low: float, high: float, robots: Sequence[Placement]) -> Standing | None:
     """Make the obstacle of a thing; None if it is too high or too low, or a robot stands on it."""
-    outline = merged([each for part in thing.parts if (each := footprint(part, low, high))])
+    outlines = [(part, each) for part in thing.parts if (each := footprint(part, low, high))]
+    outline = merged([each for _, each in outlines])
     if outline is None or (thing.mass is None and any(_bears(thing, each) for each in robots)):
         return None
     shape, pose = outline.placed()
-    return Standing(
-        Obstacle(box=shape.box, circle=shape.circle, polygon=shape.polygon, pose=pose, mass=thing.mass), thing
+    parts = [part for part, _ in outlines]
+    obstacle = Obstacle(
+        box=shape.box,
+        circle=shape.circle,
+        polygon=shape.polygon,
+        pose=pose,
+        mass=thing.mass,
+        height=_height(max(part.top for part in parts) - (low - FLAT)),
+        colour=next((part.colour for part in parts if part.colour), None) or first_colour(thing.node),
     )
+    return Standing(obstacle, thing)
+
+
+def _wall(arena: Arena, floor: float) -> Wall:
+    return Wall(tuple(arena.corners), closed=True, height=_height(arena.height[1] - floor), colour=arena.colour)
+
+
+def _height(height: float) -> float:
+    """Return a height that a world file may have, without rounding errors."""
+    return min(max(rounded(height), HEIGHTS[0]), HEIGHTS[1])
 
 
 def _bears(thing: Thing, robot: Placement) -> bool:

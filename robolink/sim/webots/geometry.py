@@ -18,6 +18,9 @@ LEVEL = 0.01
 SIDES = 32
 """Number of corners of a circle that is not seen from above."""
 
+HEIGHTS = (0.001, 1000.0)
+"""Least and greatest height of a thing in a world file, in metres."""
+
 MOST_POINTS = 500
 """Most corners of a mesh; one with more is made for the eye, not for collisions."""
 
@@ -94,13 +97,14 @@ class Part(NamedTuple):
     """A piece of something solid, in space.
 
     `points` are the corners of its convex hull; with a `radius` they are the ends of an upright cylinder's axis, or
-    the centre of a ball. `volume` is in m³.
+    the centre of a ball. `volume` is in m³, `colour` that of the shape that it belongs to.
     """
 
     points: Array
     volume: float
     radius: float = 0.0
     ball: bool = False
+    colour: str | None = None
 
     @property
     def bottom(self) -> float:

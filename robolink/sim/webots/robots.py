@@ -13,8 +13,9 @@ from robolink.sim.checks.robots import robot_problems
 from robolink.sim.description import Drive, GroundTruth, Odom, RobotDescription, Shape, Wheel
 from robolink.sim.quantities import Pose
 from robolink.sim.sensors import Encoders
+from robolink.sim.webots.appearance import first_colour
 from robolink.sim.webots.footprint import Footprint, footprint, merged
-from robolink.sim.webots.geometry import ORIGIN, Part, Placement, turned
+from robolink.sim.webots.geometry import HEIGHTS, ORIGIN, Part, Placement, rounded, turned
 from robolink.sim.webots.scene_tree import GROUPS, JOINTS, SOLIDS, Found, inside, mass
 from robolink.sim.webots.sensors import by_lookup_table, lacking, rate_near, sensors
 from robolink.sim.webots.vrml_node import Node
@@ -61,11 +62,13 @@ class Pieces(NamedTuple):
         return [each for each in self.nodes if each[0].type not in JOINTS | GROUPS | {"Robot", "Solid", "Shape"}]
 
 
-def robot(found: Found, node: Node, placement: Placement, taken: Sequence[str], dt: float) -> Converted | None:
+def robot(
+    found: Found, node: Node, placement: Placement, taken: Sequence[str], dt: float, floor: float = 0.0
+) -> Converted | None:
     """Convert a robot; None for one without shape and motors, which only looks on.
 
-    `taken` are the names of other robots, `dt` is the world's step in seconds. A robot whose wheels roll to its side
-    is turned round: ahead is where they roll to.
+    `taken` are the names of other robots, `dt` is the world's step in seconds, `floor` the height of the floor in
+    metres. A robot whose wheels roll to its side is turned round: ahead is where they roll to.
     """
     pieces = _pieces(found, node, ORIGIN)
     if not pieces.parts and not motors(found, pieces.nodes):
@@ -74,7 +77,7 @@ def robot(found: Found, node: Node, placement: Placement, taken: Sequence[str], 
     pieces = _pieces(found, node, turned(-turn)) if turn else pieces
     pose = placement.pose
     pose = Pose(pose.x, pose.y, math.remainder(pose.theta + turn, math.tau))
-    description, notes = _described(found, node, pieces, pose, dt)
+    description, notes = _described(found, node, pieces, pose, dt, float(placement.offset[2]) - floor)
     name, asked = unlike(description.name, taken), node.text("name", "robot")
     if name != asked:
         notes.insert(0, f"this is how the robot '{asked}' is called here")
@@ -95,7 +98,9 @@ def _descend(node: Node, outer: Placement) -> Iterator[tuple[Node, Placement]]:
                 yield from _descend(child, inner)
 
 
-def _described(found: Found, node: Node, pieces: Pieces, pose: Pose, dt: float) -> tuple[RobotDescription, list[str]]:
+def _described(
+    found: Found, node: Node, pieces: Pieces, pose: Pose, dt: float, raised: float
+) -> tuple[RobotDescription, list[str]]:
     for device in strangers(pieces.nodes):
         found.note_unknown(device)
     shape = _shape(pieces.outline)
@@ -109,7 +114,9 @@ def _described(found: Found, node: Node, pieces: Pieces, pose: Pose, dt: float) 
         wheels=turning,
         odom=Odom(rate=rate_near(50.0, dt)),
         ground_truth=GroundTruth(rate=rate_near(10.0, dt)),
-        sensors=sensors(pieces.devices, resolutions(pieces.nodes) if turning else [], dt),
+        sensors=sensors(pieces.devices, resolutions(pieces.nodes) if turning else [], dt, raised),
+        height=min(max(rounded(pieces.height), HEIGHTS[0]), HEIGHTS[1]) if pieces.parts else None,
+        colour=first_colour(node),
     )
     description, more = _without_bad_wheels(description, dt)
     return description, [*notes, *more, *_missing(description, [each for each, _ in pieces.devices])]

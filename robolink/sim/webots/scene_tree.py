@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from robolink.sim.description import MOST_OBSTACLES, MOST_ROBOTS
 from robolink.sim.quantities import FARTHEST
+from robolink.sim.webots.appearance import colour_of_look, colour_of_shape
 from robolink.sim.webots.geometry import Part, Placement, box, part
 from robolink.sim.webots.sensors import LIDARS
 from robolink.sim.webots.vrml_node import Node
@@ -54,11 +55,12 @@ class Thing(NamedTuple):
 
 
 class Arena(NamedTuple):
-    """Walls around a floor: the corners of their inner faces in the plane, and their node."""
+    """Walls around a floor: the corners of their inner faces in the plane, their heights, node and colour."""
 
     corners: list[tuple[float, float]]
     height: tuple[float, float]
     node: Node
+    colour: str | None = None
 
 
 class Found:
@@ -69,6 +71,7 @@ class Found:
         self.arenas: list[Arena] = []
         self.robots: list[tuple[Node, Placement]] = []
         self.floors: list[float] = []
+        self.floor_colour: str | None = None
         self.unknown: dict[str, int] = {}
         self.information = next((node for node in nodes if node.type == "WorldInfo"), None)
         for node in nodes:
@@ -126,7 +129,7 @@ class Found:
                 yield from self._pieces(child, placement)
         elif node.type == "Shape":
             for geometry in node.nodes("geometry"):
-                yield from self._pieces(geometry, outer)
+                yield from (each._replace(colour=colour_of_shape(node)) for each in self._pieces(geometry, outer))
         elif node.type not in IGNORED:
             try:
                 piece = part(node, outer)
@@ -169,7 +172,7 @@ def mass(node: Node, parts: list[Part]) -> float:
 
 def _centred_box(found: Found, node: Node, inner: Placement) -> None:
     side = CENTRED_BOXES[node.type]
-    piece = box(node.lengths("size", side, side, side), inner)
+    piece = box(node.lengths("size", side, side, side), inner)._replace(colour=_library_colour(node))
     physics = "mass" in node.fields and node.number("mass", 0.0) > 0.0
     weight = node.number("mass", 0.0) if physics else mass(node, [piece]) if node.nodes("physics") else None
     found.things.append(Thing([piece], weight and min(max(weight, LIGHTEST), HEAVIEST), node))
@@ -177,11 +180,17 @@ def _centred_box(found: Found, node: Node, inner: Placement) -> None:
 
 def _standing_box(found: Found, node: Node, inner: Placement) -> None:
     sides = node.lengths("size", *STANDING_BOXES[node.type])
-    found.things.append(Thing([box(sides, inner, raised=True)], None, node))
+    found.things.append(Thing([box(sides, inner, raised=True)._replace(colour=_library_colour(node))], None, node))
+
+
+def _library_colour(node: Node) -> str | None:
+    """Return the colour of a thing of Webots' library, if its appearance has one."""
+    return colour_of_look(node.node("appearance"))
 
 
 def _floor(found: Found, node: Node, inner: Placement) -> None:
     found.floors.append(float(inner.offset[2]))
+    found.floor_colour = found.floor_colour or colour_of_look(node.node("appearance"))
 
 
 def _rectangle_arena(found: Found, node: Node, inner: Placement) -> None:
@@ -202,8 +211,10 @@ def _arena(found: Found, node: Node, inner: Placement, corners: list[tuple[float
         raise node.error(f"this reaches beyond {FARTHEST / 1000:g} km")
     floor = float(inner.offset[2])
     found.floors.append(floor)
+    found.floor_colour = found.floor_colour or colour_of_look(node.node("floorAppearance"))
     height = (floor, floor + node.length("wallHeight", 0.1))
-    found.arenas.append(Arena([(float(x), float(y)) for x, y, _ in placed], height, node))
+    colour = colour_of_look(node.node("wallAppearance"))
+    found.arenas.append(Arena([(float(x), float(y)) for x, y, _ in placed], height, node, colour))
 
 
 _LIBRARY: dict[str, Callable[[Found, Node, Placement], None]] = {

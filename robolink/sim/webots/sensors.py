@@ -6,9 +6,11 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 from robolink.sim.checks.robots import TAKEN
-from robolink.sim.sensors import Bumper, Encoders, Imu, Lidar, RangeFinder, Sensor
-from robolink.sim.webots.geometry import Placement
+from robolink.sim.sensors import Bumper, Camera, Encoders, Imu, Lidar, RangeFinder, Sensor
+from robolink.sim.webots.geometry import Placement, rounded
 from robolink.sim.webots.vrml_node import Node
 from robolink.text.names import spelled, unlike
 
@@ -24,8 +26,11 @@ FULL_TURN = math.radians(359.5)
 TABLE = [0.0, 0.0, 0.0, 0.1, 1000.0, 0.0]
 """Webots' default `lookupTable`: rows of a distance, the sensor's value there, and its noise."""
 
+SEEING = frozenset({"Camera", "RangeFinder"})
+"""Sensors of Webots that make images, of colours or of depths."""
+
 INERTIAL = frozenset({"Accelerometer", "Gyro", "InertialUnit"})
-LACKING = frozenset({"Camera", "Compass", "GPS", "LightSensor", "Radar", "RangeFinder", "Receiver"})
+LACKING = frozenset({"Compass", "GPS", "LightSensor", "Radar", "Receiver"})
 """Sensors of Webots that are not supported."""
 
 
@@ -54,13 +59,16 @@ def rate_near(wanted: float, dt: float) -> float:
     return 1.0 / (max(1, round(1.0 / (wanted * dt))) * dt)
 
 
-def sensors(devices: Sequence[tuple[Node, Placement]], resolutions: Sequence[float], dt: float) -> tuple[Sensor, ...]:
+def sensors(
+    devices: Sequence[tuple[Node, Placement]], resolutions: Sequence[float], dt: float, raised: float = 0.0
+) -> tuple[Sensor, ...]:
     """Make the sensors of a robot from its devices; `resolutions` are those of its position sensors, in radians.
 
-    Exact ones need no encoders: the angles of all wheels are published anyway.
+    Exact ones need no encoders: the angles of all wheels are published anyway. `raised` is the height in metres of the
+    robot's origin above the floor.
     """
     names = _Names(devices)
-    found: list[Sensor] = [made for each in devices if (made := _sensor(*each, names, dt))]
+    found: list[Sensor] = [made for each in devices if (made := _sensor(*each, names, dt, raised))]
     if any(node.type in INERTIAL for node, _ in devices):
         found.append(Imu(names.free("imu"), rate=rate_near(50.0, dt)))
     finest = min((each for each in resolutions if each > 0.0), default=0.0)
@@ -97,7 +105,7 @@ def _is_lidar(node: Node) -> bool:
     return node.type == "Lidar" or node.type in LIDARS
 
 
-def _sensor(node: Node, placement: Placement, names: _Names, dt: float) -> Sensor | None:
+def _sensor(node: Node, placement: Placement, names: _Names, dt: float, raised: float) -> Sensor | None:
     if node.type in LIDARS:
         return _bought_lidar(node, LIDARS[node.type], placement, names, dt)
     if node.type == "Lidar":
@@ -106,7 +114,32 @@ def _sensor(node: Node, placement: Placement, names: _Names, dt: float) -> Senso
         return _range_finder(node, placement, names, dt)
     if node.type == "TouchSensor":
         return _bumper(node, placement, names, dt)
+    if node.type in SEEING:
+        return _camera(node, placement, names, dt, raised)
     return None
+
+
+def _camera(node: Node, placement: Placement, names: _Names, dt: float, raised: float) -> Camera:
+    """A camera, or a range finder, which is one of depths; it looks along its x axis, and roll is left out."""
+    depth = node.type == "RangeFinder"
+    width, height = (int(min(max(node.number(each, 64.0), 1.0), 4096.0)) for each in ("width", "height"))
+    ahead = placement.matrix[:, 0] / np.linalg.norm(placement.matrix[:, 0])
+    near, far = node.length("minRange", 0.01), node.length("maxRange", 1.0)
+    if depth and near >= far:
+        raise node.error(f"expected more than 0 to less than maxRange, {far:g}, got {near:g}", "minRange")
+    return Camera(
+        names.of(node, "range finder" if depth else "camera"),
+        rate=rate_near(10.0, dt),
+        width=width,
+        height=height,
+        fov=min(max(math.degrees(node.length("fieldOfView", math.pi / 4)), 1.0), 170.0),
+        offset=placement.pose,
+        z=min(max(rounded(placement.offset[2]) + raised, 0.005), 1000.0),
+        pitch=rounded(math.degrees(math.asin(min(max(-float(ahead[2]), -1.0), 1.0)))),
+        noise=0.0 if depth else min(max(255.0 * node.number("noise", 0.0), 0.0), 255.0),
+        depth=depth,
+        range=(min(max(near, 0.001), 9_999.0), min(max(far, 0.002), 10_000.0)) if depth else Camera("").range,
+    )
 
 
 def _lidar(node: Node, placement: Placement, names: _Names, dt: float) -> Lidar:

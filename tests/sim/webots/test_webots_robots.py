@@ -10,7 +10,7 @@ from robolink.exceptions import DocumentError
 from robolink.sim import World
 from robolink.sim.description import RobotDescription, Shape, WorldDescription
 from robolink.sim.quantities import Pose
-from robolink.sim.sensors import Bumper, Encoders, Imu, Lidar, RangeFinder, Sensor
+from robolink.sim.sensors import Bumper, Camera, Encoders, Imu, Lidar, RangeFinder, Sensor
 from robolink.sim.webots import read
 from robolink.sim.webots.sensors import rate_near
 from robolink.sim.webots.wheels import _side as side_of
@@ -230,11 +230,62 @@ def test_distance_sensors_tell_metres() -> None:
 def test_other_sensors() -> None:
     text = """TouchSensor { name "bumper" translation 0.2 0 0 } TouchSensor { } Gyro { } Accelerometer { }
               InertialUnit { } LED { } Camera { name "eye" } GPS { }"""
-    front, whole, imu = sensors(text)
+    front, whole, _, imu = sensors(text)
     assert front == Bumper("bumper", rate=rate_near(10, 0.032), fov=180.0, start=-90.0)
     assert whole == Bumper("touch_sensor", rate=rate_near(10, 0.032))
     assert imu == Imu("imu", rate=rate_near(50, 0.032))
-    assert notes(BODY + WHEELS + text) == ("r: left out: Camera 'eye', GPS",)
+    assert notes(BODY + WHEELS + text) == ("r: left out: GPS",)
+
+
+def test_cameras_are_where_they_are_and_look_where_they_look() -> None:
+    text = """Pose { translation 0.1 0 0.15 rotation 0 1 0 0.5 children [
+                Camera { name "front eye" fieldOfView 1.0472 width 160 height 120 noise 0.02 } ] }
+              Camera { translation -0.1 0 0.2 rotation 0 0 1 3.14159265 }"""
+    front, back = sensors(text)
+    assert isinstance(front, Camera)
+    assert isinstance(back, Camera)
+    assert (front.camera, front.width, front.height) == ("front_eye", 160, 120)
+    assert front.noise == pytest.approx(5.1)
+    assert front.fov == pytest.approx(60.0, abs=1e-3)
+    assert front.offset == Pose(0.1, 0.0, 0.0)
+    assert [front.z, front.pitch] == pytest.approx([0.15, math.degrees(0.5)])
+    assert (back.camera, back.width, back.height) == ("camera", 64, 64)
+    assert back.fov == pytest.approx(45.0)
+    assert abs(back.offset.theta) == pytest.approx(math.pi)
+    assert not (front.depth)
+    assert not (back.depth)
+
+
+def test_a_range_finder_is_a_camera_of_depths() -> None:
+    (found,) = sensors("RangeFinder { width 32 height 24 minRange 0.2 maxRange 4 translation 0 0 0.1 }")
+    assert isinstance(found, Camera)
+    assert (found.camera, found.depth, found.range, found.width) == ("range_finder", True, (0.2, 4.0), 32)
+    text = f"Robot {{ children [ {BODY} RangeFinder {{ minRange 2 }} ] }}"
+    with pytest.raises(
+        DocumentError, match=r"RangeFinder\.minRange: expected more than 0 to less than maxRange, 1, got 2"
+    ):
+        world(text)
+
+
+def test_a_camera_stands_as_high_above_the_floor_as_its_robot() -> None:
+    found, _ = world(f"Floor {{ translation 0 0 1 }} Robot {{ translation 0 0 1.1 children [ {BODY} Camera {{ }} ] }}")
+    (eye,) = found.robots[0].sensors
+    assert isinstance(eye, Camera)
+    assert eye.z == pytest.approx(0.1)
+
+
+def test_strange_cameras_are_brought_into_range() -> None:
+    (eye,) = sensors("Camera { width 100000 height 0 fieldOfView 6.28 noise -1 translation 0 0 -5 }")
+    assert isinstance(eye, Camera)
+    assert (eye.width, eye.height, eye.fov, eye.noise, eye.z) == (4096, 1, 170.0, 0.0, 0.005)
+
+
+def test_robots_keep_their_heights_and_colours() -> None:
+    red = "appearance Appearance { material Material { diffuseColor 1 0 0 } }"
+    found = robot(f"Shape {{ {red} geometry Box {{ size 0.4 0.3 0.2 }} }}")
+    assert found.height == pytest.approx(0.2)
+    assert found.colour == "#ff0000"
+    assert robot(BODY).colour is None
 
 
 def test_position_sensors_that_count_ticks() -> None:

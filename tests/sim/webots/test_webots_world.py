@@ -27,7 +27,8 @@ def world(text: str) -> WebotsWorld:
 
 
 def obstacles(text: str) -> list[Obstacle]:
-    return list(world(text).description.obstacles)
+    """The obstacles as lidars see them, without their heights."""
+    return [msgspec.structs.replace(each, height=None) for each in world(text).description.obstacles]
 
 
 def obstacle(text: str) -> Obstacle:
@@ -324,3 +325,65 @@ def is_valid(description: WorldDescription) -> None:
     made = World(description)
     made.step()
     assert set(made.robots) == {each.name for each in description.robots}
+
+
+RED = "appearance Appearance { material Material { diffuseColor 1 0 0 } }"
+BLUE = "appearance PBRAppearance { baseColor 0 0.5 1 roughness 1 }"
+TEXTURED = 'appearance PBRAppearance { baseColorMap ImageTexture { url "wood.jpg" } }'
+
+
+@pytest.mark.parametrize(
+    ("text", "height", "colour"),
+    [
+        (
+            f"Solid {{ translation 0 0 0.3 children [ Shape {{ {RED} geometry Box {{ size 1 1 0.6 }} }} ] }}",
+            0.6,
+            "#ff0000",
+        ),
+        (f"Shape {{ {BLUE} geometry Cylinder {{ radius 0.2 height 0.5 }} }}", 0.25, "#0080ff"),
+        ("Shape { appearance PBRAppearance { } geometry Sphere { radius 0.2 } }", 0.2, "#ffffff"),
+        ("Shape { appearance Appearance { material Material { } } geometry Sphere { } }", 1.0, "#cccccc"),
+        (f"Shape {{ {TEXTURED} geometry Sphere {{ }} }}", 1.0, None),
+        ("Shape { appearance Parquetry { } geometry Sphere { } }", 1.0, None),
+        ("Shape { geometry Sphere { } }", 1.0, None),
+        (f"WoodenBox {{ {BLUE} size 1 1 0.4 translation 0 0 0.2 }}", 0.4, "#0080ff"),
+        (f"Wall {{ {RED} }}", 2.4, "#ff0000"),
+        # the colour of what is seen, where something else is what it collides with
+        (
+            (
+                f"Solid {{ children [ Pose {{ children [ Shape {{ {RED} geometry Box {{ size 1 1 1 }} }} ] }} ]"
+                " boundingObject Box { size 1 1 0.8 } }"
+            ),
+            0.4,
+            "#ff0000",
+        ),
+        # two of one thing that is pushed: the first colour, the greatest height
+        (
+            (
+                f"Solid {{ physics Physics {{ }} children [ Shape {{ {BLUE} geometry Box {{ size 1 1 1 }} }}"
+                f" Pose {{ translation 0 0 1 children [ Shape {{ {RED} geometry Box {{ size 1 1 2 }} }} ] }} ] }}"
+            ),
+            2.0,
+            "#0080ff",
+        ),
+    ],
+)
+def test_things_keep_their_heights_and_colours(text: str, height: float, colour: str | None) -> None:
+    (found,) = world(f"Floor {{ }} {text}").description.obstacles
+    assert found.height == pytest.approx(height)
+    assert found.colour == colour
+
+
+def test_arenas_and_floors_keep_their_colours() -> None:
+    wall, floor = RED.replace("appearance", "wallAppearance", 1), BLUE.replace("appearance", "floorAppearance", 1)
+    found = world(f"RectangleArena {{ wallHeight 0.3 translation 0 0 2 {wall} {floor} }}").description
+    assert found.walls[0].height == pytest.approx(0.3)
+    assert found.walls[0].colour == "#ff0000"
+    assert found.world.floor.colour == "#0080ff"
+    assert world(f"Floor {{ {RED} }}").description.world.floor.colour == "#ff0000"
+    assert world("RectangleArena { }").description.world.floor.colour is None
+
+
+def test_a_colour_of_two_numbers_is_named() -> None:
+    bad = refused("Shape { appearance PBRAppearance { baseColor 1 0 } geometry Sphere { } }")
+    assert bad.endswith("PBRAppearance.baseColor: expected 3 numbers, got 2")
