@@ -37,7 +37,11 @@ class Rights:
         moment: float | None = None,
     ) -> None:
         self.enclave, self.domain, self.source = enclave, domain, source
-        here = [each for each in given if each.holds_in(domain)]
+        own = list(given)
+        here = [each for each in own if each.holds_in(domain)]
+        elsewhere = {first for each in own for first, _ in each.domains}
+        self._made_for = "" if here else ", ".join(map(str, sorted(elsewhere)[:5]))
+        """Domains of permissions that hold in others alone."""
         self.turns = {each.begin for each in here if each.allows} | {each.end for each in here if each.allows}
         """Times at which a permission begins or ends to hold."""
         now = time.time() if moment is None else moment
@@ -65,7 +69,12 @@ class Rights:
                 return f"{asked}: '{each.name}' is denied ({each.place})"
         if any(each.kind == kind and fits(each.name, name) for each in self.allowed):
             return ""
-        domain = f" in domain {self.domain}" if self.domain else ""
+        domain = f" in domain {self.domain}" if self.domain or self._made_for else ""
+        if self._made_for:
+            domain += (
+                f", its permissions were made for domain {self._made_for}: go there, "
+                f"or make them anew with ROS_DOMAIN_ID={self.domain}"
+            )
         return f"{asked}: no rule allows it{domain} ({self.source})"
 
     def require(self, kind: str, key: str) -> None:

@@ -98,6 +98,17 @@ def test_what_is_refused_is_told_with_enclave_name_and_rule(student: Node, store
     student.create_publisher(String, "pose", 10)  # what was good goes on
 
 
+def test_keys_of_another_domain_are_told(store: Keystore) -> None:
+    """`create_enclave` in a shell without ROS_DOMAIN_ID makes permissions for domain 0, as SROS2's does."""
+    other = (store.domain + 1) % 200
+    context = Context()
+    context.init(args=["--ros-args", "--enclave", "/robot"], domain_id=other)
+    with context, pytest.raises(SecurityError) as caught:
+        Node("me", context=context)
+    told = f"in domain {other}, its permissions were made for domain {store.domain}: go there, or make them anew with"
+    assert f"{told} ROS_DOMAIN_ID={other} (" in str(caught.value)
+
+
 def test_nothing_is_in_the_clear(store: Keystore, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ZENOH_CONFIG_OVERRIDE", "access_control/enabled=false;transport/shared_memory/enabled=true")
     environ = os.environ | {"ROS_SECURITY_ENCLAVE_OVERRIDE": "/student"}
