@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from robolink.exceptions import TransportError, nearest
-from robolink.networks import hosts, named
+from robolink.networks import hosts, networks_file
 from robolink.networks.asked import ALIASES, FIRST_PORT, NAMES, ROUTER_PORT, Wanted
 from robolink.networks.port_probe import REFUSES, ROUTER, SILENT, STRANGER, Port
 from robolink.networks.refusals import WANTS_KEYS, wants_keys
@@ -55,16 +55,16 @@ def find(asked: Wanted, domain: int, environ: Mapping[str, str], *, secured: boo
     Raises TransportError if there is no such place, or if nobody answers there. With `secured` a host is `tls/HOST`:
     nothing is sent there in the clear.
     """
-    known = named.read_all(environ, asked.asked_by)
+    known = networks_file.read_all(environ, asked.asked_by)
     meant = known.get(asked.value)
-    if isinstance(meant, named.Peers) and meant.network:
+    if isinstance(meant, networks_file.Peers) and meant.network:
         meant = meant.network
-    if isinstance(meant, named.Peers):
+    if isinstance(meant, networks_file.Peers):
         return Place(tuple(_peer(each, domain) for each in meant.peers), lan=meant.lan)
     if meant is not None and not isinstance(found := _of_word(meant), hosts.Host):
         return found
     host = hosts.parse(meant or asked.value)
-    if host is None or (meant is None and asked.value.endswith(named.FILES)):
+    if host is None or (meant is None and asked.value.endswith(networks_file.FILES)):
         raise _unknown(asked, known, environ)
     try:
         return _asked_there(host._replace(tls=host.tls or secured), asked, domain)
@@ -79,7 +79,7 @@ def _of_word(meant: str) -> str | hosts.Host:
     word = ALIASES.get(meant, meant)
     host = (
         None
-        if word in NAMES or word.startswith(("tcp/", "/", "~")) or word.endswith(named.FILES)
+        if word in NAMES or word.startswith(("tcp/", "/", "~")) or word.endswith(networks_file.FILES)
         else hosts.parse(word)
     )
     return host or word
@@ -126,8 +126,8 @@ def _unknown(asked: Wanted, known: Mapping[str, object], environ: Mapping[str, s
     names = [*NAMES, *ALIASES, *known]
     wrong = hosts.mistake(value)
     if not wrong:
-        more = f", {', '.join(sorted(known)[:8])} of {named.FILE}" if known else ""
+        more = f", {', '.join(sorted(known)[:8])} of {networks_file.FILE}" if known else ""
         wrong = f"{KNOWN}{more}"
-        if path := named.passed_over(environ):
+        if path := networks_file.passed_over(environ):
             wrong += f"; {path} is not read, since others may write it or its folder"
     return TransportError(f"{asked.asked_by}: no network, host or file '{value}'{nearest(value, names)}; {wrong}")

@@ -10,7 +10,7 @@ from robolink.exceptions import SecurityError
 from robolink.security import session
 from robolink.security.keystore import CERTIFICATE, KEY
 from robolink.security.session import Security
-from robolink.transport import certificates, securing
+from robolink.transport import certificates, secure_config
 
 if TYPE_CHECKING:
     import zenoh
@@ -37,6 +37,6 @@ class Keys:
 
     def secure(self, config: zenoh.Config) -> None:
         """Close a configuration to whoever has no keys, and to everybody once the certificate has ended."""
-        securing.secure(self.security, config)
+        secure_config.secure(self.security, config)
         if time.time() >= self.valid.end:
-            securing.isolate(config)
+            secure_config.isolate(config)

@@ -158,9 +158,9 @@ def limits_wanted(asked: Wanted, environ: Mapping[str, str]) -> Limits | None:
         return limits.wanted(environ)
     if _needs_no_name(asked):
         return None
-    from robolink.networks import named  # late, too
+    from robolink.networks import networks_file  # late, too
 
-    return named.limits_of(asked, environ)
+    return networks_file.limits_of(asked, environ)
 
 
 def await_host(session: zenoh.Session, found: Plan) -> None:
@@ -176,9 +176,9 @@ def await_host(session: zenoh.Session, found: Plan) -> None:
 def _secure(domain: int, environ: Mapping[str, str]) -> Callable[[zenoh.Config], object] | None:
     if environ.get("ROS_SECURITY_ENABLE", "false") in ("", "false"):
         return None
-    from robolink.transport import securing  # late: few sessions need it
+    from robolink.transport import secure_config  # late: few sessions need it
 
-    return securing.secure_as(domain, environ)
+    return secure_config.secure_as(domain, environ)
 
 
 def load(network: str | None, domain: int, environ: Mapping[str, str], *, holds_port: bool = True) -> zenoh.Config:

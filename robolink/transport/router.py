@@ -17,7 +17,7 @@ from robolink.networks.asked import domain_id
 from robolink.networks.router import router_settings
 from robolink.security import session
 from robolink.security.session import Security
-from robolink.transport import lifetime, permission_watch, securing
+from robolink.transport import lifetime, permission_watch, secure_config
 from robolink.transport import zenoh_declare as declare
 from robolink.transport.certificates import Validity
 from robolink.transport.enclave_keys import Keys
@@ -154,7 +154,7 @@ def running(listen: Sequence[str], connect: Sequence[str]) -> Iterator[Router]:
         TransportError: if a port is taken, or if it cannot listen there; SecurityError if the environment asks for
             security, and keys are missing.
     """
-    router = Router(listen, connect, securing.router_security(os.environ))
+    router = Router(listen, connect, secure_config.router_security(os.environ))
     with contextlib.ExitStack() as stack:
         for each in listen:
             claim = PortClaim(port_of(each))

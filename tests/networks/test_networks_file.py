@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from robolink.exceptions import TransportError
-from robolink.networks import hosts, named, places
-from robolink.networks.named import Peers
+from robolink.networks import hosts, networks_file, places
+from robolink.networks.networks_file import Peers
 from robolink.networks.port_probe import REFUSES, ROUTER, SILENT, STRANGER, Port
 from robolink.transport import network
 
@@ -157,19 +157,21 @@ def test_the_workspace_counts_more_than_the_user(tmp_path: Path, environ: dict[s
     if sys.platform == "darwin":
         (tmp_path / "Library").mkdir()
         own.parent.rename(tmp_path / "Library/Application Support")
-    found = named.read_all(given, "network")
+    found = networks_file.read_all(given, "network")
     assert (found["robot"], found["home"]) == ("10.0.0.1", "10.8.8.8")
     assert found["lab"] == Peers(["10.0.0.2", "tls/arm.local:9000"], lan=True)
 
 
 def test_where_the_users_file_is() -> None:
-    assert named._own_folder({"HOME": "/home/a"}, "linux") == Path("/home/a/.config/robolink")
-    assert named._own_folder({"HOME": "/home/a", "XDG_CONFIG_HOME": "not/absolute"}, "linux") == Path(
+    assert networks_file._own_folder({"HOME": "/home/a"}, "linux") == Path("/home/a/.config/robolink")
+    assert networks_file._own_folder({"HOME": "/home/a", "XDG_CONFIG_HOME": "not/absolute"}, "linux") == Path(
         "/home/a/.config/robolink"
     )
-    assert named._own_folder({"HOME": "/Users/a"}, "darwin") == Path("/Users/a/Library/Application Support/robolink")
-    assert named._own_folder({"APPDATA": "C:/a"}, "win32") == Path("C:/a/robolink")
-    assert named._own_folder({}, "linux") is named._own_folder({}, "win32") is None
+    assert networks_file._own_folder({"HOME": "/Users/a"}, "darwin") == Path(
+        "/Users/a/Library/Application Support/robolink"
+    )
+    assert networks_file._own_folder({"APPDATA": "C:/a"}, "win32") == Path("C:/a/robolink")
+    assert networks_file._own_folder({}, "linux") is networks_file._own_folder({}, "win32") is None
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has other rights")
@@ -177,9 +179,9 @@ def test_a_file_that_others_may_write_is_not_found_by_itself(tmp_path: Path, mon
     (tmp_path / "networks.yaml").write_text("robot: 10.0.0.1")
     (tmp_path / "below").mkdir()
     monkeypatch.chdir(tmp_path / "below")
-    assert named._workspace({}) == tmp_path
+    assert networks_file._workspace({}) == tmp_path
     Path(tmp_path / "networks.yaml").chmod(0o666)
-    assert named._workspace({}) != tmp_path
+    assert networks_file._workspace({}) != tmp_path
     assert f"{tmp_path / 'networks.yaml'} is not read, since others may write it" in refusal("[robot", {})
 
 
@@ -189,5 +191,5 @@ def test_a_file_that_is_none_is_told(tmp_path: Path) -> None:
 
 
 def test_a_home_folder_of_nobody() -> None:
-    assert named._workspace({"ROBOLINK_WORKSPACE": "~nobody-here"}) == Path("~nobody-here")
+    assert networks_file._workspace({"ROBOLINK_WORKSPACE": "~nobody-here"}) == Path("~nobody-here")
     assert "no file '~nobody-here/x'" in refusal("lan", {"ROBOLINK_LIMITS": "~nobody-here/x"})
