@@ -67,6 +67,7 @@ bench: $(READY)  ## Speed beside peers, in one run each
 	$(BIN)/python benchmarks/virtual_time.py
 	$(BIN)/python benchmarks/simulating.py
 	$(BIN)/python benchmarks/simulator.py
+	$(BIN)/python benchmarks/camera.py
 	$(BIN)/python benchmarks/fleet.py
 	$(BIN)/python benchmarks/tf2.py
 	$(BIN)/python benchmarks/recording.py

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import threading
+from collections import Counter
 from collections.abc import Callable
 from queue import SimpleQueue
 
 from robolink.exceptions import InvalidHandle
+
+MOST = 10
+"""Number of jobs with one key that may wait: a short stall loses nothing."""
 
 
 class Darkroom:
@@ -19,14 +23,16 @@ class Darkroom:
     def __init__(self, warn: Callable[[str], object]) -> None:
         self._warn = warn
         self._jobs: SimpleQueue[tuple[object, Callable[[], object]] | None] = SimpleQueue()
-        self._waiting: set[object] = set()
+        self._waiting: Counter[object] = Counter()
+        self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
 
     def submit(self, key: object, job: Callable[[], object]) -> bool:
-        """Put a job in the queue; return False, and do nothing, if the last one with this key has not been done yet."""
-        if key in self._waiting:
-            return False
-        self._waiting.add(key)
+        """Put a job in the queue; return False, and do nothing, if `MOST` with this key are waiting."""
+        with self._lock:
+            if self._waiting[key] >= MOST:
+                return False
+            self._waiting[key] += 1
         if self._thread is None:
             self._thread = threading.Thread(target=self._work, name="robolink images", daemon=True)
             self._thread.start()
@@ -50,4 +56,5 @@ class Darkroom:
             except Exception as error:  # noqa: BLE001 - whatever it is, it is told, and later images are rendered
                 self._warn(f"an image could not be published: {type(error).__name__}: {error}")
             finally:
-                self._waiting.discard(key)
+                with self._lock:
+                    self._waiting[key] -= 1

@@ -108,7 +108,7 @@ class Simulation:
             camera.publish(shot, stamp)
         elif not self._darkroom.submit(camera, lambda: camera.publish(shot, stamp)):
             self._node.get_logger().warning(
-                f"rendering for {camera.frame} takes longer than from one image to the next: images are left out",
+                f"rendering for {camera.frame} takes too long for its rate: images are left out",
                 throttle_duration_sec=5.0,
             )
 

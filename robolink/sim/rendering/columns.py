@@ -41,14 +41,16 @@ def draw_cylinders(canvas: Canvas, cylinders: Cylinders, view: View, pinhole: Pi
 def _boxes(cylinders: Cylinders, view: View, pinhole: Pinhole) -> tuple[tuple[Indices, ...], Array]:
     """Return boxes of pixels that cylinders may cover: left, right, top, bottom; and their largest inverse depths."""
     x, y, r = cylinders.x, cylinders.y, cylinders.radius
-    corners = [(x + i * r, y + j * r, z) for i in (-1, 1) for j in (-1, 1) for z in (cylinders.low, cylinders.high)]
-    seen = np.stack([view.seen_points(np.stack(each)) for each in corners])  # 8, 3, n
-    depth = seen[:, 2]
+    x, y = np.concatenate((x - r, x - r, x + r, x + r)), np.concatenate((y - r, y + r, y - r, y + r))
+    low, high = np.tile(cylinders.low, 4), np.tile(cylinders.high, 4)
+    corners = np.stack((np.concatenate((x, x)), np.concatenate((y, y)), np.concatenate((low, high))))
+    seen = view.seen_points(corners).reshape(3, 8, -1)
+    depth = seen[2]
     behind, unseen = depth.min(axis=0) <= _IN_FRONT, depth.max(axis=0) <= _IN_FRONT
     scale = pinhole.focal / np.maximum(depth, _IN_FRONT)
     sides: list[Indices] = []
     for axis, size in ((0, pinhole.width), (1, pinhole.height)):
-        place = seen[:, axis] * scale + pinhole.centre[axis]
+        place = seen[axis] * scale + pinhole.centre[axis]
         first = np.where(behind, 0.0, np.clip(np.floor(place.min(axis=0)), 0, size)).astype(np.intp)
         last = np.where(behind, size, np.clip(np.ceil(place.max(axis=0)) + 1.0, 0, size)).astype(np.intp)
         sides += [first, last]

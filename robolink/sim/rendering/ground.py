@@ -61,8 +61,12 @@ class Ground:
             found = self._levels[int(level[begin])]
             for top in range(begin, end, turn):
                 part = slice(top, min(top + turn, end))
-                canvas.colours[first + top : first + part.stop] = _looked_up(
-                    found, [each[part] for each in starts], [each[part] for each in slopes], pinhole.columns
+                _look_up(
+                    found,
+                    [each[part] for each in starts],
+                    [each[part] for each in slopes],
+                    pinhole.columns,
+                    canvas.colours[first + top : first + part.stop],
                 )
 
     def _fitting(self, footprint: Array) -> Indices:
@@ -71,15 +75,15 @@ class Ground:
         return np.searchsorted(np.array(limits), footprint)
 
 
-def _looked_up(level: Level, starts: list[Array], slopes: list[Array], columns: Array) -> Packed:
-    """Return the colours of some rows: x and y of the picture are affine in the column."""
+def _look_up(level: Level, starts: list[Array], slopes: list[Array], columns: Array, colours: Packed) -> None:
+    """Write the colours of some rows: x and y of the picture are affine in the column."""
     x, y = (
         _places((slope * level.scale), (start * level.scale), columns, count)
         for slope, start, count in zip(slopes, starts, (level.columns, level.rows), strict=True)
     )
     y *= level.stride
     y += x
-    return level.flat.take(y)
+    level.flat.take(y, out=colours, mode="clip")  # another mode would need a copy
 
 
 def _places(slope: Array, start: Array, columns: Array, count: int) -> Places:

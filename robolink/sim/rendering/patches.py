@@ -10,7 +10,7 @@ import numpy as np
 from robolink.sim.rendering.arrays import Array, Bytes, Indices, Packed, cross, dot, packed
 from robolink.sim.rendering.mipmaps import Level, mipmaps
 from robolink.sim.scene.surfaces import Cylinder, Face, Picture, Surfaces
-from robolink.sim.trigonometry import cos_and_sin
+from robolink.sim.trigonometry import cos_and_sin, cos_and_sin_of
 
 FIXED = -1
 """Owner of what does not move."""
@@ -19,6 +19,9 @@ PARALLELOGRAM, ELLIPSE, TRIANGLE = range(3)
 _OUTLINES = {"parallelogram": PARALLELOGRAM, "ellipse": ELLIPSE, "triangle": TRIANGLE}
 
 _LIGHT = np.array(((0.5,), (0.3,), (0.8,))) / (0.5 * 0.5 + 0.3 * 0.3 + 0.8 * 0.8) ** 0.5
+_MANY = 16
+"""Number of angles from which on an array is quicker than one after the other."""
+
 _DARKEST = 0.7
 """Brightness of a face along which the light goes, as a share of that of one that faces it."""
 
@@ -111,7 +114,10 @@ class Places:
         self._x: Array = rows[:, 0]
         self._y: Array = rows[:, 1]
         angles: Array = rows[:, 2]
-        self._cos, self._sin = cos_and_sin(angles)
+        if len(angles) < _MANY:
+            self._cos, self._sin = np.array([cos_and_sin_of(each) for each in angles.tolist()]).reshape(-1, 2).T
+        else:
+            self._cos, self._sin = cos_and_sin(angles)
 
     def points(self, x: Array, y: Array, owner: Indices) -> tuple[Array, Array]:
         """Return points in the world."""

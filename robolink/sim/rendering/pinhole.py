@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from robolink.sim.rendering.arrays import Array
-from robolink.sim.trigonometry import cos_and_sin
+from robolink.sim.trigonometry import cos_and_sin_of
 
 
 class Pinhole:
@@ -25,8 +25,8 @@ class Pinhole:
 
     def __init__(self, width: int, height: int, fov: float) -> None:
         self.width, self.height = width, height
-        cos, sin = cos_and_sin(np.array([math.radians(fov / 2)]))
-        self.focal = width / 2 * float(cos[0] / sin[0])
+        cos, sin = cos_and_sin_of(math.radians(fov / 2))
+        self.focal = width / 2 * (cos / sin)
         """Focal length in pixels."""
         self.centre = (width - 1) / 2, (height - 1) / 2
         """Principal point: column and row."""
@@ -49,8 +49,9 @@ class View(NamedTuple):
 
     def seen(self, vectors: Array) -> Array:
         """Return vectors of the world, an array (3, n), along the camera's axes."""
-        x, y, z = vectors
-        return np.stack([x * axis[0] + y * axis[1] + z * axis[2] for axis in self.axes.tolist()])
+        of_x, of_y, of_z = self.axes.T[:, :, None]
+        seen: Array = vectors[0] * of_x + vectors[1] * of_y + vectors[2] * of_z
+        return seen
 
     def seen_points(self, points: Array) -> Array:
         """Return points of the world, an array (3, n), in the camera's frame."""
@@ -59,5 +60,5 @@ class View(NamedTuple):
 
 def view_from(position: tuple[float, float, float], yaw: float, pitch: float) -> View:
     """Return the view of a camera that looks ahead along `yaw` (radians from the x axis), `pitch` radians downwards."""
-    (cy, cp), (sy, sp) = (each.tolist() for each in cos_and_sin(np.array([yaw, pitch])))
+    (cy, sy), (cp, sp) = cos_and_sin_of(yaw), cos_and_sin_of(pitch)
     return View(position, np.array(((sy, -cy, 0.0), (-sp * cy, -sp * sy, -cp), (cy * cp, sy * cp, -sp))))

@@ -53,7 +53,8 @@ class Seen(NamedTuple):
 
 def seen_patches(patches: Patches, view: View, pinhole: Pinhole) -> Seen:
     """Return the patches that may be in the image, those with the nearest corners first."""
-    corner, a, b = view.seen_points(patches.corner), view.seen(patches.a), view.seen(patches.b)
+    sides = view.seen(np.concatenate((patches.a, patches.b), axis=1))
+    corner, a, b = view.seen_points(patches.corner), *np.split(sides, 2, axis=1)
     normal = cross(a, b)
     distance = dot(corner, normal)
     length = np.sqrt(dot(normal, normal))
