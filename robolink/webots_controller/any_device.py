@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, Protocol, TypeAlias
 
+from robolink.webots_controller.cameras import Camera, RangeFinder
 from robolink.webots_controller.motors import Joints, Motor, PositionSensor
 from robolink.webots_controller.robot_topics import RobotTopics, plain
 from robolink.webots_controller.sensors import Accelerometer, DistanceSensor, Gyro, InertialUnit, Lidar, TouchSensor
@@ -12,8 +13,8 @@ from robolink.webots_controller.topic_sensor import Sensor, nothing
 
 Known: TypeAlias = "Motor | PositionSensor | Sensor[Any]"
 
-SENSORS: tuple[type[Sensor[Any]], ...] = (Lidar, DistanceSensor, TouchSensor, InertialUnit)
-"""Sensor classes, one for each type of message."""
+SENSORS: tuple[type[Sensor[Any]], ...] = (Lidar, DistanceSensor, TouchSensor, InertialUnit, RangeFinder, Camera)
+"""Sensor classes, one for each type of message, and of images two: whatever has depths is a range finder."""
 
 WORDS: dict[str, type[Sensor[Any]]] = {"lidar": Lidar, "gyro": Gyro, "acc": Accelerometer, "inertial": InertialUnit}
 """Sensor classes by the beginning of a device's name."""
@@ -77,7 +78,11 @@ class AnyDevice:
             kinds = [kind for kind in every if hasattr(kind, method)]
             if not kinds:
                 raise AttributeError(f"device '{self._name}' has no {method}() here")
-            self._be(self._robot.getMotor(self._name) if kinds[0] is Motor else self._made(kinds[0]))
+            found = self._found() if len(kinds) > 1 else None
+            if found is not None and isinstance(found, tuple(kinds)):
+                self._be(found)
+            else:
+                self._be(self._robot.getMotor(self._name) if kinds[0] is Motor else self._made(kinds[0]))
         return getattr(self._device, method)
 
     def is_there(self) -> bool:
@@ -98,10 +103,10 @@ class AnyDevice:
         """Find a sensor by its name: among the topics, then by the kind in its name, then among the joints."""
         topics, name = self._robot.topics, self._name
         kind = next((each for word, each in WORDS.items() if plain(name).startswith(word)), None)
-        named = next((each for each in SENSORS if topics.find(each.message, name, or_only=False)), None)
+        named = next((each for each in SENSORS if each.found(topics, name, or_only=False)), None)
         if kind is None or (named is not None and named.message is not kind.message):
             kind = named
-        if kind and topics.find(kind.message, name, or_only=kind.any_name):
+        if kind and kind.found(topics, name, or_only=kind.any_name):
             return kind(topics, name)
         return self._robot.getPositionSensor(self._name) if self._robot.joint_of(self._name) else None
 

@@ -14,6 +14,7 @@ from robolink.node import Node
 from robolink.spinning import spin_once
 from robolink.text.names import spelled
 from robolink.webots_controller.any_device import SENSORS, AnyDevice
+from robolink.webots_controller.cameras import Camera, RangeFinder
 from robolink.webots_controller.motors import Motor, PositionSensor
 from robolink.webots_controller.robot_topics import RobotTopics, plain, quoted
 from robolink.webots_controller.sensors import Accelerometer, DistanceSensor, Gyro, InertialUnit, Lidar, TouchSensor
@@ -102,11 +103,20 @@ class Robot:
         """Return the accelerometer called `name`."""
         return Accelerometer(self.topics, name)
 
+    def getCamera(self, name: str) -> Camera:
+        """Return the camera called `name`."""
+        return Camera(self.topics, name)
+
+    def getRangeFinder(self, name: str) -> RangeFinder:
+        """Return the range finder called `name`: a camera of depths."""
+        return RangeFinder(self.topics, name)
+
     def _is_a_sensor(self, name: str) -> bool:
         return bool(self.joint_of(name)) or AnyDevice(self, name).is_there()
 
     def _sensor_topics(self) -> list[str]:
-        return [topic for kind in SENSORS for topic in self.topics.of_type(kind.message)]
+        found = [(kind, topic) for kind in SENSORS for topic in self.topics.of_type(kind.message)]
+        return [topic.removesuffix(kind.topic_of("")) for kind, topic in found if topic.endswith(kind.topic_of(""))]
 
     def joint_of(self, sensor: str) -> str:
         """Return the joint of a position sensor: by its name, else by most words in common; '' for none."""

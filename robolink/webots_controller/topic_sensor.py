@@ -36,6 +36,16 @@ class Sensor(Device, Generic[MessageT]):
         self._subscription: Subscription[MessageT] | None = None
         self._latest: MessageT | None = None
 
+    @classmethod
+    def topic_of(cls, name: str) -> str:
+        """Return the name of the topic of a device."""
+        return name
+
+    @classmethod
+    def found(cls, topics: RobotTopics, name: str, *, or_only: bool) -> str:
+        """Return the topic of a sensor of this class, or if `or_only` the only one of its type; '' for none."""
+        return topics.find(cls.message, cls.topic_of(name), or_only=or_only)
+
     def enable(self, samplingPeriod: int) -> None:
         """Enable the sensor; the world decides how often it measures, not `samplingPeriod` (ms)."""
         self._period = int(samplingPeriod)
@@ -54,7 +64,7 @@ class Sensor(Device, Generic[MessageT]):
 
     def _subscribe(self) -> None:
         if self._subscription is None and self._period:
-            topic = self._topics.find(self.message, self._name, or_only=self.any_name)
+            topic = self.found(self._topics, self._name, or_only=self.any_name)
             if topic:
                 name = f"{self._topics.prefix}{topic}"
                 self._subscription = self._topics.node.create_subscription(self.message, name, self._on_message, 10)

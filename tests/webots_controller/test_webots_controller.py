@@ -226,8 +226,8 @@ def test_sensors(system: System, world: str) -> None:
     assert math.isnan(distance.getValue())
     with pytest.raises(IndexError, match="lidar 'LDS-01' has no layer 1, only layer 0"):
         lidar.getLayerRangeImage(1)
-    with pytest.raises(AttributeError, match=r"device 'bumper' has no getImage\(\) here"):
-        bumper.getImage()
+    with pytest.raises(AttributeError, match=r"device 'bumper' has no getTargets\(\) here"):
+        bumper.getTargets()
 
 
 def test_the_lidars_first_value_is_on_the_left(system: System, world: str) -> None:

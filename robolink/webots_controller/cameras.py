@@ -1,0 +1,191 @@
+"""Webots' cameras and range finders, from the image topics of a simulated robot."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from robolink.image import ImageError, to_array
+from robolink.image.codecs import encoded
+from robolink.image.png import png_of
+from robolink.interfaces.sensor_msgs.msg import CameraInfo, Image
+from robolink.subscription import Subscription
+from robolink.webots_controller.topic_sensor import Sensor
+
+ValueT = TypeVar("ValueT")
+
+
+class ImageSensor(Sensor[Image], Generic[ValueT]):
+    """Base class of cameras: an image of `width` times `height` values of the type that a program reads."""
+
+    message = Image
+    folder = ""
+    """Part of the topic's name between the device's name and image_raw."""
+
+    def __init__(self, topics: Any, name: str) -> None:
+        super().__init__(topics, name)
+        self._shown: tuple[Image | None, ValueT | None] = (None, None)
+        self._info: CameraInfo | None = None
+        self._infos: Subscription[CameraInfo] | None = None
+
+    @classmethod
+    def topic_of(cls, name: str) -> str:
+        """Return the name of the image topic of a device."""
+        return f"{name}{cls.folder}/image_raw"
+
+    def disable(self) -> None:
+        """Disable the sensor."""
+        super().disable()
+        self._shown = (None, None)
+
+    def getWidth(self) -> int:
+        """Return the columns of an image; 0 until the world is heard."""
+        info = self._calibration()
+        return info.width if info else 0
+
+    def getHeight(self) -> int:
+        """Return the rows of an image; 0 until the world is heard."""
+        info = self._calibration()
+        return info.height if info else 0
+
+    def getFov(self) -> float:
+        """Return the horizontal field of view in radians; NaN until the world is heard."""
+        info = self._calibration()
+        return 2.0 * math.atan(info.width / 2 / info.k[0]) if info else math.nan
+
+    def _subscribe(self) -> None:
+        self._calibration()
+        super()._subscribe()
+
+    def _calibration(self) -> CameraInfo | None:
+        """Return the camera's calibration, once it has come."""
+        if self._infos is None:
+            topic = self._topics.find(CameraInfo, f"{self._name}{self.folder}/camera_info", or_only=False)
+            if topic:
+                name = f"{self._topics.prefix}{topic}"
+                self._infos = self._topics.node.create_subscription(CameraInfo, name, self._on_info, 1)
+        return self._info
+
+    def _on_info(self, info: CameraInfo) -> None:
+        self._info = info
+
+    def _converted(self) -> ValueT | None:
+        """Return the latest image as programs read it; None before the first."""
+        latest = self.latest
+        if latest is not self._shown[0]:
+            self._shown = (latest, None if latest is None else self._convert(latest))
+        return self._shown[1]
+
+    def _convert(self, image: Image) -> ValueT:
+        raise NotImplementedError
+
+
+class Camera(ImageSensor[bytes]):
+    """A camera of colours, without recognition of objects."""
+
+    def getImage(self) -> bytes | None:
+        """Return the bytes of the pixels, row by row: blue, green, red and alpha of each; None before the first."""
+        return self._converted()
+
+    def getImageArray(self) -> list[list[list[int]]]:
+        """Return the red, green and blue of each pixel, as lists by column and row; empty before the first image."""
+        latest = self.latest
+        if latest is None:
+            return []
+        columns: list[list[list[int]]] = to_array(latest, "rgb8").swapaxes(0, 1).tolist()
+        return columns
+
+    def saveImage(self, filename: str, quality: int) -> int:
+        """Write the latest image to a file, .png or .jpg.
+
+        Args:
+            filename: The file.
+            quality: Quality of a JPEG, of which nothing is made here.
+
+        Returns:
+            0, or -1 if there is no image yet, or it could not be written.
+        """
+        latest = self.latest
+        if latest is None:
+            return -1
+        try:
+            if Path(filename).suffix.lower() in {".jpg", ".jpeg"}:
+                data = encoded(to_array(latest, "bgr8"), "jpg")
+            else:
+                data = png_of(to_array(latest, "rgb8"))
+            Path(filename).write_bytes(data)
+        except (ImageError, OSError):
+            return -1
+        return 0
+
+    def hasRecognition(self) -> bool:
+        """Return False: objects are not recognized."""
+        return False
+
+    @staticmethod
+    def imageGetRed(image: bytes, width: int, x: int, y: int) -> int:
+        """Return the red of a pixel of `getImage`, 0 to 255."""
+        return image[4 * (y * width + x) + 2]
+
+    @staticmethod
+    def imageGetGreen(image: bytes, width: int, x: int, y: int) -> int:
+        """Return the green of a pixel of `getImage`, 0 to 255."""
+        return image[4 * (y * width + x) + 1]
+
+    @staticmethod
+    def imageGetBlue(image: bytes, width: int, x: int, y: int) -> int:
+        """Return the blue of a pixel of `getImage`, 0 to 255."""
+        return image[4 * (y * width + x)]
+
+    @staticmethod
+    def imageGetGray(image: bytes, width: int, x: int, y: int) -> int:
+        """Return the mean of red, green and blue of a pixel of `getImage`, 0 to 255."""
+        place = 4 * (y * width + x)
+        return sum(image[place : place + 3]) // 3
+
+    @staticmethod
+    def imageGetGrey(image: bytes, width: int, x: int, y: int) -> int:
+        """Return the same as `imageGetGray`."""
+        return Camera.imageGetGray(image, width, x, y)
+
+    def _convert(self, image: Image) -> bytes:
+        return to_array(image, "bgra8").tobytes()
+
+
+class RangeFinder(ImageSensor[list[float]]):
+    """A camera of depths in metres: inf beyond its range, 0 before it."""
+
+    folder = "/depth"
+
+    def getRangeImage(self, data_type: str = "list") -> Any:
+        """Return the depth of each pixel, row by row; empty before the first image.
+
+        Args:
+            data_type: `list`, or `buffer` for the bytes of 32-bit numbers.
+
+        Raises:
+            ValueError: for another type.
+        """
+        if data_type not in {"list", "buffer"}:
+            raise ValueError(f"data_type is 'list' or 'buffer', not '{data_type}'")
+        depths = self._converted() or []
+        return depths if data_type == "list" else np.array(depths, dtype=np.float32).tobytes()
+
+    def getRangeImageArray(self) -> list[list[float]]:
+        """Return the depth of each pixel, as lists by column and row; empty before the first image."""
+        depths, latest = self._converted(), self.latest
+        if depths is None or latest is None:
+            return []
+        return [depths[column :: latest.width] for column in range(latest.width)]
+
+    @staticmethod
+    def rangeImageGetDepth(image: list[float], width: int, x: int, y: int) -> float:
+        """Return the depth of a pixel of `getRangeImage` in metres."""
+        return image[y * width + x]
+
+    def _convert(self, image: Image) -> list[float]:
+        depths: list[float] = np.maximum(to_array(image), 0.0).ravel().tolist()
+        return depths
