@@ -170,6 +170,11 @@ def settings(limits: Limits, domain: int, interfaces: list[str] | None = None) -
     return found | ({"transport/link/tcp/so_sndbuf": limits.buffer} if limits.buffer else {})
 
 
+def thinned(limits: Limits, domain: int) -> list[str]:
+    """Return the key expressions of the topics of one domain of which not every message is sent."""
+    return [key for name in (*limits.rate, *limits.size) for key in keys(name, domain)]
+
+
 def apply(config: zenoh.Config, limits: Limits, domain: int) -> None:
     """Change a session's configuration: `limits` take the place of settings of this kind that it has."""
     for path, value in settings(limits, domain, beyond_loopback()).items():

@@ -1,4 +1,7 @@
-"""Watch of this machine's addresses: a session that others find by an address must know when it gets another one."""
+"""Watch of this machine's addresses and connections: a session must know when it has to be opened again.
+
+Others find it by an address, which may change; and a connection may stand still though packets pass again.
+"""
 
 from __future__ import annotations
 
@@ -34,6 +37,9 @@ class Movable(Protocol):
     def move(self, addresses: frozenset[str]) -> object:
         """Go on from these addresses, if any of them is new; must not block for long."""
 
+    def unstick(self) -> object:
+        """Go on by other connections, if some stand still though packets pass; must not block for long."""
+
 
 def current() -> frozenset[str]:
     """Return this machine's IPv4 addresses but for loopback's: Zenoh's discovery uses no others."""
@@ -45,7 +51,7 @@ def current() -> frozenset[str]:
 
 
 def watch(session: Movable) -> None:
-    """Call `session.move` with each new set of addresses, on a background thread, for as long as it exists."""
+    """Call `session.move` and `session.unstick` again and again, on a background thread, for as long as it exists."""
     global _thread
     with _lock:
         _watched.add(session)
@@ -77,6 +83,8 @@ def _look() -> None:
             known = now
             for session in sessions:
                 session.move(now)
+        for session in sessions:
+            session.unstick()
         del sessions  # not kept alive while this sleeps
         time.sleep(LOOKS_EVERY)
 

@@ -81,6 +81,16 @@ class Plan(NamedTuple):
             self.secure(config)
         return config
 
+    def thinned(self) -> list[str] | None:
+        """Return the key expressions of the topics that limits thin; None if nothing may be sent again after a cut."""
+        if self.environ.get("ROS_SECURITY_ENABLE"):  # whoever asked would get topics that its own rights do not name
+            return None
+        if self.limits is None:
+            return []
+        from robolink.networks import limits  # late: few sessions need it
+
+        return limits.thinned(self.limits, self.domain)
+
     def _limited(self, config: zenoh.Config) -> zenoh.Config:
         """Add what thins topics on slow links, if that is asked for."""
         if self.limits is not None:

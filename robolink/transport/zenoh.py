@@ -13,7 +13,7 @@ import queue
 import time
 import weakref
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import zenoh
 
@@ -31,6 +31,7 @@ from robolink.transport import zenoh_reunion as reunion
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample, refuse_giant
 from robolink.transport.reach import Link, Reach, links_of, port_of, reach
 from robolink.transport.shared_pools import PoolLimit
+from robolink.transport.zenoh_recovery import Recovery
 from robolink.transport.zenoh_sieve import Sieve
 from robolink.transport.zenoh_tokens import Changes, ZenohToken, ZenohWatch, settled
 
@@ -77,11 +78,12 @@ class ZenohTransport(Transport):
             before = time.time()
             environ = dict(os.environ if environ is None else environ)
             self._join = functools.partial(_join, domain, network, environ, secure)
-            self._session, self._claim, holds_port, self._moves = self._join()
+            self._session, self._claim, holds_port, self._moves, thinned = self._join()
             self._met_at = time.monotonic() + (REUNION if holds_port else 0.0)
             self._pools = PoolLimit(before)
             self.session_id = str(self._session.info.zid())
             lifetime.watch_over(self)
+        self._recovery = Recovery(self._holdings, self.session_id, domain, thinned)
         if self._moves:
             addresses.watch(self)
 
@@ -89,15 +91,20 @@ class ZenohTransport(Transport):
         """Declare a publisher. With TRANSIENT_LOCAL it keeps the last `qos.depth` samples for late joiners."""
         made, full = self._make(key, declare.declare_publishers, key, resolved(qos)), resolved(qos)
         keeps = self._moves and qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
-        return self._settle(handles.ZenohOutlet(self._holdings, key, made, handles.Kept(full.depth) if keeps else None))
+        kept = handles.Kept(full.depth) if keeps else None
+        cache = self._recovery.cache(key, full, self._make, self._settle)
+        return self._settle(handles.ZenohOutlet(self._holdings, key, made, kept, cache))
 
     def subscribe(self, key: str, qos: QoSProfile, sink: Sink) -> Handle:
         """Call `sink` for every sample published on `key`; with TRANSIENT_LOCAL what was kept comes first."""
         latched = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
         if latched and self._moves:  # who has moved, here or elsewhere, sends again what it keeps
             sink = Sieve(sink)
+        else:
+            sink = self._recovery.mend(key, resolved(qos), sink, self._make, self._settle)
         gate = declare.make_gate(sink)
-        made = self._make(key, declare.declare_subscriber, key, gate, resolved(qos))
+        subscribe = declare.declare_heard if self._moves else declare.declare_subscriber
+        made = self._make(key, subscribe, key, gate, resolved(qos))
         topic = self._holdings.topic(key)
         return self._settle(handles.ZenohSubscription(self._holdings, made, gate, topic, sink, latched=latched))
 
@@ -207,6 +214,7 @@ class ZenohTransport(Transport):
             for end in lifetime.all_of(self._ends):
                 declare.close_gate(end)
         why = f"session {self.session_id} has been closed"
+        self._recovery.close()
         with self._holdings.lock:
             declared = self._holdings.end(why)
         _leave(self._claim, self._session, [entity for handle in declared for entity in handle.shut(why)])
@@ -218,6 +226,11 @@ class ZenohTransport(Transport):
         """Go on from these addresses, on a background thread, if any of them is new."""
         if self._moved.is_news(now):
             self._mover().move(now)
+
+    def unstick(self) -> None:
+        """Go on in a new session, on a background thread, if links of this one wait though packets pass again."""
+        if self._mover().unstick():
+            self._recovery.ask_me()
 
     def reopen(self, named: frozenset[str] = frozenset()) -> None:
         """Go on in a new session that is found at these addresses, behind the same handles; takes some seconds."""
@@ -280,12 +293,7 @@ class ZenohTransport(Transport):
             return {str(peer) for peer in self._session.info.peers_zid()}
 
     def _try(self, key: str, action: Callable[..., Any], *arguments: object) -> Any:
-        self._holdings.check()
-        try:
-            with lifetime.inside:
-                return action(self._session, *arguments)
-        except zenoh.ZError as error:
-            raise self._holdings.failure(key, error) from None
+        return self._make(key, action, *arguments).entity
 
 
 def _leave(claim: port_sharing.PortClaim | None, session: zenoh.Session, entities: list[object]) -> None:
@@ -306,21 +314,13 @@ def _leave(claim: port_sharing.PortClaim | None, session: zenoh.Session, entitie
         time.sleep(0.001)
 
 
-class _Joined(NamedTuple):
-    session: zenoh.Session
-    claim: port_sharing.PortClaim | None = None
-    holds_port: bool = False
-    moves: bool = False
-    """True if others may be met at addresses that change."""
-
-
 def _join(
     domain: int,
     asked: str | None,
     environ: Mapping[str, str],
     secure: Callable[[zenoh.Config], object] | None,
     named: frozenset[str] = frozenset(),
-) -> _Joined:
+) -> reunion.Joined:
     if "RUST_LOG" in environ:
         show_log: Callable[[], object] = zenoh.try_init_log_from_env
         show_log()
@@ -334,19 +334,20 @@ def _join(
         config = load()
         within = reach(config)
         moves = within.leaves_machine
+        thinned = found.thinned() if moves else None
         if found.meets and within.listens:  # not if it goes nowhere, its certificate having ended
             joined = _meet(port, lambda holds: zenoh.open(load(True) if holds else config), within)
             network.await_host(joined.session, found)
-            return joined._replace(moves=moves)
+            return joined._replace(moves=moves, thinned=thinned)
         if wrong := certificates.faults(config):
             raise TransportError(f"cannot join the network '{found.asked.value}': {'; '.join(wrong)}")
-        return _listen_beside(load)._replace(moves=moves)
+        return _listen_beside(load)._replace(moves=moves, thinned=thinned)
     except zenoh.ZError as error:
         reasons = [network.reason(error), *certificates.refusals(found.config(holds_port=False))]
         raise TransportError(f"cannot join the network '{found.asked.value}': {'; '.join(reasons)}") from None
 
 
-def _listen_beside(load: Callable[[], zenoh.Config]) -> _Joined:
+def _listen_beside(load: Callable[[], zenoh.Config]) -> reunion.Joined:
     """Listen on the configured endpoints, or connect to the process of this machine that does so already."""
     taken, refusals = list[str](), list[str]()
     for _ in range(2):  # twice, since another process may come first, or the holder leave in between
@@ -366,7 +367,7 @@ def _listen_beside(load: Callable[[], zenoh.Config]) -> _Joined:
                 continue
             if not taken or _linked(session):
                 undo.pop_all()
-                return _Joined(session, claim, bool(fixed) and not taken)
+                return reunion.Joined(session, claim, bool(fixed) and not taken)
             lifetime.finish(functools.partial(declare.close_session, session), CLOSE_WITHIN)
             refusals = certificates.refusals(config, holders)
     hint = "; ".join(refusals) or "stop it, or listen elsewhere in this process's configuration"
@@ -374,18 +375,18 @@ def _listen_beside(load: Callable[[], zenoh.Config]) -> _Joined:
     raise TransportError(f"{where} is taken, and who listens there has not let this process in: {hint}")
 
 
-def _meet(port: int, open_session: Callable[[bool], zenoh.Session], within: Reach) -> _Joined:
+def _meet(port: int, open_session: Callable[[bool], zenoh.Session], within: Reach) -> reunion.Joined:
     """Listen on the rendezvous port, or connect to its holder."""
     for _ in range(2):  # twice, since the holder may leave in between
         claim = port_sharing.PortClaim(port)
         if claim.granted:
             try:
-                return _Joined(open_session(True), claim, True)
+                return reunion.Joined(open_session(True), claim, True)
             except zenoh.ZError:  # taken
                 claim.release()
         session = open_session(False)
         if _linked(session):
-            return _Joined(session, port_heir.claim_of(claim, port, open_session, within))
+            return reunion.Joined(session, port_heir.claim_of(claim, port, open_session, within))
         lifetime.finish(functools.partial(declare.close_session, session), CLOSE_WITHIN)
     raise TransportError(refusals.of_holder(port, secured=within.secured))
 

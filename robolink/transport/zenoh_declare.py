@@ -32,6 +32,17 @@ class Publishers(NamedTuple):
     """Declares one that knows whether any other session listens."""
 
 
+class Heard(NamedTuple):
+    """Zenoh's subscriber, and a gate of its own by which it delivers, so that this can end before the session does."""
+
+    subscriber: Any
+    gate: Sink
+
+    def undeclare(self) -> None:
+        """Undeclare the subscriber."""
+        self.subscriber.undeclare()
+
+
 def declare_publishers(session: zenoh.Session, key: str, qos: QoSProfile) -> Publishers:
     """Declare the publisher of a resolved profile; for a peer with a full buffer it waits a little, then drops.
 
@@ -75,11 +86,17 @@ def declare_subscriber(session: zenoh.Session, key: str, gate: Sink, qos: QoSPro
         recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if reliable else None,
         subscriber_detection=True,
     )
-    _follow(subscriber.handler, gate, "robolink latched")
+    follow(subscriber.handler, gate, "robolink latched")
     return subscriber
 
 
-def _follow(channel: Any, sink: Sink, name: str) -> None:
+def declare_heard(session: zenoh.Session, key: str, gate: Sink, qos: QoSProfile) -> Heard:
+    """Declare a subscriber, as `declare_subscriber` does, with a gate of its own in front of `gate`."""
+    own = make_gate(gate)
+    return Heard(declare_subscriber(session, key, own, qos), own)
+
+
+def follow(channel: Any, sink: Sink, name: str) -> None:
     """Pass items of a channel to the sink, on a background thread, until the channel's declaration is gone.
 
     Zenoh would start such a thread too, but nobody could wait for that one, and it aborts a process whose interpreter
@@ -137,7 +154,7 @@ def declare_watch(session: zenoh.Session, pattern: str, changed: Sink) -> tuple[
     Returns the gate that leads to it, too.
     """
     watch, feed = _declare_tokens(session, pattern, zenoh.handlers.FifoChannel(MOST_BETWEEN)), make_gate(changed)
-    _follow(watch.handler, feed, "robolink watch")
+    follow(watch.handler, feed, "robolink watch")
     return watch, feed
 
 

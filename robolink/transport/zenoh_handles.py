@@ -19,7 +19,9 @@ from robolink.system import heap
 from robolink.transport import lifetime
 from robolink.transport.base import Sample, Sink, refuse_giant
 from robolink.transport.network import reason
+from robolink.transport.zenoh_cache import Cache
 from robolink.transport.zenoh_declare import Publishers, aim_gate, close_gate, is_matching, quietly
+from robolink.transport.zenoh_mending import Mending
 from robolink.transport.zenoh_sieve import Sieve
 
 LARGE = 32 * 1024
@@ -116,6 +118,9 @@ class Declared:
         """Go on in this session, unless it is there already; return what is of no use any more."""
         return [] if self._session is session else self.adopt(self.declare_in(session), session)
 
+    def settle_in(self) -> None:
+        """Begin what has to wait until everything has moved to another session."""
+
     def _entities_of(self, made: Any) -> list[Any]:
         return [made]
 
@@ -174,12 +179,25 @@ class Kept:
 class ZenohOutlet(Declared):
     """A publisher."""
 
-    __slots__ = ("_asked", "_declare_remote", "_has_told", "_kept", "_key", "_matched_until", "_remote", "_topic")
+    __slots__ = (
+        "_asked",
+        "_declare_remote",
+        "_has_told",
+        "_kept",
+        "_matched_until",
+        "_remote",
+        "_topic",
+        "cache",
+        "key",
+    )
 
-    def __init__(self, holdings: Holdings, key: str, made: Made, kept: Kept | None = None) -> None:
+    def __init__(
+        self, holdings: Holdings, key: str, made: Made, kept: Kept | None = None, cache: Cache | None = None
+    ) -> None:
         # First, since it may be shut from the moment on that the session has it.
         publishers: Publishers = made.entity
-        self._key, self._topic, self._asked = key, holdings.topic(key), publishers.asked
+        self.cache = cache
+        self.key, self._topic, self._asked = key, holdings.topic(key), publishers.asked
         self._declare_remote, self._kept = publishers.declare_remote, kept
         self._remote: Any = None
         self._has_told, self._matched_until = False, 0.0
@@ -205,6 +223,8 @@ class ZenohOutlet(Declared):
 
     def put(self, payload: bytes, attachment: bytes) -> None:
         """Send to every matching subscription. Raises TransportClosedError after close, TransportError for giants."""
+        if self.cache is not None:
+            self.cache.add(payload, attachment)
         if self._kept is not None or len(payload) >= LARGE:
             self._put_rarely(payload, attachment)
             return
@@ -236,11 +256,11 @@ class ZenohOutlet(Declared):
 
     def _send_again(self, entity: Any, error: Exception, payload: bytes, attachment: bytes) -> None:
         if entity is self._entity:
-            raise self._holdings.failure(self._key, error) from None
+            raise self._holdings.failure(self.key, error) from None
         self._send(payload, attachment)  # it was replaced meanwhile, and its session closed
 
     def _put_large(self, payload: bytes, attachment: bytes) -> None:
-        refuse_giant(self._key, payload)
+        refuse_giant(self.key, payload)
         if len(payload) >= heap.LARGE:
             heap.keep()
         self._deliver_here(payload, attachment)
@@ -265,7 +285,7 @@ class ZenohOutlet(Declared):
         if not self._has_told:
             self._has_told = True
             get_logger("robolink.transport").warning(
-                f"{self._key[:200]}: a message of {size:,} bytes waited {LONGEST_WAIT:g} s for room and may not arrive:"
+                f"{self.key[:200]}: a message of {size:,} bytes waited {LONGEST_WAIT:g} s for room and may not arrive:"
                 " a subscriber's link is too slow for messages of this size, or it stands still (said once)"
             )
 
@@ -291,7 +311,7 @@ class ZenohOutlet(Declared):
     def shut(self, why: str) -> list[Any]:
         """Stop sending; return all publishers, the one for sending and those for matching."""
         self._topic = _NOBODY
-        used = super().shut(f"the publisher of {self._key[:200]} is of no use any more: {why}")
+        used = super().shut(f"the publisher of {self.key[:200]} is of no use any more: {why}")
         asked, self._asked = self._asked, _Gone(why)
         remote, self._remote = self._remote, _Gone(why)
         return [*used, *(each for each in (asked, remote) if each is not None and each not in used)]
@@ -323,3 +343,9 @@ class ZenohSubscription(Declared):
             self._topic.sinks = tuple(sink for sink in self._topic.sinks if sink is not self._gate)
             self._topic.latched = tuple(sink for sink in self._topic.latched if sink is not self._gate)
         super().close()
+
+    def shut(self, why: str) -> list[Any]:
+        """Deliver nothing any more."""
+        if isinstance(self._sink, Mending):  # an answer may be on its way
+            self._sink.close()
+        return super().shut(why)

@@ -20,8 +20,10 @@ from robolink.exceptions import TransportError
 from robolink.logging import get_logger
 from robolink.system.queues import get_within
 from robolink.transport import lifetime
-from robolink.transport.reach import Link, host_of
-from robolink.transport.zenoh_declare import ask
+from robolink.transport.port_sharing import PortClaim
+from robolink.transport.reach import Link, host_of, port_of
+from robolink.transport.stuck_links import Place, Probes, waiting
+from robolink.transport.zenoh_declare import Heard, ask, close_gate
 from robolink.transport.zenoh_handles import Declared, Holdings, ZenohSubscription
 from robolink.transport.zenoh_tokens import ZenohWatch
 
@@ -56,6 +58,9 @@ class Former:
         with self._lock:
             has_left, self._has_left = self._has_left, True
         if not has_left:
+            for each in self.entities:
+                if isinstance(each, Heard):  # closing takes seconds where a link stands still: peers may find it then
+                    close_gate(each.gate)
             self._leave(self._session, self.entities)
             lifetime.forget(self)
 
@@ -63,6 +68,18 @@ class Former:
         """Refuse every further use in a forked child."""
         self._has_left = True
         lifetime.leak((self._session, self.entities))
+
+
+class Joined(NamedTuple):
+    """A session that has joined a network."""
+
+    session: zenoh.Session
+    claim: PortClaim | None = None
+    holds_port: bool = False
+    moves: bool = False
+    """True if others may be met at addresses that change."""
+    thinned: list[str] | None = None
+    """Key expressions of the topics of which nothing is sent again after a cut; None if nothing at all is."""
 
 
 class Opened(NamedTuple):
@@ -80,6 +97,9 @@ class State:
         self.moving = threading.Lock()
         self.addresses: frozenset[str] | None = None
         self.told = ""
+        self.probes = Probes()
+        self.stuck: set[Place] = set()
+        """Other ends of the links that stand still."""
 
     def is_news(self, now: frozenset[str]) -> bool:
         """True if an address is new, and nothing is being done about it; the first ones are those of the start."""
@@ -113,25 +133,47 @@ class Mover:
         self._end_calls, self._has_left = end_calls, has_left
         self._state = state
 
-    def move(self, now: frozenset[str]) -> None:
+    def move(self, now: frozenset[str], *, again: bool = False) -> None:
         """Do `reopen` on a background thread."""
+        arguments = {"again": again}
         with contextlib.suppress(RuntimeError):  # Python 3.12 starts no threads any more at exit
-            threading.Thread(target=self._go_on, args=(now,), name="robolink reunion", daemon=True).start()
+            threading.Thread(
+                target=self._go_on, args=(now,), kwargs=arguments, name="robolink reunion", daemon=True
+            ).start()
 
-    def _go_on(self, now: frozenset[str]) -> None:
+    def unstick(self) -> bool:
+        """Do `reopen` on a background thread if TCP waits on a link to another machine, though packets pass again.
+
+        Returns True if another one than before stands still.
+        """
+        if self._state.moving.locked():
+            return False
+        stuck = waiting([(_place(each.here), _place(each.there)) for each in self._links() if each.leaves_machine])
+        before, self._state.stuck = self._state.stuck, {each.there for each in stuck}
+        if self._state.probes.passes(stuck):
+            get_logger("robolink.transport").info("packets pass again, but TCP still waits: links are made again")
+            self.move(self._state.addresses or frozenset(), again=True)
+        return not self._state.stuck <= before
+
+    def _go_on(self, now: frozenset[str], *, again: bool) -> None:
         try:
-            self.reopen(now)
+            self.reopen(now, again=again)
         except TransportError as error:  # the next look tries again
             if (text := str(error)) != self._state.told:
                 self._state.told = text
                 get_logger("robolink.transport").warning(
-                    f"this machine has another address, {', '.join(sorted(now))}; not found there yet: {text}"
+                    f"this machine is to be found at {', '.join(sorted(now))}, but is not yet: {text}"
                 )
 
-    def reopen(self, named: frozenset[str] = frozenset()) -> None:
-        """Go on in a new session that is found at these addresses; returns when all has settled."""
+    def reopen(self, named: frozenset[str] = frozenset(), *, again: bool = False) -> None:
+        """Go on in a new session that is found at these addresses; returns when all has settled.
+
+        Args:
+            named: Addresses; none for those that Zenoh knows.
+            again: True does it also where none of them is new.
+        """
         with self._state.moving:
-            if self._state.addresses is not None and named and named <= self._state.addresses:
+            if not again and self._state.addresses is not None and named and named <= self._state.addresses:
                 return
             begin, watches = time.monotonic(), self._replace(named)
         self._wait(begin + SETTLED_AFTER - time.monotonic())
@@ -142,6 +184,7 @@ class Mover:
         with lifetime.inside:
             peers = {each.session for each in self._links() if _is_alive(each, named)}
         opened = self._open_beside(named)
+        is_news = named != self._state.addresses
         if named:
             self._state.addresses, self._state.told = named, ""
         subscriptions = [each for each in self._declared() if isinstance(each, ZenohSubscription)]
@@ -155,7 +198,9 @@ class Mover:
             former.entities += handle.adopt(entity, opened.session)
         for handle in self._declared():  # those that were declared meanwhile
             former.entities += handle.move_to(opened.session)
-        if named:
+        for handle in self._declared():
+            handle.settle_in()
+        if named and is_news:
             where = ", ".join(sorted(named))
             get_logger("robolink.transport").info(f"this machine's addresses have changed: found at {where} now")
         self._wait(OVERLAP)
@@ -185,6 +230,10 @@ class Mover:
         deadline = time.monotonic() + seconds
         while time.monotonic() < deadline and not self._has_left() and not is_enough():
             time.sleep(STEP)
+
+
+def _place(end: str) -> Place:
+    return host_of(end).partition("%")[0], port_of(end)
 
 
 def _is_alive(link: Link, addresses: frozenset[str]) -> bool:

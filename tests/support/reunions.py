@@ -3,8 +3,9 @@
     python -m tests.support.reunions [SCENE ...] [--rounds 20] [--seconds 15]
 
 plays each scene for so many rounds at 100 Hz, with KEEP_ALL and with KEEP_LAST 10, and prints after how many seconds
-both sides heard something new from each other, how many messages were lost, how many of these were counted, whether the
-last ten of the cut and the latched message came, how late the latest was, and how late between two that were not cut.
+both sides heard something new from each other, how many messages were lost, how many of these were counted, how many
+came twice, whether the last ten of the cut and the latched message came, how late the latest was, and how late between
+two that were not cut.
 """
 
 from __future__ import annotations
@@ -58,10 +59,12 @@ class Reunion(NamedTuple):
     """Seconds: the longest way of a message that came."""
     beside: float
     """Seconds: the longest way of a message between two processes of the machine that was not cut."""
+    twice: int = 0
+    """Messages that came more than once."""
 
     def __str__(self) -> str:
         return (
-            f"back after {self.back:5.2f} s  lost {self.lost:5} (counted {self.told:5})"
+            f"back after {self.back:5.2f} s  lost {self.lost:5} (counted {self.told:5})  twice {self.twice:3}"
             f"  last ten {_said(self.last_ten)}  latched {_said(self.latched)}  late {self.late:5.2f} s"
             f"  beside {self.beside:5.3f} s  publish {self.longest:5.3f} s"
         )
@@ -145,6 +148,7 @@ def _judge(reports: dict[str, Any], begin: float, ended: float, until: float) ->
             worst.last_ten and _has_last(came, sent, ended),
             max(worst.late, _latest(came, sent, begin - 1.0)),
             worst.beside,
+            max(worst.twice, len(heard[other]) - len(came)),
         )
     pairs = (("b", "c"), ("c", "b")) if "c" in reports else ()
     ways = [_latest(dict(reports[name]["heard"][other]), reports[other]["sent"], begin - 1.0) for name, other in pairs]

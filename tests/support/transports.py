@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import itertools
 import queue
+import struct
 import time
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -25,6 +26,11 @@ BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 def latched(depth: int) -> QoSProfile:
     return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def stamped(number: int, publisher: int = 0, at: int | None = None) -> bytes:
+    """An attachment as of ROS 2; `at` is its time, the number by itself."""
+    return struct.pack("<qqB16s", number, number if at is None else at, 16, b"%16d" % publisher)
 
 
 class Network:

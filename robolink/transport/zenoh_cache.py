@@ -1,0 +1,90 @@
+"""Cache of a publisher's last messages, for those who ask for what a lost link has cost them."""
+
+from __future__ import annotations
+
+import struct
+import threading
+import time
+from collections import deque
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import msgspec
+
+from robolink.wire import fields_of
+
+MOST_KEPT = 4096
+"""Most messages that a publisher keeps: with KEEP_ALL, 40 s of 100 Hz."""
+
+MOST_BYTES = 1 << 24
+"""Most bytes that a publisher keeps; of larger messages there are fewer."""
+
+PART = 1 << 16
+"""Size in bytes from which an answer is sent in several parts."""
+
+
+class Asked(NamedTuple):
+    """State of one subscription, for the publishers of its topic."""
+
+    key: str
+    age: int
+    """Nanoseconds since it was made: messages of unknown publishers that are older are none of its own."""
+    last: dict[bytes, int]
+    """Number of the last message of each publisher, by its gid."""
+
+
+class Answer(NamedTuple):
+    """Messages of one topic, in their order: payloads and attachments."""
+
+    key: str
+    messages: list[tuple[bytes, bytes]]
+
+
+class Cache:
+    """The last messages of a publisher.
+
+    Args:
+        most: Number of them.
+    """
+
+    def __init__(self, most: int) -> None:
+        self._lock = threading.RLock()  # re-entrant: a signal handler may publish, too
+        self._kept: deque[tuple[bytes, bytes]] = deque()
+        self._most, self._bytes = most, 0
+
+    def add(self, payload: bytes, attachment: bytes) -> None:
+        """Keep a message, in the place of the oldest one if there are enough."""
+        with self._lock:
+            self._kept.append((payload, attachment))
+            self._bytes += len(payload)
+            while len(self._kept) > self._most or self._bytes > MOST_BYTES:
+                self._bytes -= len(self._kept.popleft()[0])
+
+    def newer(self, asked: Asked) -> list[tuple[bytes, bytes]]:
+        """Return what is newer than what a subscription has, the oldest first."""
+        with self._lock:
+            kept = list(self._kept)
+        since = time.time_ns() - asked.age
+        return [each for each in kept if _is_newer(each[1], asked, since)]
+
+
+def _is_newer(attachment: bytes, asked: Asked, since: int) -> bool:
+    try:
+        number, at, _, gid = fields_of(attachment)
+    except struct.error:  # not ROS 2's: without a number nothing can be asked for
+        return False
+    last = asked.last.get(gid)
+    return at >= since if last is None else number > last
+
+
+def parts(key: str, messages: Iterable[tuple[bytes, bytes]]) -> Iterator[bytes]:
+    """Yield answers with these messages, each of PART bytes or one message more."""
+    part, size = list[tuple[bytes, bytes]](), 0
+    for each in messages:
+        part.append(each)
+        size += len(each[0])
+        if size >= PART:
+            yield msgspec.msgpack.encode(Answer(key, part))
+            part, size = [], 0
+    if part:
+        yield msgspec.msgpack.encode(Answer(key, part))

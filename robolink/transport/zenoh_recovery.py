@@ -1,0 +1,346 @@
+"""Recovery of messages that a lost link has cost: publishers keep their last ones, and who lost some asks for them.
+
+Only RELIABLE topics, and only on networks that leave the machine. Each session with such publishers announces a token.
+When that is gone and back, or comes from another session of the same transport, or a link of it stands still, whoever
+knew it asks for what is newer than the last message that it has. Gaps alone are no reason to ask: `limits`
+thin topics on purpose.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import threading
+import time
+import weakref
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import msgspec
+import zenoh
+
+from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from robolink.transport import lifetime
+from robolink.transport import zenoh_declare as declare
+from robolink.transport.base import Sink
+from robolink.transport.zenoh_cache import MOST_KEPT, Answer, Asked, Cache, parts
+from robolink.transport.zenoh_handles import Declared, Holdings, Made, ZenohOutlet
+from robolink.transport.zenoh_mending import Mending
+
+ANSWERED_WITHIN = 2.0
+"""Timeout of a question in seconds; messages behind a gap wait so long for the answer at most."""
+
+ASKS_AFTER = 0.0, 0.25
+"""Times of the questions in seconds: what is sent after the first may find no way yet, as the second will know."""
+
+LONGEST_GONE = 60.0
+"""Age in seconds of the oldest messages of a publisher that has not been heard before; Zenoh's lease is as long."""
+
+MOST_KNOWN = 10_000
+"""Most transports elsewhere that are remembered."""
+
+Make = Callable[..., Made]
+"""Function of a name for errors and of a function of a session, by which that declares something."""
+
+Settle = Callable[[Declared], object]
+"""Function that moves what has just been declared to the session of now."""
+
+
+class _Question(NamedTuple):
+    """Question to be asked."""
+
+    due: float
+    """Time by `time.monotonic`."""
+    session: Any
+    key: str
+    mendings: list[Mending]
+
+
+class _Generation:
+    """Tokens of other transports, as one session has seen them."""
+
+    def __init__(self, session: Any) -> None:
+        self.session = session
+        self.seen: set[str] = set()
+
+
+class _Watched(NamedTuple):
+    """Subscriptions of one session to the tokens of other transports, and to what these tell."""
+
+    tokens: declare.Heard
+    calls: declare.Heard
+
+
+class _Watch(Declared):
+    """Watch of the tokens of other transports, and of their calls to ask.
+
+    A former session's stays until that is left: what it brings must not come before the token of whoever sends it.
+    """
+
+    def _entities_of(self, made: _Watched) -> list[Any]:
+        return list(made)
+
+    def _replace(self, made: _Watched) -> list[Any]:
+        left, self._entity = self._entity, made
+        return list(left)
+
+    def shut(self, why: str) -> list[Any]:
+        """Ask no more."""
+        (left,) = super().shut(why)
+        if not isinstance(left, _Watched):
+            return [left]
+        for each in left:
+            declare.close_gate(each.gate)
+        return list(left)
+
+
+class _Offered(NamedTuple):
+    """Declarations of an offer to send messages again, in one session."""
+
+    key: str
+    queryable: Any
+    token: Any
+    answers: threading.Event
+    """Set when publishers use this session: an answer before would have less than they send elsewhere."""
+
+
+class _Offer(Declared):
+    """Offer to send messages again."""
+
+    def __init__(self, holdings: Holdings, made: Made) -> None:
+        self._answers: threading.Event = made.entity.answers
+        super().__init__(holdings, made)
+        self.settle_in()
+
+    def settle_in(self) -> None:
+        """Answer from now on."""
+        self._answers.set()
+
+    def ask_me(self) -> None:
+        """Send all who know the token a call to ask."""
+        with self._holdings.lock:
+            offered, session = self._entity, self._session
+        if isinstance(offered, _Offered):
+            with lifetime.inside:
+                # Not by another token: a declaration waits for what is being sent, for seconds if a link is full.
+                session.put(
+                    offered.key,
+                    b"",
+                    priority=zenoh.Priority.REAL_TIME,
+                    congestion_control=zenoh.CongestionControl.DROP,
+                )
+
+    def _entities_of(self, made: _Offered) -> list[Any]:
+        return [made.token, made.queryable]
+
+    def _replace(self, made: _Offered) -> list[Any]:
+        left, self._entity, self._answers = self._entity, made, made.answers
+        return self._entities_of(left)
+
+    def shut(self, why: str) -> list[Any]:
+        """Answer no more."""
+        self.settle_in()
+        (left,) = super().shut(why)
+        return self._entities_of(left) if isinstance(left, _Offered) else [left]
+
+
+class Recovery:
+    """Keeps what a transport publishes, and asks for what its subscriptions have lost.
+
+    Args:
+        holdings: What the transport has declared.
+        name: Name of the transport among others, the same in all of its sessions.
+        domain: ROS domain id.
+        thinned: Key expressions of the topics that the transport's own limits thin: nothing of these is kept;
+            None if nothing at all is.
+    """
+
+    def __init__(self, holdings: Holdings, name: str, domain: int, thinned: list[str] | None) -> None:
+        self._holdings, self._name = holdings, name
+        self._prefix = f"@robolink/again/{domain}"
+        self._thinned = None if thinned is None else [zenoh.KeyExpr(each) for each in thinned]
+        self._lock = threading.Lock()
+        self._mendings: weakref.WeakKeyDictionary[Mending, tuple[str, float]] = weakref.WeakKeyDictionary()
+        self._known: dict[str, None] = {}
+        self._to_ask: list[_Question] = []
+        self._gates: weakref.WeakSet[Any] = weakref.WeakSet()
+        self._offer: _Offer | None = None
+        self._is_asking = self._has_watched = self._has_offered = False
+
+    def cache(self, key: str, qos: QoSProfile, make: Make, settle: Settle) -> Cache | None:
+        """Return the cache of a publisher of a resolved profile; None if it needs none.
+
+        `make` and `settle` declare, the first time, that messages are sent again to who asks.
+        """
+        if not self._recovers(qos) or any(each.includes(key) for each in self._thinned or ()):
+            return None
+        with self._lock:
+            has_offered, self._has_offered = self._has_offered, True
+        if not has_offered:
+            self._offer = _Offer(self._holdings, make(self._prefix, self._declare_offer))
+            settle(self._offer)
+        return Cache(MOST_KEPT if qos.history is HistoryPolicy.KEEP_ALL else min(qos.depth, MOST_KEPT))
+
+    def mend(self, key: str, qos: QoSProfile, sink: Sink, make: Make, settle: Settle) -> Sink:
+        """Return the sink of a subscription of a resolved profile: if need be one that puts in order what comes again.
+
+        `make` and `settle` begin, the first time, to look for the tokens of others.
+        """
+        if not self._recovers(qos):
+            return sink
+        mending = Mending(sink)
+        with self._lock:
+            self._mendings[mending] = key, time.monotonic()
+            has_watched, self._has_watched = self._has_watched, True
+        if not has_watched:
+            settle(_Watch(self._holdings, make(self._prefix, self._declare_watch)))
+        return mending
+
+    def _recovers(self, qos: QoSProfile) -> bool:
+        reliable = qos.reliability is ReliabilityPolicy.RELIABLE
+        return self._thinned is not None and reliable and qos.durability is not DurabilityPolicy.TRANSIENT_LOCAL
+
+    def ask_me(self) -> None:
+        """Call others to ask, since they may be about to lose some: a link stands still, and its buffers are finite.
+
+        Zenoh sends this before all that waits for the link, so that nobody takes messages behind a gap for the next.
+        """
+        if self._offer is not None:
+            with contextlib.suppress(zenoh.ZError):  # closed meanwhile
+                self._offer.ask_me()
+
+    def _declare_offer(self, session: Any) -> _Offered:
+        key, answers = f"{self._prefix}/{self._name}/{session.info.zid()}", threading.Event()
+        queryable = session.declare_queryable(key, zenoh.handlers.FifoChannel(MOST_KNOWN), complete=True)
+        declare.follow(queryable.handler, functools.partial(self._answer, key, answers), "robolink again")
+        return _Offered(key, queryable, session.liveliness().declare_token(key), answers)
+
+    def _answer(self, key: str, answers: threading.Event, query: Any) -> None:
+        answers.wait(ANSWERED_WITHIN)
+        payload = query.payload
+        try:
+            for asked in msgspec.msgpack.decode(b"" if payload is None else payload.to_bytes(), type=list[Asked]):
+                for part in self._kept(asked):
+                    with lifetime.inside:
+                        query.reply(key, part)  # dropped where its link is full, as the question asks
+        except (msgspec.DecodeError, msgspec.ValidationError, zenoh.ZError):  # nonsense, or who asked is gone
+            pass
+        finally:
+            declare.quietly(query.drop)
+
+    def _kept(self, asked: Asked) -> Iterator[bytes]:
+        with self._holdings.lock:
+            handles = list(self._holdings.handles)
+        for each in handles:
+            if isinstance(each, ZenohOutlet) and each.cache is not None and each.key == asked.key:
+                yield from parts(asked.key, each.cache.newer(asked))
+
+    def _declare_watch(self, session: Any) -> _Watched:
+        generation, pattern = _Generation(session), f"{self._prefix}/*/*"
+        changed = declare.make_gate(functools.partial(self._on_token, generation))
+        called = declare.make_gate(functools.partial(self._on_call, session))
+        calls = session.declare_subscriber(pattern, declare.direct(called), allowed_origin=zenoh.Locality.REMOTE)
+        tokens = session.liveliness().declare_subscriber(pattern, declare.direct(changed), history=True)
+        return _Watched(declare.Heard(tokens, changed), declare.Heard(calls, called))
+
+    def _on_token(self, generation: _Generation, sample: zenoh.Sample) -> None:
+        """Note a token; called on Zenoh's thread, before any message that comes by the same link."""
+        key = str(sample.key_expr)
+        name = key.split("/")[-2]
+        if name == self._name:
+            return
+        with self._lock:
+            if sample.kind != zenoh.SampleKind.PUT:
+                generation.seen.discard(key)
+                return
+            is_back = name in self._known and key not in generation.seen
+            generation.seen.add(key)
+            self._known[name] = None
+            if len(self._known) > MOST_KNOWN:
+                del self._known[next(iter(self._known))]
+        if is_back:
+            self._begin(generation.session, key)
+
+    def _on_call(self, session: Any, sample: zenoh.Sample) -> None:
+        """Ask who wants to be asked, if it is known; called on Zenoh's thread, too."""
+        key = str(sample.key_expr)
+        if key.split("/")[-2] in self._known:
+            self._begin(session, key)
+
+    def _begin(self, session: Any, key: str) -> None:
+        with self._lock:
+            mendings = list(self._mendings)
+        for each in mendings:
+            each.begin(len(ASKS_AFTER), ASKS_AFTER[-1] + ANSWERED_WITHIN)
+        if mendings:
+            now = time.monotonic()
+            self._ask_soon([_Question(now + after, session, key, mendings) for after in ASKS_AFTER])
+
+    def _ask_soon(self, questions: list[_Question]) -> None:
+        """Ask on a thread of its own, since this one is Zenoh's."""
+        with self._lock:
+            self._to_ask += questions
+            is_asking, self._is_asking = self._is_asking, True
+        if not is_asking:
+            try:
+                threading.Thread(target=self._ask_all, name="robolink recovery", daemon=True).start()
+            except RuntimeError:  # Python 3.12 starts no threads any more at exit
+                self._is_asking = False
+
+    def _ask_all(self) -> None:
+        while True:
+            with self._lock:
+                if not self._to_ask:
+                    self._is_asking = False
+                    return
+                question = min(self._to_ask, key=lambda each: each.due)
+                if (wait := question.due - time.monotonic()) <= 0:
+                    self._to_ask.remove(question)
+            if wait > 0:
+                time.sleep(min(wait, 0.05))  # one that is due earlier may come meanwhile
+                continue
+            try:
+                self._ask(question.session, question.key, question.mendings)
+            except zenoh.ZError:  # closed meanwhile
+                _end(question.mendings)
+
+    def _ask(self, session: Any, key: str, mendings: list[Mending]) -> None:
+        asked, by_topic = list[Asked](), dict[str, list[Mending]]()
+        for each in mendings:
+            topic, since = self._mendings.get(each) or ("", 0.0)
+            if topic:
+                age = min(time.monotonic() - since, LONGEST_GONE)
+                asked.append(Asked(topic, int(age * 1e9), each.positions()))
+                by_topic.setdefault(topic, []).append(each)
+        gate, end = declare.make_gate(functools.partial(_take, by_topic)), declare.make_gate(_end, mendings)
+        self._gates.update((gate, end))
+        with lifetime.inside:
+            session.get(
+                key,
+                declare.direct(gate, end),
+                payload=msgspec.msgpack.encode(asked),
+                priority=zenoh.Priority.BACKGROUND,  # the answers have it too: all that is new goes before them
+                congestion_control=zenoh.CongestionControl.DROP,
+                consolidation=zenoh.ConsolidationMode.NONE,
+                timeout=ANSWERED_WITHIN,
+            )
+
+    def close(self) -> None:
+        """Take no more answers."""
+        for each in lifetime.all_of(self._gates):
+            declare.close_gate(each)
+
+
+def _take(mendings: dict[str, list[Mending]], reply: Any) -> None:
+    """Deliver an answer; called on Zenoh's thread."""
+    if reply.ok is None:
+        return
+    with contextlib.suppress(msgspec.DecodeError, msgspec.ValidationError):  # somebody's nonsense
+        answer = msgspec.msgpack.decode(reply.ok.payload.to_bytes(), type=Answer)
+        for each in mendings.get(answer.key, ()):
+            each.take(answer.messages)
+
+
+def _end(mendings: list[Mending]) -> None:
+    for each in mendings:
+        each.end()
