@@ -13,6 +13,7 @@ from robolink import Node, Parameter, VirtualTime
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticArray
 from robolink.parameters.descriptors import described
 from robolink.sim import load_world
+from robolink.sim.sensors import Camera
 from robolink.sim.webots import warnings_to
 from robolink.workspace import find_world
 from robolink.world_node import Runner, Services, Shapes, Simulation, diagnostics, listed, report
@@ -44,7 +45,10 @@ class SimulatedWorld(Node):
         publish_clock = self.declare_parameter("publish_clock", False, PUBLISH_CLOCK).value
         publish_map = self.declare_parameter("publish_map", True, PUBLISH_MAP).value
 
-        all_images = self.declare_parameter("all_images", False, ALL_IMAGES).value
+        sees = any(isinstance(each, Camera) for robot in description.robots for each in robot.sensors)
+        all_images = (
+            sees and self.declare_parameter("all_images", False, ALL_IMAGES).value
+        )  # else hashes stay as they were
 
         epoch = 0 if publish_clock else self.get_clock().now().nanoseconds
         self.simulation = Simulation(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -11,9 +12,11 @@ from typing import Any, TypeAlias
 import numpy as np
 import pytest
 
+from robolink import Context, Node, Parameter
 from robolink.clock_type import ClockType
+from robolink.executors import SingleThreadedExecutor
 from robolink.image import to_array
-from robolink.interfaces.sensor_msgs.msg import CompressedImage
+from robolink.interfaces.sensor_msgs.msg import CompressedImage, Image
 from robolink.launch import read_launch_file
 from robolink.sim import Pose, Shot, World, load_world
 from robolink.sim.rendering.canvas import Canvas
@@ -24,6 +27,7 @@ from robolink.tf2 import Buffer, TransformListener
 from robolink.time import Time
 from tests.support.halls import simulation
 from tests.support.systems import log
+from tests.support.waits import wait_until
 
 ROOM = """
 walls:
@@ -209,3 +213,34 @@ def test_without_opencv_one_line_says_that_there_are_no_compressed_images(
     system.run(0.505)
     assert (len(images), found) == (5, [])
     assert sum("no compressed images" in each and "OpenCV" in each for each in log(system)) == 1
+
+
+def test_a_world_without_cameras_has_no_parameter_for_them(system: System) -> None:
+    """Else the hashes of all such worlds would be others than before there were cameras."""
+    world = system.start(simulation.SimulatedWorld, parameters={"world": "empty_room"})
+    assert not world.has_parameter("all_images")
+
+
+def test_in_real_time_images_come_from_a_thread_that_ends_with_the_node(room: Room) -> None:
+    found: list[Image] = []
+    context = Context(transport="memory")
+    context.init(args=[])
+    with context, SingleThreadedExecutor(context=context) as executor:
+        options: dict[str, Any] = {"context": context}
+        world = simulation.SimulatedWorld(**options, parameter_overrides=[Parameter("world", value=room("rate: 50"))])
+        listener = Node("listener", **options)
+        listener.create_subscription(Image, "/camera/image_raw", found.append, 10)
+        for node in (world, listener):
+            executor.add_node(node)
+
+        def five() -> bool:
+            executor.spin_once(timeout_sec=0.1)
+            return len(found) >= 5
+
+        wait_until(five)
+        assert any(each.name == "robolink images" for each in threading.enumerate())
+        world.destroy_node()
+        listener.destroy_node()
+    assert not any(each.name == "robolink images" for each in threading.enumerate())
+    times = [each.header.stamp.sec * 10**9 + each.header.stamp.nanosec for each in found]
+    assert times == sorted(set(times))

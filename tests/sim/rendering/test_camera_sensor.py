@@ -1,0 +1,86 @@
+"""The sensor `camera` in a world file: limits, and what a shot keeps of its moment."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robolink.exceptions import DocumentError
+from robolink.sim import Shot, World, load_world
+from robolink.sim.worldfile import check_world
+
+TEXT = """
+robots:
+  - {name: eye, pose: [0, 0], sensors: [{camera: camera, MORE}]}
+  - {name: ball, pose: [2, 0]}
+"""
+
+
+def world(more: str) -> World:
+    """Return a world with more keys of its camera, at the time of its first image."""
+    made = World(load_world("eye.yaml", text=TEXT.replace("MORE", more)))
+    for _ in range(10):
+        made.step()
+    return made
+
+
+def shot(made: World) -> Shot:
+    """Return what the camera sees now."""
+    (found,) = [each.value for each in made.readings() if isinstance(each.value, Shot)]
+    return found
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ("fov: 0", "fov: expected float >= 1.0, got '0'"),
+        ("fov: 180", "fov: expected float <= 170.0, got '180'"),
+        ("width: 7680", "width: expected int <= 4096, got '7680'"),
+        ("height: 0", "height: expected int >= 1, got '0'"),
+        ("z: 0", "z: expected float >= 0.005, got '0'"),
+        ("pitch: 91", "pitch: expected float <= 90.0, got '91'"),
+        ("noise: .nan", "noise: expected float >= 0.0, got '.nan'"),
+        ("encoding: rgb16", "encoding: expected one of rgb8, bgr8, rgba8, bgra8, mono8, got 'rgb16'"),
+        ("range: [5, 1]", "range: the nearest, 5 m, must be less than the farthest, 1 m"),
+        ("roll: 5", "unknown key 'roll'"),
+    ],
+)
+def test_a_camera_that_cannot_be_is_refused_with_its_line(more: str, told: str) -> None:
+    errors = check_world("eye.yaml", text=TEXT.replace("MORE", more)).errors
+    assert [told in str(each) and "eye.yaml:3:" in str(each) for each in errors] == [True]
+
+
+@pytest.mark.parametrize("size", [(1, 1), (4096, 2), (2, 4096)])
+def test_images_of_extreme_sizes(size: tuple[int, int]) -> None:
+    found = shot(world(f"width: {size[0]}, height: {size[1]}, fov: 170, noise: 5"))
+    assert found.image().shape == (size[1], size[0], 3)
+    assert not np.isnan(found.depths()).any()
+
+
+def test_a_shot_shows_its_moment_whenever_it_is_rendered() -> None:
+    made = world("noise: 3, z: 0.1")
+    early, same = shot(made), shot(made)
+    expected = early.image("mono8")
+    made.robots["ball"].command(0.5, 0.0)
+    for _ in range(100):
+        made.step()
+    late = shot(made)
+    assert late.depths()[120].min() > early.depths()[120].min() + 0.2
+    np.testing.assert_array_equal(same.image("mono8"), expected)
+    np.testing.assert_array_equal(early.image("mono8"), expected)
+
+
+def test_alpha_has_no_noise() -> None:
+    image = shot(world("noise: 20, encoding: rgba8")).image()
+    assert (image[..., 3] == 255).all()
+    assert image[..., 0].std() > 5.0
+
+
+def test_an_unknown_encoding_is_an_error() -> None:
+    with pytest.raises(KeyError):
+        shot(world("z: 0.2")).image("rgb16")
+
+
+def test_two_cameras_of_one_name_are_refused() -> None:
+    with pytest.raises(DocumentError, match="two sensors publish on"):
+        load_world("eye.yaml", text=TEXT.replace("{camera: camera, MORE}", "{camera: camera}, {camera: camera}"))
