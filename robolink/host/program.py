@@ -219,7 +219,7 @@ class Program:
             return 1
         if isinstance(error, _ENDS) or (isinstance(error, NotInitializedException) and self._was_interrupted()):
             return INTERRUPTED if is_script else 0
-        self.error = error
+        error = self.error = _lacking_opencv(error) or error
         if not getattr(error, "__robolink_logged__", False):
             get_logger("robolink").error(self._told(error))
         return 1
@@ -292,6 +292,15 @@ def _raised_by(handler: Any) -> BaseException | None:
     except BaseException as error:  # noqa: BLE001 - it is raised elsewhere
         return error
     return None
+
+
+def _lacking_opencv(error: BaseException) -> RobolinkError | None:
+    """Return the error that tells what to install, if `error` is a failed import of OpenCV."""
+    if not isinstance(error, ImportError):
+        return None
+    from robolink.image.opencv import lacking  # with numpy, which is slow to import
+
+    return lacking(error)
 
 
 def _of_the_user(error: BaseException) -> Any:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import importlib
 import re
+import traceback
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from robolink.image.encodings import ImageError
@@ -36,6 +38,20 @@ def opencv(purpose: str) -> Any:
     if tuple(int(each) for each in re.findall(r"\d+", version)[:2]) < OLDEST:
         raise ImageError(f"{purpose} needs OpenCV 4.8 to 5, and {version or 'some other cv2'} is installed: {_INSTALL}")
     return cv2
+
+
+def lacking(error: BaseException) -> ImageError | None:
+    """Return the error that tells what to install, if `error` is a program's failed import of OpenCV; else None."""
+    if not isinstance(error, ImportError) or (error.name or "").partition(".")[0] != "cv2":
+        return None
+    frames = [each for each, _ in traceback.walk_tb(error.__traceback__)]
+    others = ("robolink.", "runpy", "importlib", "cv2")
+    files = [each.f_code.co_filename for each in frames if not each.f_globals.get("__name__", "").startswith(others)]
+    try:
+        opencv(Path(files[-1]).name if files else "this program")
+    except ImageError as reason:
+        return reason
+    return None
 
 
 def _unloadable(purpose: str, error: Exception) -> ImageError:

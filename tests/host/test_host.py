@@ -147,6 +147,21 @@ def test_an_exception_ends_its_program_alone(host: Host, ends: list[Any]) -> Non
     assert listener.count_publishers("numbers") == 0
 
 
+def test_a_program_without_opencv_ends_with_what_to_install(
+    host: Host, ends: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Sees(Counter):
+        def tick(self) -> None:
+            import cv2  # noqa: F401
+
+    host.start_node(Sees)
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    host.run(1.0)
+    assert ends == [("Sees", "crashed", 1)]
+    words = "test_host.py needs OpenCV, which is not installed: pip install opencv-python"
+    assert str(host.programs["Sees"].error) == words
+
+
 @pytest.mark.parametrize(("code", "returncode"), [(3, 3), (None, 0), ("words", 1)])
 def test_sys_exit_in_a_callback_ends_its_program_alone(host: Host, ends: list[Any], code: Any, returncode: int) -> None:
     class Leaves(Counter):

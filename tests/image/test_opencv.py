@@ -14,7 +14,7 @@ from numpy.testing import assert_array_equal
 
 from robolink.image.codecs import decoded, encoded
 from robolink.image.encodings import ImageError
-from robolink.image.opencv import opencv
+from robolink.image.opencv import lacking, opencv
 
 
 def importing(monkeypatch: pytest.MonkeyPatch, error: Exception) -> None:
@@ -66,6 +66,23 @@ def test_too_old(monkeypatch: pytest.MonkeyPatch, version: str | None) -> None:
 def test_new_enough(monkeypatch: pytest.MonkeyPatch, version: str) -> None:
     monkeypatch.setitem(sys.modules, "cv2", SimpleNamespace(__version__=version))
     assert opencv("JPEG").__version__ == version
+
+
+def test_a_programs_failed_import_names_the_program(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    with pytest.raises(ImportError) as caught:
+        import cv2  # noqa: F401
+    words = "test_opencv.py needs OpenCV, which is not installed: pip install opencv-python"
+    assert str(lacking(caught.value)) == words
+    assert str(lacking(ModuleNotFoundError("No module named 'cv2.aruco'", name="cv2.aruco"))) == words.replace(
+        "test_opencv.py", "this program"
+    )
+
+
+def test_other_failures_are_not_opencvs() -> None:
+    for each in (ImportError("No module named 'six'", name="six"), ImportError(), KeyError("cv2")):
+        assert lacking(each) is None
+    assert lacking(ImportError("cannot import name 'Cascade'", name="cv2")) is None  # it can be imported
 
 
 @pytest.mark.parametrize(("shape", "name"), [((5, 7), "mono"), ((5, 7, 3), "bgr"), ((5, 7, 4), "bgra")])

@@ -103,8 +103,12 @@ def outcome(act: Callable[[], Any], terminated: list[int]) -> int:
     except RobolinkError as error:
         return 1 if _is_logged(error) else complain(error, place=_place(error))
     except Exception as error:  # noqa: BLE001 - it is the user's, and they want to see where
+        if isinstance(error, ImportError):
+            from robolink.image.opencv import lacking
+
+            if lack := lacking(error):
+                return complain(lack)
         _show(error)
-        _advise(error)
         return 1
 
 
@@ -303,18 +307,6 @@ def _show(error: Exception) -> None:
     if isinstance(error, LackingNameError):
         _end_in_users_code(trace)
     tell(formatted(error, trace), colours=True)
-
-
-def _advise(error: Exception) -> None:
-    """Print what to install if the program's import of OpenCV failed."""
-    if isinstance(error, ImportError) and (error.name or "").partition(".")[0] == "cv2":
-        from robolink.image.encodings import ImageError
-        from robolink.image.opencv import opencv
-
-        try:
-            opencv("this program")
-        except ImageError as reason:
-            complain(reason)
 
 
 def _end_in_users_code(trace: TracebackType | None) -> None:
