@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 RUNNING = frozenset(["init", "spin", "spin_once", "spin_until_future_complete", "create_node"])
 """Names of the functions that a file calls if it runs nodes while it is read."""
 
-NODE_BASES = ("Node", "ScanController")
+NODE_BASES = ("Node", "ScanController", "ImageController")
 """Suffixes of the names of base classes of nodes: Node, LifecycleNode, and those that the library derives from them."""
 
 
