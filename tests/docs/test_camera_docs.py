@@ -11,6 +11,7 @@ import pytest
 
 from robolink.image import to_array, to_message
 from robolink.interfaces.sensor_msgs.msg import CameraInfo
+from robolink.testing import System
 from tests.support.opencvs_conversions import ENCODINGS
 
 PAGE = (Path(__file__).parents[2] / "docs" / "camera.md").read_text(encoding="utf-8")
@@ -59,3 +60,16 @@ def test_the_program_for_shots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 def test_so_many_pairs_are_compared() -> None:
     count = len(ENCODINGS)
     assert f"all {count**2:,} pairs of {count} encodings" in " ".join(PAGE.split())
+
+
+def test_the_program_that_drives_by_a_camera(system: System) -> None:
+    (program,) = (each for each in PROGRAMS if "ImageController" in each)
+    scope: dict[str, Any] = {}
+    exec(program, scope)
+    system.start("world", parameters={"world": "track"})
+    system.start(scope["Follower"])
+    system.run(30.0)
+    robot = system.robot()
+    assert robot.pose.x > 4.0
+    assert robot.pose.y > 3.5  # round two bends
+    assert robot.contacts == 0

@@ -26,6 +26,7 @@ from tests.support.systems import Typed, log, made_with, said
 
 first, velocity, scans = map(load_node_file, ("first_node", "velocity_publisher", "scan_subscriber"))
 COURSE = ["first_node", "velocity_publisher", "scan_subscriber"]
+SEERS = ["line_follower", "blob_chaser", "state_machine"]
 
 
 # first_node
@@ -153,7 +154,7 @@ def test_it_warns_of_what_is_near_and_once_a_second_at_most(system: System) -> N
 # All of them
 
 
-@pytest.mark.parametrize("name", [*COURSE, "goto", "patrol", "square", "walker", "teleop"])
+@pytest.mark.parametrize("name", [*COURSE, *SEERS, "goto", "patrol", "square", "walker", "teleop"])
 def test_each_file_says_what_it_is_for_and_each_parameter_too(system: System, name: str) -> None:
     module = load_node_file(name)
     assert (module.__doc__ or "").partition("\n")[0].endswith(".")
