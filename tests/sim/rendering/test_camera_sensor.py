@@ -84,3 +84,28 @@ def test_an_unknown_encoding_is_an_error() -> None:
 def test_two_cameras_of_one_name_are_refused() -> None:
     with pytest.raises(DocumentError, match="two sensors publish on"):
         load_world("eye.yaml", text=TEXT.replace("{camera: camera, MORE}", "{camera: camera}, {camera: camera}"))
+
+
+MOVING = """
+obstacles:
+  - {box: [0.4, 0.4], pose: [9, 9]}
+  - {circle: 0.3, path: [[2, 0], [8, 0]], speed: 1.0, height: 1}
+  - {circle: 0.1, pose: [0.5, -3], mass: 0.5}
+robots:
+  - {name: eye, pose: [0, 0], sensors: [{camera: camera, z: 0.1}]}
+  - {name: pusher, pose: [0.5, -4, 1.5708], drive: {timeout: 10}, sensors: [{camera: ahead, z: 0.1}]}
+"""
+
+
+def test_what_moves_and_what_is_pushed_is_seen_where_it_is() -> None:
+    made = World(load_world("moving.yaml", text=MOVING))
+    made.robots["pusher"].command(0.5, 0.0)
+    for _ in range(300):
+        made.step()
+    eye, ahead = (each.value.depths() for each in made.readings() if isinstance(each.value, Shot))
+    _, mover, ball = made.obstacle_poses()
+    assert 4.5 < mover.x < 5.5
+    assert eye[120, 160] == pytest.approx(mover.x - 0.3, abs=0.01)
+    pusher = made.robots["pusher"].pose
+    assert ball.y > -2.95
+    assert ahead[120, 160] == pytest.approx(ball.y - pusher.y - 0.1, abs=0.01)
