@@ -20,6 +20,9 @@ _LARGE = 400
 _TURN = 32
 """Number of large patches that are drawn before hidden ones are looked for again."""
 
+_ROWS = 100_000
+"""Number of rows of patches whose spans are computed together, so that memory has a bound."""
+
 _FEW = 12
 """Number of patches below which it does not pay to look for hidden ones."""
 
@@ -38,8 +41,15 @@ class _Boxes(NamedTuple):
 def draw_patches(canvas: Canvas, patches: Patches, seen: Seen, pinhole: Pinhole) -> None:
     """Draw patches without textures; `seen` are they, near ones first."""
     seen = seen.taken(np.flatnonzero(seen.rows))
-    if not len(seen.which):
-        return
+    ends, first = np.cumsum(seen.rows), 0
+    while first < len(seen.which):
+        limit = ends[first] - seen.rows[first] + _ROWS
+        last = max(first + 1, int(np.searchsorted(ends, limit, side="right")))
+        _draw_at_once(canvas, patches, seen.taken(np.arange(first, last)), pinhole)
+        first = last
+
+
+def _draw_at_once(canvas: Canvas, patches: Patches, seen: Seen, pinhole: Pinhole) -> None:
     found = spans(seen, patches, pinhole)
     boxes = _boxes(seen, found)
     alone = (boxes.pixels >= _LARGE) | ((patches.outline.take(seen.which) == ELLIPSE) & (boxes.pixels > 0))

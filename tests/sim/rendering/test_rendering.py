@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 
+from robolink.sim.rendering import drawing
 from robolink.sim.rendering.canvas import Canvas
 from robolink.sim.rendering.pinhole import Pinhole, view_from
 from robolink.sim.rendering.pixels import write_colours, write_depths
@@ -210,3 +211,11 @@ def test_the_bytes_are_the_same_everywhere() -> None:
     canvas = rendered(scene, (0.1, 0.2, 1.0), 0.1, 0.2, (160, 120), 70.0, Floor((9, 8, 7), picture, 0.1, (0.0, 0.0)))
     found = hashlib.sha256(colours(canvas).tobytes() + canvas.inverse.astype("<f4").tobytes()).hexdigest()
     assert found[:16] == "07f5f59033d4a156"
+
+
+def test_patches_are_drawn_alike_at_once_or_a_few_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = random_surfaces(np.random.default_rng(8), 300, 1.0)
+    place: tuple[Eye, float, float, tuple[int, int]] = ((0.1, 0.2, 2.0), 0.1, 0.2, (160, 120))
+    whole = depth_image(rendered(scene, *place))
+    monkeypatch.setattr(drawing, "_ROWS", 500)
+    np.testing.assert_array_equal(depth_image(rendered(scene, *place)), whole)
