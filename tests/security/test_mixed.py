@@ -31,6 +31,7 @@ def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Keystore]
         yield store
 
 
+@pytest.mark.slow
 def test_without_keys_beside_one_that_has_some(store: Keystore, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_SECURITY_ENABLE", "true")
     holder = connect("zenoh://", store.domain, enclave="/robot")
@@ -48,6 +49,7 @@ def test_without_keys_beside_one_that_has_some(store: Keystore, monkeypatch: pyt
     holder.close()
 
 
+@pytest.mark.slow
 def test_with_keys_beside_one_that_has_none(store: Keystore, monkeypatch: pytest.MonkeyPatch) -> None:
     holder = connect("zenoh://", store.domain)
     monkeypatch.setenv("ROS_SECURITY_ENABLE", "true")

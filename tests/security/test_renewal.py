@@ -51,6 +51,7 @@ def linked(context: Context) -> set[str]:
     return {each.session for each in transport.links()}
 
 
+@pytest.mark.slow
 def test_renewed_certificates_are_in_use_and_what_is_lost_is_counted(store: Keystore) -> None:
     contexts = {name: Context() for name in ("/robot", "/laptop")}
     for name, context in contexts.items():
@@ -95,6 +96,7 @@ def opened(store: Keystore, name: str, seconds: float) -> Transport:
     raise AssertionError("this machine opens no session in time")
 
 
+@pytest.mark.slow
 def test_who_has_ended_gives_way_and_comes_back_when_renewed(
     store: Keystore, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

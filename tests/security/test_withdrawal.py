@@ -44,6 +44,7 @@ def announced(transport: Transport, domain: int) -> str:
     return format_token(NodeToken(domain, transport.session_id, "0", "/student", "/", "me"))
 
 
+@pytest.mark.slow
 def test_who_is_withdrawn_is_out_and_comes_back(store: Keystore) -> None:
     key = format_key(DataKey(store.domain, "/cmd_vel", "std_msgs/msg/String", "RIHS01_" + "0" * 64))
     robot = connect("zenoh://", store.domain, enclave="/robot")

@@ -139,6 +139,7 @@ def test_nobody_sees_a_node_go_whose_session_is_opened_again(pair: Pair) -> None
     assert TOKEN in pair.there.tokens("@ros2_lv/0/**")
 
 
+@pytest.mark.slow
 def test_a_watch_tells_of_what_came_and_went_meanwhile(pair: Pair, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(zenoh_reunion, "SETTLED_AFTER", 5.0)
     own, others = pair.here.announce(TOKEN), pair.there.announce(ANOTHER)

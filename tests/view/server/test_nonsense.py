@@ -90,6 +90,7 @@ def test_random_bytes_end_nobody() -> None:
         assert good.next(subscription) == serialize_message(Int32(data=1))
 
 
+@pytest.mark.slow
 def test_a_flood_of_one_client_leaves_the_others_their_turn() -> None:
     with shown() as system, system.client() as good, system.client() as flooder:
         publisher = system.node.create_publisher(Int32, "count", 10)
