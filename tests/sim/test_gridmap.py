@@ -190,6 +190,7 @@ BROKEN = [
     (b"GIF89a....", "neither PGM (P2, P5) nor PNG: save it as one of these"),
     (b"P5 4", "after P5 a PGM has its width, height and largest value"),
     (b"P5 0 4 255\n", "0 x 4 pixels: expected 1 to 25 million"),
+    (b"P5 65536 1 255\n", "65536 x 1 pixels: at most 65,535 along a side"),
     (b"P5 99999 99999 255\n", "99999 x 99999 pixels: expected 1 to 25 million"),
     (b"P5 2 2 0\nabcd", "the largest value is 0: expected 1 to 65535"),
     (b"P5 2 2 255\nabc", "it ends too early: 3 of 4 pixels"),

@@ -16,6 +16,8 @@ MOST_PIXELS = 25_000_000
 """Most pixels of an image: 5,000 x 5,000, a quarter of a kilometre each way at 5 cm."""
 MOST_BYTES = 50_000_000
 """Most bytes of an image's pixels as stored, uncompressed: 16 bits of gray for all of them, colours for fewer."""
+LONGEST_SIDE = 65_535
+"""Most pixels along a side, as of a JPEG: undoing a PNG's filters takes some calls of numpy for each of them."""
 _BLOCK = 1_000_000
 """Number of pixels that are converted at once, since numpy takes eight bytes for each meanwhile."""
 
@@ -35,6 +37,8 @@ def check_size(width: int, height: int, bits: int = 8) -> None:
     """Raise `ImageError` for an image without pixels or with too many (of `bits` each), before memory is allocated."""
     if not 0 < width * height <= MOST_PIXELS:
         raise ImageError(f"{width} x {height} pixels: expected 1 to {MOST_PIXELS // 10**6} million")
+    if max(width, height) > LONGEST_SIDE:
+        raise ImageError(f"{width} x {height} pixels: at most {LONGEST_SIDE:,} along a side")
     if width * height * bits > 8 * MOST_BYTES:
         most = f"at most {MOST_BYTES // 10**6} MB"
         raise ImageError(f"{width} x {height} pixels of {bits} bits: {most}, so save it in 8 bits of gray")
