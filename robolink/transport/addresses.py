@@ -84,7 +84,8 @@ def _look() -> None:
             for session in sessions:
                 session.move(now)
         for session in sessions:
-            session.unstick()
+            with contextlib.suppress(OSError):  # too many open files: the next look may have one
+                session.unstick()
         del sessions  # not kept alive while this sleeps
         time.sleep(LOOKS_EVERY)
 

@@ -61,20 +61,37 @@ class Cache:
                 self._bytes -= len(self._kept.popleft()[0])
 
     def newer(self, asked: Asked) -> list[tuple[bytes, bytes]]:
-        """Return what is newer than what a subscription has, the oldest first."""
+        """Return what is newer than what a subscription has, in the order of its numbers."""
         with self._lock:
             kept = list(self._kept)
         since = time.time_ns() - asked.age
-        return [each for each in kept if _is_newer(each[1], asked, since)]
+        found = [(number, each) for each in kept if (number := _newer(each[1], asked, since)) is not None]
+        return [each for _, each in sorted(found, key=_number)]  # threads that publish may overtake each other
 
 
-def _is_newer(attachment: bytes, asked: Asked, since: int) -> bool:
+def _newer(attachment: bytes, asked: Asked, since: int) -> int | None:
+    """Return the number of a message; None if it is not newer than what has come."""
     try:
         number, at, _, gid = fields_of(attachment)
     except struct.error:  # not ROS 2's: without a number nothing can be asked for
-        return False
+        return None
     last = asked.last.get(gid)
-    return at >= since if last is None else number > last
+    is_newer = at >= since if last is None else number > last
+    return number if is_newer else None
+
+
+def _number(found: tuple[int, tuple[bytes, bytes]]) -> int:
+    return found[0]
+
+
+def together(asked: Iterable[Asked]) -> list[Asked]:
+    """Return one question for each topic: for what any of its subscriptions lacks."""
+    found = dict[str, Asked]()
+    for each in asked:
+        other = found.get(each.key, each)
+        last = other.last | {gid: min(number, other.last.get(gid, number)) for gid, number in each.last.items()}
+        found[each.key] = Asked(each.key, max(each.age, other.age), last)
+    return list(found.values())
 
 
 def parts(key: str, messages: Iterable[tuple[bytes, bytes]]) -> Iterator[bytes]:

@@ -23,7 +23,7 @@ from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, Reliabilit
 from robolink.transport import lifetime
 from robolink.transport import zenoh_declare as declare
 from robolink.transport.base import Sink
-from robolink.transport.zenoh_cache import MOST_KEPT, Answer, Asked, Cache, parts
+from robolink.transport.zenoh_cache import MOST_KEPT, Answer, Asked, Cache, parts, together
 from robolink.transport.zenoh_handles import Declared, Holdings, Made, ZenohOutlet
 from robolink.transport.zenoh_mending import Mending
 
@@ -38,6 +38,9 @@ LONGEST_GONE = 60.0
 
 MOST_KNOWN = 10_000
 """Most transports elsewhere that are remembered."""
+
+MOST_WAITING = 1000
+"""Most questions that wait for their turn, those to be asked and those to be answered."""
 
 Make = Callable[..., Made]
 """Function of a name for errors and of a function of a session, by which that declares something."""
@@ -211,7 +214,8 @@ class Recovery:
 
     def _declare_offer(self, session: Any) -> _Offered:
         key, answers = f"{self._prefix}/{self._name}/{session.info.zid()}", threading.Event()
-        queryable = session.declare_queryable(key, zenoh.handlers.FifoChannel(MOST_KNOWN), complete=True)
+        # Not a FifoChannel: when that is full, Zenoh stops all that comes by the same link.
+        queryable = session.declare_queryable(key, zenoh.handlers.RingChannel(MOST_WAITING), complete=True)
         declare.follow(queryable.handler, functools.partial(self._answer, key, answers), "robolink again")
         return _Offered(key, queryable, session.liveliness().declare_token(key), answers)
 
@@ -219,8 +223,9 @@ class Recovery:
         answers.wait(ANSWERED_WITHIN)
         payload = query.payload
         try:
-            for asked in msgspec.msgpack.decode(b"" if payload is None else payload.to_bytes(), type=list[Asked]):
-                for part in self._kept(asked):
+            asked = msgspec.msgpack.decode(b"" if payload is None else payload.to_bytes(), type=list[Asked])
+            for each in together(asked):  # so that nobody gets a topic twice
+                for part in self._kept(each):
                     with lifetime.inside:
                         query.reply(key, part)  # dropped where its link is full, as the question asks
         except (msgspec.DecodeError, msgspec.ValidationError, zenoh.ZError):  # nonsense, or who asked is gone
@@ -269,6 +274,8 @@ class Recovery:
 
     def _begin(self, session: Any, key: str) -> None:
         with self._lock:
+            if len(self._to_ask) >= MOST_WAITING:  # somebody's nonsense: no system has so many that come back at once
+                return
             mendings = list(self._mendings)
         for each in mendings:
             each.begin(len(ASKS_AFTER), ASKS_AFTER[-1] + ANSWERED_WITHIN)
@@ -312,13 +319,14 @@ class Recovery:
                 age = min(time.monotonic() - since, LONGEST_GONE)
                 asked.append(Asked(topic, int(age * 1e9), each.positions()))
                 by_topic.setdefault(topic, []).append(each)
+        question = msgspec.msgpack.encode(together(asked))
         gate, end = declare.make_gate(functools.partial(_take, by_topic)), declare.make_gate(_end, mendings)
         self._gates.update((gate, end))
         with lifetime.inside:
             session.get(
                 key,
                 declare.direct(gate, end),
-                payload=msgspec.msgpack.encode(asked),
+                payload=question,
                 priority=zenoh.Priority.BACKGROUND,  # the answers have it too: all that is new goes before them
                 congestion_control=zenoh.CongestionControl.DROP,
                 consolidation=zenoh.ConsolidationMode.NONE,

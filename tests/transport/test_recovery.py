@@ -6,7 +6,7 @@ import contextlib
 import json
 import time
 from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import msgspec
 import pytest
@@ -18,7 +18,7 @@ from robolink.transport.base import Sample
 from robolink.transport.reach import Link, Reach
 from robolink.transport.stuck_links import PAUSE, Waiting
 from robolink.transport.zenoh import ZenohTransport
-from robolink.transport.zenoh_cache import Answer, Asked, Cache, parts
+from robolink.transport.zenoh_cache import Answer, Asked, Cache, parts, together
 from robolink.transport.zenoh_handles import Holdings
 from robolink.transport.zenoh_mending import Mending
 from robolink.transport.zenoh_recovery import Recovery
@@ -65,6 +65,20 @@ def test_a_subscription_gets_of_unknown_publishers_what_is_younger_than_itself()
     cache.add(b"new", stamped(2, at=now))
     cache.add(b"plain", b"no number")
     assert [each[0] for each in cache.newer(Asked("key", 60 * 10**9, {}))] == [b"new"]
+
+
+def test_a_cache_answers_in_the_order_of_numbers_though_threads_overtook_each_other() -> None:
+    cache = Cache(10)
+    for number in (1, 3, 2, 4):
+        cache.add(*sample(number))
+    assert cache.newer(Asked("key", 0, {GID: 1})) == [sample(number) for number in (2, 3, 4)]
+
+
+def test_a_topic_is_asked_for_once_for_all_of_its_subscriptions() -> None:
+    other = b"%16d" % 1
+    asked = [Asked("key", 5, {GID: 7}), Asked("other", 1, {}), Asked("key", 9, {GID: 3, other: 2})]
+    assert together(asked) == [Asked("key", 9, {GID: 3, other: 2}), Asked("other", 1, {})]
+    assert together(asked[::-1])[0] == Asked("key", 9, {GID: 3, other: 2})
 
 
 def test_an_answer_comes_in_parts_that_are_not_too_large() -> None:
@@ -216,6 +230,9 @@ def test_nonsense_is_no_question_and_no_answer(make_cut: MakeCut) -> None:
     replies = net.there._session.get(pattern, payload=msgspec.msgpack.encode([Asked(CHATTER, 10**12, {})]), timeout=5.0)
     (answer,) = [msgspec.msgpack.decode(each.ok.payload.to_bytes(), type=Answer) for each in replies]
     assert answer.key == CHATTER
+    greedy = msgspec.msgpack.encode([Asked(CHATTER, 10**12, {})] * 1000)
+    every = zenoh.ConsolidationMode.NONE
+    assert len(list(net.there._session.get(pattern, payload=greedy, timeout=5.0, consolidation=every))) == 1
     mending = Mending(nothing)
     for ok in (None, zenoh_sample(b"nonsense"), zenoh_sample(msgspec.msgpack.encode(answer))):
         zenoh_recovery._take({OTHER: [mending]}, zenoh_reply(ok))
@@ -244,6 +261,19 @@ class Token(NamedTuple):
 
     key_expr: str
     kind: zenoh.SampleKind = zenoh.SampleKind.PUT
+
+
+def test_calls_without_end_do_not_fill_the_memory(make_cut: MakeCut, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(zenoh_recovery, "ASKS_AFTER", (3600.0,))
+    net = make_cut()
+    ear = Ear(net.there, qos=KEEP_ALL)
+    recovery = net.there._recovery
+    recovery._known["somebody"] = None
+    recovery._is_asking = True  # so that no thread takes them
+    for number in range(3000):
+        recovery._on_call(net.there._session, cast(Any, Token(f"{recovery._prefix}/somebody/{number}")))
+    assert len(recovery._to_ask) == zenoh_recovery.MOST_WAITING
+    assert ear.arrived.empty()
 
 
 def test_a_former_session_hears_of_others_until_it_is_left(make_cut: MakeCut) -> None:

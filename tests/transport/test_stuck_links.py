@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import socket
 import struct
 import sys
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -69,3 +72,20 @@ def test_an_answer_of_any_kind_says_that_packets_pass(listens: bool) -> None:
         assert not probes.passes([])
         assert not probes.passes([waits._replace(pause=PAUSE)])
         probes.close()
+
+
+def test_a_process_with_many_open_files_can_probe_too() -> None:
+    resource = pytest.importorskip("resource", reason="Windows has other limits, and is not asked")
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if hard != resource.RLIM_INFINITY and hard < 1200:
+        pytest.skip(f"this system allows {hard} open files")
+    resource.setrlimit(resource.RLIMIT_NOFILE, (max(soft, 1200), hard))
+    try:
+        with contextlib.ExitStack() as files, socket.create_server(("127.0.0.1", 0)) as server:
+            for _ in range(1100):
+                files.enter_context(Path(os.devnull).open())
+            probes, waits = Probes(), Waiting(("127.0.0.1", 1), server.getsockname(), PAUSE + 1)
+            until(lambda: probes.passes([waits]))
+            probes.close()
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
