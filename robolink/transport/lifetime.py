@@ -225,14 +225,11 @@ def _wait_for_the_unfinished(deadline: float) -> None:
 
 
 def _end_if_stuck() -> None:
-    """End the process now if threads are still inside Zenoh, and its exit code is known: they would abort it."""
-    code, own = exit_code.noted(), threading.current_thread()
+    """End the process early if threads are still inside Zenoh, and its exit code is known: they would abort it."""
+    own = threading.current_thread()
     waiting = [*all_of(_unfinished), *all_of(_opening)]
-    if code is not None and (_inside - {own.ident} or any(each.is_alive() for each in waiting)):
-        for stream in (sys.stdout, sys.stderr):
-            with contextlib.suppress(OSError, ValueError, AttributeError):  # closed, or None
-                stream.flush()
-        os._exit(code)
+    if exit_code.noted() is not None and (_inside - {own.ident} or any(each.is_alive() for each in waiting)):
+        exit_code.end_early()
 
 
 def all_of(them: weakref.WeakSet[_Kept]) -> list[_Kept]:

@@ -221,9 +221,32 @@ def test_a_thread_that_stays_inside_zenoh_neither_holds_nor_changes_a_known_end(
         print("ending")
         sys.exit(0)
     """
-    code, said, complaint = program(text)
-    assert (code, complaint) == (143, "")
-    assert said == ["ending"]
+    assert program(text) == (143, ["Python would end now", "ending"], "")
+
+
+@pytest.mark.processes
+@pytest.mark.parametrize("streams", ["", "sys.stdout = None", "sys.stdout.close()"])
+def test_nothing_is_lost_where_the_process_ends_before_python_has(tmp_path: Path, streams: str) -> None:
+    text = f"""
+        import atexit, pathlib, tempfile
+        from robolink.system import exit_code
+        folder = tempfile.TemporaryDirectory(dir={str(tmp_path)!r})
+        kept = open({str(tmp_path / "kept")!r}, "w")
+        kept.write("not flushed")
+        lifetime.LAST_WAIT = 0.2
+        thread = threading.Thread(target=lambda: time.sleep(60), daemon=True)
+        lifetime.outlive(thread)
+        thread.start()
+        atexit._clear()
+        atexit.register(folder.cleanup)
+        atexit.register(pathlib.Path({str(tmp_path / "handled")!r}).touch)
+        atexit.register(lifetime.close_all)
+        exit_code.note(143)
+        {streams}
+    """
+    assert program(text) == (143, [], "")
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["handled", "kept"]
+    assert (tmp_path / "kept").read_text() == "not flushed"
 
 
 @pytest.mark.processes
