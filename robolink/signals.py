@@ -114,6 +114,7 @@ def _end_quietly() -> None:
         if _received and issubclass(kind, _ENDS):
             code = 128 + (signal.SIGTERM if _received == signal.SIGTERM else signal.SIGINT)
             exit_code.note(code)
+            exit_code.write_files()
             raise SystemExit(code)
         field = misspelt_field(error)
         if field:

@@ -11,6 +11,7 @@ import sys
 from collections.abc import Callable
 
 _noted: list[int] = []
+_written: list[bool] = []
 
 
 def note(code: int) -> None:
@@ -24,30 +25,43 @@ def noted() -> int | None:
 
 
 def end_early() -> None:
-    """Let the process end with the noted code before Python ends threads, but after all other exit handlers.
+    """Let the process end with the noted code before Python ends threads, but after all other exit handlers."""
+    _at_last_flush(_end)
 
-    Python flushes the standard streams between the two: the first of these flushes ends the process.
-    """
+
+def write_files() -> None:
+    """Let files that are open at the end be written: Python forgets them when an excepthook raises SystemExit."""
+    _at_last_flush(_write)
+
+
+def _at_last_flush(action: Callable[[], object]) -> None:
+    """Call `action` when Python flushes the standard streams: after its exit handlers, and before it ends threads."""
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(AttributeError):  # None, or a stream that takes no attributes
             if not stream.closed:
-                setattr(stream, "flush", functools.partial(_flush, stream.flush))  # noqa: B010 - a method, for types
+                setattr(stream, "flush", functools.partial(_flush, stream.flush, action))  # noqa: B010 - a method
                 return
-    _end()
+    action()
 
 
-def _flush(really: Callable[[], object]) -> None:
+def _flush(really: Callable[[], object], action: Callable[[], object]) -> None:
     try:
         really()
     finally:
         if sys.is_finalizing():
-            _end()
+            action()
 
 
-def _end() -> None:
-    """Write what Python's files still hold, as its end would do, and end the process."""
+def _write() -> None:
+    if _written:  # a stream that calls this may be one of them
+        return
+    _written.append(True)
     for each in gc.get_objects():
         if issubclass(type(each), io.IOBase):
             with contextlib.suppress(Exception):  # closed, or its disk is full
                 each.flush()
+
+
+def _end() -> None:
+    _write()
     os._exit(_noted[0])

@@ -225,6 +225,25 @@ def test_a_thread_that_stays_inside_zenoh_neither_holds_nor_changes_a_known_end(
 
 
 @pytest.mark.processes
+@pytest.mark.parametrize("number", ["SIGINT", "SIGTERM"])
+def test_a_signal_that_nobody_catches_loses_nothing_of_open_files(tmp_path: Path, number: str) -> None:
+    text = f"""
+        from robolink.signals import install_signal_handlers
+        kept = open({str(tmp_path / "kept")!r}, "w")
+
+        def main():
+            kept.write("not flushed")
+            install_signal_handlers()
+            signal.raise_signal(signal.{number})
+
+        main()
+    """
+    code, *_ = program(text)
+    assert code == 128 + getattr(signal, number)
+    assert (tmp_path / "kept").read_text() == "not flushed"
+
+
+@pytest.mark.processes
 @pytest.mark.parametrize("streams", ["", "sys.stdout = None", "sys.stdout.close()"])
 def test_nothing_is_lost_where_the_process_ends_before_python_has(tmp_path: Path, streams: str) -> None:
     text = f"""
