@@ -48,16 +48,21 @@ def show(
     """Show the images of a topic in the terminal, until Ctrl-C; `robolink view` shows them in the browser."""
     from robolink.cli.image.listening import each_image
     from robolink.cli.shared.output import clear, say
-    from robolink.cli.shared.picture import check_terminal, drawn
-    from robolink.image import to_array, to_message
+    from robolink.cli.shared.picture import PictureError, check_terminal, drawn
+    from robolink.image import ImageError, to_array, to_message
     from robolink.interfaces.sensor_msgs.msg import CompressedImage
 
     check_terminal(sys.stdout.isatty())
 
     def draw(message: object) -> None:
-        if isinstance(message, CompressedImage):
-            message = to_message(to_array(message, "bgr8"))
-        text = drawn(message)
+        try:
+            if isinstance(message, CompressedImage):
+                message = to_message(to_array(message, "bgr8"))
+            text = drawn(message)
+        except (ImageError, PictureError) as error:
+            if once:
+                raise
+            text = str(error)  # the next image may be a good one
         clear()
         say(text, colours=True)
 

@@ -97,8 +97,9 @@ def _for_png(image: Pixels, encoding: str) -> Pixels:
         deep = found.bits if "bayer" not in found.colours else 8
         return convert(image, encoding, f"{'rgba' if found.colours == 'bgra' else 'rgb'}{deep}")
     if found.cv_type == "32FC1":
-        millimetres = np.nan_to_num(image * np.float32(_MILLIMETRES), nan=0.0, posinf=0.0, neginf=0.0)
-        whole: Pixels = np.clip(np.rint(millimetres), 0, _DEEPEST).astype(np.uint16)
+        metres = np.where(np.isfinite(image), image, np.float32(0.0))
+        near = np.clip(metres, np.float32(0.0), np.float32(_DEEPEST / _MILLIMETRES + 1))  # 3e38 would overflow
+        whole: Pixels = np.clip(np.rint(near * np.float32(_MILLIMETRES)), 0, _DEEPEST).astype(np.uint16)
         return whole
     if found.depth in ("8U", "16U") and found.channels in (1, 3, 4):
         return image if found.channels == 1 else image[..., [2, 1, 0, 3][: found.channels]]

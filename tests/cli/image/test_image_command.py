@@ -67,6 +67,12 @@ def test_distances_become_millimetres(node: Node) -> None:
     assert read("depth.png").tolist() == [[500, 0, 0], [1234, 65535, 0]]
 
 
+def test_absurd_distances_are_the_farthest_or_none_without_a_warning(node: Node) -> None:
+    latch(node, "/depth", to_message(np.array([[3e38, -3e38], [np.inf, np.nan]], np.float32)))
+    assert main(["image", "save", "/depth", "a.png"]) == 0
+    assert_array_equal(read("a.png"), [[65535, 0], [0, 0]])
+
+
 def test_several_and_a_jpeg(node: Node, capsys: pytest.CaptureFixture[str]) -> None:
     latch(node, "/image", *[to_message(np.full((8, 8, 3), each, np.uint8)) for each in (10, 200)])
     assert main(["image", "save", "/image", "a{}.jpg", "--count", "2", "--timeout", "20"]) == 0
@@ -125,6 +131,18 @@ def test_images_are_shown_in_the_terminal(
     latch(node, "/image", message)
     assert main(["image", "show", "/image", "--once"]) == 0
     assert "\x1b[38;2;255;0;0;48;2;0;0;255m\u2580\x1b[0m\n1 x 2 bgr8\n" in capsys.readouterr().out
+
+
+def test_a_broken_image_does_not_end_the_show(
+    node: Node, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLORTERM", "truecolor")
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    latch(node, "/image", Image(height=2, width=2, encoding="bgr8", step=6, data=bytes(3)))
+    assert main(["image", "show", "/image", "--timeout", "0.2"]) == 1
+    said = capsys.readouterr()
+    assert "2 x 2 pixels of bgr8 need 6 bytes a row" in said.out
+    assert "no image on /image within 0.2 s" in said.err  # so it went on after the broken one
 
 
 def test_without_a_terminal_it_says_what_to_do(capsys: pytest.CaptureFixture[str]) -> None:
