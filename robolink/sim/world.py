@@ -9,13 +9,16 @@ print(robot.pose, robot.scan().ranges.min())
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from types import MappingProxyType
 
 import pymunk
 
 from robolink.exceptions import NotFoundError
 from robolink.geometry import plane
+from robolink.sim.checks.pictures import robot_picture_problems
 from robolink.sim.checks.problem import Problem
 from robolink.sim.checks.robots import robot_problems
 from robolink.sim.checks.worlds import mass_problems
@@ -120,7 +123,7 @@ class World:
 
     def _problems(self, robot: RobotDescription) -> Iterator[Problem]:
         """Yield the problems of a robot to spawn in this world."""
-        for each in robot_problems(robot, self._dt):
+        for each in itertools.chain(robot_problems(robot, self._dt), robot_picture_problems(robot, Path())):
             yield each._replace(path=each.path.removeprefix("."))
         if all(robot.mass > each.mass for each in self.description.robots):  # else it makes nothing worse
             for each in mass_problems([robot], self.description.obstacles):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -12,6 +13,7 @@ from robolink.documents import yamlfile
 from robolink.exceptions import NotFoundError
 from robolink.geometry.plane import wrapped
 from robolink.sim import Pose, RobotDescription, WorldDescription, WorldError
+from robolink.sim.checks.pictures import robot_picture_problems
 from robolink.sim.checks.robots import robot_misfits, robot_problems
 from robolink.sim.physics.placing import check_pose
 from robolink.sim.worldfile import sensor_class
@@ -62,6 +64,7 @@ def _read(text: str, name: str, pose: Pose, dt: float) -> RobotDescription:
     document = yamlfile.read("model", Model, text=text, hook=sensor_class)
     robot = RobotDescription(**{**msgspec.structs.asdict(document.value), "name": "robot", "pose": pose})
     data: Any = document.data
-    for problem in itertools.chain(robot_misfits(data), robot_problems(robot, dt)):
+    pictures = robot_picture_problems(robot, Path())
+    for problem in itertools.chain(robot_misfits(data), robot_problems(robot, dt), pictures):
         raise document.error(f"${problem.path}", problem.message, key=problem.key)
     return msgspec.structs.replace(robot, name=name)

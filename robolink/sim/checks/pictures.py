@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from msgspec.structs import replace
@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from robolink.documents.yamlfile import siblings
 from robolink.exceptions import nearest
 from robolink.sim.checks.problem import Problem
-from robolink.sim.description import Sign, WorldDescription
+from robolink.sim.description import RobotDescription, Sign, WorldDescription
 from robolink.sim.scene.floor_size import too_much
 from robolink.system.terminal import shown
 
@@ -26,7 +26,22 @@ def picture_problems(description: WorldDescription, folder: Path) -> Iterator[Pr
         folder: The folder where these names begin.
     """
     files = _Files(folder)
-    for path, sign in _signs(description):
+    yield from _sign_problems(_signs(description), files)
+    floor = description.world.floor
+    if floor.image is not None:
+        width, height, reason = files.look(floor.image)
+        if reason := reason or too_much(floor, description.paint, (width, height)):
+            yield Problem("$.world.floor.image", reason)
+
+
+def robot_picture_problems(robot: RobotDescription, folder: Path) -> Iterator[Problem]:
+    """Yield the problems of the pictures of one robot's signs, as `picture_problems` does; paths begin with .signs."""
+    signs = ((f".signs[{index}]", each) for index, each in enumerate(robot.signs))
+    yield from _sign_problems(signs, _Files(folder))
+
+
+def _sign_problems(signs: Iterable[tuple[str, Sign]], files: _Files) -> Iterator[Problem]:
+    for path, sign in signs:
         if sign.image is None:
             continue
         width, height, reason = files.look(sign.image)
@@ -34,11 +49,6 @@ def picture_problems(description: WorldDescription, folder: Path) -> Iterator[Pr
             reason = f"it is {high:.4g} m high, and would reach below the floor: z at least {high / 2:.4g}"
         if reason:
             yield Problem(f"{path}.image", reason)
-    floor = description.world.floor
-    if floor.image is not None:
-        width, height, reason = files.look(floor.image)
-        if reason := reason or too_much(floor, description.paint, (width, height)):
-            yield Problem("$.world.floor.image", reason)
 
 
 class _Files:

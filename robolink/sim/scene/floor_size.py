@@ -22,7 +22,10 @@ _TOLERANCE = 1e-6
 
 
 MOST_WORK = 10 * MOST_PIXELS
-"""Most pixels of the boxes around all that is painted: what lies over each other counts several times."""
+"""Most pixels that are looked at for all that is painted: what lies over each other counts several times."""
+
+_SLANT = 100.0
+"""Number of empty pixels that are looked at for each pixel of the way of a slanting line."""
 
 MOST_PIECES = 50_000
 """Most pieces of all lines, which take 50 us each."""
@@ -85,7 +88,7 @@ def too_much(settings: FloorSettings, paint: Sequence[Paint], picture: tuple[int
         coarser = ceil(1010 * side * sqrt(whole.pixels / MOST_PIXELS)) / 1000
         most = f"at most {MOST_PIXELS // 10**6} million: take {coarser:g}, or paint less"
         return f"{size} are {whole.pixels / 1e6:.3g} million pixels, {most}"
-    if sum(extent(settings, [each]).pixels for each in paint) > MOST_WORK:
+    if sum(extent(settings, [each]).pixels + _work(each, side) for each in paint) > MOST_WORK:
         return f"too much is painted over each other, at {side:g} m: take a coarser resolution, or paint less"
     if sum(_pieces(each, side) for each in paint) > MOST_PIECES:
         return f"the lines have more than {MOST_PIECES:,} pieces at {side:g} m: fewer points, corners or dashes"
@@ -94,12 +97,20 @@ def too_much(settings: FloorSettings, paint: Sequence[Paint], picture: tuple[int
 
 def _pieces(paint: Paint, side: float) -> float:
     """Return about how many pieces a line is painted in."""
-    if paint.line is None:
-        return 1.0
-    points = [*paint.line, paint.line[0]] if paint.closed else paint.line
-    length = length_of(points)
-    dashes = 0.0 if paint.dashes is None else length / sum(paint.dashes)
-    return len(points) * (16 if paint.radius else 1) + length / side / 100 + dashes
+    dashes = 0.0 if paint.dashes is None else _length(paint) / sum(paint.dashes)
+    return len(paint.line or ()) * (16 if paint.radius else 1) + _length(paint) / side / 100 + dashes
+
+
+def _work(paint: Paint, side: float) -> float:
+    """Return about how many pixels are looked at to paint a line: at each of its pieces a square, and the way."""
+    width = paint.width / side
+    return _pieces(paint, side) * (width + 2.0) ** 2 + _length(paint) / side * (width + _SLANT)
+
+
+def _length(paint: Paint) -> float:
+    """Return the length of a line in metres; 0 of what is none."""
+    points = paint.line or ()
+    return length_of([*points, points[0]] if points and paint.closed else points)
 
 
 def box_of(paint: Paint) -> Area:

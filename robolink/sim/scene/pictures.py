@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,14 @@ from robolink.system.plainfile import read_plain
 
 MOST_PIXELS = 8_000_000
 """Most pixels of a picture: 4,000 x 2,000."""
+
+MOST_KEPT = 16
+"""Most pictures that are kept in memory."""
+
+_known: dict[str, tuple[tuple[int, int], Picture]] = {}
+"""The last pictures by path, each with its file's time and size; the latest is the last."""
+
+_lock = threading.Lock()
 
 _JPEG = b"\xff\xd8\xff"
 _STARTS = (*range(0xC0, 0xC4), *range(0xC5, 0xC8), *range(0xC9, 0xCC), *range(0xCD, 0xD0))
@@ -34,16 +42,33 @@ def read_picture(path: str) -> Picture:
         ValueError: if the path is none.
     """
     found = Path(path).stat()
-    return _read(path, found.st_mtime_ns, found.st_size)
+    state = (found.st_mtime_ns, found.st_size)
+    with _lock:
+        known = _known.get(path)
+    if known is None or known[0] != state:
+        known = state, _decoded(read_plain(path, LARGEST_FILE))
+        known[1].flags.writeable = False
+    with _lock:
+        _known.pop(path, None)
+        _known[path] = known
+        while len(_known) > MOST_KEPT:
+            del _known[next(iter(_known))]
+    return known[1]
 
 
-@lru_cache(maxsize=16)
-def _read(path: str, _changed: int, _size: int) -> Picture:
-    """Read a picture; it is read again once its file has changed."""
-    raw = read_plain(path, LARGEST_FILE)
-    picture = _decoded(raw)
-    picture.flags.writeable = False
-    return picture
+def kept_picture(path: str) -> Picture:
+    """Return a picture as `read_picture` does, or as it was if its file has gone or changed for the worse since then.
+
+    A world that runs keeps its signs, whatever happens to their files.
+    """
+    try:
+        return read_picture(path)
+    except (OSError, ValueError):
+        with _lock:
+            known = _known.get(path)
+        if known is None:
+            raise
+        return known[1]
 
 
 def _decoded(raw: bytes) -> Picture:

@@ -139,6 +139,7 @@ def digest(image: npt.NDArray[np.uint8]) -> int:
         ([Paint(circle=1.0, pose=Pose(-1e5, 0.0)), Paint(circle=1.0, pose=Pose(1e5, 0.0))], "million pixels"),
         ([Paint(circle=9.0)] * 20, "too much is painted over each other"),
         ([Paint(line=((0.0, 0.0), (9.0, 0.0)), dashes=(0.001, 0.001))] * 20, "more than 50,000 pieces"),
+        ([Paint(line=tuple((1e-3 * each, each % 2.0) for each in range(9000)), width=2.0)], "too much is painted over"),
         ([Paint(circle=9.0)], ""),
     ],
 )
