@@ -7,12 +7,14 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from robolink.image import ImageError, to_array
 from robolink.image.codecs import encoded
 from robolink.image.png import png_of
 from robolink.interfaces.sensor_msgs.msg import CameraInfo, Image
 from robolink.subscription import Subscription
+from robolink.webots_controller.recognition import CameraRecognitionObject, Lens, Recognizer
 from robolink.webots_controller.topic_sensor import Sensor
 
 ValueT = TypeVar("ValueT")
@@ -84,7 +86,14 @@ class ImageSensor(Sensor[Image], Generic[ValueT]):
 
 
 class Camera(ImageSensor[bytes]):
-    """A camera of colours, without recognition of objects."""
+    """A camera of colours, which recognizes objects by their colours."""
+
+    def __init__(self, topics: Any, name: str) -> None:
+        super().__init__(topics, name)
+        self._recognizer: Recognizer | None = None
+        self._recognition_period = 0
+        self._recognized: Image | None = None
+        self._depth = RangeFinder(topics, name)
 
     def getImage(self) -> bytes | None:
         """Return the bytes of the pixels, row by row: blue, green, red and alpha of each; None before the first."""
@@ -122,8 +131,41 @@ class Camera(ImageSensor[bytes]):
         return 0
 
     def hasRecognition(self) -> bool:
-        """Return False: objects are not recognized."""
-        return False
+        """Return True: each camera recognizes areas of one hue, red, yellow, green, cyan, blue or magenta."""
+        return True
+
+    def recognitionEnable(self, samplingPeriod: int) -> None:
+        """Begin to recognize objects in the images of the camera, which must be enabled too."""
+        self._recognition_period = int(samplingPeriod)
+        self._recognizer, self._recognized = Recognizer(), None
+        self._depth.enable(samplingPeriod)
+
+    def recognitionDisable(self) -> None:
+        """End recognizing objects."""
+        self._recognition_period, self._recognizer = 0, None
+        self._depth.disable()
+
+    def getRecognitionSamplingPeriod(self) -> int:
+        """Return the sampling period of recognition in ms; 0 if disabled."""
+        return self._recognition_period
+
+    def getRecognitionNumberOfObjects(self) -> int:
+        """Return the number of objects in the latest image."""
+        return len(self.getRecognitionObjects())
+
+    def getRecognitionObjects(self) -> list[CameraRecognitionObject]:
+        """Return the objects in the latest image, the largest first; none before the first image, or if disabled."""
+        latest, recognizer = self.latest, self._recognizer
+        if latest is None or recognizer is None:
+            return []
+        if latest is not self._recognized:
+            self._recognized = latest
+            recognizer.look(to_array(latest, "rgb8"), self._depth.depths(), self._lens())
+        return list(recognizer.objects)
+
+    def _lens(self) -> Lens | None:
+        info = self._calibration()
+        return None if info is None else Lens(info.k[0], info.k[2], info.k[5])
 
     @staticmethod
     def imageGetRed(image: bytes, width: int, x: int, y: int) -> int:
@@ -185,6 +227,11 @@ class RangeFinder(ImageSensor[list[float]]):
     def rangeImageGetDepth(image: list[float], width: int, x: int, y: int) -> float:
         """Return the depth of a pixel of `getRangeImage` in metres."""
         return image[y * width + x]
+
+    def depths(self) -> npt.NDArray[np.float32] | None:
+        """Return the depths of the latest image, an array of (rows, columns) in metres; None before the first."""
+        latest = self.latest
+        return None if latest is None else np.asarray(to_array(latest), dtype=np.float32)
 
     def _convert(self, image: Image) -> list[float]:
         depths: list[float] = np.maximum(to_array(image), 0.0).ravel().tolist()

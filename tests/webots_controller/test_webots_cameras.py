@@ -64,7 +64,52 @@ def test_a_program_reads_the_colours_of_a_camera(system: System, world: str, tmp
     assert camera.saveImage(str(tmp_path / "seen.png"), 100) == 0
     assert (tmp_path / "seen.png").read_bytes().startswith(b"\x89PNG")
     assert camera.saveImage(str(tmp_path / "no" / "folder.png"), 100) == -1
-    assert not camera.hasRecognition()
+    assert camera.hasRecognition()
+
+
+BALLS = """
+walls: [{polyline: [[5, -4], [5, 4]], colour: '#808080', height: 3}]
+obstacles:
+  - {circle: 0.2, pose: [2.2, 0.8], height: 0.4, colour: red}
+  - {circle: 0.15, pose: [3, -1], height: 0.4, colour: blue}
+robots:
+  - name: cart
+    pose: [0, 0]
+    sensors:
+      - {camera: camera, width: 160, height: 120, fov: 80}
+      - {camera: kinect, width: 160, height: 120, fov: 80, depth: true}
+"""
+
+
+def test_objects_are_recognized_by_their_colours(system: System, tmp_path: Path) -> None:
+    path = tmp_path / "balls.yaml"
+    path.write_text(BALLS)
+    system.start(simulation.SimulatedWorld, parameters={"world": str(path)})
+    watcher = system.start(Watcher)
+    kinect = watcher.robot.getCamera("kinect")
+    kinect.enable(32)
+    for camera in (watcher.camera, kinect):
+        assert camera.getRecognitionObjects() == []
+        camera.recognitionEnable(32)
+    system.run(1.0)
+    assert watcher.camera.getRecognitionSamplingPeriod() == 32
+    assert [each.getModel() for each in watcher.camera.getRecognitionObjects()] == ["red", "blue"]
+    red, blue = kinect.getRecognitionObjects()
+    assert red.getPosition() == pytest.approx([2.0, 0.8, 0.0], abs=0.1)
+    assert blue.getPosition() == pytest.approx([2.85, -1.0, 0.0], abs=0.1)
+    assert red.getSize()[0] == pytest.approx(0.4, abs=0.05)
+    (x, y), (width, height) = red.getPositionOnImage(), red.getSizeOnImage()
+    assert x < 80 < blue.getPositionOnImage()[0]
+    assert 0 < y < 120
+    assert height == pytest.approx(120 / 80 * width * 0.66, rel=0.5)
+    assert (red.getNumberOfColors(), len(red.getColors()), len(red.getOrientation())) == (1, 3, 4)
+    assert red.getColors()[0] > 0.4 > red.getColors()[1]
+    first = red.getId(), blue.getId()
+    system.run(0.5)
+    assert tuple(each.getId() for each in kinect.getRecognitionObjects()) == first
+    assert math.isnan(watcher.camera.getRecognitionObjects()[0].getPosition()[0])
+    kinect.recognitionDisable()
+    assert (kinect.getRecognitionNumberOfObjects(), kinect.getRecognitionSamplingPeriod()) == (0, 0)
 
 
 def test_a_range_finder_tells_metres_from_left_to_right_and_down(system: System, world: str) -> None:
