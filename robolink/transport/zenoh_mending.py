@@ -79,6 +79,9 @@ class Mending:
             if len(self._last) >= MOST_SENDERS:
                 self._forget(next(iter(self._last)))
             last = number - 1
+        elif len(self._last) > MOST_SENDERS // 2:
+            del self._last[gid]  # who is silent the longest stands first, and is forgotten first
+            self._last[gid] = last
         if number > last:  # threads that publish may overtake each other
             self._last[gid] = number
         if number - last > 1:

@@ -136,6 +136,16 @@ def test_messages_without_a_number_and_of_many_publishers_pass(mending: Mending,
     assert len(mending.positions()) == MOST_SENDERS
 
 
+def test_who_is_silent_the_longest_is_forgotten_first(mending: Mending) -> None:
+    for publisher in range(1, MOST_SENDERS - 50):
+        mending(sample(publisher, publisher=0))
+        mending(sample(1, publisher))
+    for publisher in range(MOST_SENDERS, MOST_SENDERS + 100):
+        mending(sample(1, publisher))
+    assert len(mending.positions()) == MOST_SENDERS
+    assert mending.positions()[GID] == MOST_SENDERS - 51
+
+
 def test_a_thread_of_zenohs_keeps_its_python_state(
     mending: Mending, passed: list[Sample], monkeypatch: pytest.MonkeyPatch
 ) -> None:
