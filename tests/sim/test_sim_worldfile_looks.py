@@ -149,7 +149,7 @@ BAD = {
     "the floor: at least 0.125",
     SIGN % "pose: [1, 1], image: no.png": "1:31: signs[0].image: no file 'no.png'",
     SIGN % "pose: [1, 1], image: ''": "signs[0].image: '' cannot be read: it is a folder, and no file",
-    SIGN % r'pose: [1, 1], image: "a\0b"': "signs[0].image: 'a\\x00b' cannot be read: embedded null byte",
+    SIGN % r'pose: [1, 1], image: "a\0b"': "signs[0].image: 'a\\x00b' cannot be read: a path has no null character",
     f"world: {{size: [4, 4]}}\n{SIGN}" % "pose: [5, 1], tag: 36h11/3": "signs[0].pose: [5, 1] lies outside of the",
     "robots: [{name: r, pose: [0, 0], signs: [{pose: [0, 0], tag: x}]}]": "robots[0].signs[0].tag: 'x' has no known",
     "obstacles: [{circle: 1, pose: [0, 0], signs: [{pose: [0, 0], tag: x}]}]": "obstacles[0].signs[0].tag: 'x' has no",

@@ -41,6 +41,8 @@ def read_picture(path: str) -> Picture:
         ImageError: if it is no picture, a broken or a huge one, or a JPEG without OpenCV.
         ValueError: if the path is none.
     """
+    if "\0" in path:
+        raise ValueError("a path has no null character")  # each Python has words of its own for that
     found = Path(path).stat()
     state = (found.st_mtime_ns, found.st_size)
     with _lock:
