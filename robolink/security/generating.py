@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from robolink.documents.xmltext import Element, make, spell
 from robolink.security import files
 from robolink.security.policy import KINDS, VERSION, Policy, Profile, Rule, load
-from robolink.security.xmltext import Element, make, spell
 
 
 def merged(path: Path, found: Policy) -> Policy:

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from contextlib import AbstractContextManager
 from pathlib import Path
 
+from robolink.documents.xmltext import read
 from robolink.exceptions import DocumentError, SecurityError, nearest
 from robolink.security import authority, files, permissions, policy
 from robolink.security.policy import Profile, Rule
-from robolink.security.xmltext import read
 from robolink.text.names import FULL_NAME_RULES, MAX_NAMESPACE, find_problem
 
 KEY, CERTIFICATE, PERMISSIONS = "key.pem", "cert.pem", "permissions.xml"

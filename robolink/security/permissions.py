@@ -9,9 +9,9 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from robolink.documents.xmltext import Element, make, read, spell
 from robolink.security import patterns
 from robolink.security.policy import Profile, Rule
-from robolink.security.xmltext import Element, make, read, spell
 
 SERVICES = (
     *("describe_parameters", "get_parameter_types", "get_parameters", "list_parameters"),

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from robolink.documents.xmltext import Element, read
 from robolink.exceptions import DocumentError, nearest
 from robolink.security import patterns
-from robolink.security.xmltext import Element, read
 from robolink.text.names import FULL_NAME_RULES, MAX_NAMESPACE, MAX_NODE_NAME, NODE_NAME_RULES, find_problem
 
 VERSION = "0.2.0"

@@ -11,11 +11,11 @@ import zenoh
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robolink.documents.xmltext import parse
 from robolink.exceptions import DocumentError
 from robolink.security import patterns, permissions, policy
 from robolink.security.generating import merged, write_policy
 from robolink.security.policy import Profile, Rule
-from robolink.security.xmltext import parse
 from robolink.wire import DataKey, format_key
 
 HEAD = '<?xml version="1.0"?><policy version="0.2.0" xmlns:xi="http://www.w3.org/2001/XInclude"><enclaves>'
