@@ -87,15 +87,7 @@ def _announce(server: View, browser: bool) -> None:
         tell(f"others on the network open {others}: whoever has the token can drive the robots")
         tell("the connection is not encrypted: who listens on the network can read the token (docs/view.md)")
     if browser:
-        _open(server.address)
+        from robolink.system.browser import open_in_browser
 
-
-def _open(address: str) -> None:
-    import os
-    import sys
-    import webbrowser
-
-    has_display = sys.platform in ("win32", "darwin") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    if has_display and webbrowser.open(address):
-        return
-    tell("no browser here: open the address above")
+        if not open_in_browser(server.address):
+            tell("no browser here: open the address above")

@@ -6,13 +6,21 @@ import { button, h } from "./dom.js";
 import { words } from "./words.js";
 
 /** Panels by name, in the order of the menu: the file is panels/NAME.js, its title the word "panel.NAME". */
-export const PANELS = ["world", "topics", "plot", "log", "teleop", "services", "parameters", "images", "graph", "actions"];
+export const PANELS = ["world", "topics", "plot", "log", "teleop", "services", "parameters", "images", "graph", "actions", "turtlesim"];
 
 const DEFAULT = { columns: [{ width: 65, cells: [["world", 100]] }, { width: 35, cells: [["topics", 100]] }] };
 const KEY = "robolink.layout";
 
 function initial() {
   return { columns: DEFAULT.columns.map(({ width, cells }) => ({ width, cells: cells.map(([id, height]) => ({ id, height, options: {} })) })) };
+}
+
+/** Layout with the panels that an address asks for by "#NAME+NAME": theirs alone if there is no other, else what lacks comes first. */
+export function withAsked(model, hash) {
+  const asked = hash.slice(1).split("+").filter((id) => PANELS.includes(id));
+  const lacking = asked.filter((id) => !model?.columns.some(({ cells }) => cells.some((cell) => cell.id === id)));
+  const columns = lacking.map((id, i) => ({ width: i ? 50 : 100, cells: [{ id, height: 100, options: {} }] }));
+  return { columns: [...columns, ...(model ?? (asked.length ? { columns: [] } : initial())).columns] };
 }
 
 /** Layout of text from the browser's memory; the default if there is none or it is nonsense. */
@@ -34,7 +42,8 @@ export class Layout {
   constructor(main, app) {
     this.main = main;
     this.app = app;
-    this.model = restored(localStorage.getItem(KEY));
+    const kept = localStorage.getItem(KEY);
+    this.model = withAsked(kept ? restored(kept) : null, location.hash);
     this.shown = new Map(); // cell -> {element, panel}
     this.current = 0;
     this.tabs = h("nav", { class: "tabs", "aria-label": words("add") });

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { Connection } from "../../../robolink/view/page/connection.js";
-import { PANELS, restored } from "../../../robolink/view/page/layout.js";
+import { PANELS, restored, withAsked } from "../../../robolink/view/page/layout.js";
 import { at, leaf } from "../../../robolink/view/page/panels/tree.js";
 import { MINUTE, Ring } from "../../../robolink/view/page/ring.js";
 import { compose, Frames, IDENTITY, inverse, poseOf, yawOf } from "../../../robolink/view/page/tf.js";
@@ -122,6 +122,15 @@ test("a layout of nonsense is the default one", () => {
   for (const text of ["", "{", "[]", '{"columns": 7}', '{"columns": [{"cells": 3}]}']) assert.deepEqual(restored(text), first, text);
   assert.deepEqual(restored('{"columns": [{"width": "x", "cells": [{"id": "nothing"}]}]}'), { columns: [] });
   assert.ok(first.columns.flatMap(({ cells }) => cells).every(({ id }) => PANELS.includes(id)));
+});
+
+test("an address asks for panels: alone in a new browser, beside what is there else", () => {
+  const ids = (model) => model.columns.map(({ cells }) => cells.map(({ id }) => id).join());
+  const kept = restored('{"columns": [{"width": 1, "cells": [{"id": "log"}]}, {"width": 2, "cells": [{"id": "plot"}]}]}');
+  for (const [model, hash, expected] of [
+    [null, "", ids(restored(null))], [null, "#turtlesim+services", ["turtlesim", "services"]], [null, "#../../x+nothing", ids(restored(null))],
+    [kept, "", ["log", "plot"]], [kept, "#graph", ["graph", "log", "plot"]], [kept, "#plot+log", ["log", "plot"]],
+  ]) assert.deepEqual(ids(withAsked(model, hash)), expected, hash);
 });
 
 test("values at paths, and in one line", () => {

@@ -12,7 +12,8 @@ addPairs("images", {
 
 const TYPES = ["sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"];
 
-class Images {
+/** Panel of pictures; others that show pictures extend it. */
+export class Images {
   constructor(element, app, options) {
     Object.assign(this, { element, app, topic: "" }, options);
     this.stamps = [];
@@ -38,8 +39,11 @@ class Images {
     this.element.append(h("div", { class: "row" }, this.picker.element, this.state, h("span", { class: "gap" }), button("PNG", words("images.save"), () => this.canvas.toBlob((blob) => download("image.png", blob)))), h("div", { class: "paper" }, this.canvas));
   }
 
+  /** Names of the topics to choose from. */
+  _names() { return this.app.store.list().filter(({ type }) => TYPES.includes(type)).map(({ name }) => name); }
+
   _list() {
-    this.topic = this.picker.show(this.app.store.list().filter(({ type }) => TYPES.includes(type)).map(({ name }) => name), this.topic);
+    this.topic = this.picker.show(this._names(), this.topic);
     if (!this.topic || this.handle?.topic.name === this.topic) return;
     this.handle?.close();
     this.stamps = [];
