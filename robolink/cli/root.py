@@ -37,6 +37,7 @@ COMMANDS = {
     "simulate": Entry(
         "robolink.cli.launching.simulate", "Run a system in virtual time, with faults, as fast as it goes."
     ),
+    "new": Entry("robolink.cli.new", "Make a project, a node or a world to begin with."),
     "run-together": Entry("robolink.cli.running_nodes.run_together", ""),
     "look-into": Entry("robolink.cli.running_nodes.look_into", ""),
     "pub": Entry("robolink.cli.topic.command", "Publish messages: short for topic pub.", "pub"),

@@ -1,0 +1,69 @@
+"""robolink new: make a project, a node or a world to begin with."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from robolink.cli.shared.output import say
+
+if TYPE_CHECKING:
+    from robolink.scaffold import Made
+
+app = typer.Typer(no_args_is_help=True, help="Make a project, a node or a world to begin with.")
+
+Workspace = Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Where to put it.")]
+
+
+@app.command("project")
+def new_project(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, or the path of its folder.")],
+) -> None:
+    """Make a folder that runs and tests at once: a node, a world, a launch file, a test, a CI file."""
+    from robolink.scaffold import new_project
+
+    made = new_project(name)
+    _tell(made)
+    say(f"\nnext:\n  cd {_shown(made.folder)}\n  robolink simulate {made.name}    # or: launch {made.name}\n  pytest")
+
+
+@app.command("node")
+def new_node(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, such as wall_watcher.")],
+    workspace: Workspace = "",
+) -> None:
+    """Make a node and its test, in nodes/ and tests/; without a workspace, one file in this folder."""
+    from robolink.scaffold import new_node
+
+    made = new_node(name, workspace=workspace or None)
+    _tell(made)
+    in_workspace = len(made.files) > 1
+    test = f"\n  pytest {_shown(made.folder / made.files[1])}" if in_workspace else ""
+    say(f"\nnext:\n  robolink run {made.name if in_workspace else made.files[0]}{test}")
+
+
+@app.command("world")
+def new_world(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, such as kitchen.")], workspace: Workspace = ""
+) -> None:
+    """Make a world to simulate, in configs/worlds/; without a workspace, one file in this folder."""
+    from robolink.scaffold import new_world
+
+    made = new_world(name, workspace=workspace or None)
+    _tell(made)
+    called = made.name if "/" in made.files[0] else made.files[0]
+    say(f"\nnext:\n  robolink run world -p world:={called}\n  robolink world draw {called} {made.name}.png")
+
+
+def _tell(made: Made) -> None:
+    for each in made.files:
+        say(f"made {_shown(made.folder / each)}")
+
+
+def _shown(path: Path) -> str:
+    """Return a path as one types it here."""
+    here = Path.cwd()
+    return os.path.relpath(path, here) if path.is_relative_to(here) else str(path)

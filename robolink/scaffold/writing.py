@@ -1,0 +1,100 @@
+"""Writer of new projects, nodes and worlds: no file that is there already is changed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from robolink.scaffold.naming import ScaffoldError, checked, class_name
+from robolink.scaffold.rendering import rendered
+from robolink.system.paths import expanded
+from robolink.workspace import built_in_workspace, user_workspace
+from robolink.workspace.source import Folder
+
+PARTS = ("nodes", "configs")
+"""Folders of which a workspace of robolink's own kind has one at least."""
+
+
+class Made(NamedTuple):
+    """Record of what was made: its name, the folder that it is in, and the files, relative to that folder."""
+
+    name: str
+    folder: Path
+    files: list[str]
+
+
+def new_project(path: str) -> Made:
+    """Make a workspace that runs and tests at once: a node, a world, a launch file, a test, a CI file.
+
+    Args:
+        path: The folder, which must not be there yet, or be empty; its last part is the project's name.
+
+    Raises:
+        ScaffoldError: (a ValueError) if the name is not valid, or the folder holds something.
+        OSError: if the files cannot be written.
+    """
+    folder = expanded(path).absolute()
+    name = checked("project", folder.name)
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise ScaffoldError(f"{path} is there already and not empty: take another name, or an empty folder")
+    return _written(folder, name, rendered("project", {"NAME": name}))
+
+
+def new_node(name: str, *, workspace: Folder = None) -> Made:
+    """Make a node and its test, in the workspace; without one, the node alone in the working directory.
+
+    Args:
+        name: Name of the node, with or without `.py`.
+        workspace: Folder that serves as the user's workspace; None looks for it.
+
+    Raises:
+        ScaffoldError: (a ValueError) if the name is not valid, or a file of this name is there.
+        OSError: if the files cannot be written.
+    """
+    taken = [each.stem for each in (built_in_workspace() / "nodes").glob("*.py")]
+    name = checked("node", name.removesuffix(".py"), taken).replace("-", "_")
+    files = rendered("node", {"NAME": name, "CLASS": class_name(name)})
+    folder = _workspace(workspace)
+    if folder is None:
+        return _written(Path.cwd(), name, {f"{name}.py": files[f"nodes/{name}.py"]})
+    return _written(folder, name, files)
+
+
+def new_world(name: str, *, workspace: Folder = None) -> Made:
+    """Make a world to simulate, in the workspace; without one, in the working directory.
+
+    Args:
+        name: Name of the world, with or without `.yaml`.
+        workspace: Folder that serves as the user's workspace; None looks for it.
+
+    Raises:
+        ScaffoldError: (a ValueError) if the name is not valid, or a file of this name is there.
+        OSError: if the file cannot be written.
+    """
+    taken = [each.stem for each in (built_in_workspace() / "configs/worlds").glob("*.yaml")]
+    name = checked("world", name.removesuffix(".yaml"), taken)
+    files = rendered("world", {"NAME": name})
+    folder = _workspace(workspace)
+    if folder is None:
+        return _written(Path.cwd(), name, {f"{name}.yaml": files[f"configs/worlds/{name}.yaml"]})
+    return _written(folder, name, files)
+
+
+def _workspace(asked: Folder) -> Path | None:
+    """Return the user's workspace if it has folders of robolink's own: packages of ROS 2 have other places."""
+    found = user_workspace(asked)
+    if found is None or (asked is None and not any((found / each).is_dir() for each in PARTS)):
+        return None
+    return found
+
+
+def _written(folder: Path, name: str, files: Mapping[str, str]) -> Made:
+    there = [each for each in files if (folder / each).exists()]
+    if there:
+        raise ScaffoldError(f"{folder / there[0]} is there already, and stays as it is: take another name")
+    for path, text in files.items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        with (folder / path).open("x", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+    return Made(name, folder, list(files))

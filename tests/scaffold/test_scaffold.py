@@ -1,0 +1,137 @@
+"""What `robolink.scaffold` makes: names that it takes, files that it leaves alone, and that all of it works."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from robolink.launch import plan
+from robolink.scaffold import ScaffoldError, new_node, new_project, new_world
+from robolink.scaffold.naming import LONGEST, class_name
+from robolink.scaffold.rendering import TEMPLATES, rendered
+from robolink.sim.worldfile import check_world
+from robolink.testing import System
+from robolink.workspace import VARIABLE
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_no_placeholder_is_left_in_any_file() -> None:
+    for kind in ("project", "node", "world"):
+        for path, text in rendered(kind, {"NAME": "demo", "CLASS": "Demo"}).items():
+            assert "@" not in path
+            assert "@NAME@" not in text
+            assert "@CLASS@" not in text
+            assert ".template" not in path
+
+
+def test_every_template_is_of_a_kind() -> None:
+    assert sorted(each.name for each in TEMPLATES.iterdir()) == ["node", "project", "world"]
+
+
+def test_a_project_launches_what_its_files_say(here: Path) -> None:
+    made = new_project("demo")
+    assert made.folder == here / "demo"
+    assert [each.name for each in plan(here / "demo/configs/demo.yaml")] == ["world", "explorer"]
+    assert not check_world(here / "demo/configs/worlds/room.yaml").errors
+
+
+def test_its_ci_file_installs_and_tests(here: Path) -> None:
+    new_project("demo")
+    workflow = yaml.safe_load((here / "demo/.github/workflows/test.yml").read_text())
+    steps = [each["run"] for each in workflow["jobs"]["test"]["steps"] if "run" in each]
+    assert steps == ["pip install -r requirements.txt", "pytest"]
+    assert (here / "demo/requirements.txt").read_text() == "robolink[test]\n"
+
+
+def test_its_readme_is_short_and_names_its_commands(here: Path) -> None:
+    new_project("demo")
+    readme = (here / "demo/README.md").read_text()
+    assert len(readme.splitlines()) <= 15
+    assert "robolink launch demo" in readme
+
+
+@pytest.mark.slow
+def test_its_robot_explores_and_touches_nothing(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(new_project("demo").folder)
+    with System(seed=3) as system:
+        system.launch("demo")
+        system.run(60.0)
+        assert system.robot().contacts == 0
+        assert system.robot().driven > 8.0
+
+
+def test_a_node_says_what_its_parameter_has(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(new_project("demo").folder)
+    made = new_node("wall-watcher")
+    assert made.files == ["nodes/wall_watcher.py", "tests/test_wall_watcher.py"]
+    with System() as system:
+        system.start("wall_watcher", parameters={"words": "good morning"})
+        assert system.expect("chatter", within=1.5).data == "good morning"
+
+
+def test_without_a_workspace_a_node_is_one_file_here(here: Path) -> None:
+    assert new_node("talker.py").files == ["talker.py"]
+    assert new_world("kitchen").files == ["kitchen.yaml"]
+    assert not check_world(here / "kitchen.yaml").errors
+
+
+def test_a_workspace_of_ros_2_gets_no_folder_nodes(here: Path) -> None:
+    (here / "src/demo").mkdir(parents=True)
+    (here / "src/demo/package.xml").write_text("<package><name>demo</name></package>")
+    assert new_node("talker").files == ["talker.py"]
+
+
+def test_a_world_is_found_by_its_name(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(new_project("demo").folder)
+    made = new_world("kitchen")
+    assert made.files == ["configs/worlds/kitchen.yaml"]
+    assert not check_world(made.folder / made.files[0]).errors
+
+
+def test_what_is_there_stays_as_it_is(here: Path) -> None:
+    (here / "talker.py").write_text("mine")
+    with pytest.raises(ScaffoldError, match="is there already, and stays"):
+        new_node("talker")
+    assert (here / "talker.py").read_text() == "mine"
+    (here / "demo").mkdir()
+    (here / "demo/notes.txt").write_text("mine")
+    with pytest.raises(ScaffoldError, match="not empty"):
+        new_project("demo")
+    (here / "notes").write_text("mine")
+    with pytest.raises(ScaffoldError, match="not empty"):
+        new_project("notes")
+
+
+def test_an_empty_folder_becomes_a_project(here: Path) -> None:
+    (here / "demo").mkdir()
+    assert "README.md" in new_project("demo").files
+
+
+@pytest.mark.parametrize("name", ["", "2nd", "my node", "é", "../up", "a" * (LONGEST + 1), "\x1b[2J", "-x"])
+def test_names_that_are_none(here: Path, name: str) -> None:
+    for make in (new_node, new_world):
+        with pytest.raises(ScaffoldError, match="is no name for a"):
+            make(name)
+    assert list(here.iterdir()) == []
+
+
+def test_names_that_are_taken(here: Path) -> None:
+    with pytest.raises(ScaffoldError, match="a node 'wall-follower' comes with robolink"):
+        new_node("wall-follower")
+    with pytest.raises(ScaffoldError, match="a world 'classroom' comes with robolink"):
+        new_world("classroom.yaml")
+    with pytest.raises(ScaffoldError, match="a word of Python"):
+        new_node("import")
+
+
+@pytest.mark.parametrize(("name", "class_"), [("talker", "Talker"), ("wall_watcher", "WallWatcher"), ("a-b2", "AB2")])
+def test_a_class_is_named_after_its_node(name: str, class_: str) -> None:
+    assert class_name(name) == class_
