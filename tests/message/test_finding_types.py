@@ -182,11 +182,13 @@ def test_a_name_that_several_packages_have() -> None:
             "action",
             [
                 "builtin_interfaces.msg",
+                "geographic_msgs.msg",
                 "geometry_msgs.msg",
                 "nav2_msgs.action",
                 "nav2_msgs.msg",
                 "nav_msgs.msg",
                 "std_msgs.msg",
+                "unique_identifier_msgs.msg",
             ],
         ),
     ],

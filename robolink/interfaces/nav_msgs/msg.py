@@ -32,6 +32,13 @@ class Path(Message):
     poses: Sequence[PoseStamped]
 
 
+class Goals(Message):
+    """Poses to reach, one after the other; a pose without frame or time has the header's. Kilted's: Jazzy has none."""
+
+    header: Header
+    goals: Sequence[PoseStamped]
+
+
 class MapMetaData(Message):
     """Size and place of a grid map.
 

@@ -4,6 +4,7 @@ from typing import ClassVar
 
 from robolink.interfaces.builtin_interfaces.msg import Duration
 from robolink.interfaces.geometry_msgs.msg import Point
+from robolink.interfaces.std_msgs.msg import String
 from robolink.message import Action, Message, float32, string, uint16
 
 
@@ -114,3 +115,48 @@ class Wait(Action):
         """The time that is left."""
 
         time_left: Duration
+
+
+class AssistedTeleop(Action):
+    """Drive by hand, with stops before collisions."""
+
+    class Goal(Message):
+        """The time to give up after."""
+
+        time_allowance: Duration
+
+    class Result(Message):
+        """Outcome: NONE or the kind of failure, with words for people in `error_msg`, and the time that it took."""
+
+        NONE: ClassVar[uint16] = 0
+        UNKNOWN: ClassVar[uint16] = 730
+        TIMEOUT: ClassVar[uint16] = 731
+        TF_ERROR: ClassVar[uint16] = 732
+
+        total_elapsed_time: Duration
+        error_code: uint16
+        error_msg: string
+
+    class Feedback(Message):
+        """The time since the start."""
+
+        current_teleop_duration: Duration
+
+
+class DummyBehavior(Action):
+    """Do nothing: Nav2's tests use it."""
+
+    class Goal(Message):
+        """Words to react to."""
+
+        command: String
+
+    class Result(Message):
+        """Outcome, and the time that it took."""
+
+        total_elapsed_time: Duration
+        error_code: uint16
+        error_msg: string
+
+    class Feedback(Message):
+        """Nothing."""

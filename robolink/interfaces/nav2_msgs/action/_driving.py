@@ -3,6 +3,7 @@
 from typing import ClassVar
 
 from robolink.interfaces.builtin_interfaces.msg import Duration
+from robolink.interfaces.geographic_msgs.msg import GeoPose
 from robolink.interfaces.geometry_msgs.msg import PoseStamped
 from robolink.interfaces.nav2_msgs.msg import MissedWaypoint
 from robolink.interfaces.nav_msgs.msg import Path
@@ -95,6 +96,33 @@ class FollowWaypoints(Action):
         current_waypoint: uint32
 
 
+class FollowGPSWaypoints(Action):
+    """Drive to positions on the Earth one after the other."""
+
+    class Goal(Message):
+        """The poses, from which one to begin, and how many more times to go through all of them."""
+
+        number_of_loops: uint32
+        goal_index: uint32 = 0
+        gps_poses: Sequence[GeoPose]
+
+    class Result(Message):
+        """The waypoints that were missed, and why."""
+
+        NONE: ClassVar[uint16] = 0
+        UNKNOWN: ClassVar[uint16] = 600
+        TASK_EXECUTOR_FAILED: ClassVar[uint16] = 601
+
+        missed_waypoints: Sequence[MissedWaypoint]
+        error_code: int16
+        error_msg: string
+
+    class Feedback(Message):
+        """The place in the list of the waypoint that the robot is on its way to."""
+
+        current_waypoint: uint32
+
+
 class FollowPath(Action):
     """Follow a path with a controller."""
 
@@ -128,3 +156,42 @@ class FollowPath(Action):
 
         distance_to_goal: float32
         speed: float32
+
+
+class FollowObject(Action):
+    """Follow an object."""
+
+    class Goal(Message):
+        """Topic of the object's pose, or its frame, and for how long to follow it."""
+
+        pose_topic: string
+        tracked_frame: string
+        max_duration: Duration
+
+    class Result(Message):
+        """Outcome: NONE or the kind of failure, with words for people in `error_msg`, and the time that it took."""
+
+        NONE: ClassVar[uint16] = 0
+        TF_ERROR: ClassVar[uint16] = 901
+        FAILED_TO_DETECT_OBJECT: ClassVar[uint16] = 902
+        FAILED_TO_CONTROL: ClassVar[uint16] = 903
+        TIMEOUT: ClassVar[uint16] = 904
+        UNKNOWN: ClassVar[uint16] = 999
+
+        total_elapsed_time: Duration
+        error_code: uint16 = 0
+        num_retries: uint16 = 0
+        error_msg: string
+
+    class Feedback(Message):
+        """State of the following, for how long, and the number of attempts."""
+
+        NONE: ClassVar[uint16] = 0
+        INITIAL_PERCEPTION: ClassVar[uint16] = 1
+        CONTROLLING: ClassVar[uint16] = 2
+        STOPPING: ClassVar[uint16] = 3
+        RETRY: ClassVar[uint16] = 4
+
+        state: uint16
+        following_time: Duration
+        num_retries: uint16 = 0

@@ -1,0 +1,1 @@
+"""ROS's apriltag_msgs: AprilTags that a camera sees."""

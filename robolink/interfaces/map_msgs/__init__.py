@@ -1,0 +1,1 @@
+"""ROS's map_msgs: parts of maps, and changes to them."""

@@ -1,0 +1,1 @@
+"""ROS's topic_tools_interfaces: services of a multiplexer and a demultiplexer of topics."""
