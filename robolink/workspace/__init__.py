@@ -1,13 +1,14 @@
 """The workspace: a folder of nodes, systems and types, which are found (`find`) and loaded (`load`) by name."""
 
+from robolink.workspace.built_in import built_in_workspace
+from robolink.workspace.counterparts import COUNTERPARTS, counterparts_of, executable_of, lacking_executable
 from robolink.workspace.find import (
     VARIABLE,
-    built_in_workspace,
+    find_executable,
     find_faults,
     find_launch,
     find_node,
     find_package,
-    find_ros_node,
     find_world,
     list_executables,
     list_faults,
@@ -22,25 +23,31 @@ from robolink.workspace.interfaces import InterfaceImportError, use_interfaces
 from robolink.workspace.load import NodeLoadError, load_module, load_node, own_process_needed
 from robolink.workspace.packages import executable, executables, named_executables, unmarked_package
 from robolink.workspace.purpose import purpose_of
-from robolink.workspace.ros_programs import ros_program_error
+from robolink.workspace.ros_programs import RosProgramError, instead_of
 from robolink.workspace.source import Folder, NodeSource, canonical
 
 __all__ = [
+    "COUNTERPARTS",
     "VARIABLE",
     "Folder",
     "InterfaceImportError",
     "NodeLoadError",
     "NodeSource",
+    "RosProgramError",
     "built_in_workspace",
     "canonical",
+    "counterparts_of",
     "executable",
+    "executable_of",
     "executables",
+    "find_executable",
     "find_faults",
     "find_launch",
     "find_node",
     "find_package",
-    "find_ros_node",
     "find_world",
+    "instead_of",
+    "lacking_executable",
     "list_executables",
     "list_faults",
     "list_launches",
@@ -52,7 +59,6 @@ __all__ = [
     "named_executables",
     "own_process_needed",
     "purpose_of",
-    "ros_program_error",
     "unmarked_package",
     "use_interfaces",
     "user_workspace",

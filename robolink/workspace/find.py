@@ -16,6 +16,8 @@ from pathlib import Path
 
 from robolink.exceptions import NotFoundError
 from robolink.system.paths import expanded
+from robolink.workspace.built_in import built_in_workspace
+from robolink.workspace.counterparts import COUNTERPARTS, executable_of, lacking_executable
 from robolink.workspace.packages import BUILT_IN, is_ros_workspace, named_executables, source_packages
 from robolink.workspace.source import Folder, NodeSource, canonical
 from robolink.workspace.trust import is_trusted
@@ -26,11 +28,6 @@ ENTRY_POINTS = "robolink.nodes"
 """Group of the entry points of installed nodes."""
 YAML = (".yaml", ".yml")
 WORLDS = (*YAML, ".wbt")
-ROS_NODES = {
-    ("teleop_twist_keyboard", "teleop_twist_keyboard"): "teleop",
-    ("tf2_ros", "static_transform_publisher"): "static_transform_publisher",
-}
-"""Built-in nodes that do the same as executables of ROS 2's own packages."""
 PARTS = ("nodes", "configs", "interfaces")
 
 
@@ -38,12 +35,15 @@ def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
     """Return the source of a node; the path in it is absolute.
 
     Args:
-        name: Name of the node, `FILE`, `FILE:function` or `FILE:Class`.
+        name: Name of the node, `FILE`, `FILE:function`, `FILE:Class`, or `PACKAGE EXECUTABLE`.
         workspace: Folder that serves as the user's workspace; None looks for it.
 
     Raises:
         NotFoundError: with the nearest name.
     """
+    package, space, executable = name.partition(" ")
+    if space and canonical(package).isidentifier():
+        return find_executable(package, executable.strip(), workspace=workspace)
     file, attribute = _split(name)
     path = _as_path(file, workspace, (".py",))
     if path is not None:
@@ -55,10 +55,25 @@ def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
     raise _no_node(file, workspace)
 
 
-def find_ros_node(package: str, name: str) -> NodeSource | None:
-    """Return the built-in node that does the same as the executable `name` of ROS 2's `package`; None if none does."""
-    known = ROS_NODES.get((canonical(package), canonical(name)))
-    return None if known is None else NodeSource(known, built_in_workspace() / f"nodes/{known}.py")
+def find_executable(package: str, name: str, *, workspace: Folder = None) -> NodeSource:
+    """Return the source of an executable of a package: the user's own, or the counterpart of one of ROS 2's.
+
+    Args:
+        package: Name of the package.
+        name: Name of the executable.
+        workspace: Folder that serves as the user's workspace; None looks for it.
+
+    Raises:
+        NotFoundError: with the nearest name, or with what serves instead.
+    """
+    folder = find_package(package, workspace=workspace)
+    source = executable_of(package, name, folder)
+    if source is not None:
+        return source
+    error = lacking_executable(package, name, folder)
+    if error is None and folder is not None:
+        error = NotFoundError("executable", name, (), f"package {package}")
+    raise error or NotFoundError("package", package, [*list_packages(workspace=workspace), *COUNTERPARTS])
 
 
 def find_package(name: str, *, workspace: Folder = None) -> Path | None:
@@ -196,13 +211,6 @@ def workspace_of(path: Path) -> Path | None:
     nearest_one = next((each for each in above if _is_workspace(each)), None)
     found = nearest_one or next((each for each in above if (each / "package.xml").is_file()), None)
     return found if found is None or found == built_in_workspace() or is_trusted(found) else None
-
-
-def built_in_workspace() -> Path:
-    """Return the workspace that comes with robolink: inside the wheel, or the repository."""
-    package = Path(__file__).resolve().parent.parent
-    shared = package / "share"
-    return shared if shared.is_dir() else package.parent
 
 
 def _is_workspace(folder: Path) -> bool:

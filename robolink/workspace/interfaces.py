@@ -18,7 +18,8 @@ from typing import Any
 from robolink import interfaces
 from robolink.exceptions import DefinitionError, MessageError, NotFoundError
 from robolink.system.plainfile import read_plain
-from robolink.workspace.find import built_in_workspace, user_workspace
+from robolink.workspace.built_in import built_in_workspace
+from robolink.workspace.find import user_workspace
 from robolink.workspace.modules import FINDER, Fill
 from robolink.workspace.packages import source_packages
 from robolink.workspace.source import Folder

@@ -1,13 +1,24 @@
-"""Advice for programs of ROS 2's own packages that robolink lacks: what does the same here."""
+"""Advice for programs of well-known ROS packages that robolink lacks: what each is, and what serves instead."""
 
 from __future__ import annotations
+
+from fnmatch import fnmatchcase
 
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.workspace.source import canonical
 
-_DRAW = "robolink draws with 'robolink plot' and 'robolink world draw'"
 _ANYWHERE = "on a machine with ROS 2 it sees the same topics (docs/ros2.md)"
-_WORLD = "a world to drive in is 'robolink run world'"
+_THERE = "run it on a machine with ROS 2: it meets robolink's nodes (docs/ros2.md)"
+_WORLD = (
+    "'robolink run world' simulates a robot with the topics of a TurtleBot3 instead: "
+    "/cmd_vel, /scan, /odom, /tf, /imu (docs/simulator.md)"
+)
+_WEBOTS = "Webots' driver; 'robolink run world' reads Webots' worlds and robots instead (docs/webots.md)"
+_NAVIGATION = "a server of Nav2, in C++; 'robolink launch goto' drives to the goals of Nav2's action instead"
+_FILTER = f"a Kalman filter in C++; the world's /odom needs none, for a real robot {_THERE}"
+_DRIVER = f"driver of a device, in C++; {_THERE}"
+_CAMERA = f"driver of a camera, in C++; some lines with cv2.VideoCapture and cv_bridge do the same, else {_THERE}"
+_MAPS = f"makes maps, in C++; {_THERE}"
 
 PROGRAMS = {
     ("demo_nodes_py", "talker"): "'robolink pub /chatter String \"{data: hello}\"' publishes as it does",
@@ -18,39 +29,132 @@ PROGRAMS = {
     ("tf2_ros", "tf2_monitor"): "here it is 'robolink tf monitor'",
     ("tf2_tools", "view_frames"): "here it is 'robolink tf tree'",
     ("rmw_zenoh_cpp", "rmw_zenohd"): "robolink needs no router, and meets one that runs (docs/ros2.md)",
+    ("gazebo_ros", "spawn_entity"): f"puts a robot into Gazebo; {_WORLD}",
+    ("gazebo_ros", "gzclient"): "Gazebo's window; 'robolink view' shows the world in the browser instead",
+    ("ros_gz_sim", "create"): f"puts a robot into Gazebo; {_WORLD}",
+    (
+        "ros_gz_bridge",
+        "parameter_bridge",
+    ): "translates Gazebo's topics; 'robolink run world' needs no bridge",
+    ("controller_manager", "spawner"): f"loads controllers of ros2_control, which are C++; {_WORLD}",
+    ("controller_manager", "ros2_control_node"): f"runs controllers of ros2_control, which are C++; {_WORLD}",
+    ("robot_localization", "ekf_node"): _FILTER,
+    ("robot_localization", "ukf_node"): _FILTER,
 }
 """Advice by package and program."""
 PACKAGES = {
-    "rviz2": f"{_DRAW}; {_ANYWHERE}",
-    "rqt_graph": f"'robolink launch FILE --graph' draws nodes and topics; {_ANYWHERE}",
-    "rqt_plot": f"'robolink plot topic' draws values; {_ANYWHERE}",
-    "rqt": f"'robolink topic hz' and 'robolink topic echo' look, 'robolink plot' draws; {_ANYWHERE}",
-    "rqt_gui": f"'robolink topic hz' and 'robolink topic echo' look, 'robolink plot' draws; {_ANYWHERE}",
+    "rviz2": f"a window in C++; 'robolink view' shows robots, maps and images in the browser, and {_ANYWHERE}",
+    "rqt_graph": "a window; 'robolink view' has a panel with nodes and topics, 'robolink node graph' draws as text",
+    "rqt_plot": "a window; 'robolink view' has a panel with plots, 'robolink plot topic' draws into a file",
+    "rqt_*": "a window; 'robolink view' has panels for topics, plots, images, logs, services and parameters",
+    "rqt": "a window; 'robolink view' has panels for topics, plots, images, logs, services and parameters",
     "demo_nodes_py": "first nodes are 'robolink run first_node' and 'robolink run velocity_publisher'",
     "demo_nodes_cpp": "first nodes are 'robolink run first_node' and 'robolink run velocity_publisher'",
     "tf2_ros": "here there are 'robolink tf' and 'robolink run static_transform_publisher'",
     "tf2_tools": "here there is 'robolink tf tree'",
-    "turtlesim": f"{_WORLD}, and 'robolink run teleop' drives by the keyboard",
-    "gazebo_ros": _WORLD,
-    "ros_gz_sim": _WORLD,
-    "webots_ros2_driver": f"{_WORLD}, which reads Webots' worlds (docs/webots.md)",
+    "turtlesim": "a window with a turtle; 'robolink run world' is a world to drive in, 'robolink run teleop' drives",
+    "gazebo_ros": f"Gazebo, a simulator in C++; {_WORLD}",
+    "gazebo": f"Gazebo, a simulator in C++; {_WORLD}",
+    "gazebo_plugins": f"parts of Gazebo, in C++; {_WORLD}",
+    "gazebo_ros2_control": f"ros2_control in Gazebo, in C++; {_WORLD}",
+    "gz_ros2_control": f"ros2_control in Gazebo, in C++; {_WORLD}",
+    "ign_ros2_control": f"ros2_control in Gazebo, in C++; {_WORLD}",
+    "ros_gz*": f"Gazebo, a simulator in C++; {_WORLD}",
+    "ros_ign*": f"Gazebo, a simulator in C++; {_WORLD}",
+    "turtlebot3_gazebo": f"Gazebo with a TurtleBot3; {_WORLD}",
+    "webots_ros2_driver": _WEBOTS,
+    "webots_ros2": _WEBOTS,
+    "controller_manager": f"ros2_control, in C++; {_WORLD}",
+    "diff_drive_controller": f"a controller of ros2_control, in C++; {_WORLD}",
+    "ros2_controllers": f"controllers of ros2_control, in C++; {_WORLD}",
+    "joint_state_broadcaster": f"a controller of ros2_control, in C++; {_WORLD}",
     "robot_state_publisher": "fixed frames are published by 'robolink run static_transform_publisher'",
-    "nav2_bringup": "'robolink launch goto' drives to the goals of Nav2's action",
-    "slam_toolbox": f"nothing here makes maps; {_ANYWHERE}",
+    "robot_localization": _FILTER,
+    "imu_filter_madgwick": _FILTER,
+    "imu_complementary_filter": _FILTER,
+    "nav2_*": _NAVIGATION,
+    "opennav_*": _NAVIGATION,
+    "turtlebot3_navigation2": _NAVIGATION,
+    "slam_toolbox": _MAPS,
+    "cartographer_ros": _MAPS,
+    "turtlebot3_cartographer": _MAPS,
+    "rtabmap_*": _MAPS,
+    "octomap_server": _MAPS,
+    "moveit*": f"MoveIt, which plans arms in C++; {_THERE}",
+    "*_moveit_config": f"settings of MoveIt, which plans arms in C++; {_THERE}",
+    "realsense2_camera": _DRIVER,
+    "usb_cam": _CAMERA,
+    "v4l2_camera": _CAMERA,
+    "camera_ros": _DRIVER,
+    "depthai_ros_driver": _DRIVER,
+    "zed_wrapper": _DRIVER,
+    "astra_camera": _DRIVER,
+    "orbbec_camera": _DRIVER,
+    "velodyne*": _DRIVER,
+    "ouster_ros": _DRIVER,
+    "livox_ros_driver2": _DRIVER,
+    "urg_node*": _DRIVER,
+    "rplidar_ros": _DRIVER,
+    "sllidar_ros2": _DRIVER,
+    "ydlidar_ros2_driver": _DRIVER,
+    "ldlidar*": _DRIVER,
+    "hls_lfcd_lds_driver": _DRIVER,
+    "turtlebot3_node": _DRIVER,
+    "kobuki_node": _DRIVER,
+    "create_driver": _DRIVER,
+    "ur_robot_driver": _DRIVER,
+    "nmea_navsat_driver": _DRIVER,
+    "ublox_gps": _DRIVER,
+    "mavros": f"bridge to flight controllers, in C++; {_THERE}",
+    "px4*": f"PX4's parts, in C++; {_THERE}",
+    "micro_ros_agent": f"bridge to microcontrollers with micro-ROS, in C++; {_THERE}",
+    "foxglove_bridge": "'robolink view' speaks Foxglove's protocol itself, at ws://localhost:8765 (docs/view.md)",
+    "rosbridge_server": f"bridge to roslibjs; 'robolink view' is for Foxglove's clients (docs/view.md), else {_THERE}",
+    "image_proc": f"corrects images, in C++; cv2.undistort and image_geometry do the same in a node, else {_THERE}",
+    "depth_image_proc": f"makes point clouds of depth images, in C++; {_THERE}",
+    "stereo_image_proc": f"makes point clouds of two cameras' images, in C++; {_THERE}",
+    "pointcloud_to_laserscan": f"translates point clouds, in C++; {_THERE}",
+    "laser_filters": f"filters scans, in C++; {_THERE}",
+    "apriltag_ros": f"finds AprilTags, in C++; {_THERE}",
+    "aruco_ros": f"finds ArUco tags, in C++; cv2.aruco does the same in a node, else {_THERE}",
+    "twist_mux": f"chooses among velocity commands, in C++; {_THERE}",
+    "rclcpp_components": "runs components in C++; a launch file's 'process: NAME' shares a process (docs/launch.md)",
+    "rosbag2_*": "'robolink bag record' and 'robolink bag play' do the same",
 }
-"""Advice by package, for any program of it."""
+"""Advice by package, for any program of it; ``*`` stands for any letters, and a name without it goes first."""
 
 
 class RosProgramError(NotFoundError):
-    """A program of ROS 2 was asked for that robolink lacks; the text has what does the same."""
+    """The `program` of a `package` was asked for, which robolink lacks; the text has the `advice`."""
 
     def __init__(self, package: str, program: str, advice: str) -> None:
         self.kind, self.name = "package", package
-        RobolinkError.__init__(self, f"{package} {program}".rstrip() + f" is ROS 2's own and not here: {advice}")
+        RobolinkError.__init__(self, f"{package} {program}".rstrip() + f" is not here: {advice}")
 
 
-def ros_program_error(package: str, program: str = "") -> RosProgramError | None:
-    """Return the error for the program `program` of ROS 2's own `package`; None for a package that is not known."""
+def instead_of(package: str, program: str = "") -> str | None:
+    """Return what a program of a well-known package is and what serves instead; None for an unknown package.
+
+    >>> instead_of("gazebo_ros", "gzclient")
+    "Gazebo's window; 'robolink view' shows the world in the browser instead"
+
+    Args:
+        package: Name of the package.
+        program: Name of its executable, with or without ``.py``; '' for any.
+    """
     known = canonical(package)
-    advice = PROGRAMS.get((known, canonical(program))) or PACKAGES.get(known)
+    return PROGRAMS.get((known, canonical(program).removesuffix(".py"))) or _of_package(known)
+
+
+def ros_program_error(package: str, program: str = "", *, by_package: bool = True) -> RosProgramError | None:
+    """Return the error for the program `program` of a well-known `package`; None for one that is not known.
+
+    With `by_package` False only what is said of this very program counts.
+    """
+    advice = instead_of(package, program) if by_package else PROGRAMS.get((canonical(package), canonical(program)))
     return None if advice is None else RosProgramError(package, program, advice)
+
+
+def _of_package(known: str) -> str | None:
+    patterns = (each for each in PACKAGES if "*" in each and fnmatchcase(known, each))
+    return PACKAGES.get(known) or PACKAGES.get(next(patterns, ""))

@@ -11,7 +11,7 @@ import pytest
 from robolink.cli.main import main
 from robolink.cli.root import COMMANDS, OF_ROS2
 from robolink.launch.reading.entries import read_launch_file
-from robolink.workspace.ros_programs import PACKAGES, PROGRAMS, RosProgramError, ros_program_error
+from robolink.workspace.ros_programs import PACKAGES, PROGRAMS, instead_of
 
 Captured = pytest.CaptureFixture[str]
 ADVICE = [*OF_ROS2.values(), *PROGRAMS.values(), *PACKAGES.values()]
@@ -40,26 +40,25 @@ def test_a_command_that_only_ros2_has_says_what_to_do_instead(command: str, caps
 @pytest.mark.parametrize(
     ("words", "instead"),
     [
-        (["rviz2", "rviz2"], "'robolink plot'"),
-        (["rviz2"], "'robolink plot'"),
-        (["demo_nodes_py", "talker"], "'robolink pub /chatter String"),
-        (["demo_nodes_cpp", "listener"], "'robolink topic echo /chatter'"),
-        (["tf2_ros", "tf2_echo", "map", "odom"], "'robolink tf echo SOURCE_FRAME TARGET_FRAME'"),
-        (["tf2-tools", "view_frames"], "'robolink tf tree'"),
-        (["turtlesim", "turtlesim_node"], "'robolink run world'"),
+        (["gazebo_ros", "spawn_entity.py"], "'robolink run world' simulates a robot"),
+        (["gazebo_ros"], "'robolink run world' simulates a robot"),
+        (["controller_manager", "spawner"], "which are C++; 'robolink run world'"),
+        (["nav2-controller", "controller_server"], "'robolink launch goto'"),
+        (["slam_toolbox", "async_slam_toolbox_node"], "on a machine with ROS 2"),
+        (["moveit_ros_move_group", "move_group"], "on a machine with ROS 2"),
     ],
 )
-def test_a_program_of_ros_2s_own_says_what_does_the_same(words: list[str], instead: str, capsys: Captured) -> None:
+def test_a_program_that_is_not_here_says_what_serves_instead(words: list[str], instead: str, capsys: Captured) -> None:
     assert main(["run", *words]) == 1
     err = capsys.readouterr().err
-    assert err.startswith(f"robolink: {' '.join(words[:2])} is ROS 2's own and not here: ")
+    assert err.startswith(f"robolink: {' '.join(words[:2])} is not here: ")
     assert (instead in err, err.count("\n"), "/src" in err) == (True, 1, False)
 
 
 def test_a_launch_file_is_told_the_same(tmp_path: Path) -> None:
     file = tmp_path / "view.yaml"
-    file.write_text("nodes:\n  - node: rviz2 rviz2\n")
-    with pytest.raises(Exception, match=r"view\.yaml:2:11.*rviz2 rviz2 is ROS 2's own and not here: "):
+    file.write_text("nodes:\n  - node: usb_cam usb_cam_node_exe\n")
+    with pytest.raises(Exception, match=r"view\.yaml:2:11.*usb_cam usb_cam_node_exe is not here: driver of a camera"):
         read_launch_file(file)
 
 
@@ -72,9 +71,11 @@ def test_a_package_of_ones_own_goes_first(elsewhere: Path, capsys: Captured) -> 
     )
 
 
-def test_what_nobody_knows_is_no_program_of_ros_2() -> None:
-    assert ros_program_error("pkg_a", "talker") is None
-    assert isinstance(ros_program_error("tf2_ros", "x"), RosProgramError)
+def test_what_nobody_knows_has_nothing_instead() -> None:
+    assert instead_of("pkg_a", "talker") is None
+    assert instead_of("tf2_ros", "x") == PACKAGES["tf2_ros"]
+    assert instead_of("ros_gz_sim", "create") == PROGRAMS["ros_gz_sim", "create"]
+    assert instead_of("ros-gz-sim") == instead_of("ros_gz_bridge", "bridge_node") == PACKAGES["ros_gz*"]
 
 
 @pytest.mark.parametrize("advice", [each for each in ADVICE if "'robolink " in each or "docs/" in each])

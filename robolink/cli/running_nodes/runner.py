@@ -27,24 +27,26 @@ from robolink.system.plainfile import read_plain
 from robolink.text.suggestions import LackingNameError
 from robolink.text.tracebacks import formatted
 from robolink.workspace import (
+    COUNTERPARTS,
     VARIABLE,
     NodeLoadError,
     NodeSource,
+    RosProgramError,
     built_in_workspace,
     canonical,
-    executable,
-    executables,
+    counterparts_of,
+    executable_of,
     find_launch,
     find_node,
     find_package,
-    find_ros_node,
     find_world,
+    instead_of,
+    lacking_executable,
     list_executables,
     list_nodes,
     list_packages,
     load_node,
     named_executables,
-    ros_program_error,
     unmarked_package,
     user_workspace,
     workspace_of,
@@ -56,6 +58,7 @@ if TYPE_CHECKING:
 
 INTERRUPTED, TERMINATED = 130, 143
 _PACKAGE = str(Path(__file__).resolve().parents[2])
+_COUNTERPARTS = str(Path(_PACKAGE, "counterparts"))
 
 
 class NodeCommand(NamedTuple):
@@ -121,26 +124,40 @@ def found(command: NodeCommand, workspace: str | None) -> tuple[NodeSource, list
     name, words = command.node, command.words
     folder = find_package(name, workspace=workspace) if canonical(name).isidentifier() else None
     if command.before > 0:
-        source = find_ros_node(name, words[0]) if folder is None else executable(folder, words[0])
+        source = executable_of(name, words[0], folder)
         if source is not None:
             return source, words[1:]
     try:
         return find_node(name, workspace=workspace), words
     except NotFoundError:
-        of_ros = ros_program_error(name, *words[: min(command.before, 1)]) if folder is None else None
-        if of_ros is not None:
-            raise of_ros from None
-        if folder is None and command.before > 0 and canonical(name).isidentifier():
-            raise _neither(name, workspace) from None
-        if folder is None or not executables(folder):
-            other = _meant_command(name, workspace)
-            if other:
-                raise NodeLoadError(f"'{name}' is {other}") from None
+        asked = words[0] if command.before > 0 else ""
+        error = _lacking(name, asked, folder, workspace)
+        if error is None:
             raise
-        if command.before > 0:
-            raise NotFoundError("executable", words[0], executables(folder), f"package {name}") from None
-        choices = " or ".join(each.name for each in named_executables(folder))
-        raise NodeLoadError(f"{name} is a package: say which of its executables, {choices}") from None
+        raise error from None
+
+
+def _lacking(name: str, asked: str, folder: Path | None, workspace: str | None) -> RobolinkError | None:
+    """Return the error for a name that is no node's; None if there is nothing to add to that.
+
+    `asked` is the word after it, '' if there is none; `folder` is that of the user's own package of this name.
+    """
+    if not canonical(name).isidentifier():
+        return _other_kind(name, workspace)
+    if folder is None and not asked and not counterparts_of(name) and (advice := instead_of(name)):
+        return RosProgramError(name, "", advice)
+    known = [*(each.name for each in (named_executables(folder) if folder is not None else ())), *counterparts_of(name)]
+    if asked:
+        error = lacking_executable(name, asked, folder) or (None if folder else _neither(name, workspace))
+        return error or _other_kind(name, workspace)
+    if not known:
+        return _other_kind(name, workspace)
+    return NodeLoadError(f"{name} is a package: say which of its executables, {' or '.join(known)}")
+
+
+def _other_kind(name: str, workspace: str | None) -> RobolinkError | None:
+    other = _meant_command(name, workspace)
+    return NodeLoadError(f"'{name}' is {other}") if other else None
 
 
 def _meant_command(name: str, workspace: str | None) -> str:
@@ -157,7 +174,8 @@ def _meant_command(name: str, workspace: str | None) -> str:
 def _neither(name: str, workspace: str | None) -> NotFoundError:
     """Return the error for the first of two words that is neither a node nor a package."""
     home = user_workspace(workspace)
-    known = [*(each.name for each in list_nodes(workspace=workspace)), *list_packages(workspace=workspace)]
+    nodes = (each.name for each in list_nodes(workspace=workspace))
+    known = [*nodes, *list_packages(workspace=workspace), *COUNTERPARTS]
     error = NotFoundError("node or package", name, known, "" if home is None else str(home))
     unmarked = unmarked_package(name, Path() if home is None else home)
     if unmarked is not None:
@@ -334,8 +352,8 @@ def _place(error: Exception) -> str:
 
 
 def is_ours(trace: TracebackType) -> bool:
-    """True if a frame is robolink's own or of Python's import machinery, and not of a built-in node."""
+    """True if a frame is robolink's own or Python's import machinery, and not of a built-in node."""
     file = trace.tb_frame.f_code.co_filename
-    is_node = file.startswith(str(built_in_workspace() / "nodes"))
+    is_node = file.startswith((str(built_in_workspace() / "nodes"), _COUNTERPARTS))
     is_python = Path(file).name == "runpy.py" or Path(file).parent.name == "importlib"
     return not is_node and (file.startswith(("<frozen", _PACKAGE)) or is_python)

@@ -14,15 +14,10 @@ from robolink.workspace import (
     Folder,
     NodeSource,
     built_in_workspace,
-    canonical,
-    executable,
-    executables,
     find_launch,
     find_node,
     find_package,
-    find_ros_node,
     list_packages,
-    ros_program_error,
     user_workspace,
     workspace_of,
 )
@@ -136,21 +131,7 @@ def source_of(name: str, home: Path | None, folder: Path) -> NodeSource:
     found = _first_file(each / expanded(file) for each in _around(folder, home))
     if found is not None and file.endswith(".py"):
         return NodeSource(found.stem, found.resolve(), attribute if colon else "")
-    package, _, its_name = name.partition(" ")
-    if its_name and canonical(package).isidentifier() and not file.endswith(".py"):
-        return _executable(package, its_name.strip(), home)
     return find_node(name, workspace=home)
-
-
-def _executable(package: str, name: str, home: Path | None) -> NodeSource:
-    folder = find_package(package, workspace=home)
-    source = find_ros_node(package, name) if folder is None else executable(folder, name)
-    if source is not None:
-        return source
-    if folder is None:
-        of_ros = ros_program_error(package, name)
-        raise of_ros or NotFoundError("package", package, list_packages(workspace=home), "the workspace")
-    raise NotFoundError("executable", name, executables(folder), f"package {package}")
 
 
 def included_file(name: str, home: Path | None, folder: Path) -> Path:

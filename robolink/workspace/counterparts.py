@@ -1,0 +1,87 @@
+"""Table of the executables of ROS packages that have a counterpart here, found under their ROS names.
+
+`robolink run turtlesim turtlesim_node`, launch files and tests find a row of the table as they find an executable of a
+user's own package, which goes first. The code is in `robolink/counterparts/PACKAGE/`, or is one of the built-in nodes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from robolink.exceptions import NotFoundError
+from robolink.workspace.built_in import PACKAGE, built_in_workspace
+from robolink.workspace.packages import executable, executables
+from robolink.workspace.ros_programs import ros_program_error
+from robolink.workspace.source import NodeSource, canonical
+
+
+class Counterpart(NamedTuple):
+    """Row of the table."""
+
+    target: str
+    """``MODULE:NAME`` of a function without arguments or of a Node class; ``nodes/NAME`` for a built-in node."""
+    purpose: str
+    """Purpose, as one sentence that begins with a verb."""
+
+
+COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
+    "teleop_twist_keyboard": {
+        "teleop_twist_keyboard": Counterpart("nodes/teleop", "Drives a robot by the keyboard."),
+    },
+    "tf2_ros": {
+        "static_transform_publisher": Counterpart("nodes/static_transform_publisher", "Publishes one fixed transform."),
+    },
+}
+"""Counterparts by package and executable."""
+
+
+def counterparts_of(package: str) -> Mapping[str, Counterpart]:
+    """Return the counterparts in `package`, by executable; none for a package without any."""
+    return COUNTERPARTS.get(canonical(package), {})
+
+
+def source_of(package: str, name: str) -> NodeSource | None:
+    """Return the source of the counterpart of the executable `name` of `package`; None if there is none."""
+    row = counterparts_of(package).get(canonical(name).removesuffix(".py"))
+    if row is None:
+        return None
+    module, _, attribute = row.target.partition(":")
+    if not attribute:
+        return NodeSource(module.removeprefix("nodes/"), built_in_workspace() / f"{module}.py")
+    return NodeSource(canonical(name).removesuffix(".py"), _file_of(module), attribute)
+
+
+def executable_of(package: str, name: str, folder: Path | None) -> NodeSource | None:
+    """Return the executable `name` of the package in `folder`, else its counterpart; None if there is neither.
+
+    Args:
+        package: Name of the package.
+        name: Name of the executable.
+        folder: Folder of the user's own package of this name; None if there is none.
+    """
+    own = None if folder is None else executable(folder, name)
+    return own or source_of(package, name)
+
+
+def lacking_executable(package: str, name: str, folder: Path | None) -> NotFoundError | None:
+    """Return the error for an executable that is not there; None if the package is not known, or has none at all.
+
+    Args:
+        package: Name of the package.
+        name: Name of the executable.
+        folder: Folder of the user's own package of this name; None if there is none.
+    """
+    known = [*(executables(folder) if folder is not None else ()), *counterparts_of(package)]
+    if folder is None:
+        of_ros = ros_program_error(package, name, by_package=not known)
+        if of_ros is not None:
+            return of_ros
+    return NotFoundError("executable", name, known, f"package {package}") if known else None
+
+
+def _file_of(module: str) -> Path:
+    """Return the file of a module of robolink."""
+    path = PACKAGE.parent.joinpath(*module.split("."))
+    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")

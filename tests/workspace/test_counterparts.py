@@ -1,0 +1,65 @@
+"""Counterparts: executables of ROS packages that are found here under their ROS names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from robolink.cli.main import main
+from robolink.exceptions import NotFoundError
+from robolink.workspace import counterparts, find_executable, find_node
+from robolink.workspace.counterparts import Counterpart, source_of
+from tests.support.ros_tree import write_package
+
+
+@pytest.fixture
+def ours(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A package of the table with two executables, whose code is robolink's."""
+    rows = {
+        "control_node": Counterpart("robolink.control.pid:PID", "A row of this test."),
+        "info": Counterpart("robolink.bag:about", "A row in a package's own file."),
+    }
+    monkeypatch.setitem(counterparts.COUNTERPARTS, "ros_control_demo", rows)
+
+
+@pytest.mark.usefixtures("ours")
+def test_a_row_is_a_file_and_a_name_in_it() -> None:
+    source = find_node("ros_control_demo control-node")
+    assert source.path is not None
+    assert source.path.parts[-2:] == ("control", "pid.py")
+    assert (source.name, source.attribute) == ("control_node", "PID")
+    assert find_node("ros-control-demo control_node.py") == source
+    package = source_of("ros_control_demo", "info")
+    assert package is not None
+    assert package.path is not None
+    assert package.path.parts[-2:] == ("bag", "__init__.py")
+
+
+@pytest.mark.usefixtures("ours")
+def test_a_users_own_package_goes_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = write_package(tmp_path / "src", "ros_control_demo", {"info.py": "def main(): return 'own'\n"})
+    monkeypatch.chdir(own)
+    assert find_executable("ros_control_demo", "info").path == own / "ros_control_demo/info.py"
+    assert find_executable("ros_control_demo", "control_node").attribute == "PID"  # which the own one has not
+
+
+@pytest.mark.usefixtures("ours")
+@pytest.mark.parametrize(
+    ("words", "report"),
+    [
+        (["ros_control_demo", "contol_node"], "no executable named 'contol_node' in package ros_control_demo"),
+        (["ros_control_demo"], "ros_control_demo is a package: say which of its executables, control_node or info"),
+        (["ros_contrl_demo", "info"], "(did you mean 'ros_control_demo'?)"),
+    ],
+)
+def test_what_the_table_lacks_is_one_line(
+    words: list[str], report: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", *words]) == 1
+    err = capsys.readouterr().err
+    assert (report in err, err.count("\n")) == (True, 1)
+    if len(words) == 2:
+        with pytest.raises(NotFoundError):
+            find_node(" ".join(words))
