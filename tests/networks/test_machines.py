@@ -16,14 +16,12 @@ import pytest
 from robolink.cli.main import main
 from tests.support import stalls
 from tests.support.machines import NODE, ROUTER, THERE, Machines, nodes
-from tests.support.robot_and_laptop import ALL
+from tests.support.robot_and_laptop import ALL, PLAY
 
 pytestmark = [
     pytest.mark.processes,
     pytest.mark.skipif(bool(stalls.no_hosts()), reason=stalls.no_hosts() or "there are two hosts"),
 ]
-
-PLAY = "from tests.support import robot_and_laptop\nrobot_and_laptop.main()"
 
 ENCLAVES = ("robot", "router", "laptop")
 

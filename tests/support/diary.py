@@ -62,8 +62,8 @@ class Diary(robolink.Node):
 
     def report(self) -> dict[str, Any]:
         """Return what was sent and heard, for JSON."""
-        lost = sum(each.lost for each in self._ears)
-        return {"sent": self._sent, "longest": self.longest, "heard": self.heard, "told": lost}
+        missed = [each.lost + each.dropped for each in self._ears if not each.topic.endswith("/latched")]
+        return {"sent": self._sent, "longest": self.longest, "heard": self.heard, "told": sum(missed)}
 
 
 def main() -> None:

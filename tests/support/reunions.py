@@ -1,11 +1,12 @@
 """Reunion scenarios: a cable is cut, an address changes, a router restarts; measures how soon all is found again.
 
-    python -m tests.support.reunions [SCENE ...] [--rounds 20] [--seconds 15]
+    python -m tests.support.reunions [SCENE ...] [--rounds 20] [--seconds 15] [--keys]
 
 plays each scene for so many rounds at 100 Hz, with KEEP_ALL and with KEEP_LAST 10, and prints after how many seconds
 both sides heard something new from each other, how many messages were lost, how many of these were counted, how many
 came twice, whether the last ten of the cut and the latched message came, how late the latest was, and how late between
-two that were not cut.
+two that were not cut. With `--keys` each process is an enclave of its own that may do everything; nothing is sent again
+then.
 """
 
 from __future__ import annotations
@@ -15,12 +16,15 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
+from pathlib import Path
 from typing import Any, NamedTuple
 
+from robolink.security.keystore import Keystore
 from robolink.transport.free_domain import free_domain
 from tests.support import stalls
 from tests.support.obedient import line, start, tell
@@ -48,7 +52,7 @@ class Reunion(NamedTuple):
     lost: int
     """Messages that never came."""
     told: int
-    """Those of them that a subscription has counted."""
+    """Those that a process has counted: lost on the way, or dropped as more came at once than it keeps."""
     longest: float
     """Seconds: the longest `publish`."""
     latched: bool
@@ -81,6 +85,7 @@ def play(
     settles: float = SETTLES,
     before: Fault | None = None,
     beside: bool = False,
+    keys: bool = False,
 ) -> Reunion:
     """Let two machines publish to each other and something happen; return how they met again.
 
@@ -92,6 +97,8 @@ def play(
         if before is not None:
             before(here, there)
         environ = _clean() | {"ROS_DOMAIN_ID": str(domain), "ROBOLINK_NETWORK": network}
+        if keys:
+            environ |= _secured(stack, domain, "abc")
         diaries = {}
         hosts = [("a", ["b"], here), ("b", ["a", "c"] if beside else ["a"], there), ("c", ["b"], there)]
         for name, others, host in hosts if beside else hosts[:2]:
@@ -107,7 +114,8 @@ def play(
                 "--others",
                 *others,
             ]
-            diaries[name] = start(stack, [*command, *options], environ)
+            own = {"ROS_SECURITY_ENCLAVE_OVERRIDE": f"/{name}"} if keys else {}
+            diaries[name] = start(stack, [*command, *options], environ | own)
         for each in diaries.values():
             assert line(each) == "ready"
         begin = time.time()
@@ -119,6 +127,16 @@ def play(
             tell(each, "report")
             reports[name] = json.loads(line(each))
         return _judge(reports, begin, ended, until)
+
+
+def _secured(stack: ExitStack, domain: int, names: str) -> dict[str, str]:
+    """Make a keystore with an enclave for each name; return the variables that switch security on."""
+    store = Keystore(Path(stack.enter_context(tempfile.TemporaryDirectory())), domain)
+    store.create()
+    for name in names:
+        store.create_enclave(f"/{name}")
+    given = {"ENABLE": "true", "STRATEGY": "Enforce", "KEYSTORE": str(store.path)}
+    return {f"ROS_SECURITY_{name}": value for name, value in given.items()}
 
 
 def _settle(diaries: dict[str, subprocess.Popen[str]], longest: float) -> None:
@@ -233,13 +251,13 @@ def ip(host: str, *words: str) -> None:
     subprocess.run(["ip", "-netns", host, *words], check=True)
 
 
-def scenes(seconds: float) -> dict[str, Callable[[], Reunion]]:
-    """All scenes by name: each cut with KEEP_ALL, and with KEEP_LAST 10."""
+def scenes(seconds: float, *, keys: bool = False) -> dict[str, Callable[[], Reunion]]:
+    """All scenes by name: each cut with KEEP_ALL, and with KEEP_LAST 10; with keys, all but the router's."""
     cuts: dict[str, Callable[..., Reunion]] = {
-        "cable": partial(play, pull_out(seconds), beside=True),
-        "packets": partial(play, swallow(seconds), beside=True),
-        "address": partial(play, move(), beside=True),
-        "both-addresses": partial(play, move(both=True), beside=True),
+        "cable": partial(play, pull_out(seconds), beside=True, keys=keys),
+        "packets": partial(play, swallow(seconds), beside=True, keys=keys),
+        "address": partial(play, move(), beside=True, keys=keys),
+        "both-addresses": partial(play, move(both=True), beside=True, keys=keys),
         "router": partial(play_router, 2.0),
     }
     return {
@@ -255,8 +273,9 @@ def main() -> None:
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(scenes(0)))
     parser.add_argument("--rounds", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=15.0)
+    parser.add_argument("--keys", action="store_true")
     asked = parser.parse_args()
-    known = scenes(asked.seconds)
+    known = scenes(asked.seconds, keys=asked.keys)
     for name in asked.scenes or known:
         for _ in range(asked.rounds):
             print(f"{name:22} {known[name]()}", flush=True)  # noqa: T201

@@ -27,6 +27,9 @@ from tests.support.commands import PATIENCE
 from tests.support.pulse import say
 from tests.support.waits import wait_until
 
+PLAY = "from tests.support import robot_and_laptop\nrobot_and_laptop.main()"
+"""Program for `python -c` that plays one of the two."""
+
 MAP = 10_000_000
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
