@@ -20,8 +20,15 @@ from robolink.workspace import NodeLoadError, NodeSource, load_node
 def load(source: NodeSource, program: ProgramLike) -> Callable[[], Any]:
     """Return the Node class of a source, or a function that runs its script. Raises what `load_node` raises."""
     if source.path is not None and not source.module:
-        sys.modules.pop(str(source.path.resolve()), None)
+        _forget(str(source.path.resolve()))
     return load_node(source, script=lambda found, reach: _script(found, reach, program))
+
+
+def _forget(path: str) -> None:
+    """Remove the module of a file, by whichever name it was imported (one of a package has its dotted name)."""
+    for name, each in list(sys.modules.items()):
+        if getattr(each, "__dict__", {}).get("__file__") == path:
+            del sys.modules[name]
 
 
 def _script(source: NodeSource, reach: Callable[[], None], program: ProgramLike) -> Callable[[], None]:

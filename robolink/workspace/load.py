@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
@@ -60,15 +61,32 @@ def load_node(source: NodeSource, *, script: ScriptMaker | None = None) -> Runna
     if source.module and not source.path.is_file():
         near = nearest(source.path.name, (each.name for each in source.path.parent.glob("*.py")))
         raise NodeLoadError(f"{source.name} is {source.module}, says its package, but there is no {source.path}{near}")
-    tree = _parse(source.path)
+    path, tree = source.path, _parse(source.path)
+    source = _in_package(source, path, tree)
     if source.attribute:
         return _attribute(_loaded(source), source)
     if _is_script(tree):
         if script is not None:
             return script(source, lambda: _reach_all(source))
-        return _script(source, source.path)
+        return _script(source, path)
     module = _loaded(source)
-    return module.main if _defines(tree, "FunctionDef", "main") else _only_node(module, source.path)
+    return module.main if _defines(tree, "FunctionDef", "main") else _only_node(module, path)
+
+
+def _in_package(source: NodeSource, path: Path, tree: ast.Module) -> NodeSource:
+    """Return the source of the file `path` as a module of the package around it if its imports need that, as `from .x`.
+
+    Launchers name a package's files by their paths, and Python refuses relative imports in a file without a package.
+    """
+    import ast
+
+    is_relative = any(isinstance(each, ast.ImportFrom) and each.level for each in ast.walk(tree))
+    if source.module or not is_relative:
+        return source
+    root = _above_package(path.parent)
+    root = root if root != path.parent else path.parent.parent  # a package without an __init__.py
+    names = [*path.parent.relative_to(root).parts, *([path.stem] if path.stem != "__init__" else [])]
+    return replace(source, module=".".join(names), root=root)
 
 
 def own_process_needed(source: NodeSource) -> str:
@@ -121,8 +139,17 @@ def _loaded(source: NodeSource) -> ModuleType:
     assert source.path is not None
     if not source.module or source.root is None:
         return load_module(source.path)
-    _reach(source.path.parent, source.root)
+    _reach_all(source)
     return importlib.import_module(source.module)
+
+
+def _forget_others(top: str, root: Path) -> None:
+    """Remove the modules of a package `top` of another workspace, which this process has imported before."""
+    known = sys.modules.get(top)
+    if known is None or str(root / top) in map(str, getattr(known, "__path__", [root / top])):
+        return
+    for name in [each for each in sys.modules if each == top or each.startswith(f"{top}.")]:
+        del sys.modules[name]
 
 
 def _parse(path: Path) -> ast.Module:
@@ -207,6 +234,8 @@ def _script(source: NodeSource, path: Path) -> Callable[[], Any]:
 
 def _reach_all(source: NodeSource) -> None:
     assert source.path is not None
+    if source.module and source.root is not None:
+        _forget_others(source.module.partition(".")[0], source.root)
     _reach(source.path.parent, source.root if source.module else None)
 
 

@@ -10,6 +10,7 @@ from robolink import Node
 from robolink.exceptions import NotFoundError
 from robolink.interfaces.std_msgs.msg import String
 from robolink.testing import System
+from tests.support.ros_tree import write_package
 
 LAUNCH = """
 arguments: {pace: 0.2}
@@ -152,3 +153,35 @@ def test_what_a_constructor_raises_comes_from_start(tested: System) -> None:
         tested.start(Broken)
     tested.run(1.0)
     assert tested.nodes == []
+
+
+RELATIVE = """
+from rclpy.node import Node
+import rclpy
+from .words import WORD
+
+made = []
+
+
+def main():
+    rclpy.init()
+    made.append(1)
+    node = Node(f"{WORD}_{len(made)}")
+    node.create_timer(1.0, lambda: None)
+    rclpy.spin(node)
+"""
+
+
+@pytest.mark.parametrize("word", ["first", "second"])
+def test_an_executable_of_a_package_imports_its_neighbours_by_a_dot(
+    word: str, tested: System, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Twice in this process, from two workspaces; and each program has variables of its own."""
+    write_package(
+        tmp_path / "src", "pkg_dots", {"words.py": f"WORD = '{word}'\n", "talk.py": RELATIVE}, "t = pkg_dots.talk:main"
+    )
+    monkeypatch.chdir(tmp_path)
+    for namespace in ("/a", "/b"):
+        tested.start("pkg_dots t", namespace=namespace)
+    tested.run(1.0)
+    assert tested.nodes == [f"/a/{word}_1", f"/b/{word}_1"]
