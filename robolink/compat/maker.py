@@ -50,7 +50,7 @@ def maker(fullname: str) -> Fill | None:
         return functools.partial(_fill_private, fullname, _defined_in(fullname))
     room = room_of(fullname)
     if not room or not _is_there(room):
-        raise LackingModuleError(fullname, functools.partial(_modules_beside, fullname))
+        raise LackingModuleError(fullname, functools.partial(_modules_beside, fullname), instead_of(fullname))
     return functools.partial(_put, fullname, room)
 
 
@@ -179,10 +179,13 @@ def _asked(fullname: str, module: ModuleType, own: Callable[[str], Any] | None, 
 
 
 def _home_of(fullname: str, name: str) -> str:
-    """Return which other message package has a type of this name."""
+    """Return which other message package has a type of this name, or how ROS 2 spells a part of a service."""
     package, _, kind = fullname.partition(".")
     if package not in MESSAGES or kind not in KINDS:
         return ""
+    service, part = next(((name.removesuffix(each), each) for each in PARTS if name.endswith(each)), ("", ""))
+    if service in STANDARD[kind].get(package, "").split():
+        return f"that is ROS 1: {service}.{part} is what ROS 2 has"
     homes = [f"{each}.{kind}" for each, types in STANDARD[kind].items() if name in types.split()]
     return f"it is in {' and in '.join(homes)}" if homes else ""
 

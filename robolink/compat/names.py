@@ -44,23 +44,35 @@ INSTEAD = {
     "rosbag": "that is ROS 1: 'robolink bag' and rosbag2_py have the bags of ROS 2",
     "actionlib": "that is ROS 1: rclpy.action has ActionServer and ActionClient",
     "nav2_simple_commander": "rclpy.action.ActionClient with nav2_msgs.action.NavigateToPose does what it does",
-    "ros2cli": "'robolink' is the command line",
+    "move_base_msgs": "that is ROS 1: nav2_msgs.action.NavigateToPose is what ROS 2 has",
+    "uuid_msgs": "that is ROS 1: unique_identifier_msgs is what ROS 2 has",
+    "sensor_msgs.point_cloud2": "that is ROS 1: sensor_msgs_py.point_cloud2 is what ROS 2 has",
+    "PyKDL": "tf_transformations has rotations and matrices, tf2_geometry_msgs transforms the types of geometry_msgs",
+    "rosidl_adapter": "robolink.interfaces.find returns the class of a type, and no code is generated",
+    "rosidl_generator_py": "robolink.interfaces.find returns the class of a type, and no code is generated",
+    "py_trees_ros": "py_trees works as it is, with a timer that ticks the tree",
     "image_transport": "publish and subscribe to sensor_msgs.msg.Image or CompressedImage",
     "controller_manager": "it needs ros2_control",
     "moveit": "it needs MoveIt",
+    "moveit_commander": "it needs MoveIt",
+    "moveit_configs_utils": "it needs MoveIt",
 }
-"""Advice for the names that programs for ROS 2 import and that robolink lacks."""
+"""Advice for the names that programs for ROS 2 import and that robolink lacks; a name may be below another."""
 
 INTERFACES = r"[a-z][a-z0-9_]*_(?:msgs|interfaces|srvs|actions)"
 """Pattern of message packages, as text."""
 LINTERS = r"ament_(?:copyright|flake8|pep257|xmllint|mypy|cpplint|lint)"
 """Pattern of ament's linters, as text: a program that lacks nothing need not wait until it is compiled."""
+COMMANDS = r"ros2(?:cli|action|bag|component|interface|launch|lifecycle|node|param|pkg|run|service|topic)"
+"""Pattern of the packages of ROS 2's command line, as text."""
 
 
 def instead_of(name: str) -> str:
-    """Return advice for a top-level name that robolink lacks; '' for a name that is not ROS's."""
+    """Return advice for a name that robolink lacks; '' for a name that is not ROS's."""
     if name in INSTEAD:
         return INSTEAD[name]
+    if re.fullmatch(COMMANDS, name):
+        return "'robolink' is the command line, and a node's methods, such as get_topic_names_and_types, read the graph"
     if re.fullmatch(LINTERS, name):
         return "it only checks how a package's files are written; ruff does"
     if re.fullmatch(INTERFACES, name):

@@ -185,6 +185,16 @@ def test_a_package_with_nothing_of_its_own() -> None:
         ),
         ("from tf2_ros import Bufer", ImportError, "tf2_ros.Bufer (did you mean 'Buffer'?)"),
         ("from message_filters import Cach", ImportError, "message_filters.Cach (did you mean 'Cache'?)"),
+        (
+            "from std_srvs.srv import TriggerResponse",
+            ImportError,
+            "std_srvs.srv.TriggerResponse; that is ROS 1: Trigger.Response is what ROS 2 has",
+        ),
+        (
+            "import sensor_msgs.point_cloud2",
+            ModuleNotFoundError,
+            "sensor_msgs.point_cloud2; that is ROS 1: sensor_msgs_py.point_cloud2 is what ROS 2 has",
+        ),
     ],
 )
 def test_a_name_that_is_missing(code: str, kind: type[Exception], report: str) -> None:
@@ -203,6 +213,9 @@ def test_a_name_that_is_missing(code: str, kind: type[Exception], report: str) -
         ("launch", "robolink launch"),
         ("launch_ros", "robolink launch"),
         ("rospy", "ROS 1"),
+        ("move_base_msgs", "NavigateToPose"),
+        ("ros2topic", "get_topic_names_and_types"),
+        ("rosidl_adapter", "robolink.interfaces.find"),
         ("ament_flake8", "ruff"),
         ("moveit_msgs", "interfaces/moveit_msgs/msg"),
         ("my_robot_interfaces", "interfaces/my_robot_interfaces/msg"),
