@@ -22,7 +22,11 @@ __all__ = ["Source", "add_source", "find", "find_announced", "is_named", "names"
 KINDS = {"msg": "message", "srv": "service", "action": "action"}
 """Middle part of a type name, and the word for it."""
 _KIND_TYPES = {"msg": "a message type", "srv": "a service type", "action": "an action type"}
-FIRST = (("std_msgs", "std_srvs"), ("geometry_msgs", "sensor_msgs", "nav_msgs"), ("lifecycle_msgs", "nav2_msgs"))
+FIRST = (
+    ("std_msgs", "std_srvs"),
+    ("geometry_msgs", "sensor_msgs", "nav_msgs"),
+    ("lifecycle_msgs", "nav2_msgs", "rosbag2_interfaces"),
+)
 """Packages whose types a bare name stands for, when others have it too; those named first go first."""
 ACTION_PARTS = {
     "SendGoal": "SendGoalService",

@@ -37,6 +37,7 @@ STANDARD = {
         "ackermann_msgs": "AckermannDrive AckermannDriveStamped",
         "actionlib_msgs": "GoalID GoalStatus GoalStatusArray",
         "apriltag_msgs": "AprilTagDetection AprilTagDetectionArray Point",
+        "can_msgs": "Frame",
         "control_msgs": (
             "AdmittanceControllerState BatteryStateArray DynamicInterfaceGroupValues DynamicInterfaceValues "
             "DynamicJointState Float64Values GripperCommand InterfaceValue JointComponentTolerance "
@@ -44,6 +45,10 @@ STANDARD = {
             "MecanumDriveControllerState MotionArgument MotionPrimitive MotionPrimitiveSequence MultiDOFCommand "
             "MultiDOFStateStamped PidState SingleDOFState SingleDOFStateStamped SpeedScalingFactor "
             "SteeringControllerStatus VDA5050SafetyState"
+        ),
+        "controller_manager_msgs": (
+            "ChainConnection ControllerManagerActivity ControllerState HardwareComponentState HardwareInterface "
+            "NamedLifecycleState"
         ),
         "diagnostic_msgs": "DiagnosticArray DiagnosticStatus KeyValue",
         "example_interfaces": (
@@ -74,7 +79,13 @@ STANDARD = {
             "ParticleCloud Route RouteEdge RouteNode SpeedLimit Trajectory TrajectoryPoint VoxelGrid "
             "WaypointStatus"
         ),
+        "octomap_msgs": "Octomap OctomapWithPose",
         "rmw_dds_common": "Gid NodeEntitiesInfo ParticipantEntitiesInfo",
+        "ros_gz_interfaces": (
+            "Altimeter Contact Contacts Dataframe Entity EntityFactory EntityWrench Float32Array GuiCamera "
+            "JointWrench Light MaterialColor ParamVec SensorNoise StringVec TrackVisual VideoRecord "
+            "WorldControl WorldReset"
+        ),
         "rosapi_msgs": "TypeDef",
         "rosbag2_interfaces": "ReadSplitEvent WriteSplitEvent",
         "rosbridge_msgs": "ConnectedClient ConnectedClients",
@@ -83,6 +94,7 @@ STANDARD = {
         "stereo_msgs": "DisparityImage",
         "trajectory_msgs": "JointTrajectory JointTrajectoryPoint MultiDOFJointTrajectory MultiDOFJointTrajectoryPoint",
         "turtlebot3_msgs": "SensorState Sound VersionInfo",
+        "turtlebot4_msgs": "UserButton UserDisplay UserLed",
         "turtlesim": "Color Pose",
         "vision_msgs": (
             "BoundingBox2D BoundingBox2DArray BoundingBox3D BoundingBox3DArray Classification Detection2D "
@@ -108,6 +120,11 @@ STANDARD = {
         "type_description_interfaces": "GetTypeDescription",
         "composition_interfaces": "ListNodes LoadNode UnloadNode",
         "control_msgs": "QueryCalibrationState QueryTrajectoryState SetOdometry",
+        "controller_manager_msgs": (
+            "CleanupController ConfigureController ListControllerTypes ListControllers ListHardwareComponents "
+            "ListHardwareInterfaces LoadController ReloadControllerLibraries SetHardwareComponentState "
+            "SwitchController UnloadController"
+        ),
         "diagnostic_msgs": "AddDiagnostics SelfTest",
         "example_interfaces": "AddTwoInts SetBool Trigger",
         "gazebo_msgs": (
@@ -126,6 +143,7 @@ STANDARD = {
             "DynamicEdges GetCost GetCostmap GetCosts IsPathValid LoadMap ManageLifecycleNodes "
             "ReloadDockDatabase SaveMap SetInitialPose SetRouteGraph Toggle"
         ),
+        "octomap_msgs": "BoundingBoxQuery GetOctomap",
         "rcl_interfaces": (
             "DescribeParameters GetLoggerLevels GetParameterTypes GetParameters ListParameters SetLoggerLevels "
             "SetParameters SetParametersAtomically"
@@ -133,6 +151,7 @@ STANDARD = {
         "robot_localization": (
             "FromLL FromLLArray GetState SetDatum SetPose SetUTMZone ToLL ToLLArray ToggleFilterProcessing"
         ),
+        "ros_gz_interfaces": "ControlWorld DeleteEntity SetEntityPose SpawnEntity",
         "rosapi_msgs": (
             "ActionType DeleteParam GetActionServers GetParam GetParamNames GetROSVersion GetTime HasParam "
             "Interfaces MessageDetails NodeDetails Nodes Publishers ServiceNode ServiceProviders "
@@ -141,6 +160,10 @@ STANDARD = {
         ),
         "rosbag2_interfaces": (
             "Burst GetRate IsPaused Pause Play PlayNext Resume Seek SetRate Snapshot SplitBagfile Stop TogglePaused"
+        ),
+        "slam_toolbox": (
+            "AddSubmap Clear ClearQueue DeserializePoseGraph LoopClosure MergeMaps Pause Reset SaveMap "
+            "SerializePoseGraph ToggleInteractive"
         ),
         "topic_tools_interfaces": "DemuxAdd DemuxDelete DemuxList DemuxSelect MuxAdd MuxDelete MuxList MuxSelect",
         "turtlebot3_msgs": "Dqn Goal Sound",

@@ -1,0 +1,1 @@
+"""ROS's can_msgs: frames on a CAN bus."""

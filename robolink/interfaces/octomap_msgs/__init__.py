@@ -1,0 +1,1 @@
+"""ROS's octomap_msgs: occupancy maps in three dimensions, as octrees."""
