@@ -38,6 +38,7 @@ COMMANDS = {
         "robolink.cli.launching.simulate", "Run a system in virtual time, with faults, as fast as it goes."
     ),
     "new": Entry("robolink.cli.new", "Make a project, a node or a world to begin with."),
+    "learn": Entry("robolink.cli.learn", "Learn by exercises that are checked in a simulated world."),
     "run-together": Entry("robolink.cli.running_nodes.run_together", ""),
     "look-into": Entry("robolink.cli.running_nodes.look_into", ""),
     "pub": Entry("robolink.cli.topic.command", "Publish messages: short for topic pub.", "pub"),
@@ -47,6 +48,7 @@ COMMANDS = {
     "param": Entry("robolink.cli.param", "See and change the parameters of running nodes."),
     "lifecycle": Entry("robolink.cli.lifecycle", "See in which states managed nodes are, and move them on."),
     "action": Entry("robolink.cli.action", "See which actions there are, and send goals."),
+    "learn-check": Entry("robolink.cli.learn.serving", ""),
     "bag": Entry("robolink.cli.bag", "Record bags of messages, look at them, convert and mend them."),
     "tf": Entry("robolink.cli.tf", "See where frames are in each other."),
     "top": Entry("robolink.cli.top", "Show what nodes use and what topics carry, again and again."),

@@ -1,0 +1,98 @@
+"""robolink learn: exercises that are checked in a simulated world."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from robolink.cli.learn.completion import exercise_names
+
+app = typer.Typer(
+    help="Learn by exercises that are checked in a simulated world, in English or Portuguese.",
+    invoke_without_command=True,
+)
+
+Language = Annotated[str, typer.Option("--language", metavar="en|pt", help="English or Portuguese; it is kept.")]
+Name = Annotated[str, typer.Argument(metavar="NAME", help="Its name, number or file.", autocompletion=exercise_names)]
+MaybeName = Annotated[
+    str,
+    typer.Argument(
+        metavar="[NAME]", help="Its name, number or file; by default the next one.", autocompletion=exercise_names
+    ),
+]
+
+
+@app.callback()
+def list_exercises(context: typer.Context, language: Language = "") -> None:
+    """Learn by exercises that are checked in a simulated world; without a verb, list them with your progress."""
+    from robolink.cli.learn import work
+
+    if context.invoked_subcommand is None:
+        work.list_exercises(work.language_of(language))
+    else:
+        context.obj = language
+
+
+@app.command("start")
+def start(
+    context: typer.Context,
+    folder: Annotated[str, typer.Argument(metavar="[FOLDER]", help="Default: learn_robolink.")] = "",
+    source: Annotated[str, typer.Option("--from", metavar="FOLDER", help="A teacher's exercises.")] = "",
+    language: Language = "",
+) -> None:
+    """Write the exercises' files into a folder; files that are there stay as they are."""
+    from robolink.cli.learn import work
+
+    work.start(folder, source, work.language_of(language or context.obj))
+
+
+@app.command("check")
+def check(
+    context: typer.Context,
+    name: MaybeName = "",
+    all_of_them: Annotated[bool, typer.Option("--all", help="Check all of them, a line for each.")] = False,
+    language: Language = "",
+) -> None:
+    """Check an exercise; the exit code is 1 if it is not done."""
+    from robolink.cli.learn import work
+
+    passed = (
+        work.check_all(work.language_of(language or context.obj))
+        if all_of_them
+        else work.check(name, work.language_of(language or context.obj))
+    )
+    if not passed:
+        raise typer.Exit(1)
+
+
+@app.command("watch")
+def watch(context: typer.Context, language: Language = "") -> None:
+    """Check exercises each time their files are saved, until Ctrl-C."""
+    from robolink.cli.learn import work
+
+    work.watch(work.language_of(language or context.obj))
+
+
+@app.command("hint")
+def hint(context: typer.Context, name: MaybeName = "", language: Language = "") -> None:
+    """Show the next hint for an exercise."""
+    from robolink.cli.learn import work
+
+    work.hint(name, work.language_of(language or context.obj))
+
+
+@app.command("show")
+def show(context: typer.Context, name: MaybeName = "", language: Language = "") -> None:
+    """Show what an exercise asks for."""
+    from robolink.cli.learn import work
+
+    work.show(name, work.language_of(language or context.obj))
+
+
+@app.command("reset")
+def reset(context: typer.Context, name: Name, language: Language = "") -> None:
+    """Write an exercise's file as it was at the beginning; yours is kept under another name."""
+    from robolink.cli.learn import work
+
+    work.reset(name, work.language_of(language or context.obj))

@@ -1,0 +1,164 @@
+"""Work of the verbs of `robolink learn`: each finds the student's folder, acts, and writes lines."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Iterable
+from pathlib import Path
+
+import typer
+
+from robolink.cli.shared.output import say
+from robolink.exceptions import nearest
+from robolink.learn.exercise import Exercise, read_course
+from robolink.learn.folder import StudentFolder, find_folder, start_folder, the_folder
+from robolink.learn.isolated import check_apart
+from robolink.learn.languages import LANGUAGES, Language, default_language, words
+from robolink.learn.lines import course_listed, listed, next_step, reported, task
+
+_PLAIN = {"✓": "+", "✗": "x", "→": ">"}
+"""Marks for a terminal that lacks the others."""
+
+
+def language_of(asked: str | None) -> Language | None:
+    """Return the language that was asked for; None for none. Raises a usage error for any other word."""
+    if not asked:
+        return None
+    for each in LANGUAGES:
+        if asked == each:
+            return each
+    raise typer.BadParameter(f"'{asked[:100]}' is none of {', '.join(LANGUAGES)}{nearest(asked[:100], LANGUAGES)}")
+
+
+def list_exercises(language: Language | None) -> None:
+    """List the exercises, with the progress of the folder in which the student is."""
+    folder = find_folder()
+    if folder is None:
+        _say_all(course_listed(read_course(), language or default_language()))
+        return
+    _speak(folder, language)
+    _say_all(listed(folder))
+
+
+def start(path: str, source: str, language: Language | None) -> None:
+    """Write the given files that are not there yet."""
+    folder = start_folder(path, language=language, source=source)
+    shown = _shown(folder.path)
+    written = folder.write()
+    key = "written" if written else "all there"
+    say(words(folder.language, key, count=len(written), folder=shown))
+    if folder.path != Path.cwd():
+        say(words(folder.language, "go", folder=shown))
+    else:
+        _say_all(next_step(folder))
+
+
+def check(name: str, language: Language | None) -> bool:
+    """Check one exercise; return whether it is done."""
+    folder = _here(language)
+    return _check(folder, folder.chosen(name))
+
+
+def check_all(language: Language | None) -> bool:
+    """Check all exercises, a line for each; return whether all are done."""
+    folder = _here(language)
+    passed = 0
+    for each in folder.course:
+        report = check_apart(each, folder.file_of(each), folder.language)
+        if report.passed:
+            folder.finish(each)
+        passed += report.passed
+        _say_all(
+            [f"  {'✓' if report.passed else '✗'} {each.file}  {each.title(folder.language)} ({report.seconds:.1f} s)"]
+        )
+    say(words(folder.language, "heading", done=passed, all=len(folder.course)))
+    return passed == len(folder.course)
+
+
+def watch(language: Language | None) -> None:
+    """Check the exercises whose files are saved, and the next one at once."""
+    from robolink.learn.watching import EVERY, Watch
+
+    folder = _here(language)
+    say(words(folder.language, "watching"))
+    watching = Watch(folder, lambda exercise: _check(folder, exercise))
+    if folder.next is not None:
+        _check(folder, folder.next)
+    while True:
+        watching.look()
+        time.sleep(EVERY)
+
+
+def hint(name: str, language: Language | None) -> None:
+    """Show the next hint."""
+    folder = _here(language)
+    exercise = folder.chosen(name)
+    hints = exercise.settings.hints
+    was = folder.progress.hints.get(exercise.name, 0)
+    number = folder.next_hint(exercise)
+    if not number:
+        say(words(folder.language, "no hints"))
+        return
+    text = hints[number - 1][folder.language].strip()
+    say(words(folder.language, "hint", number=number, all=len(hints), text=text))
+    if was == len(hints):
+        say(words(folder.language, "last hint"))
+
+
+def show(name: str, language: Language | None) -> None:
+    """Show what an exercise asks for."""
+    folder = _here(language)
+    _say_all(task(folder.chosen(name), folder.language))
+
+
+def reset(name: str, language: Language | None) -> None:
+    """Write the given file of an exercise again."""
+    folder = _here(language)
+    exercise = folder.chosen(name)
+    kept = folder.reset(exercise)
+    key = "reset new" if kept is None else "reset"
+    say(words(folder.language, key, file=exercise.file, kept="" if kept is None else kept.name))
+
+
+def _here(language: Language | None) -> StudentFolder:
+    folder = the_folder()
+    _speak(folder, language)
+    return folder
+
+
+def _speak(folder: StudentFolder, language: Language | None) -> None:
+    if language is not None:
+        folder.speak(language)
+
+
+def _check(folder: StudentFolder, exercise: Exercise) -> bool:
+    report = check_apart(exercise, folder.file_of(exercise), folder.language)
+    _say_all(["", f"{exercise.file}: {exercise.title(folder.language)}"])
+    _say_all(reported(exercise, report, folder.language))
+    if report.passed:
+        folder.finish(exercise)
+        _say_all(["", *next_step(folder)])
+    return report.passed
+
+
+def _say_all(lines: Iterable[str]) -> None:
+    for each in lines:
+        say(_fit(each))
+
+
+def _fit(line: str) -> str:
+    """Return a line with marks that the terminal has."""
+    encoding = getattr(sys.stdout, "encoding", None) or "ascii"
+    for mark, plain in _PLAIN.items():
+        try:
+            mark.encode(encoding)
+        except (UnicodeEncodeError, LookupError):
+            line = line.replace(mark, plain)
+    return line
+
+
+def _shown(path: Path) -> str:
+    here = Path.cwd()
+    return os.path.relpath(path, here) if path.is_relative_to(here) else str(path)

@@ -1,0 +1,83 @@
+"""Check of a student's file in this process: runs the exercise's check.py, and makes a report of what comes of it."""
+
+from __future__ import annotations
+
+import importlib.util
+import time
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from robolink.learn.exercise import CHECK, Exercise, ExerciseError
+from robolink.learn.languages import Language
+from robolink.learn.mistakes import mistake_in, mistake_of
+from robolink.learn.report import Mistake, Report
+from robolink.learn.trial import Told, Trial
+
+
+def check(
+    exercise: Exercise, file: Path, language: Language = "en", *, begun: Callable[[Trial], object] | None = None
+) -> Report:
+    """Check a student's file, in this process; an endless loop in it does not come back.
+
+    Args:
+        exercise: The exercise.
+        file: The student's file.
+        language: Language of the sentences.
+        begun: Called with the trial before the check runs, for a watchdog.
+
+    Returns:
+        The report; nothing that the file does raises.
+    """
+    begin = time.perf_counter()
+    trial = Trial(exercise, file.resolve(), language)
+    if begun is not None:
+        begun(trial)
+    mistake = mistake_in(trial.file)
+    is_over = False
+    if mistake is None:
+        mistake = _ran(trial)
+        is_over = trial.is_over
+    trial.close()
+    return Report(trial.lines, mistake, is_over, seconds=time.perf_counter() - begin)
+
+
+def _ran(trial: Trial) -> Mistake | None:
+    """Run check.py; return the mistake that ended it."""
+    try:
+        _check_of(trial.exercise)(trial)
+        if trial._system is not None:
+            trial.system.check()
+    except Told:
+        return _of_program(trial)
+    except ExerciseError as error:
+        return Mistake("check", str(error))
+    except BaseException as error:  # noqa: BLE001 - whatever a student's file raises is told
+        return mistake_of(error, trial.file) or Mistake("check", _place(error, trial.exercise))
+    return None
+
+
+def _of_program(trial: Trial) -> Mistake | None:
+    """Return the mistake of a program that failed at the very moment at which something was told."""
+    try:
+        if trial._system is not None:
+            trial.system.check()
+    except BaseException as error:  # noqa: BLE001 - as above
+        return mistake_of(error, trial.file)
+    return None
+
+
+def _check_of(exercise: Exercise) -> Callable[[Trial], Any]:
+    spec = importlib.util.spec_from_file_location(f"robolink_check_{exercise.name}", exercise.folder / CHECK)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.check  # type: ignore[no-any-return]
+
+
+def _place(error: BaseException, exercise: Exercise) -> str:
+    frames = [each for each in traceback.extract_tb(error.__traceback__) if each.filename.endswith(CHECK)]
+    where = f" ({exercise.folder / CHECK}:{frames[-1].lineno})" if frames else f" ({exercise.folder})"
+    return f"{type(error).__name__}: {error}".partition("\n")[0] + where

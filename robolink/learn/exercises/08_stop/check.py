@@ -1,0 +1,19 @@
+"""Check of a robot that stops before a wall, three metres ahead of it."""
+
+from __future__ import annotations
+
+from robolink.learn.trial import Trial
+
+WALL = 6.0
+
+
+def check(trial: Trial) -> None:
+    """Let it drive for twenty seconds."""
+    robot = trial.world("empty_room")
+    trial.start()
+    trial.run(3.0)
+    trial.tell("drives", robot.driven > 0.6, metres=robot.driven)
+    trial.run(17.0)
+    trial.tell("stops", robot.contacts == 0, metres=robot.driven)
+    left = WALL - robot.pose.x
+    trial.tell("near", 0.4 < left < 0.75, metres=left)

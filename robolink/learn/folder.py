@@ -1,0 +1,152 @@
+"""Folder of a student: the files of the exercises, as they were given and as they are now, and the progress."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from robolink.exceptions import RobolinkError
+from robolink.learn.exercise import Exercise, chosen, read_course
+from robolink.learn.languages import Language, default_language
+from robolink.learn.progress import FILE, Progress, load_progress, save_progress
+from robolink.system.paths import expanded
+
+DEFAULT = "learn_robolink"
+"""Name of the folder that `start` makes."""
+
+
+class NoFolderError(RobolinkError, LookupError):
+    """The working directory is in no folder of exercises."""
+
+
+class StudentFolder:
+    """The exercises of a student, in a folder of theirs.
+
+    Args:
+        path: The folder.
+        progress: Its progress.
+    """
+
+    def __init__(self, path: Path, progress: Progress) -> None:
+        self.path, self.progress = path, progress
+        self.course = read_course(Path(progress.source) if progress.source else None)
+
+    @property
+    def language(self) -> Language:
+        """Language in which the student is spoken to."""
+        return self.progress.language
+
+    @property
+    def next(self) -> Exercise | None:
+        """First exercise that is not done; None if all are."""
+        return next((each for each in self.course if each.name not in self.progress.done), None)
+
+    @property
+    def done(self) -> int:
+        """Number of exercises that are done."""
+        return sum(each.name in self.progress.done for each in self.course)
+
+    def file_of(self, exercise: Exercise) -> Path:
+        """Return the path of a student's file."""
+        return self.path / exercise.file
+
+    def chosen(self, name: str = "") -> Exercise:
+        """Return the exercise of a name, number or file; the next one for '', and the last one if all are done.
+
+        Raises NotFoundError with the nearest name.
+        """
+        return chosen(self.course, name) if name else self.next or self.course[-1]
+
+    def write(self) -> list[str]:
+        """Write the given files that are not there yet; return their names."""
+        self.path.mkdir(parents=True, exist_ok=True)
+        missing = [each for each in self.course if not self.file_of(each).exists()]
+        for each in missing:
+            _write(self.file_of(each), each.given_text(self.language))
+        self.save()
+        return [each.file for each in missing]
+
+    def reset(self, exercise: Exercise) -> Path | None:
+        """Write the given file of an exercise again; return where the student's own is kept, None if there was none."""
+        path, kept = self.file_of(exercise), None
+        if path.exists():
+            kept = _free(path)
+            path.rename(kept)
+        _write(path, exercise.given_text(self.language))
+        if exercise.name in self.progress.done:
+            self.progress.done.remove(exercise.name)
+        self.progress.hints.pop(exercise.name, None)
+        self.save()
+        return kept
+
+    def next_hint(self, exercise: Exercise) -> int:
+        """Return the number of the next hint, from 1 on; the last one again after the last, and 0 if there are none."""
+        count = min(self.progress.hints.get(exercise.name, 0) + 1, len(exercise.settings.hints))
+        self.progress.hints[exercise.name] = count
+        self.save()
+        return count
+
+    def finish(self, exercise: Exercise) -> None:
+        """Note that an exercise is done."""
+        self.progress.finish(exercise.name)
+        self.save()
+
+    def speak(self, language: Language) -> None:
+        """Set the language, and keep it."""
+        if language != self.progress.language:
+            self.progress.language = language
+            self.save()
+
+    def save(self) -> None:
+        """Write the progress."""
+        save_progress(self.path, self.progress)
+
+
+def find_folder() -> StudentFolder | None:
+    """Return the student's folder at or above the working directory; None if there is none."""
+    here = Path.cwd()
+    found = next((each for each in (here, *here.parents) if (each / FILE).is_file()), None)
+    return None if found is None else StudentFolder(found, load_progress(found))
+
+
+def the_folder() -> StudentFolder:
+    """Return the student's folder at or above the working directory. Raises NoFolderError if there is none."""
+    found = find_folder()
+    if found is None:
+        raise NoFolderError(
+            f"no exercises in this folder or above it: `robolink learn start` writes them into {DEFAULT}, then cd there"
+        )
+    return found
+
+
+def start_folder(path: str = "", *, language: Language | None = None, source: str = "") -> StudentFolder:
+    """Return the student's folder at a path, with the progress that it has or a new one; nothing is written yet.
+
+    Args:
+        path: The folder; '' is the one in which the student is, or else `DEFAULT` in the working directory.
+        language: Language to speak; None keeps that of the folder, or takes that of the locale.
+        source: Folder of a teacher's exercises; '' for those that come with robolink.
+    """
+    if not path:
+        found = find_folder()
+        folder = Path.cwd() / DEFAULT if found is None else found.path
+    else:
+        folder = expanded(path).absolute()
+    is_old = (folder / FILE).is_file()
+    progress = load_progress(folder) if is_old else Progress(language or default_language())
+    progress.language = language or progress.language
+    if source:
+        progress.source = str(expanded(source).resolve())
+    return StudentFolder(folder, progress)
+
+
+def _write(path: Path, text: str) -> None:
+    with path.open("x", encoding="utf-8", newline="\n") as file:
+        file.write(text)
+
+
+def _free(path: Path) -> Path:
+    """Return a name for a file that is put aside, which no other has: 02_stop.mine.py, 02_stop.mine2.py ..."""
+    number = 1
+    while (free := path.with_name(f"{path.stem}.mine{number if number > 1 else ''}{path.suffix}")).exists():
+        number += 1
+    return free

@@ -1,0 +1,119 @@
+"""Languages of the exercises, English and Portuguese: which one is spoken here, and what the commands say in each."""
+
+from __future__ import annotations
+
+import locale
+import os
+from collections.abc import Mapping
+from typing import Literal, get_args
+
+Language = Literal["en", "pt"]
+
+LANGUAGES: tuple[Language, ...] = get_args(Language)
+
+
+def language_of(name: str) -> Language | None:
+    """Return the language of a locale's name, None for one that is not spoken here.
+
+    >>> language_of("pt_BR.UTF-8"), language_of("Portuguese_Brazil"), language_of("en_GB"), language_of("C")
+    ('pt', 'pt', 'en', None)
+    """
+    short = name.lower()[:2]
+    return "pt" if short in ("pt", "po") else "en" if short == "en" else None
+
+
+def default_language(environ: Mapping[str, str] | None = None) -> Language:
+    """Return the language of this user's locale; English if that is none of them.
+
+    Args:
+        environ: Environment variables; None takes those of the process, and what the system says if they say nothing.
+    """
+    asked = os.environ if environ is None else environ
+    for name in ("LC_ALL", "LC_MESSAGES", "LANG"):
+        if asked.get(name):
+            return language_of(asked[name]) or "en"
+    return language_of(locale.getlocale()[0] or "") or "en" if environ is None else "en"
+
+
+_HOW_EN = """\
+  read it:   robolink learn show
+  try it:    robolink learn check
+  a hint:    robolink learn hint
+  or check at each save: robolink learn watch"""
+_HOW_PT = """\
+  leia:      robolink learn show
+  teste:     robolink learn check
+  uma dica:  robolink learn hint
+  ou teste a cada vez que salvar: robolink learn watch"""
+
+_WORDS: dict[str, tuple[str, str]] = {
+    "heading": ("{done} of {all} exercises done", "{done} de {all} exercícios feitos"),
+    "next": ("next: {file}: {title}", "próximo: {file}: {title}"),
+    "how": (_HOW_EN, _HOW_PT),
+    "all done": ("All exercises are done. Well driven!", "Todos os exercícios estão feitos. Muito bem!"),
+    "no folder": (
+        "robolink learn start    writes the exercises into a folder, to begin with",
+        "robolink learn start    grava os exercícios em uma pasta, para começar",
+    ),
+    "written": ("{count} exercises in {folder}", "{count} exercícios em {folder}"),
+    "all there": ("all exercises are in {folder} already", "todos os exercícios já estão em {folder}"),
+    "go": ("cd {folder}, then: robolink learn", "cd {folder}, e depois: robolink learn"),
+    "reset": (
+        "{file} is as it was at the beginning; yours is {kept}",
+        "{file} está como no início; o seu está em {kept}",
+    ),
+    "reset new": ("{file} is there again", "{file} está lá de novo"),
+    "hint": ("hint {number} of {all}: {text}", "dica {number} de {all}: {text}"),
+    "no hints": ("this exercise has no hints", "este exercício não tem dicas"),
+    "last hint": ("that was the last hint", "essa foi a última dica"),
+    "done": ("{file} is done ({seconds:.1f} s)", "{file} está feito ({seconds:.1f} s)"),
+    "not yet": (
+        "{file} is not there yet; a hint: robolink learn hint",
+        "{file} ainda não; uma dica: robolink learn hint",
+    ),
+    "printed": ("it printed:", "ele imprimiu:"),
+    "more": ("... and {count} more lines", "... e mais {count} linhas"),
+    "watching": (
+        "Save a file and it is checked. Ctrl-C ends.",
+        "Salve um arquivo e ele é testado. Ctrl-C termina.",
+    ),
+    "syntax": ("{file} is not valid Python at line {line}:", "{file} não é Python válido na linha {line}:"),
+    "exception": (
+        "your program stopped with an error at line {line}:",
+        "seu programa parou com um erro na linha {line}:",
+    ),
+    "elsewhere": ("your program stopped with an error:", "seu programa parou com um erro:"),
+    "stuck": (
+        "your program is stuck at line {line}: is there a loop that never ends or never waits?",
+        "seu programa está preso na linha {line}: há um laço que nunca termina ou nunca espera?",
+    ),
+    "stuck somewhere": (
+        "your program is stuck: is there a loop that never ends or never waits?",
+        "seu programa está preso: há um laço que nunca termina ou nunca espera?",
+    ),
+    "ended": ("your program ended too early: {text}", "seu programa terminou cedo demais: {text}"),
+    "ended all": (
+        "your program ended the whole process at once: is there an os._exit?",
+        "seu programa terminou o processo inteiro de uma vez: há um os._exit?",
+    ),
+    "is over": (
+        "it has come to its end: is there an rclpy.spin?",
+        "ele chegou ao fim: há um rclpy.spin?",
+    ),
+    "file": ("{text}", "{text}"),
+    "check": (
+        "the check of this exercise is broken, not your program: {text}",
+        "o teste deste exercício está com defeito, não o seu programa: {text}",
+    ),
+}
+
+
+def words(language: Language, key: str, **values: object) -> str:
+    """Return a text of the commands.
+
+    Args:
+        language: Language of the text.
+        key: Name of the text.
+        values: Values for its placeholders.
+    """
+    return _WORDS[key][LANGUAGES.index(language)].format(**values)

@@ -1,0 +1,92 @@
+"""Texts for the terminal: the list of exercises with progress, and the report of a check."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator
+
+from robolink.learn.exercise import Exercise
+from robolink.learn.folder import StudentFolder
+from robolink.learn.languages import Language, words
+from robolink.learn.report import Mistake, Report
+
+WIDTH = 78
+"""Widest line of a report, in letters."""
+
+MOST_LINES = 15
+"""Most lines of what a program printed that are shown."""
+
+
+def listed(folder: StudentFolder) -> Iterator[str]:
+    """Yield the lines of the list: the exercises, those that are done marked, and what is next."""
+    language, following = folder.language, folder.next
+    yield words(language, "heading", done=folder.done, all=len(folder.course))
+    longest = max(len(each.file) for each in folder.course)
+    for each in folder.course:
+        mark = "✓" if each.name in folder.progress.done else "→" if each is following else " "
+        yield f"  {mark} {each.file:{longest}}  {each.title(language)}"
+    yield ""
+    yield from next_step(folder)
+
+
+def course_listed(course: list[Exercise], language: Language) -> Iterator[str]:
+    """Yield the lines of a list for somebody who has no folder yet."""
+    longest = max(len(each.file) for each in course)
+    for each in course:
+        yield f"  {each.file:{longest}}  {each.title(language)}"
+    yield ""
+    yield words(language, "no folder")
+
+
+def next_step(folder: StudentFolder) -> Iterator[str]:
+    """Yield what is next, in lines."""
+    following = folder.next
+    if following is None:
+        yield words(folder.language, "all done")
+    else:
+        yield words(folder.language, "next", file=following.file, title=following.title(folder.language))
+        yield words(folder.language, "how")
+
+
+def task(exercise: Exercise, language: Language) -> Iterator[str]:
+    """Yield the task of an exercise in lines."""
+    yield f"{exercise.file}: {exercise.title(language)}"
+    yield ""
+    yield from exercise.text(language).splitlines()
+
+
+def reported(exercise: Exercise, report: Report, language: Language) -> Iterator[str]:
+    """Yield the report of a check in lines."""
+    yield from _printed(report.printed, language)
+    for each in report.lines:
+        yield from _item("✓" if each.good else "✗", each.text)
+    if report.mistake is not None:
+        yield from _mistake(exercise, report.mistake, language)
+    elif report.is_over and not report.passed:
+        yield from _item(" ", words(language, "is over"))
+    key = "done" if report.passed else "not yet"
+    yield words(language, key, file=exercise.file, seconds=report.seconds)
+
+
+def _printed(text: str, language: Language) -> Iterator[str]:
+    lines = text.splitlines()
+    if not lines:
+        return
+    yield words(language, "printed")
+    for each in lines[:MOST_LINES]:
+        yield f"    {each[:200]}"
+    if len(lines) > MOST_LINES:
+        yield f"    {words(language, 'more', count=len(lines) - MOST_LINES)}"
+
+
+def _mistake(exercise: Exercise, mistake: Mistake, language: Language) -> Iterator[str]:
+    head = words(language, mistake.kind, file=exercise.file, line=mistake.line, text=mistake.text)
+    yield from _item("✗", head)
+    if mistake.line:
+        yield f"    {mistake.line:4} | {mistake.code}"
+    if mistake.kind in ("syntax", "exception", "elsewhere"):
+        yield from (f"    {each}" for each in mistake.text.splitlines())
+
+
+def _item(mark: str, text: str) -> Iterator[str]:
+    yield from textwrap.wrap(text, WIDTH, initial_indent=f"  {mark} ", subsequent_indent="    ") or [f"  {mark}"]

@@ -1,0 +1,78 @@
+"""Mistakes of a student's file: syntax errors and exceptions, each with its line, as one clear block."""
+
+from __future__ import annotations
+
+import ast
+import linecache
+import traceback
+from pathlib import Path
+
+from robolink.exceptions import RobolinkError
+from robolink.learn.report import Mistake
+from robolink.system.plainfile import LONGEST_SOURCE, read_plain
+from robolink.testing.expectations import NodeFailure
+from robolink.text.tracebacks import suggestion
+
+LONGEST = 500
+"""Longest text of an exception that is shown, in letters."""
+
+
+def mistake_in(file: Path) -> Mistake | None:
+    """Return what keeps a file from being run at all, a syntax error for example; None for one that can be run."""
+    try:
+        text = read_plain(file, LONGEST_SOURCE).decode("utf-8")
+    except OSError as error:
+        return Mistake("file", f"{file.name}: {error.strerror or error}")
+    except UnicodeDecodeError:
+        return Mistake("file", f"{file.name}: not UTF-8: save it with this encoding")
+    if file.suffix != ".py":
+        return None
+    try:
+        ast.parse(text, str(file))
+    except SyntaxError as error:
+        return _of_syntax(error)
+    except (ValueError, RecursionError, MemoryError) as error:  # null characters; brackets of a thousand levels
+        return Mistake("file", f"{file.name}: {error or type(error).__name__}")
+    return None
+
+
+def mistake_of(error: BaseException, file: Path) -> Mistake | None:
+    """Return the mistake that an exception shows in a student's file; None if it came from elsewhere.
+
+    Args:
+        error: What a check raised.
+        file: The student's file.
+    """
+    if isinstance(error, NodeFailure):
+        if error.__cause__ is None:
+            return Mistake("ended", str(error).partition("\n")[0][:LONGEST])
+        error = error.__cause__
+    if isinstance(error, SyntaxError) and error.filename == str(file):
+        return _of_syntax(error)
+    lines = [each.lineno or 0 for each in traceback.extract_tb(error.__traceback__) if _is(each.filename, file)]
+    if lines:
+        linecache.checkcache(str(file))
+        return Mistake("exception", _told(error), lines[-1], linecache.getline(str(file), lines[-1]).rstrip())
+    if isinstance(error, RobolinkError):
+        return Mistake("file", _told_plainly(error))
+    return None
+
+
+def _is(filename: str, file: Path) -> bool:
+    return filename == str(file) or (Path(filename).name == file.name and Path(filename).resolve() == file.resolve())
+
+
+def _of_syntax(error: SyntaxError) -> Mistake:
+    return Mistake("syntax", f"{type(error).__name__}: {error.msg}", error.lineno or 1, (error.text or "").rstrip())
+
+
+def _told(error: BaseException) -> str:
+    text = "".join(traceback.format_exception_only(type(error), error)).strip()
+    text = text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
+    if isinstance(error, RobolinkError):
+        text = f"{type(error).__name__}: {_told_plainly(error)}"
+    return text if "Did you mean" in text else text + suggestion(error)
+
+
+def _told_plainly(error: RobolinkError) -> str:
+    return str(error).partition("\nreplay:")[0].partition("\nwhat came last:")[0][:LONGEST]

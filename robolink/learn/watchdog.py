@@ -1,0 +1,82 @@
+"""Watchdog of a check: finds a program that does not go on, and the line at which it is, by processor time."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import FrameType
+
+from robolink.learn.report import Mistake
+from robolink.learn.trial import Trial
+
+LOOK = 0.05
+"""Period of its looks, in seconds."""
+
+STUCK = 2.5
+"""Seconds of a processor without any progress of virtual time after which a program is stuck."""
+
+ASLEEP = 20.0
+"""Seconds of real time without any progress: the program waits for something that does not come."""
+
+
+class Watchdog(threading.Thread):
+    """Thread that calls `found` with the mistake when a trial stands still.
+
+    Args:
+        trial: The trial.
+        found: Called once, on this thread.
+        stuck: Seconds of a processor.
+        asleep: Seconds of real time.
+    """
+
+    def __init__(
+        self, trial: Trial, found: Callable[[Mistake], object], *, stuck: float = STUCK, asleep: float = ASLEEP
+    ) -> None:
+        super().__init__(name="robolink learn's watchdog", daemon=True)
+        self._trial, self._found, self._stuck, self._asleep = trial, found, stuck, asleep
+        self._over = threading.Event()
+
+    def run(self) -> None:
+        """Look until stopped."""
+        moment, used, since = self._trial.moment(), time.process_time(), time.monotonic()
+        while not self._over.wait(LOOK):
+            if self._trial.moment() != moment:
+                moment, used, since = self._trial.moment(), time.process_time(), time.monotonic()
+            elif time.process_time() - used > self._stuck or time.monotonic() - since > self._asleep:
+                self._found(where_stuck(self._trial.file))
+                return
+
+    def stop(self) -> None:
+        """Stop the watchdog."""
+        self._over.set()
+
+
+def where_stuck(file: Path) -> Mistake:
+    """Return at which line of a file some thread of this process is."""
+    own = threading.get_ident()
+    places = [_line(frame, str(file)) for thread, frame in sys._current_frames().items() if thread != own]
+    line = next((each for each in places if each), 0)
+    if not line:
+        return Mistake("stuck somewhere")
+    import linecache
+
+    return Mistake("stuck", "", line, linecache.getline(str(file), line).rstrip())
+
+
+def _line(frame: FrameType | None, file: str) -> int:
+    while frame is not None:
+        if frame.f_code.co_filename == file:
+            return frame.f_lineno
+        frame = frame.f_back
+    return 0
+
+
+def end_process() -> None:
+    """End this process at once, whatever its threads do."""
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
+    os._exit(0)

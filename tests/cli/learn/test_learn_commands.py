@@ -1,0 +1,154 @@
+"""robolink learn: its verbs, as a student types them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from robolink.cli.learn import work
+from robolink.cli.learn.completion import exercise_names
+from robolink.cli.main import main
+from robolink.learn.exercise import Exercise, read_course
+from robolink.learn.languages import Language
+from robolink.learn.report import Line, Mistake, Report
+
+Captured = pytest.CaptureFixture[str]
+SOLUTIONS = Path(__file__).parents[2] / "learn" / "solutions"
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("LC_ALL", "en_US.UTF-8")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def student(here: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> Path:
+    assert main(["learn", "start"]) == 0
+    monkeypatch.chdir(here / "learn_robolink")
+    capsys.readouterr()
+    return here / "learn_robolink"
+
+
+def fake(monkeypatch: pytest.MonkeyPatch, *reports: Report) -> list[str]:
+    """Let checks have these results, one after the other; return the files that are checked."""
+    left, checked = list(reports), list[str]()
+
+    def check(exercise: Exercise, file: Path, language: Language) -> Report:
+        assert file.name == exercise.file
+        checked.append(f"{exercise.name} {language}")
+        return left.pop(0)
+
+    monkeypatch.setattr(work, "check_apart", check)
+    return checked
+
+
+GOOD = Report([Line(True, "it drives")], seconds=0.8)
+BAD = Report([Line(False, "it stands")], seconds=0.8)
+
+
+def test_before_the_start_it_lists_them_all(here: Path, capsys: Captured) -> None:
+    assert main(["learn"]) == 0
+    out = capsys.readouterr().out
+    assert "02_hello.py" in out
+    assert "A first node" in out
+    assert main(["learn", "--language", "pt"]) == 0
+    assert "Um primeiro node" in capsys.readouterr().out
+
+
+def test_start_says_where_to_go(here: Path, capsys: Captured) -> None:
+    assert main(["learn", "start", "aula", "--language", "pt"]) == 0
+    out = capsys.readouterr().out
+    assert out == f"{len(read_course())} exercícios em aula\ncd aula, e depois: robolink learn\n"
+    assert main(["learn", "start", "aula"]) == 0
+    assert capsys.readouterr().out.startswith("todos os exercícios já estão em aula\n")
+
+
+def test_a_check_that_passes_says_what_is_next(
+    student: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    first, second, *_ = read_course()
+    fake(monkeypatch, GOOD)
+    assert main(["learn", "check"]) == 0
+    out = capsys.readouterr().out
+    assert "  ✓ it drives\n" in out
+    assert f"{first.file} is done (0.8 s)\n" in out
+    assert f"next: {second.file}: {second.title('en')}\n" in out
+    assert main(["learn"]) == 0
+    assert f"  ✓ {first.file}" in capsys.readouterr().out
+
+
+def test_a_check_that_fails_ends_with_1(student: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    checked = fake(monkeypatch, BAD, Report(mistake=Mistake("exception", "ValueError: x", 3, "    f(x)")))
+    assert main(["learn", "check", "stop", "--language", "pt"]) == 1
+    assert "  ✗ it stands\n" in capsys.readouterr().out
+    assert main(["learn", "check", "2"]) == 1
+    out = capsys.readouterr().out
+    assert "seu programa parou com um erro na linha 3:\n       3 |     f(x)\n    ValueError: x\n" in out
+    assert checked == ["stop pt", "hello pt"]
+
+
+def test_all_are_checked_with_a_line_for_each(student: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    count = len(read_course())
+    fake(monkeypatch, *[GOOD] * (count - 1), BAD)
+    assert main(["learn", "check", "--all"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == count + 1
+    assert lines[-1] == f"{count - 1} of {count} exercises done"
+
+
+def test_hints_show_and_reset(student: Path, capsys: Captured) -> None:
+    assert main(["learn", "hint", "hello"]) == 0
+    assert capsys.readouterr().out.startswith("hint 1 of 3: The name is")
+    assert main(["learn", "hint", "hello"]) == 0
+    assert capsys.readouterr().out.startswith("hint 2 of 3: ")
+    assert main(["learn", "show", "hello"]) == 0
+    assert "A node is a program" in capsys.readouterr().out
+    assert main(["learn", "reset", "hello"]) == 0
+    assert capsys.readouterr().out == "02_hello.py is as it was at the beginning; yours is 02_hello.mine.py\n"
+
+
+def test_watch_checks_at_once_and_ends_with_ctrl_c(
+    student: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    fake(monkeypatch, BAD)
+
+    def interrupt(seconds: float) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("robolink.cli.learn.work.time.sleep", interrupt)
+    assert main(["learn", "watch"]) == 130
+    assert "it stands" in capsys.readouterr().out
+
+
+def test_mistakes_are_one_line(here: Path, student: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    assert main(["learn", "check", "helo"]) == 1
+    assert capsys.readouterr().err == "robolink: no exercise named 'helo' (did you mean 'hello'?)\n"
+    assert main(["learn", "--language", "fr"]) == 2
+    assert "'fr' is none of en, pt" in capsys.readouterr().err
+    monkeypatch.chdir(here)
+    assert main(["learn", "check"]) == 1
+    assert capsys.readouterr().err.startswith("robolink: no exercises in this folder or above it")
+
+
+def test_marks_fit_the_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Old:
+        encoding = "cp1252"
+
+    monkeypatch.setattr("robolink.cli.learn.work.sys.stdout", Old())
+    assert work._fit("✓ → ✗ é") == "+ > x é"
+
+
+def test_names_are_completed(student: Path) -> None:
+    assert "hello" in exercise_names()
+
+
+@pytest.mark.processes
+def test_a_real_check(student: Path, capsys: Captured) -> None:
+    assert main(["learn", "check", "hello"]) == 1
+    assert "there is no node that stays" in capsys.readouterr().out
+    (student / "02_hello.py").write_bytes((SOLUTIONS / "02_hello.py").read_bytes())
+    assert main(["learn", "check", "hello"]) == 0
+    assert "02_hello.py is done" in capsys.readouterr().out

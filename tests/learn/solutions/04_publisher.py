@@ -1,0 +1,24 @@
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+
+class RobotPublisher(Node):
+    def __init__(self):
+        super().__init__("robot_publisher")
+        self.publisher = self.create_publisher(Twist, "cmd_vel", 10)
+        self.timer = self.create_timer(0.1, self.drive)
+
+    def drive(self):
+        twist = Twist()
+        twist.linear.x = 0.3
+        self.publisher.publish(twist)
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(RobotPublisher())
+
+
+if __name__ == "__main__":
+    main()

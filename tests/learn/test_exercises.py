@@ -1,0 +1,118 @@
+"""Each exercise: as given it fails with a sentence of its own, and its solution passes; both within two seconds."""
+
+from __future__ import annotations
+
+import ast
+import re
+import time
+from pathlib import Path
+from typing import TypeGuard
+
+import pytest
+
+from robolink.learn.checking import check
+from robolink.learn.exercise import Exercise, read_course
+from robolink.learn.languages import LANGUAGES, Language
+from robolink.learn.report import Report
+
+SOLUTIONS = Path(__file__).parent / "solutions"
+COURSE = read_course()
+LONGEST = 2.0
+"""Most seconds of a processor that a check may take; a process to check in takes 0.3 more (docs/learn.md)."""
+
+FAILS = {
+    "02_hello": "there is no node that stays: main() comes to its end at once",
+    "03_timer": 'after 1.5 s the log should have "count 1", and has count 0',
+    "04_publisher": "nothing came on cmd_vel in three seconds",
+    "07_subscriber": "a scan came, and nothing was published on nearest: does it subscribe to scan?",
+    "08_stop": "it drove 2.8 m into the wall",
+}
+"""First sentence that is bad, for the file as it is given."""
+
+named = pytest.mark.parametrize("exercise", COURSE, ids=[each.folder.name for each in COURSE])
+
+
+def tried(exercise: Exercise, text: str, folder: Path, language: Language = "en") -> Report:
+    file = folder / exercise.file
+    file.write_text(text, encoding="utf-8")
+    begin = time.process_time()
+    report = check(exercise, file, language)
+    assert time.process_time() - begin < LONGEST
+    return report
+
+
+def told(report: Report) -> str:
+    """Return the sentence, or the mistake, that a student reads first."""
+    if report.mistake is not None:
+        return report.mistake.text
+    return next((each.text for each in report.lines if not each.good), "")
+
+
+def solution(exercise: Exercise) -> str:
+    return (SOLUTIONS / exercise.file).read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+@named
+def test_as_given_it_fails_with_the_right_sentence(exercise: Exercise, tmp_path: Path) -> None:
+    report = tried(exercise, exercise.given_text("en"), tmp_path)
+    assert not report.passed
+    assert told(report) == FAILS[exercise.folder.name]
+
+
+@pytest.mark.slow
+@named
+def test_its_solution_passes(exercise: Exercise, tmp_path: Path) -> None:
+    report = tried(exercise, solution(exercise), tmp_path, "pt")
+    assert report.mistake is None
+    assert [each.text for each in report.lines if not each.good] == []
+    assert report.passed
+
+
+@named
+def test_it_has_all_texts_in_both_languages(exercise: Exercise) -> None:
+    settings = exercise.settings
+    outcomes = [text for each in settings.results.values() for text in each]
+    for text in (settings.title, settings.text, *settings.hints, *settings.comments.values(), *outcomes):
+        assert text.en.strip()
+        assert text.pt.strip()
+    for each in settings.results.values():
+        for text in each:
+            assert placeholders(text.en) == placeholders(text.pt)
+    assert 2 <= len(settings.hints) <= 5
+
+
+@named
+def test_its_sentences_are_those_that_its_check_tells(exercise: Exercise) -> None:
+    tree = ast.parse((exercise.folder / "check.py").read_text(encoding="utf-8"))
+    calls = [each for each in ast.walk(tree) if isinstance(each, ast.Call)]
+    told = {each.args[0].value for each in calls if ast.unparse(each.func) == "trial.tell" and is_text(each.args[0])}
+    assert told == set(exercise.settings.results)
+
+
+@named
+def test_what_is_given_fits_a_terminal_and_leaves_no_placeholder(exercise: Exercise) -> None:
+    for language in LANGUAGES:
+        text = exercise.given_text(language)
+        assert max(map(len, text.splitlines())) <= 100
+        assert not re.search(r"# \{\w+\}", text)
+        for line in exercise.text(language).splitlines():
+            assert len(line) <= 78
+
+
+def test_every_exercise_has_a_solution_and_a_sentence() -> None:
+    assert sorted(each.file for each in COURSE) == sorted(each.name for each in SOLUTIONS.iterdir() if each.is_file())
+    assert sorted(each.folder.name for each in COURSE) == sorted(FAILS)
+
+
+def test_no_solution_is_in_the_package() -> None:
+    for each in COURSE:
+        assert solution(each) not in [path.read_text(encoding="utf-8") for path in each.folder.glob("*.*")]
+
+
+def placeholders(text: str) -> set[str]:
+    return set(re.findall(r"\{(\w+)", text))
+
+
+def is_text(node: ast.expr) -> TypeGuard[ast.Constant]:
+    return isinstance(node, ast.Constant)

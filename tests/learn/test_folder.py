@@ -1,0 +1,151 @@
+"""A student's folder: files are written once, progress is kept, and nothing of the student's is lost."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from robolink.exceptions import DocumentError, NotFoundError
+from robolink.learn.exercise import Exercise, ExerciseError, chosen, read_course, read_exercise
+from robolink.learn.folder import NoFolderError, StudentFolder, find_folder, start_folder, the_folder
+from robolink.learn.languages import default_language, language_of
+from robolink.learn.lines import listed
+from robolink.learn.progress import FILE, Progress, load_progress, save_progress
+from robolink.learn.watching import Watch
+from robolink.supervisor.monitoring.file_watch import Changes
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> StudentFolder:
+    monkeypatch.chdir(tmp_path)
+    made = start_folder("mine", language="pt")
+    made.write()
+    monkeypatch.chdir(tmp_path / "mine")
+    return made
+
+
+def test_start_writes_what_is_missing_and_nothing_else(folder: StudentFolder) -> None:
+    first = folder.file_of(folder.course[0])
+    assert first.read_text(encoding="utf-8") == folder.course[0].given_text("pt")
+    first.write_text("mine", encoding="utf-8")
+    folder.file_of(folder.course[1]).unlink()
+    assert start_folder().write() == [folder.course[1].file]
+    assert first.read_text(encoding="utf-8") == "mine"
+
+
+def test_progress_is_kept(folder: StudentFolder) -> None:
+    assert folder.next == folder.course[0]
+    folder.finish(folder.course[0])
+    again = the_folder()
+    assert again.language == "pt"
+    assert again.done == 1
+    assert again.next == folder.course[1]
+    lines = list(listed(again))
+    assert lines[0] == f"1 de {len(folder.course)} exercícios feitos"
+    assert lines[1].startswith("  ✓ ")
+    assert lines[2].startswith("  → ")
+
+
+def test_all_done(folder: StudentFolder) -> None:
+    for each in folder.course:
+        folder.finish(each)
+    assert folder.next is None
+    assert folder.chosen() == folder.course[-1]
+    assert list(listed(folder))[-1] == "Todos os exercícios estão feitos. Muito bem!"
+
+
+def test_hints_come_step_by_step(folder: StudentFolder) -> None:
+    exercise = folder.course[0]
+    count = len(exercise.settings.hints)
+    numbers = [the_folder().next_hint(exercise) for _ in range(count + 2)]
+    assert numbers == [*range(1, count + 1), count, count]
+
+
+def test_reset_keeps_what_was_there(folder: StudentFolder) -> None:
+    exercise = folder.course[0]
+    path = folder.file_of(exercise)
+    for number, text in enumerate(("one", "two"), 1):
+        path.write_text(text, encoding="utf-8")
+        folder.finish(exercise)
+        kept = folder.reset(exercise)
+        assert kept is not None
+        assert kept.name == f"{path.stem}.mine{number if number > 1 else ''}.py"
+        assert kept.read_text(encoding="utf-8") == text
+        assert path.read_text(encoding="utf-8") == exercise.given_text("pt")
+        assert the_folder().done == 0
+    path.unlink()
+    assert folder.reset(exercise) is None
+
+
+def test_language_is_kept(folder: StudentFolder) -> None:
+    the_folder().speak("en")
+    assert the_folder().language == "en"
+
+
+def test_without_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert find_folder() is None
+    with pytest.raises(NoFolderError, match="robolink learn start"):
+        the_folder()
+
+
+@pytest.mark.parametrize("content", [b"", b"{", b"[]", b'{"language": "fr"}', b'{"done": 3}', b"\xff\xfe", b"{}" * 10])
+def test_progress_that_cannot_be_read_is_one_line(content: bytes, tmp_path: Path) -> None:
+    (tmp_path / FILE).write_bytes(content)
+    with pytest.raises(DocumentError, match="delete this file") as told:
+        load_progress(tmp_path)
+    assert "\n" not in str(told.value)
+
+
+def test_progress_survives_a_round_trip(tmp_path: Path) -> None:
+    progress = Progress("pt", "", ["hello"], {"hello": 2})
+    save_progress(tmp_path, progress)
+    assert load_progress(tmp_path) == progress
+    assert [each.name for each in tmp_path.iterdir()] == [FILE]
+
+
+@pytest.mark.parametrize(("name", "found"), [("pt_BR.UTF-8", "pt"), ("en_GB", "en"), ("de_DE", None), ("", None)])
+def test_languages_of_locales(name: str, found: str | None) -> None:
+    assert language_of(name) == found
+    assert default_language({"LANG": name}) == (found or "en")
+
+
+def test_the_locale_s_variables_have_an_order() -> None:
+    assert default_language({"LANG": "pt_BR.UTF-8", "LC_ALL": "en_US.UTF-8"}) == "en"
+    assert default_language({"LANG": "en_US.UTF-8", "LC_MESSAGES": "pt_BR.UTF-8"}) == "pt"
+
+
+@pytest.mark.parametrize("name", ["hello", "02_hello", "02_hello.py", "some/where/02_hello.py", "2", "02"])
+def test_an_exercise_has_several_names(name: str) -> None:
+    assert chosen(read_course(), name).name == "hello"
+
+
+def test_an_unknown_name_has_the_nearest() -> None:
+    with pytest.raises(NotFoundError, match="did you mean 'hello'"):
+        chosen(read_course(), "helo")
+
+
+def test_a_folder_without_exercises(tmp_path: Path) -> None:
+    with pytest.raises(ExerciseError, match="has no exercises"):
+        read_course(tmp_path)
+    (tmp_path / "01_x").mkdir()
+    with pytest.raises(ExerciseError, match=r"has no exercise\.yaml"):
+        read_exercise(tmp_path / "01_x")
+    (tmp_path / "BAD NAME").mkdir()
+    with pytest.raises(ExerciseError, match="is called like 01_stop"):
+        read_exercise(tmp_path / "BAD NAME")
+
+
+def test_what_is_saved_is_checked_again(folder: StudentFolder) -> None:
+    stamps: dict[Path, tuple[int, int, int]] = {folder.file_of(each): (1, 1, 1) for each in folder.course}
+    checked: list[Exercise] = []
+    watch = Watch(folder, checked.append, changes=Changes(stamps.get))
+    watch.look()
+    assert checked == []
+    stamps[folder.file_of(folder.course[1])] = (2, 1, 1)
+    watch.look()
+    assert checked == []  # it may not be written to its end
+    watch.look()
+    watch.look()
+    assert checked == [folder.course[1]]

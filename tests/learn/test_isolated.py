@@ -1,0 +1,87 @@
+"""Checks in processes of their own: whatever a student's file does, one gets a report, and nothing else is harmed."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from robolink.cli.shared.output import say
+from robolink.learn.exercise import Exercise, chosen, read_course
+from robolink.learn.isolated import MOST_PRINTED, check_apart
+from robolink.learn.lines import reported
+from robolink.learn.report import Report
+
+HELLO = chosen(read_course(), "hello")
+SOLUTION = (Path(__file__).parent / "solutions" / "02_hello.py").read_text(encoding="utf-8")
+
+pytestmark = pytest.mark.processes
+
+
+def tried(text: str, folder: Path, exercise: Exercise = HELLO, longest: float = 60.0) -> Report:
+    file = folder / exercise.file
+    file.write_text(text, encoding="utf-8")
+    return check_apart(exercise, file, "en", longest=longest)
+
+
+def test_a_solution_passes_and_what_it_prints_is_shown(tmp_path: Path) -> None:
+    report = tried(SOLUTION.replace("rclpy.spin(node)", "print('on my way')\n    rclpy.spin(node)"), tmp_path)
+    assert report.passed
+    assert "on my way" in report.printed
+    assert "[INFO] first_node: hello" in report.printed
+    assert [each.name for each in tmp_path.iterdir()] == ["02_hello.py"], "no __pycache__ beside it"
+    lines = list(reported(HELLO, report, "en"))
+    assert lines[0] == "it printed:"
+    assert lines[-1].startswith("02_hello.py is done")
+
+
+def test_an_endless_loop_is_found_with_its_line(tmp_path: Path) -> None:
+    report = tried(SOLUTION.replace("    rclpy.spin(node)", "    while True:\n        pass"), tmp_path)
+    assert report.mistake is not None
+    assert report.mistake.kind == "stuck"
+    assert report.mistake.code.strip() in ("while True:", "pass")
+    assert any("is there a loop that never ends" in each for each in reported(HELLO, report, "en"))
+
+
+@pytest.mark.parametrize(
+    "ending", ["import os; os._exit(0)", "import os, signal; os.kill(os.getpid(), signal.SIGKILL)"]
+)
+def test_a_file_that_ends_the_process_is_told(ending: str, tmp_path: Path) -> None:
+    if sys.platform == "win32" and "SIGKILL" in ending:
+        pytest.skip("Windows has no SIGKILL")
+    report = tried(SOLUTION.replace("    rclpy.init()", f"    {ending}"), tmp_path)
+    assert report.mistake is not None
+    assert report.mistake.kind == "ended all"
+
+
+def test_what_does_not_even_let_others_run_is_killed(tmp_path: Path) -> None:
+    hangs = "import re\nre.match(r'(a+)+$', 'a' * 60 + 'b')\n"  # in C, which keeps all other threads from running
+    begin = time.monotonic()
+    report = tried(hangs + SOLUTION, tmp_path, longest=3.0)
+    assert report.mistake is not None
+    assert time.monotonic() - begin < 20.0
+
+
+def test_a_flood_of_words_is_cut(tmp_path: Path) -> None:
+    flood = SOLUTION.replace("    rclpy.spin(node)", "    print('x' * 5_000_000)\n    rclpy.spin(node)")
+    report = tried(flood, tmp_path)
+    assert report.passed
+    assert len(report.printed) <= MOST_PRINTED
+
+
+def test_it_works_in_a_folder_of_its_own(tmp_path: Path) -> None:
+    (tmp_path / "precious.txt").write_text("mine")
+    clears = "import os, shutil\nshutil.rmtree(os.getcwd())\n"
+    tried(clears + SOLUTION, tmp_path)
+    assert (tmp_path / "precious.txt").read_text() == "mine"
+
+
+def test_what_a_program_prints_is_fit_for_a_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = SOLUTION.replace("    rclpy.spin(node)", "    print('evil\\x1b[2J')\n    rclpy.spin(node)")
+    report = tried(text, tmp_path)
+    assert "\x1b[2J" in report.printed
+    for line in reported(HELLO, report, "en"):
+        say(line)
+    assert "\x1b" not in capsys.readouterr().out
