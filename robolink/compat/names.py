@@ -28,12 +28,31 @@ ROOMS = {
     "webots_ros2_driver": "robolink.webots_controller",
     "ament_index_python": "robolink.companions.ament_index",
     "rosbag2_py": "robolink.companions.rosbag2_py",
+    "launch": "robolink.companions.launch",
+    **dict.fromkeys(
+        [
+            "launch.action",
+            "launch.condition",
+            "launch.event",
+            "launch.event_handler",
+            "launch.launch_context",
+            "launch.launch_description_entity",
+            "launch.some_actions_type",
+            "launch.some_entities_type",
+            "launch.some_substitutions_type",
+            "launch.substitution",
+        ],
+        "robolink.companions.launch.bases",
+    ),
+    "launch.descriptions": "robolink.companions.launch.actions.processes",
+    "launch.launch_description_source": "robolink.companions.launch.launch_description_sources",
+    "launch.invalid_launch_file_error": "robolink.companions.launch.launch_description_sources",
+    "launch.launch_service": "robolink.companions.launch",
+    "launch_ros": "robolink.companions.launch_ros",
 }
 """Modules by name; '' is a package with nothing in it. A name below another is below its module."""
 
 INSTEAD = {
-    "launch": "a system is started by 'robolink launch' from a YAML file",
-    "launch_ros": "a system is started by 'robolink launch' from a YAML file",
     "launch_testing": "a test makes its nodes itself, in memory and in virtual time",
     "launch_pytest": "a test makes its nodes itself, in memory and in virtual time",
     "tf2_kdl": "tf2_geometry_msgs transforms the types of geometry_msgs, tf_transformations has the matrices",
@@ -56,6 +75,7 @@ INSTEAD = {
     "moveit": "it needs MoveIt",
     "moveit_commander": "it needs MoveIt",
     "moveit_configs_utils": "it needs MoveIt",
+    "xacro": "it is on PyPI: pip install xacro",
 }
 """Advice for the names that programs for ROS 2 import and that robolink lacks; a name may be below another."""
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
+import os
 import re
 import warnings
+from collections.abc import Iterator
+from contextvars import ContextVar
 from pathlib import Path
 
 from robolink.companions.ament_index.constants import RESOURCE_INDEX_SUBFOLDER
@@ -13,6 +17,10 @@ from robolink.exceptions import MessageError, NotFoundError
 from robolink.interfaces import KINDS
 from robolink.interfaces._standard import STANDARD
 from robolink.workspace.find import find_package, list_packages
+
+NOT_HERE = Path(os.path.abspath(os.sep)) / "package-not-here"  # noqa: PTH100 - on Windows with its drive
+"""Folder, which does not exist, of packages that are not here, while `packages_may_lack`."""
+_may_lack: ContextVar[bool] = ContextVar("packages may lack", default=False)
 
 _NAME = re.compile(r"[a-zA-Z0-9][a-zA-Z0-9_-]+", re.ASCII)
 
@@ -74,12 +82,33 @@ def get_package_share_path(package_name: str, print_warning: bool = True) -> Pat
     return Path(get_package_share_directory(package_name, print_warning))
 
 
+@contextlib.contextmanager
+def packages_may_lack() -> Iterator[None]:
+    """Let packages that are not here have folders below `NOT_HERE` while the block runs, which do not exist either.
+
+    A launch file asks for the folders of all its packages first, also of those whose nodes it may do without.
+    """
+    token = _may_lack.set(True)
+    try:
+        yield
+    finally:
+        _may_lack.reset(token)
+
+
+def package_not_here(path: str) -> str:
+    """Return the package of a folder or file below `NOT_HERE`; '' for any other `path`."""
+    parts, root = Path(path).parts, NOT_HERE.parts
+    return parts[len(root)] if parts[: len(root)] == root and len(parts) > len(root) else ""
+
+
 def _folder(name: str) -> Path | None:
     """Return the folder of a package that was not installed; None for one that was. Raises if there is none."""
     if _NAME.fullmatch(name) is None:
         raise PackageNameError(f"'{name}' is not a valid package name")
     found = find_package(name) or _standard().get(name)
     if found is None and name not in _installed():
+        if _may_lack.get():
+            return NOT_HERE / name
         where = [str(each) for each in dict.fromkeys(list_packages().values())][:3]
         raise PackageNotFoundError(
             "package", name, get_packages_with_prefixes(), ", ".join([*where, *get_search_paths()])

@@ -1,0 +1,337 @@
+"""Base classes of ROS 2's launch descriptions: entities, actions, conditions, events, and the context of a launch."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Awaitable, Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from types import FrameType
+from typing import Any, NamedTuple, TypeAlias
+
+from robolink.exceptions import RobolinkError
+
+_OWN = str(Path(__file__).parents[1]) + os.sep
+"""Folder of the companions, whose frames are not the user's."""
+
+SCOPED = ("launch_configurations", "environment")
+
+
+class LaunchError(RobolinkError, RuntimeError):
+    """A launch file cannot be carried out; the text has the reason in one line."""
+
+
+class Place(NamedTuple):
+    """Place in the user's own file at which an action was made.
+
+    Args:
+        file: Path of the file; empty if unknown.
+        line: Line, from 1; 0 if unknown.
+    """
+
+    file: str = ""
+    line: int = 0
+
+
+def calling_place() -> Place:
+    """Return the place of the nearest frame that is no companion's: where the user's file makes an action."""
+    frame: FrameType | None = sys._getframe(1)
+    while frame is not None and frame.f_code.co_filename.startswith(_OWN):
+        frame = frame.f_back
+    return Place() if frame is None else Place(frame.f_code.co_filename, frame.f_lineno)
+
+
+class Substitution:
+    """Text that is known only when the launch runs; subclasses override `perform`."""
+
+    def describe(self) -> str:
+        """Return a description for people."""
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in vars(self).items())})"
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the text, with the values of `context`."""
+        raise NotImplementedError(f"{type(self).__name__} has no perform()")
+
+
+SomeSubstitutionsType: TypeAlias = "str | os.PathLike[str] | Substitution | Iterable[str | Substitution]"
+"""Text, substitution, or several of these, which are joined."""
+SomeSubstitutionsType_types_tuple = (str, Path, Substitution, Iterable)
+"""The same for `isinstance`."""
+
+
+class LaunchDescriptionEntity:
+    """Anything that stands in a launch description."""
+
+    def describe(self) -> str:
+        """Return a description for people."""
+        return type(self).__name__
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """Return the entities inside that are visited in any case."""
+        return []
+
+    def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
+        """Return the entities inside that a condition may leave out, each list with the condition in words."""
+        return []
+
+    def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
+        """Carry out this entity in `context`; return the entities that come next, None for none."""
+        return None
+
+    def get_asyncio_future(self) -> Any:
+        """Return None: robolink's launcher has no event loop of asyncio."""
+        return None
+
+
+class Condition:
+    """Decision on an action.
+
+    Args:
+        predicate: Function of the context that decides; None decides against it.
+    """
+
+    def __init__(self, *, predicate: Callable[[LaunchContext], bool] | None = None) -> None:
+        self._predicate = predicate
+
+    def describe(self) -> str:
+        """Return a description for people."""
+        return type(self).__name__
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Return the decision with the values of `context`."""
+        return False if self._predicate is None else self._predicate(context)
+
+
+class Action(LaunchDescriptionEntity):
+    """Something to do; subclasses override `execute`.
+
+    Args:
+        condition: Condition without which it is left out; None has none.
+    """
+
+    def __init__(self, *, condition: Condition | None = None) -> None:
+        self._condition = condition
+        self.place = calling_place()
+        """Place of the user's own file that made it."""
+
+    @property
+    def condition(self) -> Condition | None:
+        """The condition, None if there is none."""
+        return getattr(self, "_condition", None)
+
+    def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """Return the entities that it brings along."""
+        return []
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """Return the entities inside that are visited in any case."""
+        return self.get_sub_entities() if self.condition is None else []
+
+    def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
+        """Return the entities inside that the condition may leave out."""
+        return [] if self.condition is None else [(self.condition.describe(), self.get_sub_entities())]
+
+    def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
+        """Execute the action in `context` unless its condition is against it."""
+        if self.condition is not None and not self.condition.evaluate(context):
+            return None
+        context.executed.append(self)
+        return self.execute(context)
+
+    def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
+        """Do it in `context`; return the entities that come next, None for none."""
+        return None
+
+
+SomeEntitiesType: TypeAlias = "LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]"
+SomeActionsType = SomeEntitiesType
+
+
+class Event:
+    """Something that has happened, or that is asked for."""
+
+    name = "launch.Event"
+
+
+class BaseEventHandler:
+    """Reaction to events.
+
+    Args:
+        matcher: Function that decides whether an event is meant.
+        handle_once: True ends the reaction with the first event.
+    """
+
+    def __init__(self, *, matcher: Callable[[Event], bool], handle_once: bool = False) -> None:
+        self._matcher, self.handle_once = matcher, handle_once
+        self.place = calling_place()
+
+    @property
+    def handler_description(self) -> str:
+        """Description of what is done, for people."""
+        return type(self).__name__
+
+    @property
+    def matcher_description(self) -> str:
+        """Description of the events that are meant, for people."""
+        return ""
+
+    def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
+        """Return a description for people, and the entities that follow an event, as far as they are known."""
+        return type(self).__name__, []
+
+    def matches(self, event: Event) -> bool:
+        """Return whether `event` is meant."""
+        return self._matcher(event)
+
+    def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
+        """Return what `event` brings about in `context`, where it is `context.locals.event`."""
+        context.extend_locals({"event": event})
+        if self.handle_once:
+            context.unregister_event_handler(self)
+        return None
+
+
+class EventHandler(BaseEventHandler):
+    """Reaction to events by fixed entities.
+
+    Args:
+        matcher: Function that decides whether an event is meant.
+        entities: What follows the event.
+        handle_once: True ends the reaction with the first event.
+    """
+
+    def __init__(
+        self,
+        *,
+        matcher: Callable[[Event], bool],
+        entities: SomeEntitiesType | None = None,
+        handle_once: bool = False,
+    ) -> None:
+        super().__init__(matcher=matcher, handle_once=handle_once)
+        self.entities = entities
+
+    def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
+        """Return a description for people, and the entities that follow an event."""
+        return type(self).__name__, entities_in(self.entities)
+
+    def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
+        """Return the entities; `event` is `context.locals.event` then."""
+        super().handle(event, context)
+        return self.entities
+
+
+def entities_in(some: SomeEntitiesType | None) -> list[LaunchDescriptionEntity]:
+    """Return one entity, several or none, `some`, as a list."""
+    if some is None:
+        return []
+    return [some] if isinstance(some, LaunchDescriptionEntity) else list(some)
+
+
+class _Locals:
+    """Attributes of `context.locals`: read only."""
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        self.__dict__.update(values)
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(f"context.locals has no '{name}', only {', '.join(self.__dict__) or 'nothing'}")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError("context.locals are read-only")
+
+
+class LaunchContext:
+    """Values of a running launch: its configurations, its environment, and its event handlers.
+
+    The environment is a copy: what a launch file sets arrives at its processes, and changes nothing here.
+
+    Args:
+        argv: Arguments of the launch, `NAME:=VALUE`.
+        noninteractive: True where no terminal is there.
+    """
+
+    def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False) -> None:
+        self.argv, self.noninteractive = list(argv or ()), noninteractive
+        self.launch_configurations: dict[str, Any] = {}
+        self.environment: dict[str, str] = dict(os.environ)
+        self.is_shutdown = False
+        self.asyncio_loop = None
+        self.executed: list[Action] = []
+        """Actions executed since the launcher last looked."""
+        self.handlers: list[BaseEventHandler] = []
+        """Event handlers, the last one registered first."""
+        self.emitted: list[Event] = []
+        """Events that were emitted and not handled yet."""
+        self.pushed: dict[str, list[dict[str, Any]]] = {each: [] for each in SCOPED}
+        """Stacks of the scopes around."""
+        self._first_environment = dict(self.environment)
+        self._globals: dict[str, Any] = {}
+        self._locals: dict[str, Any] = {}
+
+    @property
+    def locals(self) -> Any:
+        """Values such as `event`, as attributes."""
+        return _Locals(self.get_locals_as_dict())
+
+    def get_locals_as_dict(self) -> dict[str, Any]:
+        """Return the locals by name."""
+        return {**self._globals, **self._locals}
+
+    def extend_locals(self, extensions: Mapping[str, Any]) -> None:
+        """Add locals, the mapping `extensions`."""
+        self._locals.update(extensions)
+
+    def extend_globals(self, extensions: Mapping[str, Any]) -> None:
+        """Add locals, the mapping `extensions`, that give way to others of the same name."""
+        self._globals.update(extensions)
+
+    def push(self, which: str) -> None:
+        """Begin a scope of `which`: launch_configurations or environment."""
+        values = getattr(self, which)
+        self.pushed[which].append({key: list(each) if isinstance(each, list) else each for key, each in values.items()})
+
+    def pop(self, which: str) -> None:
+        """End a scope of `which`; raises LaunchError if none was begun."""
+        if not self.pushed[which]:
+            raise LaunchError(f"more scopes of {which.replace('_', ' ')} end than have begun")
+        values = getattr(self, which)
+        values.clear()
+        values.update(self.pushed[which].pop())
+
+    def reset_environment(self) -> None:
+        """Set the environment back to that of the launcher."""
+        self.environment.clear()
+        self.environment.update(self._first_environment)
+
+    def changed_environment(self) -> dict[str, str]:
+        """Return the variables that differ from those of the launcher; one that was removed is empty."""
+        first = self._first_environment
+        changed = {name: each for name, each in self.environment.items() if first.get(name) != each}
+        return {**changed, **{name: "" for name in first if name not in self.environment}}
+
+    def register_event_handler(self, event_handler: BaseEventHandler, append: bool = False) -> None:
+        """Add `event_handler`, before those that are there, or behind them with `append`."""
+        self.handlers.insert(len(self.handlers) if append else 0, event_handler)
+
+    def unregister_event_handler(self, event_handler: BaseEventHandler) -> None:
+        """Remove `event_handler`; raises ValueError if it is not there."""
+        self.handlers.remove(event_handler)
+
+    def would_handle_event(self, event: Event) -> bool:
+        """Return whether a handler means `event`."""
+        return any(each.matches(event) for each in self.handlers)
+
+    def emit_event_sync(self, event: Event) -> None:
+        """Emit `event`: it is handled once the launcher is done with the present one."""
+        self.emitted.append(event)
+
+    async def emit_event(self, event: Event) -> None:
+        """Emit `event`."""
+        self.emit_event_sync(event)
+
+    def add_completion_future(self, completion_future: Awaitable[Any]) -> None:
+        """Ignore `completion_future`: robolink's launcher has no event loop of asyncio."""
+
+    def perform_substitution(self, substitution: Substitution) -> str:
+        """Return the text of `substitution`."""
+        return substitution.perform(self)

@@ -1,0 +1,125 @@
+"""Events of the processes of a launch (`launch.events.process`)."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from robolink.companions.launch.bases import Action, Event
+
+
+class RunningProcessEvent(Event):
+    """Something has happened to a process.
+
+    Args:
+        action: The action that started it.
+        name: Its name.
+        cmd: Its command line.
+        cwd: Its working directory; None is the launcher's.
+        env: Its environment; None is the launcher's.
+        pid: Its process id.
+    """
+
+    name = "launch.events.process.RunningProcessEvent"
+
+    def __init__(
+        self,
+        *,
+        action: Action,
+        name: str,
+        cmd: Sequence[str],
+        cwd: str | None,
+        env: Mapping[str, str] | None,
+        pid: int,
+    ) -> None:
+        self.action = self.execute_process_action = action
+        self.process_name, self.cmd, self.cwd, self.env, self.pid = name, list(cmd), cwd, env, pid
+
+
+class ProcessStarted(RunningProcessEvent):
+    """A process runs."""
+
+    name = "launch.events.process.ProcessStarted"
+
+
+class ProcessExited(RunningProcessEvent):
+    """A process has ended.
+
+    Args:
+        returncode: Its exit code, or -N for signal N.
+        **kwargs: Those of RunningProcessEvent.
+    """
+
+    name = "launch.events.process.ProcessExited"
+
+    def __init__(self, *, returncode: int, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.returncode = returncode
+
+
+class ProcessIO(RunningProcessEvent):
+    """A process has written, or was written to.
+
+    Args:
+        text: The bytes.
+        fd: 0 for standard input, 1 for output, 2 for errors.
+        **kwargs: Those of RunningProcessEvent.
+    """
+
+    name = "launch.events.process.ProcessIO"
+
+    def __init__(self, *, text: bytes, fd: int, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.text, self.fd = text, fd
+        self.from_stdin, self.from_stdout, self.from_stderr = (fd == each for each in (0, 1, 2))
+
+
+class ProcessTargetedEvent(Event):
+    """Something is asked of processes.
+
+    Args:
+        process_matcher: Function that decides whether the process of an action is meant.
+    """
+
+    name = "launch.events.process.ProcessTargetedEvent"
+
+    def __init__(self, *, process_matcher: Callable[[Any], bool]) -> None:
+        self.process_matcher = process_matcher
+
+
+class ShutdownProcess(ProcessTargetedEvent):
+    """Processes are to end."""
+
+    name = "launch.events.process.ShutdownProcess"
+
+
+class SignalProcess(ProcessTargetedEvent):
+    """Processes are to be sent a signal.
+
+    Args:
+        signal_number: The signal, by number or name.
+        process_matcher: Function that decides whether the process of an action is meant.
+    """
+
+    name = "launch.events.process.SignalProcess"
+
+    def __init__(self, *, signal_number: str | signal.Signals, process_matcher: Callable[[Any], bool]) -> None:
+        super().__init__(process_matcher=process_matcher)
+        self.signal = signal.Signals[signal_number] if isinstance(signal_number, str) else signal.Signals(signal_number)
+        self.signal_name = self.signal.name
+
+
+def matches_pid(pid: int) -> Callable[[Any], bool]:
+    """Return a function that is true for the action whose process has the id `pid`."""
+    return lambda action: (getattr(action, "process_details", None) or {}).get("pid") == pid
+
+
+def matches_name(name: str) -> Callable[[Any], bool]:
+    """Return a function that is true for the action whose process is called `name`."""
+    return lambda action: (getattr(action, "process_details", None) or {}).get("name") == name
+
+
+def matches_executable(executable: str) -> Callable[[Any], bool]:
+    """Return a function that is true for the action whose command begins with `executable`."""
+    return lambda action: (getattr(action, "process_details", None) or {}).get("cmd", [""])[0] == executable

@@ -1,0 +1,158 @@
+"""Substitutions that run something: a command, an expression of Python, a search on the PATH, the reading of a file."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from robolink.companions.launch.bases import LaunchContext, SomeSubstitutionsType, Substitution
+from robolink.companions.launch.substitutions.failure import SubstitutionFailure
+from robolink.companions.launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+from robolink.system.terminal import shown
+
+_REACTIONS = ("fail", "ignore", "warn", "capture")
+_SHOWN = 300
+PATIENCE = 120.0
+"""Longest run of a command, in seconds."""
+
+
+class Command(Substitution):
+    """Output of a command, such as `xacro robot.urdf.xacro`.
+
+    Args:
+        command: The command line; it is split as a shell does.
+        on_stderr: Reaction to lines on its standard error: fail, ignore, warn, or capture, which adds them.
+    """
+
+    def __init__(self, command: SomeSubstitutionsType, *, on_stderr: SomeSubstitutionsType = "fail") -> None:
+        self.command = normalize_to_list_of_substitutions(command)
+        self.on_stderr = normalize_to_list_of_substitutions(on_stderr)
+
+    def perform(self, context: LaunchContext) -> str:
+        """Run the command; return its output. Raises SubstitutionFailure if it fails."""
+        text = perform_substitutions(context, self.command)
+        reaction = perform_substitutions(context, self.on_stderr)
+        if reaction not in _REACTIONS:
+            raise SubstitutionFailure(f"on_stderr is one of {', '.join(_REACTIONS)}, got '{shown(reaction)}'")
+        words = shlex.split(text, posix=sys.platform != "win32")
+        if not words:
+            raise SubstitutionFailure("Command has no command")
+        is_captured = reaction == "capture"
+        errors = subprocess.STDOUT if is_captured else subprocess.PIPE
+        try:
+            done = subprocess.run(
+                program_of(words, context),
+                stdout=subprocess.PIPE,
+                stderr=errors,
+                env=context.environment,
+                timeout=PATIENCE,
+                check=False,
+            )
+        except (OSError, ValueError, subprocess.TimeoutExpired) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            raise SubstitutionFailure(f"'{shown(text)}' cannot be run: {reason}") from None
+        told = (done.stderr or b"").decode(errors="replace").strip()
+        output = done.stdout.decode(errors="replace")
+        if done.returncode or (told and reaction == "fail"):
+            how = f"ended with exit code {done.returncode}" if done.returncode else "wrote to its standard error"
+            last = shown((told or output.strip()).rpartition("\n")[2], _SHOWN)
+            raise SubstitutionFailure(f"'{shown(text)}' {how}{': ' if last else ''}{last}")
+        return output
+
+
+def program_of(words: list[str], context: LaunchContext) -> list[str]:
+    """Return a command line, `words`, with the program's path on the PATH of `context`.
+
+    `xacro` is the Python module where no program of this name is found. Raises SubstitutionFailure if there is none.
+    """
+    found = shutil.which(words[0], path=context.environment.get("PATH"))
+    if found is not None:
+        return [found, *words[1:]]
+    name = Path(words[0]).name
+    if name in ("python", "python3"):
+        return [sys.executable, *words[1:]]
+    if name == "xacro":
+        if importlib.util.find_spec("xacro") is None:
+            raise SubstitutionFailure("xacro is not installed: pip install xacro")
+        return [sys.executable, "-c", _XACRO, *words[1:]]
+    raise SubstitutionFailure(f"no program '{shown(words[0])}' is found on the PATH")
+
+
+_XACRO = "import robolink.compat, xacro; xacro.main()"
+"""Program that runs xacro, whose $(find PACKAGE) needs ament_index_python."""
+
+
+class FindExecutable(Substitution):
+    """Path of a program on the PATH.
+
+    Args:
+        name: Name of the program.
+    """
+
+    def __init__(self, *, name: SomeSubstitutionsType) -> None:
+        self.name = normalize_to_list_of_substitutions(name)
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the path; raises SubstitutionFailure if there is no such program.
+
+        Programs that robolink starts itself, `xacro` and `ros2` among them, keep their names.
+        """
+        name = perform_substitutions(context, self.name)
+        found = shutil.which(name, path=context.environment.get("PATH"))
+        if found is None and name not in ("xacro", "python", "python3", "robolink", "ros2"):
+            raise SubstitutionFailure(f"no program '{shown(name)}' is found on the PATH")
+        return found or name
+
+
+class PythonExpression(Substitution):
+    """Value of an expression of Python, as a text.
+
+    Args:
+        expression: The expression, in which substitutions may stand.
+        python_modules: Names of modules that it may use; those of `math` need no module's name in front.
+    """
+
+    def __init__(self, expression: SomeSubstitutionsType, python_modules: SomeSubstitutionsType = ("math",)) -> None:
+        self.expression = normalize_to_list_of_substitutions(expression)
+        self.python_modules = normalize_to_list_of_substitutions(python_modules)
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the value; raises SubstitutionFailure if the expression fails."""
+        text = perform_substitutions(context, self.expression)
+        try:
+            names: dict[str, Any] = {}
+            for each in self.python_modules:
+                name = each.perform(context)
+                names[name] = importlib.import_module(name)
+                if name == "math":
+                    names.update(vars(names[name]))
+            return str(eval(text, names))  # noqa: S307 - the launch file is a program, this is a part of it
+        except Exception as error:  # noqa: BLE001 - whatever the expression raises
+            reason = f"{type(error).__name__}: {error}"
+            raise SubstitutionFailure(f"the expression '{shown(text)}' fails: {shown(reason, _SHOWN)}") from None
+
+
+class FileContent(Substitution):
+    """Content of a text file.
+
+    Args:
+        path: Path of the file.
+    """
+
+    def __init__(self, path: SomeSubstitutionsType) -> None:
+        self.path = normalize_to_list_of_substitutions(path)
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the content; raises SubstitutionFailure if it cannot be read."""
+        path = perform_substitutions(context, self.path)
+        try:
+            return Path(path).read_text(encoding="utf-8")
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            raise SubstitutionFailure(f"{shown(path)} cannot be read: {reason}") from None

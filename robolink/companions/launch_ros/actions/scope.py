@@ -1,0 +1,133 @@
+"""Actions that set a namespace, parameters or remappings for the nodes behind them, up to the end of the group."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from robolink.companions.launch.actions import SetEnvironmentVariable, TimerAction
+from robolink.companions.launch.bases import Action, LaunchContext, SomeSubstitutionsType
+from robolink.companions.launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+from robolink.companions.launch_ros.parameter_descriptions import plain
+
+NAMESPACE, REMAPS, PARAMETERS = "ros_namespace", "ros_remaps", "global_params"
+"""Launch configurations in which they are kept, as in ROS 2."""
+
+
+def joined(around: str, namespace: str) -> str:
+    """Return a namespace within the one around it; one with a slash in front stays as it is.
+
+    Args:
+        around: The namespace around, '' or with a slash in front.
+        namespace: The namespace, '' for none.
+
+    >>> joined("/fleet", "ada"), joined("/fleet", "/ada"), joined("", "")
+    ('/fleet/ada', '/ada', '')
+    """
+    is_whole = not namespace or namespace.startswith("/")
+    whole = namespace or around if is_whole else f"{around.rstrip('/')}/{namespace}"
+    return whole.rstrip("/")
+
+
+class PushROSNamespace(Action):
+    """Put a namespace in front of the nodes behind this.
+
+    Args:
+        namespace: The namespace, within the one around.
+        **kwargs: `condition`.
+    """
+
+    def __init__(self, namespace: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.namespace = normalize_to_list_of_substitutions(namespace)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set it in `context`."""
+        around = str(context.launch_configurations.get(NAMESPACE, ""))
+        context.launch_configurations[NAMESPACE] = joined(around, perform_substitutions(context, self.namespace))
+
+
+PushRosNamespace = PushROSNamespace
+
+
+class SetRemap(Action):
+    """Remap a name of the nodes behind this; it counts more than their own remappings.
+
+    Args:
+        src: The name.
+        dst: What stands for it.
+        **kwargs: `condition`.
+    """
+
+    def __init__(self, src: SomeSubstitutionsType, dst: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.src, self.dst = normalize_to_list_of_substitutions(src), normalize_to_list_of_substitutions(dst)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set it in `context`."""
+        pair = perform_substitutions(context, self.src), perform_substitutions(context, self.dst)
+        context.launch_configurations[REMAPS] = [*context.launch_configurations.get(REMAPS, []), pair]
+
+
+class SetParameter(Action):
+    """Set a parameter of the nodes behind this; their own parameters count more.
+
+    Args:
+        name: Its name.
+        value: Its value, as in a node's parameters.
+        **kwargs: `condition`.
+    """
+
+    def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.name, self.value = normalize_to_list_of_substitutions(name), value
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set it in `context`."""
+        pair = perform_substitutions(context, self.name), plain(self.value, context)
+        context.launch_configurations[PARAMETERS] = [*context.launch_configurations.get(PARAMETERS, []), pair]
+
+
+class SetUseSimTime(SetParameter):
+    """Let the nodes behind this use the time of /clock.
+
+    Args:
+        value: True for the time of /clock.
+        **kwargs: `condition`.
+    """
+
+    def __init__(self, value: bool, **kwargs: Any) -> None:
+        super().__init__("use_sim_time", value, **kwargs)
+
+
+class SetParametersFromFile(Action):
+    """Set the parameters of a file for the nodes behind this.
+
+    Args:
+        filename: Path of the file.
+        **kwargs: `condition`.
+    """
+
+    def __init__(self, filename: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.filename = normalize_to_list_of_substitutions(filename)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set them in `context`."""
+        path = perform_substitutions(context, self.filename)
+        context.launch_configurations[PARAMETERS] = [*context.launch_configurations.get(PARAMETERS, []), path]
+
+
+class SetROSLogDir(SetEnvironmentVariable):
+    """Set the folder of the logs of the nodes behind this.
+
+    Args:
+        new_log_dir: The folder.
+        **kwargs: `condition`.
+    """
+
+    def __init__(self, new_log_dir: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__("ROS_LOG_DIR", new_log_dir, **kwargs)
+
+
+class ROSTimer(TimerAction):
+    """Actions for later, by the launcher's own time: it has no /clock."""

@@ -1,0 +1,44 @@
+"""Events about the lifecycle of nodes (`launch_ros.events.lifecycle`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from robolink.companions.launch.bases import Event
+
+
+class ChangeState(Event):
+    """Nodes with a lifecycle are to make a transition.
+
+    Args:
+        lifecycle_node_matcher: Function that decides whether the node of an action is meant.
+        transition_id: The transition (`lifecycle_msgs.msg.Transition`).
+    """
+
+    name = "launch_ros.events.lifecycle.ChangeState"
+
+    def __init__(self, *, lifecycle_node_matcher: Callable[[Any], bool], transition_id: int) -> None:
+        self.lifecycle_node_matcher, self.transition_id = lifecycle_node_matcher, transition_id
+
+
+class StateTransition(Event):
+    """A node with a lifecycle has made a transition.
+
+    Args:
+        action: The action that started the node.
+        msg: The message (`lifecycle_msgs.msg.TransitionEvent`).
+    """
+
+    name = "launch_ros.events.lifecycle.StateTransition"
+
+    def __init__(self, *, action: Any, msg: Any) -> None:
+        self.action, self.msg, self.timestamp = action, msg, msg.timestamp
+        self.transition = msg.transition.label
+        self.start_state, self.goal_state = msg.start_state.label, msg.goal_state.label
+
+
+def matches_node_name(node_name: str) -> Callable[[Any], bool]:
+    """Return a function that is true for the action whose node has the full name `node_name`."""
+    full_name = node_name if node_name.startswith("/") else f"/{node_name}"
+    return lambda action: getattr(action, "expanded_name", None) == full_name
