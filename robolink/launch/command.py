@@ -45,6 +45,7 @@ def launch(
     record: str | None = None,
     shows_view: bool = False,
     enclave: str = "",
+    notes: Iterable[str] = (),
 ) -> int:
     """Run a system until Ctrl-C, the end of `duration`, or the end of a process that ends the system.
 
@@ -60,6 +61,7 @@ def launch(
         shows_view: True runs `robolink view` beside the nodes; its end does not end the system.
         enclave: Enclave with whose keys it is recorded, viewed and waited for, where security is on. '' is `/`, and for
             the launcher that of the file's first node that has one.
+        notes: Lines of the launch file's own, printed first.
 
     Returns:
         The exit code of the system.
@@ -92,7 +94,7 @@ def launch(
         if server is not None:
             start = functools.partial(Child, server=stack.enter_context(contextlib.closing(server)))
         supervisor = Supervisor(to_run, output=output, logs=RunLogs(path.stem), on_event=on_event, start=start)
-        for line in protection.unprotected(entries, os.environ):
+        for line in (*notes, *protection.unprotected(entries, os.environ)):
             supervisor.say(line)
         if server is not None:
             server.is_asked_to_end = lambda: supervisor.is_asked_to_end

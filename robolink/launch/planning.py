@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
-from robolink.documents.yamlfile import spell
 from robolink.exceptions import DocumentError, RobolinkError
+from robolink.launch.node_arguments import arguments, environment
 from robolink.launch.readiness import Awaited, awaited
 from robolink.launch.reading.description import Respawn
 from robolink.launch.reading.entries import read_launch_file
@@ -19,7 +19,7 @@ from robolink.networks.asked import NETWORK
 from robolink.supervisor import Process
 from robolink.supervisor.rules import Restarts, Rules
 from robolink.system.own_command import own_command
-from robolink.workspace import VARIABLE, Folder, own_process_needed
+from robolink.workspace import Folder, own_process_needed
 
 _ROOM = 16_000
 """Longest command line, in characters: Windows allows 32,767 with quotes, Linux 131,071 for each argument."""
@@ -52,6 +52,10 @@ class Launched:
     """Nodes, topics and services that must be announced before it is started."""
     interactive: bool
     cpu: tuple[int, ...]
+    prefix: tuple[str, ...] = ()
+    """Words before the command line, such as those of a debugger."""
+    cwd: str = ""
+    """Working directory; '' is the launcher's."""
 
 
 def core_errors(entries: Iterable[Entry]) -> Iterator[DocumentError]:
@@ -126,6 +130,7 @@ def as_process(launched: Launched) -> Process:
         launched.name,
         argv,
         env=launched.env,
+        cwd=launched.cwd or None,
         interactive=launched.interactive,
         input=stdin,
         rules=launched.rules,
@@ -139,32 +144,9 @@ def _words(launched: Launched) -> list[str]:
     if not launched.members:
         return list(launched.command)
     member = launched.members[0]
-    return [] if launched.entries[0].node.process else [*own_command(), "run", member.node, "--", *member.args]
-
-
-def arguments(entry: Entry) -> Iterator[str]:
-    """Yield the arguments of a node's program: its own, then those behind `--ros-args`."""
-    node = entry.node
-    yield from node.args
-    yield "--ros-args"
-    if node.name:
-        yield from ("-r", f"__node:={node.name}")
-    if node.namespace:
-        yield from ("-r", f"__ns:={node.namespace}")
-    for name, value in node.parameters.items():
-        yield from ("-p", f"{name}:={spell(value)}")
-    for match, replacement in node.remappings.items():
-        yield from ("-r", f"{match}:={replacement}")
-    if node.log_level:
-        yield from ("--log-level", node.log_level)
-    if node.enclave:
-        yield from ("--enclave", node.enclave)
-
-
-def environment(entry: Entry) -> dict[str, str]:
-    """Return the variables that are added to a node's environment: its workspace, and those of the file."""
-    home = {} if entry.home is None else {VARIABLE: str(entry.home)}
-    return {**home, **entry.node.env}
+    if launched.entries[0].node.process:
+        return []
+    return [*launched.prefix, *own_command(), "run", member.node, "--", *member.args]
 
 
 def _launched(name: str, group: list[Entry], named: Mapping[str, Entry]) -> Launched:
@@ -180,6 +162,8 @@ def _launched(name: str, group: list[Entry], named: Mapping[str, Entry]) -> Laun
         tuple(held_by),
         first.interactive,
         first.cpu,
+        tuple(first.prefix),
+        first.cwd,
     )
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
-from robolink.supervisor.rules import Rules, Step, described, exit_code, is_orderly
+from robolink.supervisor.rules import NO_LIMIT, Rules, Step, described, exit_code, is_orderly
 
 _ECHO = 0.2
 """Debounce time of interrupts, in seconds: a terminal and a wrapper may both deliver the same one."""
@@ -241,10 +241,12 @@ class Policy:
         rule, code = each.rules.respawn, each.returncode or 0
         mark = ";" if ": " in how else ":"  # behind a cause or not
         if rule.wants(code):
-            each.respawned = [then for then in each.respawned if now - then < rule.within]
+            kept = each.respawned if rule.most < NO_LIMIT else []  # one for each start, for ever, would fill the memory
+            each.respawned = [then for then in kept if now - then < rule.within]
             if len(each.respawned) < rule.most:
                 return [Say(f"{how}{mark} {_respawn(each, ran, now)}")]
-            how += f"{mark} given up after {rule.most} new starts within {rule.within:g} s"
+            within = "" if rule.within == NO_LIMIT else f" within {rule.within:g} s"
+            how += f"{mark} given up after {rule.most} new starts{within}"
         if each.rules.on_exit == "ignore":
             self._code = exit_code(code) if self.is_over else None
             return [Say(how), *self._only_held(now)]
@@ -341,4 +343,8 @@ def _respawn(each: Tracked, ran: float, now: float) -> str:
     _move(each, "waiting", now)
     each.due = now + pause
     each.respawned.append(each.due)
-    return f"starting it again in {pause:g} s ({len(each.respawned)} of {rule.most} within {rule.within:g} s)"
+    again = f"starting it again in {pause:g} s"
+    if rule.most == NO_LIMIT:
+        return again
+    within = "" if rule.within == NO_LIMIT else f" within {rule.within:g} s"
+    return f"{again} ({len(each.respawned)} of {rule.most}{within})"

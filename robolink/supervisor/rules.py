@@ -12,6 +12,10 @@ RespawnWhen: TypeAlias = Literal["never", "on_failure", "always"]
 OnExit: TypeAlias = Literal["shutdown", "ignore"]
 
 
+NO_LIMIT = 10**9
+"""Number of restarts, and of seconds, that stands for no limit."""
+
+
 class Step(IntEnum):
     """Escalation steps of stopping a process."""
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.documents.yamlfile import spell
+from robolink.logging import get_logger
 from robolink.simulate.settings import with_parameters
 from robolink.workspace import find_launch, find_node
 
@@ -22,10 +23,13 @@ def read(file: str | PathLike[str], arguments: Mapping[str, Any], values: Mappin
 
     Raises NotFoundError for a file, node or argument that does not exist, and DocumentError for a mistake in the file.
     """
-    from robolink.launch import read_launch_file
+    from robolink.launch.system import read_system
 
     given = {name: value if isinstance(value, str) else spell(value) for name, value in arguments.items()}
-    return with_parameters(read_launch_file(find_launch(fspath(file)), given), values)
+    system = read_system(find_launch(fspath(file)), given)
+    for note in system.notes:
+        get_logger("robolink.testing").warning(note)
+    return with_parameters(system.entries, values)
 
 
 def entry_of(spec: str, wanted: Wanted) -> list[Entry]:

@@ -27,6 +27,8 @@ VARIABLE = "ROBOLINK_WORKSPACE"
 ENTRY_POINTS = "robolink.nodes"
 """Group of the entry points of installed nodes."""
 YAML = (".yaml", ".yml")
+LAUNCHES = (*YAML, ".py", ".xml", ".launch")
+"""Suffixes of launch files, robolink's own and those of ROS 2, which are found by their paths only."""
 WORLDS = (*YAML, ".wbt")
 PARTS = ("nodes", "configs", "interfaces")
 
@@ -126,7 +128,8 @@ def find_launch(name: str, *, workspace: Folder = None) -> Path:
     Raises:
         NotFoundError: with the nearest name.
     """
-    return _find_file("launch file", name, "configs", workspace, YAML)
+    path = _as_path(name, workspace, LAUNCHES)
+    return path or _find_file("launch file", name, "configs", workspace, YAML)
 
 
 def find_world(name: str, *, workspace: Folder = None) -> Path:

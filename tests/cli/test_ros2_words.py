@@ -140,9 +140,9 @@ def test_h_behind_a_program_is_the_programs(capsys: Captured) -> None:
 @pytest.mark.parametrize(
     ("files", "report"),
     [
-        (["a.launch.yaml", "b.yaml", "c.launch.py"], "say which of its launch files, a.launch.yaml or b.yaml"),
-        (["c.launch.py", "README.md"], "has of its own only c.launch.py, and robolink launches YAML"),
-        ([], "has none, robolink launches YAML"),
+        (["a.launch.yaml", "b.yaml", "c.launch.py"], "say which of its launch files, a.launch.yaml or b.yaml or c."),
+        (["c.launch.py", "README.md"], "say which of its launch files, c.launch.py"),
+        ([], "is a package and has no launch file"),
     ],
 )
 def test_a_package_alone_is_told_which_launch_files_it_has(

@@ -41,8 +41,7 @@ BAD = [
     (("talk", "loud:=1", "word:=x"), 1, "{home}/configs/talk.yaml:3:9: arguments.word: 'word' is one of hello, bye"),
     (("tlk",), 1, "no launch file named 'tlk' in {home} or robolink itself (did you mean 'talk'?)"),
     (("talker",), 1, "'talker' is a node, and no launch file: robolink run talker"),
-    (("robot.launch.py",), 1, "robot.launch.py is a Python program, and robolink launches YAML: list its nodes in a"),
-    (("robot.launch.xml",), 1, "robot.launch.xml is XML, and robolink launches YAML"),
+    (("robot.launch.py",), 1, "no launch file named 'robot.launch.py' in {home} or robolink itself"),
     (("stop", "a", "b", "c"), 2, "ask what? stop [NAME] [NODE] or restart [NAME] NODE, with the names that --status"),
     (("restart",), 2, "ask what? stop [NAME] [NODE] or restart [NAME] NODE, with the names that --status shows (see"),
     (("talk", "--graph=png"), 2, "Invalid value for '--graph': 'png' is none of mermaid, dot (see"),
@@ -77,13 +76,16 @@ def test_a_package_has_launch_files(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     (package / "setup.py").write_text("from setuptools import setup\nsetup(name='my_robot')\n")
     file = package / "launch" / "robot.launch.yaml"
     file.write_text("nodes: [node: world]")
-    (package / "launch" / "other.launch.py").write_text("")
+    other = package / "launch" / "parts" / "other.launch.py"
+    other.parent.mkdir()
+    for each in (other, package / "launch" / "robot.launch.py", package / "launch" / "__init__.py"):
+        each.write_text("")
     monkeypatch.delenv(VARIABLE, raising=False)
     monkeypatch.chdir(tmp_path)
     for name in ("robot", "robot.launch", "robot.launch.yaml"):
         assert find(["my_robot", name]).samefile(file)
-    with pytest.raises(ValueError, match=r"other.launch.py is a Python program, and robolink launches YAML"):
-        find(["my_robot", "other"])
+    assert find(["my_robot", "robot.launch.py"]).samefile(package / "launch" / "robot.launch.py")
+    assert find(["my_robot", "other"]).samefile(other)
     with pytest.raises(
         LookupError, match=r"no launch file named 'robt' in package my_robot, which has robot.launch.yaml"
     ):

@@ -26,6 +26,8 @@ COMPANIONS = [
     "cv_bridge",
     "image_geometry",
     "image_transport",
+    "launch",
+    "launch_ros",
 ]
 
 

@@ -21,7 +21,7 @@ def launch_words(ctx: typer.Context, incomplete: str) -> list[str]:
             from robolink.cli.launching.launchers import names_for
 
             return complete.offered(names_for(words, complete.WITHIN), incomplete)
-        from robolink.launch.reading.arguments import arguments_of
+        from robolink.launch.system import arguments_of
 
         names = [each.name for each in arguments_of(find_launch(words[0], workspace=workspace))]
         return [f"{each}:=" for each in complete.offered(names, incomplete)]

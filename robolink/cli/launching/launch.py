@@ -133,7 +133,7 @@ def launch(
     else:
         asked = launch_file(ctx, given, options.workspace)
         if show_args:
-            _show_arguments(asked, json)
+            _show_arguments(asked, json, options.workspace)
         elif validate:
             raise typer.Exit(_validate(asked, options))
         elif graph:
@@ -170,10 +170,10 @@ def _ask(ctx: typer.Context, words: Sequence[str], options: Options, status: boo
         ctx.fail("ask what? stop [NAME] [NODE] or restart [NAME] NODE, with the names that --status shows")
 
 
-def _show_arguments(asked: LaunchFile, as_json: bool) -> None:
-    from robolink.launch.reading.arguments import arguments_of
+def _show_arguments(asked: LaunchFile, as_json: bool, workspace: str | None) -> None:
+    from robolink.launch.system import arguments_of
 
-    found = arguments_of(asked.path)
+    found = arguments_of(asked.path, workspace=workspace)
     if as_json:
         import msgspec
 
@@ -194,13 +194,13 @@ def _show_arguments(asked: LaunchFile, as_json: bool) -> None:
 def _validate(asked: LaunchFile, options: Options) -> int:
     from robolink.documents.limits import first_mistakes
     from robolink.launch.looking.validate import Report, found, validate
-    from robolink.launch.reading.entries import read_with_mistakes
+    from robolink.launch.system import read_system_with_mistakes
 
-    entries, mistakes = read_with_mistakes(asked.path, asked.given, workspace=options.workspace)
+    system, mistakes = read_system_with_mistakes(asked.path, asked.given, workspace=options.workspace)
     report = Report(mistakes, ["no node was looked into: that comes when its file is right"])
     if not mistakes:
-        report = validate(entries)
-        report = Report(first_mistakes(report.mistakes), report.notes)
+        report = validate(system.entries)
+        report = Report(first_mistakes(report.mistakes), [*system.notes, *report.notes])
     if options.json:
         import msgspec
 
@@ -219,9 +219,11 @@ def _validate(asked: LaunchFile, options: Options) -> int:
 def _draw(asked: LaunchFile, options: Options, format_: str) -> None:
     from robolink.launch.looking.graph import drawn
     from robolink.launch.looking.look import looks_of
-    from robolink.launch.reading.entries import read_launch_file
+    from robolink.launch.system import read_system
 
-    entries = read_launch_file(asked.path, asked.given, workspace=options.workspace)
+    entries, notes = read_system(asked.path, asked.given, workspace=options.workspace)
+    for note in notes:
+        tell(f"robolink: {note}")
     looks = looks_of(entries)
     for each in entries:
         look = looks.get(each.name)
@@ -231,15 +233,13 @@ def _draw(asked: LaunchFile, options: Options, format_: str) -> None:
 
 
 def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
-    from robolink.launch.reading.entries import read_launch_file
-    from robolink.launch.reading.record import record_of
+    from robolink.launch.system import read_system, record_of
     from robolink.supervisor import watch_lifeline
 
     watch_lifeline()  # a launcher that another one launched ends with it
-    entries = read_launch_file(asked.path, asked.given, workspace=options.workspace)
+    entries, notes = read_system(asked.path, asked.given, workspace=options.workspace)
     if not entries:
-        tell(f"robolink: {asked.path}: `if` and `unless` leave nothing to start")
-        return 0
+        return _nothing(asked, notes)
     from robolink.launch.command import launch
 
     record = record_of(asked.path, asked.given) if options.record is None else options.record
@@ -254,7 +254,17 @@ def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
         shows_view=options.view,
         record="" if record == BY_DATE else record,
         enclave=options.enclave,
+        notes=notes,
     )
+
+
+def _nothing(asked: LaunchFile, notes: Sequence[str]) -> int:
+    """Report that a launch file starts nothing, which is a failure if something of it cannot run here."""
+    for note in notes:
+        tell(f"robolink: {note}")
+    why = "nothing of it can be started" if notes else "`if` and `unless` leave nothing to start"
+    tell(f"robolink: {asked.path}: {why}")
+    return 1 if notes else 0
 
 
 def _join_network(entries: Sequence[Entry]) -> None:

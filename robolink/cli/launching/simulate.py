@@ -168,7 +168,7 @@ def _once(ctx: typer.Context, options: Options, seed: int | None, as_json: bool,
 def _read(ctx: typer.Context, options: Options) -> tuple[Path, list[Entry], FaultsDescription | None]:
     """Read all files before anything is run, so that mistakes in them are found first."""
     from robolink.cli.launching.launch_arguments import launch_file
-    from robolink.launch import read_launch_file
+    from robolink.launch.system import read_system
     from robolink.simulate.settings import SettingError, parse_settings, with_parameters
 
     folder = options.workspace or None
@@ -177,7 +177,10 @@ def _read(ctx: typer.Context, options: Options) -> tuple[Path, list[Entry], Faul
     except SettingError as error:
         ctx.fail(str(error))
     path, given = launch_file(ctx, options.words, folder)
-    entries = with_parameters(read_launch_file(path, given, workspace=folder), settings)
+    system = read_system(path, given, workspace=folder)
+    for note in system.notes:
+        tell(f"robolink: {note}")
+    entries = with_parameters(system.entries, settings)
     if not options.faults:
         return path, entries, None
     from robolink.faults.file import check_nodes, read_faults

@@ -9,16 +9,21 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, NamedTuple, TypeAlias
 
-from robolink.exceptions import RobolinkError
+from robolink.exceptions import RobolinkError, nearest
 
-_OWN = str(Path(__file__).parents[1]) + os.sep
+_COMPANIONS = str(Path(__file__).parents[1]) + os.sep
 """Folder of the companions, whose frames are not the user's."""
+_OWN = str(Path(__file__).parents[2]) + os.sep
 
 SCOPED = ("launch_configurations", "environment")
 
 
 class LaunchError(RobolinkError, RuntimeError):
     """A launch file cannot be carried out; the text has the reason in one line."""
+
+
+class LaunchArgumentError(LaunchError, TypeError):
+    """An argument of an action or a substitution has the wrong type, or there is none of its name."""
 
 
 class Place(NamedTuple):
@@ -34,11 +39,15 @@ class Place(NamedTuple):
 
 
 def calling_place() -> Place:
-    """Return the place of the nearest frame that is no companion's: where the user's file makes an action."""
+    """Return the place of the nearest frame that is no companion's: where the user's file makes an action.
+
+    It is unknown for an action that robolink itself makes.
+    """
     frame: FrameType | None = sys._getframe(1)
-    while frame is not None and frame.f_code.co_filename.startswith(_OWN):
+    while frame is not None and frame.f_code.co_filename.startswith(_COMPANIONS):
         frame = frame.f_back
-    return Place() if frame is None else Place(frame.f_code.co_filename, frame.f_lineno)
+    is_own = frame is None or frame.f_code.co_filename.startswith(_OWN)
+    return Place() if frame is None or is_own else Place(frame.f_code.co_filename, frame.f_lineno)
 
 
 class Substitution:
@@ -107,9 +116,12 @@ class Action(LaunchDescriptionEntity):
 
     Args:
         condition: Condition without which it is left out; None has none.
+        **unknown: Refused: raises LaunchArgumentError with the nearest name that there is.
     """
 
-    def __init__(self, *, condition: Condition | None = None) -> None:
+    def __init__(self, *, condition: Condition | None = None, **unknown: Any) -> None:
+        for name in unknown:
+            raise no_argument(type(self), name)
         self._condition = condition
         self.place = calling_place()
         """Place of the user's own file that made it."""
@@ -141,6 +153,20 @@ class Action(LaunchDescriptionEntity):
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
         """Do it in `context`; return the entities that come next, None for none."""
         return None
+
+
+def no_argument(cls: type, name: str) -> LaunchArgumentError:
+    """Return the error that `cls` takes no argument `name`, with the nearest one that it takes."""
+    import inspect
+
+    known = [
+        each.name
+        for base in cls.__mro__
+        if "__init__" in vars(base)
+        for each in inspect.signature(base.__init__).parameters.values()  # type: ignore[misc]
+        if each.kind is each.KEYWORD_ONLY or each.kind is each.POSITIONAL_OR_KEYWORD
+    ]
+    return LaunchArgumentError(f"{cls.__name__} has no argument '{name}'{nearest(name, known)}")
 
 
 SomeEntitiesType: TypeAlias = "LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]"
@@ -227,6 +253,13 @@ def entities_in(some: SomeEntitiesType | None) -> list[LaunchDescriptionEntity]:
     return [some] if isinstance(some, LaunchDescriptionEntity) else list(some)
 
 
+def check_actions(some: Any, where: str) -> None:
+    """Raise LaunchArgumentError unless `some` is an action, a description, or several; `where` is for the error."""
+    for each in some if isinstance(some, Iterable) and not isinstance(some, str) else [some]:
+        if each is not None and not isinstance(each, LaunchDescriptionEntity):
+            raise LaunchArgumentError(f"{where} takes actions, got {type(each).__module__}.{type(each).__name__}")
+
+
 class _Locals:
     """Attributes of `context.locals`: read only."""
 
@@ -260,6 +293,10 @@ class LaunchContext:
         """Actions executed since the launcher last looked."""
         self.handlers: list[BaseEventHandler] = []
         """Event handlers, the last one registered first."""
+        self.said: list[str] = []
+        """Lines for people since the launcher last looked."""
+        self.asked: set[str] = set()
+        """Names of the launch configurations that were declared or read."""
         self.emitted: list[Event] = []
         """Events that were emitted and not handled yet."""
         self.pushed: dict[str, list[dict[str, Any]]] = {each: [] for each in SCOPED}

@@ -5,6 +5,13 @@ from __future__ import annotations
 from robolink.companions.launch.bases import Condition, LaunchContext, SomeSubstitutionsType
 from robolink.companions.launch.utilities import is_true, normalize_to_list_of_substitutions, perform_substitutions
 
+__all__ = [
+    "IfCondition",
+    "LaunchConfigurationEquals",
+    "LaunchConfigurationNotEquals",
+    "UnlessCondition",
+]
+
 
 class IfCondition(Condition):
     """True if a text is true or 1; anything but true, 1, false and 0 is an error.

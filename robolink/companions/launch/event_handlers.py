@@ -17,6 +17,15 @@ from robolink.companions.launch.bases import (
 from robolink.companions.launch.events import ExecutionComplete, Shutdown
 from robolink.companions.launch.events.process import ProcessExited, ProcessIO, ProcessStarted
 
+__all__ = [
+    "OnActionEventBase",
+    "OnExecutionComplete",
+    "OnProcessExit",
+    "OnProcessIO",
+    "OnProcessStart",
+    "OnShutdown",
+]
+
 Target: TypeAlias = "Action | Callable[[Any], bool] | None"
 Reaction: TypeAlias = "SomeEntitiesType | Callable[..., SomeEntitiesType | None]"
 

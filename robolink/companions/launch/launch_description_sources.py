@@ -16,6 +16,18 @@ from robolink.companions.launch.utilities import normalize_to_list_of_substituti
 from robolink.exceptions import nearest
 from robolink.system.terminal import shown
 
+__all__ = [
+    "AnyLaunchDescriptionSource",
+    "FrontendLaunchDescriptionSource",
+    "InvalidLaunchFileError",
+    "InvalidPythonLaunchFileError",
+    "LaunchDescriptionSource",
+    "LaunchFileNotFoundError",
+    "PythonLaunchDescriptionSource",
+    "read_launch_file",
+    "read_python_file",
+]
+
 MAKER = "generate_launch_description"
 """Name of the function in a Python launch file."""
 

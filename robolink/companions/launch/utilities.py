@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.arguments.parameter_file import parse_parameter_value
-from robolink.companions.launch.bases import LaunchError, Substitution, entities_in
+from robolink.companions.launch.bases import LaunchArgumentError, LaunchError, Substitution, entities_in
 from robolink.exceptions import DocumentError
 from robolink.system.terminal import shown
 
@@ -23,6 +23,7 @@ TRUE, FALSE = ("true", "1"), ("false", "0")
 normalize_to_list_of_entities = entities_in
 
 __all__ = [
+    "LaunchArgumentError",
     "TextSubstitution",
     "ensure_argument_type",
     "is_a",
@@ -52,10 +53,6 @@ class TextSubstitution(Substitution):
     def perform(self, context: LaunchContext) -> str:
         """Return the text."""
         return self.text
-
-
-class LaunchArgumentError(LaunchError, TypeError):
-    """An argument of an action or a substitution has the wrong type."""
 
 
 def normalize_to_list_of_substitutions(subs: SomeSubstitutionsType) -> list[Substitution]:

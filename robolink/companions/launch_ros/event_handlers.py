@@ -8,6 +8,10 @@ from typing import Any
 from robolink.companions.launch.bases import Event, EventHandler, SomeEntitiesType
 from robolink.companions.launch_ros.events.lifecycle import StateTransition
 
+__all__ = [
+    "OnStateTransition",
+]
+
 
 class OnStateTransition(EventHandler):
     """Reaction to a transition of a node with a lifecycle.

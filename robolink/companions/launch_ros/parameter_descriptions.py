@@ -14,12 +14,19 @@ from robolink.companions.launch.utilities import (
     TRUE,
     LaunchArgumentError,
     is_substitution,
+    is_true,
     normalize_to_list_of_substitutions,
     perform_substitutions,
     performed,
     typed,
 )
 from robolink.system.terminal import shown
+
+__all__ = [
+    "Parameter",
+    "ParameterFile",
+    "ParameterValue",
+]
 
 _PLAIN = (bool, int, float, str, bytes)
 
@@ -108,6 +115,24 @@ class ParameterFile:
     def evaluate(self, context: LaunchContext) -> Path:
         """Return its path, with the values of `context`."""
         return Path(perform_substitutions(context, self.param_file))
+
+    def substituted(self, context: LaunchContext) -> str | None:
+        """Return the file's text with the values of `context` put in; None where that is not wanted.
+
+        Raises LaunchError, also for a file that cannot be read.
+        """
+        if not is_true(context, self.allow_substs):
+            return None
+        from robolink.companions.launch.frontend import parse_substitution
+
+        path = self.evaluate(context)
+        if not path.is_file():
+            return None
+        try:
+            text = path.read_text(encoding="utf-8")
+        except (OSError, ValueError) as error:
+            raise LaunchError(f"{path} cannot be read: {error}") from None
+        return perform_substitutions(context, parse_substitution(text))
 
 
 def evaluated(parameters: Mapping[Any, Any], context: LaunchContext) -> Iterator[tuple[str, Any]]:

@@ -12,6 +12,14 @@ from robolink.companions.launch.utilities import is_substitution, normalize_to_l
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.workspace.packages import executable, executables
 
+__all__ = [
+    "ExecutableInPackage",
+    "FindPackage",
+    "FindPackagePrefix",
+    "FindPackageShare",
+    "Parameter",
+]
+
 
 class _FindPackage(Substitution):
     """Substitution by a folder of a package.

@@ -20,7 +20,7 @@ from typing import IO, Any
 import msgspec
 
 from robolink.exceptions import RobolinkError
-from robolink.launch.planning import arguments, environment
+from robolink.launch.node_arguments import arguments, environment
 from robolink.launch.reading.entry import Entry
 from robolink.supervisor.rules import described
 from robolink.system.own_command import own_command

@@ -18,7 +18,8 @@ class NodeToStart(msgspec.Struct, frozen=True):
     """A fully expanded node or command: variables substituted, files read, defaults in place.
 
     The fields are those of `NodeDescription`. Names in `start_after` are full names, and `process` has its namespace
-    in front.
+    in front. Two more are for ROS 2's launch files: words before the command line, as those of a debugger, `prefix`;
+    and the working directory, `cwd`, '' for the launcher's.
     """
 
     node: str = ""
@@ -37,6 +38,8 @@ class NodeToStart(msgspec.Struct, frozen=True):
     log_level: LogLevel | None = None
     enclave: str = ""
     cpu: tuple[int, ...] = ()
+    prefix: list[str] = []
+    cwd: str = ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import shutil
 import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
+from robolink.launch.reading.kinds import PROGRAMS, YAML
 from robolink.system.own_command import own_command
 from robolink.system.paths import expanded
 from robolink.workspace import (
@@ -21,7 +23,6 @@ from robolink.workspace import (
     user_workspace,
     workspace_of,
 )
-from robolink.workspace.find import YAML
 
 LAUNCH_FOLDER = "launch"
 """Folder of the launch files in a ROS 2 package."""
@@ -32,19 +33,20 @@ _PYTHON = ("python", "python3")
 NOT_FOUND = (NotFoundError, OSError, ValueError, RuntimeError)
 """Exceptions of a look-up: the file does not exist, or the text cannot be a file's name."""
 
-_PROGRAMS = {".py": "a Python program", ".xml": "XML"}
+KINDS = (*YAML, *PROGRAMS)
+"""Suffixes of launch files; those in front count more where two have one name."""
+_MOST_NAMED, _MOST_FILES = 8, 5000
 
 
 class LaunchKindError(RobolinkError, ValueError):
-    """The file is no YAML launch file: one of ROS 2's launch programs, or a node."""
+    """The name of a launch file is that of a node or a package."""
 
 
 def find(names: Sequence[str], *, workspace: Folder = None) -> Path:
     """Find a launch file by its name or path, or by a package and the file's name in it.
 
-    Raises `NotFoundError` with the nearest name, and `LaunchKindError` for one that is no YAML, or is a node's.
+    Raises `NotFoundError` with the nearest name, and `LaunchKindError` for one that is a node's, or a package's.
     """
-    _check_kind(names[-1])
     if len(names) == 1:
         return _by_name(names[0], workspace)
     package, name = names
@@ -69,12 +71,10 @@ def _by_name(name: str, workspace: Folder) -> Path:
 
 def _which_of(folder: Path, package: str) -> str:
     """Return a hint with the launch files of a package, for somebody who named only the package."""
-    there = [each for each in sorted((folder / LAUNCH_FOLDER).glob("*")) if each.suffix in (*YAML, *_PROGRAMS)]
-    names = [each.name for each in there if each.suffix in YAML]
+    names = [each.name for each in _files_of(folder)]
     if names:
-        return f"{package} is a package: say which of its launch files, {' or '.join(names)}"
-    others = f"of its own only {', '.join(each.name for each in there)}, and " if there else "none, "
-    return f"{package} is a package and has {others}robolink launches YAML"
+        return f"{package} is a package: say which of its launch files, {' or '.join(names[:_MOST_NAMED])}"
+    return f"{package} is a package and has no launch file"
 
 
 def _is_node(name: str, workspace: Folder) -> bool:
@@ -85,26 +85,29 @@ def _is_node(name: str, workspace: Folder) -> bool:
     return True
 
 
-def _check_kind(name: str) -> None:
-    kind = _PROGRAMS.get(Path(name).suffix)
-    if kind is not None:
-        raise LaunchKindError(
-            f"{name} is {kind}, and robolink launches YAML: list its nodes in a .yaml file, as in `nodes: [node: NAME]`"
-        )
-
-
 def _in_package(folder: Path, package: str, name: str) -> Path:
-    """Find a file in a package: `robot`, `robot.yaml` and `robot.launch.yaml` are the same."""
-    there = [each for each in sorted((folder / LAUNCH_FOLDER).glob("*")) if each.suffix in YAML]
+    """Find a file in a package; `robot`, `robot.yaml` and `robot.launch.py` are the same."""
+    there = _files_of(folder)
     for each in there:
         if name in (each.name, each.stem, each.stem.removesuffix(".launch")):
             return each
-    for suffix in (".py", ".xml"):
-        for end in ("", suffix, f".launch{suffix}"):
-            if (file := folder / LAUNCH_FOLDER / f"{name}{end}").is_file():
-                _check_kind(file.name)
     names = [each.name for each in there]
-    raise NotFoundError("launch file", name, names, f"package {package}, which has {', '.join(names) or 'none'}")
+    listed = ", ".join(names[:_MOST_NAMED]) or "none"
+    raise NotFoundError("launch file", name, names, f"package {package}, which has {listed}")
+
+
+def _files_of(folder: Path) -> list[Path]:
+    """Return the launch files of a package: those in its launch folder first, then robolink's own kind, then others."""
+    inside = itertools.islice((folder / LAUNCH_FOLDER).rglob("*"), _MOST_FILES)
+    found = [each for each in inside if each.suffix in KINDS and each.is_file() and _is_launch(each)]
+    if not found:
+        inside = itertools.islice(folder.rglob("*.launch.*"), _MOST_FILES)
+        found = [each for each in inside if each.suffix in KINDS and each.is_file()]
+    return sorted(found, key=lambda each: (len(each.parts), KINDS.index(each.suffix), each.name))
+
+
+def _is_launch(path: Path) -> bool:
+    return path.name != "__init__.py" and not path.name.startswith((".", "_"))
 
 
 def reason_of(error: Exception) -> str:

@@ -22,6 +22,8 @@ class DeclareLaunchArgument(Action):
         **kwargs: `condition`.
     """
 
+    NO_DESCRIPTION = "no description given"
+
     def __init__(
         self,
         name: str,
@@ -32,16 +34,18 @@ class DeclareLaunchArgument(Action):
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
-        self.name, self.description = name, description or "no description given"
+        self.name, self.description = name, description or self.NO_DESCRIPTION
         self.default_value = None if default_value is None else normalize_to_list_of_substitutions(default_value)
         self.choices = None if choices is None else list(choices)
 
     def execute(self, context: LaunchContext) -> None:
         """Set the default value in `context` if none was given; raises LaunchError for a value that is no choice."""
         known = context.launch_configurations
+        context.asked.add(self.name)
         if self.name not in known:
             if self.default_value is None:
-                raise LaunchError(f"'{self.name}' must be given ({self.description}): {self.name}:=VALUE")
+                about = "" if self.description == self.NO_DESCRIPTION else f" ({shown(self.description)})"
+                raise LaunchError(f"'{self.name}' must be given{about}: {self.name}:=VALUE")
             known[self.name] = perform_substitutions(context, self.default_value)
         value = known[self.name]
         if self.choices is not None and value not in self.choices:

@@ -11,10 +11,6 @@ from robolink.companions.launch.utilities import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-from robolink.logging import get_logger
-
-LOGGER = "launch.user"
-"""Name of the logger that has what launch files write."""
 
 
 class LogInfo(Action):
@@ -30,11 +26,8 @@ class LogInfo(Action):
         self.msg = normalize_to_list_of_substitutions(msg)
 
     def execute(self, context: LaunchContext) -> None:
-        """Write it, with the values of `context`."""
-        self._write(perform_substitutions(context, self.msg))
-
-    def _write(self, text: str) -> None:
-        get_logger(LOGGER).info(text)
+        """Write it as a line of the launcher's own, with the values of `context`."""
+        context.said.append(perform_substitutions(context, self.msg))
 
 
 class OpaqueFunction(Action):

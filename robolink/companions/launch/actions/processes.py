@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from robolink.companions.launch.bases import Action, LaunchContext, SomeSubstitutionsType
+from robolink.companions.launch.bases import Action, LaunchContext, SomeSubstitutionsType, check_actions
 from robolink.companions.launch.utilities import LaunchArgumentError
 
 IGNORED = frozenset(
@@ -68,7 +68,9 @@ class ExecuteLocal(Action):
         respawn_max_retries: int = -1,
         **kwargs: Any,
     ) -> None:
-        super().__init__(**_without_ignored(type(self).__name__, kwargs))
+        super().__init__(**{name: value for name, value in kwargs.items() if name not in IGNORED})
+        if on_exit is not None and not callable(on_exit):
+            check_actions(on_exit, f"{type(self).__name__}(on_exit=...)")
         self.process_description, self.shell, self.on_exit = process_description, shell, on_exit
         self.respawn, self.respawn_delay, self.respawn_max_retries = respawn, respawn_delay, respawn_max_retries
         self.process_details: dict[str, Any] | None = None
@@ -111,12 +113,3 @@ class ExecuteProcess(ExecuteLocal):
     def cmd(self) -> list[SomeSubstitutionsType]:
         """The program and its arguments."""
         return self.process_description.cmd
-
-
-def _without_ignored(action: str, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the arguments without those of no effect; raises LaunchArgumentError for an unknown one."""
-    left = {name: value for name, value in given.items() if name not in IGNORED}
-    unknown = next((name for name in left if name != "condition"), None)
-    if unknown is not None:
-        raise LaunchArgumentError(f"{action} has no argument '{unknown}'")
-    return left

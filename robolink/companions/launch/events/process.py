@@ -8,6 +8,19 @@ from typing import Any
 
 from robolink.companions.launch.bases import Action, Event
 
+__all__ = [
+    "ProcessExited",
+    "ProcessIO",
+    "ProcessStarted",
+    "ProcessTargetedEvent",
+    "RunningProcessEvent",
+    "ShutdownProcess",
+    "SignalProcess",
+    "matches_executable",
+    "matches_name",
+    "matches_pid",
+]
+
 
 class RunningProcessEvent(Event):
     """Something has happened to a process.

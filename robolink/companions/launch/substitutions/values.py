@@ -38,6 +38,7 @@ class LaunchConfiguration(Substitution):
     def perform(self, context: LaunchContext) -> str:
         """Return the value; raises SubstitutionFailure if it is not set."""
         name, known = perform_substitutions(context, self.variable_name), context.launch_configurations
+        context.asked.add(name)
         if name in known:
             return str(known[name])
         if self.default is None:

@@ -7,6 +7,12 @@ from typing import Any
 
 from robolink.companions.launch.bases import Event
 
+__all__ = [
+    "ChangeState",
+    "StateTransition",
+    "matches_node_name",
+]
+
 
 class ChangeState(Event):
     """Nodes with a lifecycle are to make a transition.

@@ -1,0 +1,34 @@
+"""Command-line arguments and environment of a node's program, as the launcher gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from robolink.documents.yamlfile import spell
+from robolink.launch.reading.entry import Entry
+from robolink.workspace import VARIABLE
+
+
+def arguments(entry: Entry) -> Iterator[str]:
+    """Yield the arguments of a node's program: its own, then those behind `--ros-args`."""
+    node = entry.node
+    yield from node.args
+    yield "--ros-args"
+    if node.name:
+        yield from ("-r", f"__node:={node.name}")
+    if node.namespace:
+        yield from ("-r", f"__ns:={node.namespace}")
+    for name, value in node.parameters.items():
+        yield from ("-p", f"{name}:={spell(value)}")
+    for match, replacement in node.remappings.items():
+        yield from ("-r", f"{match}:={replacement}")
+    if node.log_level:
+        yield from ("--log-level", node.log_level)
+    if node.enclave:
+        yield from ("--enclave", node.enclave)
+
+
+def environment(entry: Entry) -> dict[str, str]:
+    """Return the variables that are added to a node's environment: its workspace, and those of the file."""
+    home = {} if entry.home is None else {VARIABLE: str(entry.home)}
+    return {**home, **entry.node.env}

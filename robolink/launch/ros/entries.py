@@ -1,0 +1,273 @@
+"""Entries of a ROS 2 launch file: each Node and ExecuteProcess action becomes what robolink's launcher starts."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path, PurePath
+from typing import Any
+
+from robolink.companions.launch.actions import ExecuteLocal, Shutdown
+from robolink.companions.launch.bases import LaunchContext, LaunchError, Place
+from robolink.companions.launch.utilities import is_true, performed
+from robolink.companions.launch_ros.actions import Node
+from robolink.companions.launch_ros.actions.scope import NAMESPACE, REMAPS, joined
+from robolink.exceptions import DocumentError, NameValidationException
+from robolink.launch.reading.description import OnExit, Respawn
+from robolink.launch.reading.entry import Entry, NodeToStart
+from robolink.launch.reading.lookup import command_of, source_of
+from robolink.launch.ros.parameters import parameters_of, texts_of
+from robolink.launch.ros.programs import Program, program_of
+from robolink.supervisor.rules import NO_LIMIT
+from robolink.system.own_command import own_command
+from robolink.system.terminal import shown
+from robolink.validate_namespace import validate_namespace
+from robolink.validate_node_name import validate_node_name
+from robolink.workspace import NodeSource
+
+TERMINALS = ("xterm", "gnome-terminal", "konsole", "lxterminal", "xfce4-terminal", "terminator", "x-terminal-emulator")
+"""Programs that launch files put before nodes that read the keyboard."""
+
+
+@dataclass
+class EntryMaker:
+    """Makes entries of actions; names that several have get a number.
+
+    Args:
+        home: Workspace in which packages are looked for, None for none.
+        say: Called with a line for people about what is left out.
+    """
+
+    home: Path | None
+    say: Callable[[str], object]
+    files: frozenset[Path] = frozenset()
+    """Launch files that have been read so far."""
+    has_keyboard: bool = False
+    """True once a node reads the keyboard: only one can."""
+    _names: set[str] = field(default_factory=set)
+
+    def make(self, action: ExecuteLocal, context: LaunchContext) -> Entry | None:
+        """Return the entry of an action that starts a process; None, with a line, for one that cannot run here.
+
+        Raises LaunchError, and NotFoundError with the nearest name.
+        """
+        if isinstance(action, Node):
+            return self._node(action, context)
+        return self._command(action, context)
+
+    # Nodes
+
+    def _node(self, action: Node, context: LaunchContext) -> Entry | None:
+        package = None if action.node_package is None else performed(context, action.node_package)
+        executable = performed(context, action.node_executable)
+        program = self._program(package, executable, action.place)
+        if program.absent:
+            self._leave_out(action, program.absent)
+            return None
+        name = "" if action.requested_name is None else performed(context, action.requested_name)
+        namespace = self._namespace(action, context)
+        if name:
+            _check(validate_node_name, name)
+        shown_name = f"{namespace}/{name or _default_name(program, executable)}"
+        action.expanded_name = shown_name
+        own = parameters_of(action.parameters, shown_name, bool(name), context, lambda text: self._note(action, text))
+        words = [*own.words, *texts_of(action.ros_arguments, context)]
+        extra = ["--ros-args", *words, "--"] if words else []
+        node = NodeToStart(
+            node=executable if program.source is None else program.source.spec,
+            name=name,
+            namespace=namespace,
+            parameters=own.values,
+            remappings=_remappings(action, context),
+            args=[*extra, *texts_of(action.arguments, context)],
+            **self._shared(action, context),
+        )
+        entry = self._entry(action, shown_name, node, program.source, own.wide, own.files)
+        return entry if program.source is not None else _compiled(entry, program.path)
+
+    def _program(self, package: str | None, executable: str, place: Place) -> Program:
+        if package is not None:
+            return program_of(package, executable, self.home)
+        path = Path(executable)
+        if path.suffix == ".py" or path.is_file():
+            folder = Path(place.file).parent if place.file else Path()
+            return Program(source=source_of(executable, self.home, folder))
+        if shutil.which(executable) is None:
+            return Program(absent=f"no program '{shown(executable)}' is on the PATH")
+        return Program(path=executable)
+
+    def _namespace(self, action: Node, context: LaunchContext) -> str:
+        around = str(context.launch_configurations.get(NAMESPACE, ""))
+        own = "" if action.requested_namespace is None else performed(context, action.requested_namespace)
+        whole = joined(around, own)
+        whole = whole if whole.startswith("/") or not whole else f"/{whole}"
+        if whole:
+            _check(validate_namespace, whole)
+        return whole
+
+    # Commands
+
+    def _command(self, action: ExecuteLocal, context: LaunchContext) -> Entry | None:
+        words = list(texts_of(action.process_description.cmd, context))
+        if not words or not words[0].strip():
+            raise LaunchError("cmd has no program")
+        if action.shell:
+            run = ["cmd", "/c", " ".join(words)] if sys.platform == "win32" else ["/bin/sh", "-c", " ".join(words)]
+        else:
+            words = [*shlex.split(words[0], posix=sys.platform != "win32"), *words[1:]] if len(words) == 1 else words
+            found = _command_line(words, context)
+            if found is None:
+                self._leave_out(action, f"no program '{shown(words[0])}' is on the PATH")
+                return None
+            run = found
+        settings = self._shared(action, context)
+        run = [*settings.pop("prefix", ()), *run]
+        given = action.process_description.name
+        name = performed(context, given) if given is not None else _stem(words)
+        return self._entry(action, f"/{name}", NodeToStart(run=run, **settings), None, frozenset(), [])
+
+    # Both
+
+    def _entry(
+        self,
+        action: ExecuteLocal,
+        full_name: str,
+        node: NodeToStart,
+        source: NodeSource | None,
+        wide: frozenset[str],
+        files: Iterable[Path],
+    ) -> Entry:
+        name = self._free(full_name.strip("/") or "process")
+        return Entry(name, node, source, self.home, _errors_at(action.place), wide, self.files | set(files))
+
+    def _free(self, name: str) -> str:
+        number, free = 1, name
+        while free in self._names:
+            number += 1
+            free = f"{name}-{number}"
+        self._names.add(free)
+        return free
+
+    def _shared(self, action: ExecuteLocal, context: LaunchContext) -> dict[str, Any]:
+        """Return the settings of a process, of nodes and commands alike."""
+        described = action.process_description
+        settings: dict[str, Any] = {
+            "env": _environment(action, context),
+            "cwd": "" if described.cwd is None else performed(context, described.cwd),
+            "respawn": _respawn(action, context),
+            "on_exit": _on_exit(action),
+        }
+        words = [] if described.prefix is None else shlex.split(performed(context, described.prefix))
+        if words and shutil.which(words[0]) is not None:
+            settings["prefix"] = words
+        elif words and PurePath(words[0]).name in TERMINALS and not self.has_keyboard:
+            settings["interactive"] = self.has_keyboard = True
+            self._note(action, f"'{shown(words[0])}' is not installed: the keyboard of this terminal is read instead")
+        elif words:
+            self._note(action, f"the prefix '{shown(words[0])}' is left out: no such program is on the PATH")
+        return settings
+
+    def _leave_out(self, action: ExecuteLocal, reason: str) -> None:
+        self._note(action, f"left out: {reason}")
+
+    def _note(self, action: ExecuteLocal, text: str) -> None:
+        self.say(f"{placed(action.place)}{text}")
+
+
+def placed(place: Place) -> str:
+    """Return a place as the beginning of a line, `robot.launch.py:12: `; '' for an unknown one."""
+    return f"{Path(place.file).name}:{place.line}: " if place.line else ""
+
+
+def _errors_at(place: Place) -> Callable[[Sequence[str | int], str, bool], DocumentError]:
+    return lambda steps, message, key: DocumentError(message, place.file, place.line)
+
+
+def _check(validate: Callable[[str], object], name: str) -> None:
+    try:
+        validate(name)
+    except NameValidationException as error:
+        raise LaunchError(f"'{shown(name)}' {error.error_msg}") from None
+
+
+def _default_name(program: Program, executable: str) -> str:
+    stem = program.source.name if program.source is not None else PurePath(executable).stem
+    return re.sub(r"\W", "_", stem)
+
+
+def _stem(words: Sequence[str]) -> str:
+    """Return a name for a command: that of its program, or of the script that Python runs."""
+    name = PurePath(words[0]).stem or words[0]
+    script = next((each for each in words[1:] if each.endswith(".py")), None)
+    return PurePath(script).stem if script and re.fullmatch(r"python[\d.]*", name) else name
+
+
+def _compiled(entry: Entry, path: str) -> Entry:
+    """Return the entry of a compiled node: a command that gets what the launcher gives a node."""
+    from robolink.launch.node_arguments import arguments
+
+    words = list(arguments(entry))
+    return replace(entry, node=NodeToStart(run=[path, *words], env=entry.node.env, cwd=entry.node.cwd))
+
+
+def _command_line(words: list[str], context: LaunchContext) -> list[str] | None:
+    """Return the command line of a command; `ros2` is robolink's own, wherever it is installed."""
+    name = PurePath(words[0]).name
+    if name in ("ros2", "robolink"):
+        return [*own_command(), *words[1:]]
+    return command_of(words, context.environment.get("PATH"))
+
+
+def _remappings(action: Node, context: LaunchContext) -> dict[str, str]:
+    """Return the remappings of a node: those of SetRemap count more, and the first of a name."""
+    pairs = list(context.launch_configurations.get(REMAPS, []))
+    for each in action.remappings:
+        if not isinstance(each, (tuple, list)) or len(each) != 2:
+            raise LaunchError(f"a remapping is a pair of two names, got {shown(repr(each))}")
+        pairs.append((performed(context, each[0]), performed(context, each[1])))
+    found: dict[str, str] = {}
+    for match, replacement in pairs:
+        found.setdefault(match, replacement)
+    return found
+
+
+def _environment(action: ExecuteLocal, context: LaunchContext) -> dict[str, str]:
+    """Return the variables of a process that differ from the launcher's own."""
+    described = action.process_description
+    changed = context.changed_environment()
+    for given in (described.env, described.additional_env):
+        for name, value in (given or {}).items():
+            changed[performed(context, name)] = performed(context, value)
+    return changed
+
+
+def _respawn(action: ExecuteLocal, context: LaunchContext) -> Respawn:
+    if not is_true(context, action.respawn):
+        return Respawn(when="never")
+    text = "0" if action.respawn_delay is None else "".join(texts_of([action.respawn_delay], context))
+    try:
+        delay = float(text)
+    except ValueError:
+        raise LaunchError(f"respawn_delay is a number of seconds, got '{shown(text)}'") from None
+    if not 0.0 <= delay < 1e9:
+        raise LaunchError(f"respawn_delay is a number of seconds from 0 on, got {text:.60}")
+    most = action.respawn_max_retries
+    if most == 0:
+        return Respawn(when="never")
+    return Respawn("always", delay, delay, NO_LIMIT if most < 0 else most, float(NO_LIMIT))
+
+
+def _on_exit(action: ExecuteLocal) -> OnExit:
+    return "shutdown" if ends_launch(action.on_exit) else "ignore"
+
+
+def ends_launch(on_exit: Any) -> bool:
+    """True if what follows the end of a process is the end of the launch, and nothing else."""
+    some = [on_exit] if isinstance(on_exit, Shutdown) else on_exit
+    if not isinstance(some, (list, tuple)) or not some:
+        return False
+    return all(isinstance(each, Shutdown) and each.condition is None for each in some)

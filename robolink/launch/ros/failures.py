@@ -1,0 +1,90 @@
+"""Errors of ROS 2 launch files: one line each, at the file and line of the user's own code."""
+
+from __future__ import annotations
+
+import re
+import site
+import sys
+import sysconfig
+import traceback
+from pathlib import Path
+
+from robolink.companions.ament_index.packages import NOT_HERE, package_not_here
+from robolink.companions.launch.bases import LaunchError, Place, no_argument
+from robolink.exceptions import DocumentError, RobolinkError
+from robolink.system.terminal import shown
+
+_OWN = str(Path(__file__).resolve().parents[2])
+_LONGEST = 400
+_UNEXPECTED = re.compile(r"(?:(\w+)\.)?(\w+)\(\) got an unexpected keyword argument '(\w+)'")
+_LACKING = re.compile(r"(\w+)\.__init__\(\) missing \d+ required (?:[a-z-]+ )*arguments?: (.+)")
+_PATH = re.compile(re.escape(str(NOT_HERE)) + r"[^\s'\",;:]*")
+
+
+def as_document_error(error: BaseException, place: Place) -> DocumentError:
+    """Return an error of a launch file as one line with its place.
+
+    Args:
+        error: Error that the file, or an action of it, has raised.
+        place: Place that counts if the error comes from no line of the user's.
+    """
+    if isinstance(error, DocumentError):
+        return error
+    if isinstance(error, SyntaxError) and error.filename:
+        return DocumentError(error.msg, error.filename, error.lineno or 0, error.offset or 0)
+    at = place if isinstance(error, LaunchError) and place.line else users_place(error) or place
+    return DocumentError(reason_of(error).removeprefix(f"{at.file}: "), at.file, at.line)
+
+
+def reason_of(error: BaseException) -> str:
+    """Return an error's text in one line, with its kind if it is none of robolink's."""
+    missing = absent_package(error)
+    if missing:
+        return f"package {missing} is not here, and its {_within(str(error))} is needed"
+    if isinstance(error, RobolinkError):
+        return shown(str(error), _LONGEST)
+    refused = _UNEXPECTED.search(str(error)) if isinstance(error, TypeError) else None
+    if refused is not None:
+        return _no_argument(error, refused[1] or refused[2], refused[3])
+    lacking = _LACKING.search(str(error)) if isinstance(error, TypeError) else None
+    if lacking is not None:
+        return f"{lacking[1]} needs {lacking[2]}"
+    if isinstance(error, RecursionError):
+        return "it never ends: a function or a substitution calls itself"
+    if isinstance(error, MemoryError):
+        return "there is not enough memory for it"
+    text = shown(str(error), _LONGEST)
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__
+
+
+def absent_package(error: BaseException) -> str:
+    """Return the package that is not here and whose file an error is about; '' if it is about something else."""
+    found = _PATH.search(str(error))
+    return package_not_here(found[0]) if found else ""
+
+
+def _within(text: str) -> str:
+    found = _PATH.search(text)
+    return shown("/".join(Path(found[0]).parts[len(NOT_HERE.parts) + 1 :]) if found else "") or "folder"
+
+
+def _no_argument(error: BaseException, name: str, argument: str) -> str:
+    """Return why a call has a wrong keyword, with the nearest of the class, if it is one that the caller knows."""
+    for frame, _ in traceback.walk_tb(error.__traceback__):
+        cls = frame.f_globals.get(name)
+        if isinstance(cls, type):
+            return str(no_argument(cls, argument))
+    return f"{name} has no argument '{argument}'"
+
+
+def users_place(error: BaseException) -> Place | None:
+    """Return the last line of the user's own code that an error came through."""
+    lines = [Place(frame.f_code.co_filename, line) for frame, line in traceback.walk_tb(error.__traceback__)]
+    return next((each for each in reversed(lines) if _is_users(each.file)), None)
+
+
+def _is_users(file: str) -> bool:
+    if file.startswith("<"):
+        return False
+    library = [sysconfig.get_paths()["stdlib"], *site.getsitepackages(), sys.prefix]
+    return not any(Path(file).is_relative_to(each) for each in (_OWN, *library))

@@ -1,0 +1,92 @@
+"""Look-up of the program of a launch file's node: its source, a compiled program, or the reason why it is left out."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+from robolink.companions.ament_index.search_paths import get_search_paths
+from robolink.exceptions import NotFoundError, closest
+from robolink.system.plainfile import read_plain
+from robolink.workspace import (
+    NodeSource,
+    RosProgramError,
+    find_executable,
+    find_package,
+    instead_of,
+    list_packages,
+)
+
+_ALIKE = 0.85
+"""Similarity from 0 to 1 above which the name of a package is taken for a misspelt one of the workspace's."""
+_LONGEST = 200_000
+_COMPILED = re.compile(r"\b(?:add_executable|rclcpp_components_register_nodes?)\s*\(([^()]*)", re.IGNORECASE)
+
+
+class Program(NamedTuple):
+    """Program of a node: one of `source` and `path` is there, or else the reason why it is left out."""
+
+    source: NodeSource | None = None
+    path: str = ""
+    """Path of a compiled program of an installed package."""
+    absent: str = ""
+    """Reason why it is left out, with what serves instead."""
+
+
+def program_of(package: str, executable: str, home: Path | None) -> Program:
+    """Return the program of an executable of a package.
+
+    Args:
+        package: Name of the package.
+        executable: Name of the executable.
+        home: Workspace in which packages are looked for; None looks for the nearest.
+
+    Raises:
+        NotFoundError: with the nearest name, for a misspelt package or an executable that its package lacks.
+    """
+    try:
+        return Program(source=find_executable(package, executable, workspace=home))
+    except NotFoundError as error:
+        compiled = _installed(package, executable)
+        if compiled is not None:
+            return Program(path=str(compiled))
+        folder = find_package(package, workspace=home)
+        if folder is None:
+            return Program(absent=_why_no_package(package, executable, home, error))
+        if _is_compiled(folder, executable):
+            return Program(absent=f"{package} {executable} is a C++ program, and robolink builds none")
+        raise
+
+
+def include_absent(package: str) -> str:
+    """Return why a launch file of a package that is not here is left out."""
+    advice = instead_of(package)
+    return f"package {package} is not here" + (f": {advice}" if advice else "")
+
+
+def _why_no_package(package: str, executable: str, home: Path | None, error: NotFoundError) -> str:
+    if isinstance(error, RosProgramError) or error.kind == "executable":
+        return str(error)
+    if closest(package, list_packages(workspace=home), _ALIKE):
+        raise error
+    return f"{package} {executable} is not here: no package of this name is in the workspace"
+
+
+def _installed(package: str, executable: str) -> Path | None:
+    """Return the compiled program of a package in ROS 2's own index, where ROS 2 is installed."""
+    for prefix in get_search_paths():
+        path = Path(prefix) / "lib" / package / executable
+        if path.is_file():
+            return path
+    return None
+
+
+def _is_compiled(folder: Path, executable: str) -> bool:
+    """True if a package's CMakeLists.txt makes this executable of C++ code."""
+    try:
+        text = read_plain(folder / "CMakeLists.txt", _LONGEST).decode(errors="replace")
+    except OSError:
+        return False
+    bodies = _COMPILED.findall(re.sub(r"#.*", "", text).replace("${PROJECT_NAME}", folder.name))
+    return any(executable in re.split(r"[\s\"]+", body) for body in bodies)

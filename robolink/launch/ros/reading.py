@@ -1,0 +1,99 @@
+"""Reader of ROS 2 launch files: loads one, visits its description, and returns what it starts at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robolink.companions.launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from robolink.companions.launch.bases import LaunchContext, LaunchError
+from robolink.companions.launch.launch_description_sources import AnyLaunchDescriptionSource
+from robolink.companions.launch.utilities import perform_substitutions
+from robolink.exceptions import DocumentError, nearest
+from robolink.launch.reading.arguments import ArgumentHelp
+from robolink.launch.reading.lookup import home_of
+from robolink.launch.ros.entries import EntryMaker
+from robolink.launch.ros.failures import as_document_error
+from robolink.launch.ros.surroundings import surroundings
+from robolink.launch.ros.visit import Visit
+from robolink.system.terminal import shown
+from robolink.workspace import Folder
+
+if TYPE_CHECKING:
+    from robolink.companions.launch.bases import LaunchDescriptionEntity
+
+
+def visited(path: Path, given: Mapping[str, str], workspace: Folder) -> Visit:
+    """Return the visit of a launch file, up to the point at which only time and events go on.
+
+    Args:
+        path: The launch file.
+        given: Launch arguments by name, as people type them.
+        workspace: Folder in which the packages of a file outside of all workspaces are looked up.
+
+    Raises:
+        DocumentError: for a mistake, with the file and line of the user's code.
+        NotFoundError: for a `workspace` that is no folder.
+    """
+    path = path.absolute()
+    home = home_of(path, workspace)
+    with surroundings(home):
+        context = LaunchContext(argv=[f"{name}:={value}" for name, value in given.items()])
+        context.launch_configurations.update(given)
+        visit = Visit(context, EntryMaker(home, context.said.append), path)
+        visit.first = _included(path)
+        visit.run([visit.first])
+    _note_unread(context, given)
+    return visit
+
+
+def arguments_of(path: Path, workspace: Folder = None) -> list[ArgumentHelp]:
+    """Return the arguments that a launch file and those that it includes declare, in their order.
+
+    Args:
+        path: The launch file.
+        workspace: As for `visited`.
+
+    Raises:
+        DocumentError: for a mistake, with the file and line of the user's code.
+    """
+    path = path.absolute()
+    with surroundings(home_of(path, workspace)):
+        context = LaunchContext()
+        visit = Visit(context, EntryMaker(None, context.said.append), path)
+        with visit.placing(None):
+            description = AnyLaunchDescriptionSource(str(path)).get_launch_description(context)
+            context.extend_locals({"current_launch_file_path": str(path)})
+            context.extend_locals({"current_launch_file_directory": str(path.parent)})
+            return [_help(each, context) for each in description.get_launch_arguments()]
+
+
+def _included(path: Path) -> LaunchDescriptionEntity:
+    """Return the action that includes the launch file itself; it has no place of its own."""
+    action = IncludeLaunchDescription(AnyLaunchDescriptionSource(str(path)))
+    action.place = action.place._replace(file="", line=0)
+    return action
+
+
+def _help(declared: DeclareLaunchArgument, context: LaunchContext) -> ArgumentHelp:
+    default = None
+    if declared.default_value is not None:
+        try:
+            default = perform_substitutions(context, declared.default_value)
+        except (LaunchError, DocumentError):
+            default = "".join(getattr(each, "text", each.describe()) for each in declared.default_value)
+        context.launch_configurations.setdefault(declared.name, default)
+    description = "" if declared.description == DeclareLaunchArgument.NO_DESCRIPTION else declared.description
+    return ArgumentHelp(declared.name, default, description, tuple(declared.choices or ()))
+
+
+def _note_unread(context: LaunchContext, given: Mapping[str, str]) -> None:
+    """Add a line for each given argument that nothing has declared or read: ROS 2 takes them in silence."""
+    for name in given:
+        if name not in context.asked:
+            hint = nearest(name, context.asked) or f": there is {', '.join(sorted(context.asked)) or 'none'}"
+            context.said.append(f"nothing reads the argument '{shown(name)}'{hint}")
+
+
+__all__ = ["arguments_of", "as_document_error", "visited"]

@@ -1,0 +1,144 @@
+"""Visit of a launch description: executes its actions in their order and collects the processes that they start."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from robolink.companions.ament_index.packages import package_not_here
+from robolink.companions.launch.actions import ExecuteLocal, IncludeLaunchDescription, RegisterEventHandler, TimerAction
+from robolink.companions.launch.bases import Action, LaunchContext, LaunchDescriptionEntity, Place, entities_in
+from robolink.companions.launch.event_handlers import OnProcessExit
+from robolink.companions.launch.launch_description_sources import LaunchFileNotFoundError
+from robolink.exceptions import DocumentError
+from robolink.launch.reading import limits
+from robolink.launch.reading.entry import Entry
+from robolink.launch.ros.entries import EntryMaker, ends_launch, placed
+from robolink.launch.ros.failures import absent_package, as_document_error, reason_of, users_place
+from robolink.launch.ros.programs import include_absent
+
+MOST_VISITED = 100_000
+"""Most entities of a launch; a function that returns itself would never end."""
+
+
+@dataclass
+class Started:
+    """A process of the launch: the action that starts it, and its entry."""
+
+    action: ExecuteLocal
+    entry: Entry
+
+
+@dataclass
+class Visit:
+    """State of a launch while it is visited: its context, and what its actions ask for.
+
+    Args:
+        context: Values of the launch.
+        maker: Makes the entries.
+        top: The launch file itself, for errors that have no better place.
+    """
+
+    context: LaunchContext
+    maker: EntryMaker
+    top: Path
+    started: list[Started] = field(default_factory=list)
+    """Processes that are to start, since the last look."""
+    timers: list[TimerAction] = field(default_factory=list)
+    """Timers that begin, since the last look."""
+    other: list[Action] = field(default_factory=list)
+    """Actions that only a launch that runs can carry out, since the last look."""
+    first: LaunchDescriptionEntity | None = None
+    """The launch file itself as an entity: without it nothing is left."""
+    _visited: int = 0
+
+    def run(self, entities: Iterable[LaunchDescriptionEntity]) -> None:
+        """Visit entities and all that they bring along, depth first. Raises DocumentError with the user's line."""
+        waiting: list[LaunchDescriptionEntity] = list(entities)[::-1]
+        while waiting:
+            each = waiting.pop()
+            self._visited += 1
+            with self.placing(each):
+                if self._visited > MOST_VISITED:
+                    raise self._error(each, f"it never ends: more than {MOST_VISITED:,} actions were visited")
+                inside = self._visit(each)
+            waiting.extend(inside[::-1])
+
+    def _visit(self, entity: LaunchDescriptionEntity) -> list[LaunchDescriptionEntity]:
+        try:
+            inside = entities_in(entity.visit(self.context))
+            executed, self.context.executed = self.context.executed, []
+            for action in executed:
+                self._take(action)
+        except LaunchFileNotFoundError as error:
+            package = package_not_here(str(error.path))
+            if not package or not isinstance(entity, IncludeLaunchDescription):
+                raise
+            self.say_at(entity, f"left out: {error.path.name}, since {include_absent(package)}")
+            return []
+        except DocumentError:
+            raise
+        except Exception as error:
+            if not absent_package(error) or entity is self.first:
+                raise
+            self.say_at(entity, f"left out: {reason_of(error)}")
+            return []
+        for each in inside:
+            if not isinstance(each, LaunchDescriptionEntity):
+                raise self._error(entity, f"an action is expected, got {type(each).__name__}")
+        self._note_file()
+        return inside
+
+    def _take(self, action: Action) -> None:
+        """Take over an action whose effect is beyond the context."""
+        if isinstance(action, ExecuteLocal):
+            self._start(action)
+        elif isinstance(action, TimerAction):
+            self.timers.append(action)
+        elif not isinstance(action, RegisterEventHandler):
+            self.other.append(action)
+
+    def _start(self, action: ExecuteLocal) -> None:
+        entry = self.maker.make(action, self.context)
+        if entry is None:
+            return
+        if action.on_exit is not None and not ends_launch(action.on_exit):
+            self.context.register_event_handler(OnProcessExit(target_action=action, on_exit=action.on_exit))
+        self.started.append(Started(action, entry))
+        if len(self.started) > limits.MOST_PROCESSES:
+            raise self._error(action, f"more than {limits.MOST_PROCESSES:,} processes")
+
+    def _note_file(self) -> None:
+        """Note the launch file that is being visited: it is one of those that `--watch` watches."""
+        path = self.context.get_locals_as_dict().get("current_launch_file_path")
+        if path is not None and Path(path) not in self.maker.files:
+            self.maker.files |= {Path(path)}
+
+    @contextmanager
+    def placing(self, entity: object) -> Iterator[None]:
+        """Turn any error of the block into a DocumentError at the line of the user's file that made `entity`."""
+        try:
+            yield
+        except Exception as error:  # noqa: BLE001 - the file is a program
+            raise as_document_error(error, self.place_of(entity)) from None
+        except SystemExit as error:
+            at = users_place(error) or self.place_of(entity)
+            raise DocumentError(f"it ends the program: sys.exit({error.code!r})", at.file, at.line) from None
+
+    def place_of(self, entity: object) -> Place:
+        """Return the place of the user's file at which an entity was made; the file as a whole if it is unknown."""
+        place: Place = getattr(entity, "place", Place())
+        return place if place.file else Place(str(self.context.get_locals_as_dict().get(_PATH, self.top)))
+
+    def say_at(self, entity: object, text: str) -> None:
+        """Add a line for people about an entity."""
+        self.context.said.append(f"{placed(self.place_of(entity))}{text}")
+
+    def _error(self, entity: object, message: str) -> DocumentError:
+        place = self.place_of(entity)
+        return DocumentError(message, place.file, place.line)
+
+
+_PATH = "current_launch_file_path"

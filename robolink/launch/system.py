@@ -1,0 +1,104 @@
+"""System of a launch file of any kind: robolink's own YAML, or ROS 2's Python, XML and YAML."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import NamedTuple
+
+from robolink.exceptions import DocumentError
+from robolink.launch.reading.arguments import ArgumentHelp
+from robolink.launch.reading.arguments import arguments_of as own_arguments_of
+from robolink.launch.reading.entries import read_launch_file, read_with_mistakes
+from robolink.launch.reading.entry import Entry
+from robolink.launch.reading.kinds import is_of_ros
+from robolink.launch.reading.record import record_of as own_record_of
+from robolink.workspace import Folder
+
+_NOTHING: Mapping[str, str] = MappingProxyType({})
+
+
+class System(NamedTuple):
+    """Result of reading a launch file."""
+
+    entries: list[Entry]
+    """Nodes and commands to start at once."""
+    notes: list[str] = []
+    """Lines for people: what is left out, and what the launch file itself wants to be printed."""
+
+
+def read_system(
+    path: str | os.PathLike[str], given: Mapping[str, str] = _NOTHING, *, workspace: Folder = None
+) -> System:
+    """Read a launch file of any kind.
+
+    Args:
+        path: The launch file.
+        given: Launch arguments by name, as people type them.
+        workspace: Folder in which the nodes of a launch file that is in no workspace are looked up.
+
+    Returns:
+        What it starts.
+
+    Raises:
+        DocumentError: for a mistake in the file, with `file:line`.
+        NotFoundError: for a `workspace` that is no folder.
+    """
+    path = Path(path)
+    if not is_of_ros(path):
+        return System(read_launch_file(path, given, workspace=workspace))
+    from robolink.launch.ros.reading import visited
+
+    visit = visited(path, given, workspace)
+    return System([each.entry for each in visit.started], visit.context.said)
+
+
+def read_system_with_mistakes(
+    path: str | os.PathLike[str], given: Mapping[str, str] = _NOTHING, *, workspace: Folder = None
+) -> tuple[System, list[DocumentError]]:
+    """Read a launch file as `read_system` does, but return its mistakes in place of raising them.
+
+    Args:
+        path: The launch file.
+        given: Launch arguments by name, as people type them.
+        workspace: As for `read_system`.
+    """
+    if not is_of_ros(Path(path)):
+        entries, mistakes = read_with_mistakes(path, given, workspace=workspace)
+        return System(entries), mistakes
+    try:
+        return read_system(path, given, workspace=workspace), []
+    except DocumentError as error:  # a program stops at its first one
+        return System([]), [error]
+
+
+def arguments_of(path: str | os.PathLike[str], *, workspace: Folder = None) -> list[ArgumentHelp]:
+    """Return the arguments of a launch file of any kind, in its order.
+
+    Args:
+        path: The launch file.
+        workspace: As for `read_system`.
+
+    Raises:
+        DocumentError: for a mistake in the file, with `file:line`.
+    """
+    if not is_of_ros(Path(path)):
+        return own_arguments_of(path)
+    from robolink.launch.ros import reading
+
+    return reading.arguments_of(Path(path), workspace)
+
+
+def record_of(path: str | os.PathLike[str], given: Mapping[str, str] = _NOTHING) -> str | None:
+    """Return the folder of the bag that a launch file asks for: '' for one by date, None for none.
+
+    Args:
+        path: The launch file.
+        given: Launch arguments by name, as people type them.
+
+    Raises:
+        DocumentError: for a mistake in the file, with `file:line`.
+    """
+    return None if is_of_ros(Path(path)) else own_record_of(path, given)

@@ -1,0 +1,132 @@
+"""Mistakes in ROS 2's launch files are one line, at the line of the user's own file."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robolink.companions.launch import LaunchContext
+from robolink.companions.launch.bases import LaunchError
+from robolink.companions.launch.frontend import parse_substitution
+from robolink.companions.launch.utilities import perform_substitutions
+from robolink.exceptions import DocumentError
+from tests.support.ros_launch import FIRST, read, write
+
+BODIES = [
+    ("raise KeyError('x')", 1, "KeyError: 'x'"),
+    ("import foo_bar", 1, "ModuleNotFoundError: No module named 'foo_bar'"),
+    ("from launch_ros.actions import Nod", 1, "robolink 0.1.0 has no launch_ros.actions.Nod (did you mean 'Node'?)"),
+    ("import sys; sys.exit(3)", 1, "it ends the program: sys.exit(3)"),
+    ("open(get_package_share_directory('nobody') + '/x')", 1, "package nobody is not here, and its x is needed"),
+    ("return [1]", None, "generate_launch_description() returned list, and a LaunchDescription was expected"),
+    ("return LaunchDescription(]", 1, "closing parenthesis ']' does not match opening parenthesis '('"),
+]
+ACTIONS = [
+    ("Node(package='bot', executable='talkr')", "no executable named 'talkr' in package bot (did you mean 'talker'?)"),
+    ("Node(package='bott', executable='x')", "no package named 'bott' (did you mean 'bot'?)"),
+    ("Node(executable='talker', paramters=[])", "Node has no argument 'paramters' (did you mean 'parameters'?)"),
+    ("GroupAction([], scopd=1)", "GroupAction has no argument 'scopd' (did you mean 'scoped'?)"),
+    ("LogInfo()", "LogInfo needs 'msg'"),
+    ("LogInfo(msg=LaunchConfiguration('a', defualt=1))", "LaunchConfiguration has no argument 'defualt' (did you mean"),
+    ("LogInfo(msg=LaunchConfiguration('a'))", "no launch argument is called 'a'"),
+    ("LogInfo(msg=PythonExpression(['1+']))", "the expression '1+' fails: SyntaxError: "),
+    ("LogInfo(msg=3)", "expected a text or a substitution, got int (3)"),
+    ("DeclareLaunchArgument('must')", "'must' must be given: must:=VALUE"),
+    ("DeclareLaunchArgument('a', default_value='x', choices=['y', 'z'])", "'a' is one of y, z, got 'x'"),
+    ("LogInfo(msg='', condition=IfCondition('maybe'))", "expected true, false, 1 or 0, got 'maybe'"),
+    ("IncludeLaunchDescription(ThisLaunchFile())", "a launch file cannot include itself: bot.launch.py -> bot."),
+    ("IncludeLaunchDescription([ThisLaunchFileDir(), '/b.launch.py'])", "there is no launch file {launch}/b.launch.py"),
+    ("OpaqueFunction(function=lambda context: ['x'])", "an action is expected, got str"),
+    ("OpaqueFunction(function=lambda context: 1 / 0)", "ZeroDivisionError: division by zero"),
+    ("ExecuteProcess(cmd='ls -l')", "cmd is a list of words, such as ['ls', '-l'], got the text 'ls -l'"),
+    ("Node(package='bot', executable='talker', name='a b')", "'a b' must not contain characters other than a-z"),
+    ("Node(package='bot', executable='talker', namespace='a b')", "'/a b' must not contain characters other than"),
+    ("Node(package='bot', executable='talker', parameters={})", "Node's parameters are a list, as in [{{}}]"),
+    ("Node(package='bot', executable='talker', parameters=[{'x': None}])", "parameter 'x': a parameter is a plain"),
+    ("Node(package='bot', executable='talker', parameters=[{'x': 2**70}])", "parameter 'x': 1180591620717411303424 is"),
+    ("Node(package='bot', executable='talker', remappings=['x'])", "a remapping is a pair of two names, got 'x'"),
+    ("Node(package='bot', executable='talker', respawn=True, respawn_delay='x')", "respawn_delay is a number of"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("body", "line", "text"), BODIES)
+def test_of_the_file(package: Path, body: str, line: int | None, text: str) -> None:
+    with pytest.raises(DocumentError) as caught:
+        read(package, f"def generate_launch_description():\n    {body}")
+    assert caught.value.file == str(package / "launch" / "bot.launch.py")
+    assert caught.value.line == (0 if line is None else FIRST + line)
+    assert caught.value.message == text
+
+
+@pytest.mark.parametrize(("action", "text"), ACTIONS)
+def test_of_an_action(package: Path, action: str, text: str) -> None:
+    with pytest.raises(DocumentError) as caught:
+        read(package, f"LogInfo(msg='fine'),\n{action},")
+    assert (caught.value.file, caught.value.line) == (str(package / "launch" / "bot.launch.py"), FIRST + 3)
+    assert caught.value.message.startswith(text.format(launch=package / "launch"))
+    assert "\n" not in str(caught.value)
+
+
+def test_what_never_ends(package: Path) -> None:
+    endless = """
+    def again(context):
+        return [OpaqueFunction(function=again)]
+
+    def generate_launch_description():
+        return LaunchDescription([OpaqueFunction(function=again)])
+    """
+    with pytest.raises(DocumentError, match=r"bot.launch.py:\d+: it never ends: more than 100,000 actions"):
+        read(package, endless)
+    with pytest.raises(DocumentError, match=r"bot.launch.py:\d+: it never ends: a function or a substitution calls"):
+        read(package, endless.replace("[OpaqueFunction(function=again)]\n\n", "again(context)\n\n"))
+    write(package, "IncludeLaunchDescription([ThisLaunchFileDir(), '/bot.launch.py'])", "other.launch.py")
+    with pytest.raises(DocumentError, match=r"include itself: bot.launch.py -> other.launch.py -> bot.launch.py"):
+        read(package, "IncludeLaunchDescription([ThisLaunchFileDir(), '/other.launch.py'])")
+    with pytest.raises(DocumentError, match="with each substitution performed this has more than 1,000,000"):
+        read(package, "LogInfo(msg=PythonExpression(\"'x' * 1000001\"))")
+
+
+TEXTS = [
+    ("plain", "plain"),
+    ("$(var a)/$(var  'a' )", "1/1"),
+    ("$(var none 'a b')", "a b"),
+    ("$(var none $(var a))", "1"),
+    (r"\$(var a)", "$(var a)"),
+    ("$(eval '$(var a) + 1')", "2"),
+    ("$(eval \"'x' + '$(var a)'\")", "x1"),
+    ("$(env NOT_SET_AT_ALL d)", "d"),
+    ("$(not $(eval 1==2))", "true"),
+    ("$", "$"),
+]
+WRONG_TEXTS = [
+    ("$(var", "'$(var' has no closing bracket"),
+    ("$(vra x)", "no substitution is called 'vra' (did you mean 'var'?)"),
+    ("$(var)", "$(var ...) takes 1 to 2 arguments, got 0: $(var)"),
+    ("$()", "'$()' names no substitution"),
+    ("$(var 'a)", "''a)' has no closing quote"),
+    ("$(var " * 60, "substitutions are nested over 50 deep"),
+]
+
+
+@pytest.mark.parametrize(("text", "value"), TEXTS)
+def test_substitutions_in_texts(text: str, value: str) -> None:
+    context = LaunchContext()
+    context.launch_configurations["a"] = "1"
+    assert perform_substitutions(context, parse_substitution(text)) == value
+
+
+@pytest.mark.parametrize(("text", "reason"), WRONG_TEXTS)
+def test_wrong_substitutions_in_texts(text: str, reason: str) -> None:
+    with pytest.raises(LaunchError) as caught:
+        parse_substitution(text)
+    assert str(caught.value) == reason
+
+
+@given(st.text(alphabet="$()'\" \\avrenv-", max_size=60))
+def test_any_text_is_read_or_refused(text: str) -> None:
+    with contextlib.suppress(LaunchError):
+        assert perform_substitutions(LaunchContext(), parse_substitution(text)) is not None

@@ -1,0 +1,77 @@
+"""ROS 2's launch files by the commands and in tests: launch, its options, simulate, and robolink.testing."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from robolink.cli.main import main
+from robolink.interfaces.std_msgs.msg import String
+from robolink.testing import System
+from tests.support.launched_systems import said
+from tests.support.ros_launch import write
+
+SYSTEM = """
+DeclareLaunchArgument("word", default_value=["hel", "lo"], description="The word."),
+DeclareLaunchArgument("more", choices=["a", "b"], default_value="a"),
+Node(package="rviz2", executable="rviz2"),
+Node(package="bot", executable="talker", namespace="r", parameters=[{"word": LaunchConfiguration("word")}]),
+"""
+
+
+def test_arguments_are_shown(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(package, SYSTEM)
+    code, out, err = said(capsys, "bot", "bot.launch.py", "--show-args")
+    assert (code, err) == (0, "")
+    assert out == "word  The word. (default: hello)\nmore  (default: a; one of a, b)\n"
+    assert json.loads(said(capsys, "bot", "bot", "-s", "--json")[1])[0]["default"] == "hello"
+
+
+@pytest.mark.processes
+def test_a_file_is_validated(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write(package, SYSTEM.replace('"word": L', '"wrd": L'))
+    code, out, err = said(capsys, str(path), "--validate")
+    line = path.read_text().partition("wrd")[0].count("\n") + 1
+    assert (code, out) == (1, f"{path}:{line}: 'r/talker' declares no parameter 'wrd' (did you mean 'word'?)\n")
+    assert "left out: rviz2 rviz2" in err
+    assert err.count("\n") == 1
+
+
+def test_a_system_in_virtual_time(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(package, SYSTEM)
+    assert main(["simulate", "bot", "bot.launch.py", "word:=ho", "--duration", "10", "--json"]) == 0
+    out, err = capsys.readouterr()
+    assert [(each["name"], each["state"]) for each in json.loads(out)["programs"]] == [("r/talker", "running")]
+    assert "left out: rviz2 rviz2" in err
+
+
+def test_a_system_under_test(package: Path, system: System) -> None:
+    system.launch(write(package, SYSTEM), arguments={"word": "hey"})
+    assert system.expect("/r/chatter", type=String).data == "hey"
+
+
+@pytest.mark.processes
+def test_a_system_of_processes(package: Path) -> None:
+    write(package, 'Node(package="bot", executable="once", on_exit=Shutdown(), parameters=[{"code": 3}]),' + SYSTEM)
+    command = [sys.executable, "-m", "robolink", "launch", "bot", "bot.launch.py"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 3
+    assert "left out: rviz2 rviz2" in done.stdout
+    assert "[launch] once ended with exit code 3" in done.stdout
+
+
+@pytest.mark.processes
+def test_our_own_files_need_none_of_it(package: Path) -> None:
+    file = package / "launch" / "own.yaml"
+    file.write_text("nodes: [node: bot talker]\n")
+    code = (
+        "import sys; from robolink.launch.system import read_system; import robolink.launch.command\n"
+        f"read_system({str(file)!r})\n"
+        "print([each for each in sys.modules if 'companions.launch' in each or each == 'robolink.launch.ros'])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
