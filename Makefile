@@ -5,13 +5,14 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 DEMO := $(VENV)/.demo
 READY := $(VENV)/.ready
+SITE := $(VENV)/.docs
 # Two cores for three processes: one of them waits for robots that drive for two minutes.
 PARALLEL ?= -n 3 --dist loadfile --no-loadscope-reorder
 
 # Compiled modules are kept, whatever the environment says: tests start robolink a few hundred times.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: help demo test fast check lint types floors coverage format pages bench hooks node clean
+.PHONY: help demo test docs fast check lint types floors coverage format pages bench hooks node clean
 
 help:  ## This list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/\1\t\2/p' $(MAKEFILE_LIST) | awk -F'\t' '{printf "make %-9s %s\n", $$1, $$2}'
@@ -58,6 +59,9 @@ format: $(READY)  ## Mend what ruff can mend
 pages: $(READY)  ## Write the generated pages of docs/development
 	$(BIN)/python tools/development_docs.py
 
+docs: $(SITE)  ## The documentation site, in English and Portuguese, into build/docs/site
+	$(BIN)/python -m tools.docs_site
+
 bench: $(READY)  ## Speed beside peers, in one run each
 	$(BIN)/python benchmarks/messaging.py --all --rounds 3 --seconds 0.3
 	$(BIN)/python benchmarks/commands.py
@@ -79,6 +83,9 @@ $(DEMO): pyproject.toml
 
 $(READY): pyproject.toml
 	@$(PYTHON) tools/make.py --venv $(VENV) install-test
+
+$(SITE): pyproject.toml
+	@$(PYTHON) tools/make.py --venv $(VENV) install-docs
 
 hooks: $(READY)  ## Have git run ruff before each commit
 	$(BIN)/pre-commit install

@@ -2,7 +2,8 @@
 
     python tools/make.py demo
     python tools/make.py test [ARGUMENTS OF PYTEST]...
-    python tools/make.py [--venv FOLDER] install-demo | install-test     the first half of each, for the Makefile
+    python tools/make.py docs
+    python tools/make.py [--venv FOLDER] install-demo | install-test | install-docs     the first half of each
 
 It runs with Python 3.6 and its standard library, so that whoever has an older Python than robolink needs is told so.
 """
@@ -21,7 +22,7 @@ EDITABLE_SINCE = (21, 3)
 """The pip that can install a pyproject.toml as editable; the first Pythons 3.10 brought an older one."""
 
 ROOT = Path(__file__).resolve().parent.parent
-USAGE = "usage: python tools/make.py demo | test"
+USAGE = "usage: python tools/make.py demo | test | docs"
 
 
 class Stage(NamedTuple):
@@ -35,10 +36,12 @@ class Stage(NamedTuple):
 STAGES: Dict[str, Stage] = {
     "demo": Stage(".demo", ".", "installing what it needs, some 160 MB"),
     "test": Stage(".ready", ".[dev]", "installing what it needs and its developers' tools, some 540 MB"),
+    "docs": Stage(".docs", ".[docs]", "installing what it needs and what builds the site, some 250 MB"),
 }
 INSTALLING = {"install-" + name: name for name in STAGES}
 COMMANDS: Dict[str, List[str]] = {
     "demo": ["-m", "robolink", "launch", "wander", "--view"],
+    "docs": ["-m", "tools.docs_site"],
     "test": ["-m", "pytest", "-n", "3", "--dist", "loadfile", "--no-loadscope-reorder"],
 }
 """What Python is given; the Makefile says the same."""

@@ -89,7 +89,7 @@ def svg(world: str, path: list[Point], beams: list[Point], at: Point) -> str:
     for x, y, radius in fixed_circles(description).reshape(-1, 3).tolist():
         centre = place(x, y).split(",")
         parts.append(f'<circle cx="{centre[0]}" cy="{centre[1]}" r="{radius * SCALE:.1f}" fill="#22303c"/>')
-    parts.append(line(path[::5], 'stroke="#1d7fbf" stroke-width="3" stroke-linejoin="round"'))
+    parts.append(line(path[:: max(1, len(path) // 400)], 'stroke="#1d7fbf" stroke-width="3" stroke-linejoin="round"'))
     centre = place(*at).split(",")
     radius = description.robots[0].shape.outer_radius() * SCALE
     parts.append(f'<circle cx="{centre[0]}" cy="{centre[1]}" r="{radius:.1f}" fill="#d1495b"/>')

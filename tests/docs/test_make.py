@@ -203,7 +203,7 @@ def test_an_older_python_can_read_it() -> None:
 def test_wrong_use_says_what_there_is(make: ModuleType, capsys: Captured) -> None:
     for words in (["tset"], [], ["install-install-demo"], ["--venv"]):
         assert make.main(words) == 2
-        assert capsys.readouterr().err == "usage: python tools/make.py demo | test\n"
+        assert capsys.readouterr().err == "usage: python tools/make.py demo | test | docs\n"
 
 
 # --- The Makefile -----------------------------------------------------------------------------------------------------
@@ -224,6 +224,7 @@ def test_the_makefile_says_the_same(make: ModuleType) -> None:
         ("demo", "install-demo", "robolink launch wander --view"),
         ("test", "install-test", "-k one"),
         ("lint", "install-test", "ruff format --check ."),
+        ("docs", "install-docs", "python -m tools.docs_site"),
     ],
 )
 def test_each_target_installs_only_what_it_needs(target: str, first: str, last: str, tmp_path: Path) -> None:
@@ -234,5 +235,6 @@ def test_each_target_installs_only_what_it_needs(target: str, first: str, last: 
     assert lines[-1].endswith(last)
     (tmp_path / ".demo").touch()
     (tmp_path / ".ready").touch()
+    (tmp_path / ".docs").touch()
     done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.splitlines() == lines[1:]

@@ -1,0 +1,153 @@
+"""The documentation site: the same pages and code in both languages, links that lead somewhere, short sentences."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from tools.docs_site.markdown import LINK, blocks, headings, outside_blocks, slugs
+from tools.docs_site.pages import DOCS, LANGUAGES, Page, pages
+from tools.docs_site.same_code import pairs
+
+PORTUGUESE = [other for _, other in pairs()]
+WRITTEN = [each for language in LANGUAGES for each in pages(language) if each.source and each.is_translated]
+LEARN = [each for each in WRITTEN if each.address.startswith("learn/")]
+ENGLISH_ONLY = {
+    "howto": {"behaviour_trees", "platforms", "ros2", "webots"},
+    "reference": {
+        "launch",
+        "simulator",
+        "simulate",
+        "testing",
+        "view",
+        "bags",
+        "camera",
+        "course_camera",
+        "networks",
+        "modules",
+        "rclpy",
+    },
+    "why": {"performance", "security"},
+}
+"""Pages that wait for their translation: the site's Portuguese half has them in English, with a note on top."""
+LONGEST = 30
+"""Words of a sentence."""
+
+
+def name_of(page: Page) -> str:
+    return f"{page.language}/{page.address}"
+
+
+def test_each_page_is_there_in_both_languages() -> None:
+    missing = [name_of(each) for each in pages("pt") if not each.is_translated]
+    named = [f"pt/{part}/{name}.md" for part, names in ENGLISH_ONLY.items() for name in names]
+    assert sorted(missing) == sorted(named)
+    assert [name_of(each) for each in WRITTEN if each.source and not each.source.is_file()] == []
+
+
+def test_each_file_is_on_the_site() -> None:
+    listed = {each.source for each in WRITTEN}
+    files = {file for language in LANGUAGES for file in (DOCS / language).rglob("*.md")}
+    assert files - listed == set()
+    assert set(DOCS.glob("*.md")) - listed == {DOCS / "course.md"}  # learn/ros2_course.md says it at more length
+
+
+@pytest.mark.parametrize("page", PORTUGUESE, ids=name_of)
+def test_both_languages_have_the_same_code_and_parts(page: Page) -> None:
+    english = next(each for each in pages("en") if each.address == page.address)
+    wanted = [(each.language, each.title, each.text) for each in blocks(english.text())]
+    found = [(each.language, each.title, each.text) for each in blocks(page.text())]
+    assert found == wanted, "run: python -m tools.docs_site same-code"
+    levels = [level for level, _ in headings(english.text())]
+    assert [level for level, _ in headings(page.text())] == levels
+    links = [[each[2] for each in LINK.findall(text)] for text in (english.text(), page.text())]
+    assert links[0] == links[1]
+
+
+@pytest.mark.parametrize("page", WRITTEN, ids=name_of)
+def test_its_links_lead_somewhere(page: Page) -> None:
+    assert page.source is not None
+    for _, _, target in LINK.findall(prose(page)):
+        name, _, anchor = target.partition("#")
+        if "://" in name:
+            continue
+        file = (page.source.parent / name).resolve() if name else page.source
+        assert file.exists(), f"{name_of(page)}: {target}"
+        if anchor:
+            assert anchor in slugs(file.read_text(encoding="utf-8")), f"{name_of(page)}: {target}"
+
+
+# What learn pages promise
+
+
+def prose(page: Page) -> str:
+    """The page without its blocks and comments."""
+    lines: list[str] = []
+
+    def keep(line: str) -> str:
+        lines.append("" if line.startswith("<!--") else line)
+        return line
+
+    outside_blocks(re.sub(r"^ *```.*?^ *```$", "```\n```\n\n", page.text(), flags=re.DOTALL | re.MULTILINE), keep)
+    return "\n".join(lines)
+
+
+def sentences(page: Page) -> list[str]:
+    """The sentences of a page; a line of a list or a table, and what follows a colon, is one of its own."""
+    text = re.sub(r"`[^`]*`", "code", prose(page))
+    paragraphs = re.split(r"\n\s*\n|\n(?=\s*(?:[-*|#]|\d+\.))", text)
+    return [each for part in paragraphs for each in re.split(r"(?<=[.!?:])\s+|\|", " ".join(part.split())) if each]
+
+
+@pytest.mark.parametrize("page", LEARN, ids=name_of)
+def test_its_sentences_are_short(page: Page) -> None:
+    long = [each for each in sentences(page) if len(re.findall(r"[\w'-]+", each)) > LONGEST]
+    assert long == []
+
+
+@pytest.mark.parametrize("page", LEARN, ids=name_of)
+def test_a_picture_stands_on_top(page: Page) -> None:
+    first = page.text().split("\n\n")[1]
+    assert re.fullmatch(r"!\[.+\]\(\.\./\.\./pictures/\w+\.(svg|png)\)", first)
+
+
+@cache
+def terms() -> list[dict[str, Any]]:
+    read: list[dict[str, Any]] = yaml.safe_load((DOCS / "terms.yaml").read_text(encoding="utf-8"))
+    return read
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("number", range(len(terms())), ids=lambda number: terms()[number]["en"])
+def test_a_term_is_explained_where_it_comes_first(number: int, language: str) -> None:
+    """Its first place, over all pages in their order, is in bold, and the sentence around it explains it."""
+    word = re.escape(terms()[number][language])
+    found = re.compile(rf"(?<![\w/*-])(\*\*)?{word}s?(?![\w-])", re.IGNORECASE)
+    learn = [each for each in LEARN if each.language == language]
+    for page in learn:
+        text = re.sub(r"`[^`]*`|\]\([^)]*\)|!\[[^\]]*\]", "", "\n".join(prose(page).splitlines()[1:]))
+        text = "\n".join(line for line in text.splitlines() if not line.startswith("#"))
+        if match := found.search(text):
+            assert match[1], f"{name_of(page)}: '{text[max(0, match.start() - 40) : match.end() + 40]}'"
+            return
+    pytest.fail(f"no page has it: {word}")
+
+
+def test_terms_are_all_that_is_in_bold() -> None:
+    for language in LANGUAGES:
+        text = "\n".join(prose(page) for page in LEARN if page.language == language)
+        bold = {each.lower() for each in re.findall(r"\*\*(.+?)\*\*", text)}
+        known = {each[language].lower() for each in terms()}
+        assert bold - known - {f"{each}s" for each in known} == set()
+
+
+def test_pictures_are_made_by_the_script() -> None:
+    from tools.docs_site.pictures import FOLDER, PICTURES
+
+    assert {each.stem for each in FOLDER.glob("*.svg")} == set(PICTURES)
+    assert {Path(each).suffix for each in FOLDER.iterdir()} <= {".svg", ".png"}

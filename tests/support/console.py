@@ -1,0 +1,50 @@
+"""Comparison of a command's output with what a page shows: wildcards, and numbers that each run has anew."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+STAMP = re.compile(r"\\\[\d+\\\.\d+\\\]")
+"""A log line's time stamp, in a pattern whose characters are escaped."""
+DECIMAL = re.compile(r"(?<![\w.])\d+\\\.\d+")
+
+
+def pattern_of(line: str, exact: bool) -> str:
+    """Return the regular expression of a shown line: `...` stands for anything, and a time stamp for any other.
+
+    Args:
+        line: What the page shows.
+        exact: False if any number with a point may stand where the page has one: a robot in real time is elsewhere.
+    """
+    escaped = re.escape(line.rstrip()).replace(r"\.\.\.", ".*")
+    escaped = STAMP.sub(r"\\[\\d+\\.\\d+\\]", escaped)
+    return escaped if exact else DECIMAL.sub(r"\\d+\\.\\d+(?:e-?\\d+)?", escaped)
+
+
+def stripped(lines: Sequence[str]) -> list[str]:
+    """Return lines without the empty ones at the end."""
+    return "\n".join(lines).rstrip("\n").split("\n")
+
+
+def fits(shown: Sequence[str], lines: Sequence[str], *, exact: bool = True, whole: bool = True) -> bool:
+    """Whether an output is what a page shows; a line of `...` alone stands for any lines, even none.
+
+    Args:
+        shown: Lines of the page.
+        lines: Lines of the output.
+        exact: See `pattern_of`.
+        whole: False if more may come before and after, as while a command runs.
+    """
+    wanted = ["..."] * (not whole) + stripped(shown) + ["..."] * (not whole)
+    lines = stripped(lines)
+    reached = {0}
+    for line in wanted:
+        if line.strip() == "...":
+            reached = set(range(min(reached), len(lines) + 1))
+            continue
+        pattern = re.compile(pattern_of(line, exact))
+        reached = {at + 1 for at in reached if at < len(lines) and pattern.fullmatch(lines[at].rstrip())}
+        if not reached:
+            return False
+    return len(lines) in reached

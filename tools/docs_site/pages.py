@@ -1,0 +1,59 @@
+"""List of the site's pages: where each one's text is, in each language, and its address on the site."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
+LIST = DOCS / "site.yaml"
+LANGUAGES = ("en", "pt")
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page in one language; `source` is None if it is generated."""
+
+    language: str
+    address: str
+    """Path on the site of its language: `learn/node.md`."""
+    source: Path | None
+    is_translated: bool = True
+    """False if the text is English on a Portuguese site."""
+
+    def text(self) -> str:
+        """Return the text as it is written."""
+        assert self.source is not None, f"{self.address} is generated"
+        return self.source.read_text(encoding="utf-8")
+
+
+def listing() -> dict[str, Any]:
+    """Return what docs/site.yaml says."""
+    read: dict[str, Any] = yaml.safe_load(LIST.read_text(encoding="utf-8"))
+    return read
+
+
+def pages(language: str) -> list[Page]:
+    """List the written pages of a language, the home page first, in the order of the menu."""
+    made = [Page(language, "index.md", DOCS / language / "index.md")]
+    for part, described in listing()["parts"].items():
+        for entry in described["pages"]:
+            name, source = next(iter(entry.items())) if isinstance(entry, dict) else (entry, None)
+            made.append(_page(language, f"{part}/{name}.md", source))
+    return made
+
+
+def _page(language: str, address: str, source: str | None) -> Page:
+    own = DOCS / language / address
+    if source is None or own.exists():
+        return Page(language, address, own)
+    return Page(language, address, ROOT / source, is_translated=language == "en")
+
+
+def addresses() -> dict[Path, str]:
+    """Return the address of each file that is a page, in whatever language."""
+    return {each.source: each.address for language in LANGUAGES for each in pages(language) if each.source}
