@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 from robolink.exceptions import NotFoundError
 from robolink.workspace.built_in import PACKAGE, built_in_workspace
-from robolink.workspace.packages import executable, executables
-from robolink.workspace.ros_programs import ros_program_error
+from robolink.workspace.installed import installed_executables
+from robolink.workspace.packages import compiled_executables, executable, executables, named
+from robolink.workspace.ros_programs import COMPILED, RosProgramError, ros_program_error
 from robolink.workspace.source import NodeSource, canonical
 
 
@@ -54,7 +55,9 @@ def source_of(package: str, name: str) -> NodeSource | None:
 
 
 def executable_of(package: str, name: str, folder: Path | None) -> NodeSource | None:
-    """Return the executable `name` of the package in `folder`, else its counterpart; None if there is neither.
+    """Return the executable `name` of a package in `folder`, else its counterpart, else one that was installed.
+
+    None if there is none of them.
 
     Args:
         package: Name of the package.
@@ -62,7 +65,7 @@ def executable_of(package: str, name: str, folder: Path | None) -> NodeSource | 
         folder: Folder of the user's own package of this name; None if there is none.
     """
     own = None if folder is None else executable(folder, name)
-    return own or source_of(package, name)
+    return own or source_of(package, name) or named(name, installed_executables(package))
 
 
 def lacking_executable(package: str, name: str, folder: Path | None) -> NotFoundError | None:
@@ -73,11 +76,14 @@ def lacking_executable(package: str, name: str, folder: Path | None) -> NotFound
         name: Name of the executable.
         folder: Folder of the user's own package of this name; None if there is none.
     """
-    known = [*(executables(folder) if folder is not None else ()), *counterparts_of(package)]
+    own = executables(folder) if folder is not None else installed_executables(package)
+    known = [*own, *counterparts_of(package)]
     if folder is None:
         of_ros = ros_program_error(package, name, by_package=not known)
         if of_ros is not None:
             return of_ros
+    elif canonical(name) in map(canonical, compiled_executables(folder)):
+        return RosProgramError(package, name, COMPILED)
     return NotFoundError("executable", name, known, f"package {package}") if known else None
 
 

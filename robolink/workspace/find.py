@@ -1,26 +1,33 @@
 """Look-up of nodes, launch files, worlds and packages by name.
 
 A workspace is a folder with two of `nodes/`, `configs/` and `interfaces/`, or a ROS 2 one: a folder whose `src/` holds
-packages, or, where there is neither, a lone package. A name is looked up (1) as a path, (2) in the nearest workspace:
-the one asked for, `ROBOLINK_WORKSPACE`, or the working directory's or a parent's (if it can be trusted: `trust`),
-(3) among the entry points `robolink.nodes` of installed packages, (4) in the workspace that comes with robolink.
-`_` and `-` in names are the same.
+packages, or, where there is neither, a clone of a repository with packages, a lone package, or a folder of some. A name
+is looked up (1) as a path, (2) in the nearest workspace: the one asked for, `ROBOLINK_WORKSPACE`, or the working
+directory's or a parent's (if it can be trusted: `trust`), (3) among the entry points `robolink.nodes` of installed
+packages, (4) in the workspace that comes with robolink. `_` and `-` in names are the same.
 """
 
 from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from robolink.exceptions import NotFoundError
 from robolink.system.paths import expanded
 from robolink.workspace.built_in import built_in_workspace
 from robolink.workspace.counterparts import COUNTERPARTS, executable_of, lacking_executable
-from robolink.workspace.packages import BUILT_IN, is_ros_workspace, named_executables, source_packages
+from robolink.workspace.packages import (
+    BUILT_IN,
+    PARTS,
+    is_repository,
+    is_ros_workspace,
+    named_executables,
+    source_packages,
+)
 from robolink.workspace.source import Folder, NodeSource, canonical
-from robolink.workspace.trust import is_trusted
+from robolink.workspace.trust import is_trusted, why_not
 
 VARIABLE = "ROBOLINK_WORKSPACE"
 """Environment variable with the folder of the user's workspace."""
@@ -30,7 +37,6 @@ YAML = (".yaml", ".yml")
 LAUNCHES = (*YAML, ".py", ".xml", ".launch")
 """Suffixes of launch files, robolink's own and those of ROS 2, which are found by their paths only."""
 WORLDS = (*YAML, ".wbt")
-PARTS = ("nodes", "configs", "interfaces")
 
 
 def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
@@ -211,14 +217,27 @@ def workspace_of(path: Path) -> Path | None:
     """Return the nearest folder at or above `path` that is a workspace; None, with a warning, if it is not trusted."""
     path = path.resolve()
     above = (path, *path.parents)
-    nearest_one = next((each for each in above if _is_workspace(each)), None)
-    found = nearest_one or next((each for each in above if (each / "package.xml").is_file()), None)
+    found = next((each for each in above if _is_workspace(each)), None) or _repository(above)
     return found if found is None or found == built_in_workspace() or is_trusted(found) else None
 
 
 def _is_workspace(folder: Path) -> bool:
     # One of them alone means nothing: many a folder has a `configs/`.
     return sum((folder / part).is_dir() for part in PARTS) >= 2 or is_ros_workspace(folder)
+
+
+def _repository(above: Sequence[Path]) -> Path | None:
+    """Return the clone of a repository with packages at or above a path; else the package there, or the folder of some.
+
+    `above` are the path and its parents.
+    """
+    package = next((each for each in above if (each / "package.xml").is_file()), None)
+    clone = next((each for each in above if (each / ".git").exists()), None)
+    if clone is not None and (package is None or clone in package.parents) and is_repository(clone):
+        return clone
+    if package is not None:
+        return package
+    return above[0] if is_repository(above[0]) and not why_not(above[0]) else None
 
 
 def _workspaces(workspace: Folder) -> list[Path]:

@@ -236,7 +236,7 @@ def _reach_all(source: NodeSource) -> None:
     assert source.path is not None
     if source.module and source.root is not None:
         _forget_others(source.module.partition(".")[0], source.root)
-    _reach(source.path.parent, source.root if source.module else None)
+    _reach(source.path.parent, source.root)
 
 
 def _reach(folder: Path, root: Path | None = None) -> None:

@@ -3,7 +3,7 @@
 A package is one of these, in the order in which a name is looked for:
 
 1. a folder below a workspace's `src/` that holds a `package.xml` (its <name> counts) or a `setup.py` (then the
-   folder's name), as `ros2 pkg create` makes it; or that lone folder itself, when one stands in it;
+   folder's name), as `ros2 pkg create` makes it; without a `src/` that lone folder itself, or those in a repository;
 2. the workspace itself, by the name of its folder;
 3. `robolink`: what comes with it.
 
@@ -14,8 +14,9 @@ module folder and of its `nodes/`, by their names without `.py`. `_` and `-` in 
 from __future__ import annotations
 
 import contextlib
+import itertools
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from robolink.workspace.source import NodeSource, canonical
@@ -26,8 +27,14 @@ DEEPEST = 8
 """Upper bound of the folders between `src/` and a package's own."""
 MOST = 2000
 """Upper bound of the folders that are searched: a `src/` that has more is no workspace's."""
+MOST_BESIDE = 100
+"""Upper bound of the folders in which packages are looked for where nothing shows that there are any."""
+PARTS = ("nodes", "configs", "interfaces")
+"""Folders of which a workspace of robolink's own has two."""
 IGNORE = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 """Names of the marker files of folders that are no packages."""
+_NO_MODULES = ("launch", "test", "tests", "scripts")
+"""Folders of modules that no other package imports by these names."""
 _NO_PACKAGES = ("build", "install", "log", "node_modules", "__pycache__")
 
 _known: dict[Path, tuple[dict[Path, int], dict[str, Path]]] = {}
@@ -43,9 +50,12 @@ def source_packages(top: Path) -> dict[str, Path]:
     if not seen or any(_changed(path) != at for path, at in seen.items()):
         seen, found = {path: _changed(path) for path in (top, top / "package.xml")}, {}
         for each in _packages_below(top / "src", seen):
-            found.setdefault(_name_of(each), each)
+            found.setdefault(package_name_of(each), each)
         if not found and _is_package(top):
-            found[_name_of(top)] = top
+            found[package_name_of(top)] = top
+        if not found and not any((top / part).is_dir() for part in PARTS):
+            for each in _packages_below(top, seen):
+                found.setdefault(package_name_of(each), each)
         _known[top] = seen, found
     return found
 
@@ -65,6 +75,15 @@ def is_ros_workspace(folder: Path) -> bool:
     return any((each / "package.xml").is_file() for each in source_packages(folder).values() if each != folder)
 
 
+def is_repository(folder: Path) -> bool:
+    """True if a `folder` without a `src/` has packages in it, at most two deep where it is no clone of a repository."""
+    if (folder / ".git").exists():
+        return any((each / "package.xml").is_file() for each in source_packages(folder).values())
+    inside = _folders_in(folder)[:MOST_BESIDE]
+    below = itertools.islice((each for folder in inside for each in _folders_in(folder)), MOST_BESIDE)
+    return any((each / "package.xml").is_file() for each in (*inside, *below))
+
+
 def unmarked_package(name: str, top: Path) -> Path | None:
     """Return the folder that would be the package `name` but for its package.xml: `top`, or in it or its `src/`."""
     with contextlib.suppress(OSError):  # the working directory has been deleted, or may not be read
@@ -80,14 +99,15 @@ def _is_marked(folder: Path) -> bool:
 
 def executables(folder: Path) -> dict[str, NodeSource]:
     """Return the executables of the package in `folder`: name to source."""
-    from robolink.workspace.setup_files import console_scripts, installed_scripts  # late: most runs read no setup.py
+    from robolink.workspace.cmake_files import CMakeFile  # late: most runs read neither
+    from robolink.workspace.setup_files import console_scripts
 
     found = {path.stem: NodeSource(path.stem, path) for path in _public(folder / "nodes")}
     for module_folder in _module_folders(folder):
         for path in _public(module_folder):
             module = f"{module_folder.name}.{path.stem}"
             found[path.stem] = NodeSource(path.stem, path, module=module, root=module_folder.parent)
-    for name, path in installed_scripts(folder).items():
+    for name, path in CMakeFile(folder).scripts().items():
         found[name] = NodeSource(name, path)
     for name, (module, function) in console_scripts(folder).items():
         root, path = _file_of(folder, module)
@@ -97,9 +117,14 @@ def executables(folder: Path) -> dict[str, NodeSource]:
 
 def executable(folder: Path, name: str) -> NodeSource | None:
     """Return the executable `name` of the package in `folder`, None if it has none."""
-    known = executables(folder)
-    asked = canonical(name)
-    return known.get(name) or next((known[each] for each in known if canonical(each) == asked), None)
+    return named(name, executables(folder))
+
+
+def named(name: str, known: Mapping[str, NodeSource]) -> NodeSource | None:
+    """Return that of the `known` executables which is called `name`, with or without .py; None if there is none."""
+    asked = canonical(name.removesuffix(".py"))
+    found = (known[each] for each in known if canonical(each.removesuffix(".py")) == asked)
+    return known.get(name) or next(found, None)
 
 
 def named_executables(folder: Path) -> list[NodeSource]:
@@ -110,7 +135,20 @@ def named_executables(folder: Path) -> list[NodeSource]:
 
 def import_roots(folder: Path) -> list[Path]:
     """Return the folders that must be on `sys.path` for a package's modules to be imported by their names."""
-    return list(dict.fromkeys(each.parent for each in _module_folders(folder)))
+    modules = [each.parent for each in _module_folders(folder)]
+    beside = [each for each in (folder, folder / "src") if any(_is_module(inside) for inside in _folders_in(each))]
+    return list(dict.fromkeys([*modules, *beside]))
+
+
+def compiled_executables(folder: Path) -> list[str]:
+    """Return the names of the executables that the CMakeLists.txt in `folder` would compile."""
+    from robolink.workspace.cmake_files import CMakeFile
+
+    return CMakeFile(folder).compiled
+
+
+def _is_module(folder: Path) -> bool:
+    return folder.name.isidentifier() and folder.name not in _NO_MODULES and (folder / "__init__.py").is_file()
 
 
 def _packages_below(top: Path, seen: dict[Path, int]) -> Iterator[Path]:
@@ -149,7 +187,8 @@ def _is_package(folder: Path) -> bool:
     return has and not any((folder / mark).exists() for mark in IGNORE)
 
 
-def _name_of(folder: Path) -> str:
+def package_name_of(folder: Path) -> str:
+    """Return the name of the package in `folder`: that of its package.xml, else the folder's."""
     from robolink.workspace.setup_files import package_name
 
     return package_name(folder) or folder.name
@@ -157,7 +196,7 @@ def _name_of(folder: Path) -> str:
 
 def _module_folders(folder: Path) -> list[Path]:
     """Return the folder of a package's modules: it has the package's name, and stands in the package or in its src/."""
-    names = {canonical(_name_of(folder)), canonical(folder.name)}
+    names = {canonical(package_name_of(folder)), canonical(folder.name)}
     inside = [each for each in (*_folders_in(folder), *_folders_in(folder / "src")) if canonical(each.name) in names]
     return [each for each in inside if (each / "__init__.py").is_file() or any(_public(each))]
 

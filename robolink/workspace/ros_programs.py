@@ -20,6 +20,8 @@ _DRIVER = f"driver of a device, in C++; {_THERE}"
 _CAMERA = f"driver of a camera, in C++; some lines with cv2.VideoCapture and cv_bridge do the same, else {_THERE}"
 _MAPS = f"makes maps, in C++; {_THERE}"
 
+COMPILED = f"its package's CMakeLists.txt compiles it, and robolink runs Python; {_THERE}"
+"""Advice for a program in C++ of a user's own package."""
 PROGRAMS = {
     ("demo_nodes_py", "talker"): "'robolink pub /chatter String \"{data: hello}\"' publishes as it does",
     ("demo_nodes_cpp", "talker"): "'robolink pub /chatter String \"{data: hello}\"' publishes as it does",

@@ -17,7 +17,8 @@ Folder: TypeAlias = "str | os.PathLike[str] | None"
 class NodeSource:
     """Source of a node, `name`: the file `path` and its `attribute` ('' for the only node), or an `entry_point`.
 
-    A file of a package is imported as `module`, with `root` on `sys.path`, so that it can import its neighbours.
+    A file of a package is imported as `module`, with `root` on `sys.path`, so that it can import its neighbours. A file
+    without a `module` may have a `root`, too.
     """
 
     name: str

@@ -270,3 +270,46 @@ def test_they_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
         "pkg_a": ["first"],
         "pkg_b": ["run"],
     }
+
+
+# --- repositories -----------------------------------------------------------------------------------------------
+
+
+def packages_of(here: Path) -> tuple[Path | None, list[str]]:
+    found = workspace_of(here)
+    return found, [] if found is None else list(source_packages(found))
+
+
+def test_a_clone_of_packages_without_src_works_from_its_own_folder(tmp_path: Path) -> None:
+    clone = tmp_path.resolve() / "robot_ros2"
+    for place, name in (("", "robot_bringup"), ("", "robot_description"), ("drivers/deep", "robot_driver")):
+        write_package(clone / place, name, {"a.py": ""})
+    (clone / "drivers/off").mkdir()
+    (clone / "drivers/off/AMENT_IGNORE").touch()
+    write_package(clone / "drivers/off", "robot_off", {})
+    (clone / ".git").mkdir()
+    names = ["robot_bringup", "robot_description", "robot_driver"]
+    for here in ("", "drivers", "drivers/deep", "robot_bringup", "robot_bringup/robot_bringup"):
+        assert packages_of(clone / here) == (clone, names)
+
+
+def test_a_clone_that_is_one_package_works_from_its_own_folder(tmp_path: Path) -> None:
+    clone = write_package(tmp_path.resolve(), "robot_one", {"a.py": ""})
+    (clone / ".git").mkdir()
+    assert packages_of(clone / "robot_one") == (clone, ["robot_one"])
+
+
+def test_a_folder_of_packages_is_a_workspace_where_one_stands_in_it(tmp_path: Path) -> None:
+    folder = tmp_path.resolve()
+    write_package(folder / "a", "robot_two", {"a.py": ""})
+    assert packages_of(folder) == (folder, ["robot_two"])
+    assert packages_of(folder / "a") == (folder / "a", ["robot_two"])
+    (folder / "other/project").mkdir(parents=True)
+    assert packages_of(folder / "other/project") == (None, [])
+
+
+def test_a_clone_of_any_python_project_is_no_workspace(tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "setup.py").touch()
+    (tmp_path / "docs").mkdir()
+    assert packages_of(tmp_path) == (None, [])

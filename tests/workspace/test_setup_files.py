@@ -14,13 +14,11 @@ from robolink.cli.running_nodes.run import part
 from robolink.exceptions import RobolinkError
 from robolink.workspace import (
     VARIABLE,
-    NodeSource,
-    executable,
     executables,
     find_node,
 )
 from robolink.workspace.packages import import_roots
-from robolink.workspace.setup_files import _pyproject, _setup_cfg, _setup_py, console_scripts, installed_scripts
+from robolink.workspace.setup_files import _pyproject, _setup_cfg, _setup_py, console_scripts
 from tests.support.ros_tree import write_package
 
 
@@ -51,18 +49,6 @@ def test_other_places_that_name_them(tmp_path: Path) -> None:
     )
     found = {"a": ("m.n", "main"), "b": ("m.o", "run"), "c": ("m.p", "main"), "d-e": ("m.q", "main")}
     assert console_scripts(tmp_path) == found
-
-
-def test_scripts_that_cmake_installs(tmp_path: Path) -> None:
-    (tmp_path / "scripts").mkdir()
-    for name in ("drive.py", "turn.py", "tool.sh"):
-        (tmp_path / "scripts" / name).touch()
-    (tmp_path / "CMakeLists.txt").write_text(
-        "project(x)\n# install(PROGRAMS scripts/turn.py DESTINATION lib/x)\n"
-        "install(PROGRAMS\n  scripts/drive.py scripts/tool.sh scripts/gone.py\n  DESTINATION lib/${PROJECT_NAME}\n)\n"
-    )
-    assert installed_scripts(tmp_path) == {"drive.py": tmp_path / "scripts/drive.py"}
-    assert executable(tmp_path, "drive.py") == NodeSource("drive.py", tmp_path / "scripts/drive.py")
 
 
 def test_modules_may_lie_in_src_within_the_package(tmp_path: Path) -> None:

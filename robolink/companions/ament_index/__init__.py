@@ -3,8 +3,9 @@
 A package is what `robolink run PACKAGE EXECUTABLE` takes for one (see `robolink.workspace.packages`): a folder below
 the `src/` of the workspace, the workspace itself by its folder's name, `robolink`. Nothing is built or installed, so
 the **share directory of a package is its own folder**: `launch/`, `config/` and `urdf/` lie there as they would after
-`setup.py` has copied them to share/PACKAGE. A package that has only types, such as geometry_msgs, has the folder of
-its module. After these, the folders of AMENT_PREFIX_PATH are searched, as in ROS 2.
+`setup.py` has copied them to share/PACKAGE. Where it gives them other names or places, it is a folder of links that has
+both (see `robolink.workspace.share`). A package that has only types, such as geometry_msgs, has the folder of its
+module. After these, the folders of AMENT_PREFIX_PATH are searched, as in ROS 2.
 """
 
 from robolink.companions.ament_index.constants import RESOURCE_INDEX_SUBFOLDER

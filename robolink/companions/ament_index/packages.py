@@ -11,12 +11,15 @@ from collections.abc import Iterator
 from contextvars import ContextVar
 from pathlib import Path
 
-from robolink.companions.ament_index.constants import RESOURCE_INDEX_SUBFOLDER
 from robolink.companions.ament_index.search_paths import get_search_paths
 from robolink.exceptions import MessageError, NotFoundError
 from robolink.interfaces import KINDS
 from robolink.interfaces._standard import STANDARD
+from robolink.workspace.built_in import PACKAGE
+from robolink.workspace.counterparts import COUNTERPARTS
 from robolink.workspace.find import find_package, list_packages
+from robolink.workspace.installed import installed_packages
+from robolink.workspace.share import share_directory
 
 NOT_HERE = Path(os.path.abspath(os.sep)) / "package-not-here"  # noqa: PTH100 - on Windows with its drive
 """Folder, which does not exist, of packages that are not here, while `packages_may_lack`."""
@@ -37,8 +40,8 @@ class PackageNameError(MessageError):
 
 def get_packages_with_prefixes() -> dict[str, str]:
     """Return all packages: name to prefix (see `get_package_prefix`)."""
-    folders = {**_standard(), **list_packages()}
-    return {**_installed(), **{name: str(folder) for name, folder in folders.items()}}
+    folders = {**_standard(), **_counterparts(), **list_packages()}
+    return {**installed_packages(), **{name: str(folder) for name, folder in folders.items()}}
 
 
 def get_package_prefix(package_name: str) -> str:
@@ -47,13 +50,14 @@ def get_package_prefix(package_name: str) -> str:
     Raises PackageNotFoundError (a KeyError), and PackageNameError (a ValueError) for an invalid name.
     """
     folder = _folder(package_name)
-    return str(folder) if folder is not None else _installed()[package_name]
+    return str(folder) if folder is not None else installed_packages()[package_name]
 
 
 def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
     """Return the folder of a package's files: the package's own (see `robolink.companions.ament_index`).
 
-    Of a package that was built and installed it is PREFIX/share/NAME.
+    Where the package installs files elsewhere, it is a folder of links to its files (`robolink.workspace.share`). Of a
+    package that was built and installed it is PREFIX/share/NAME.
 
     Args:
         package_name: Name of the package.
@@ -65,8 +69,8 @@ def get_package_share_directory(package_name: str, print_warning: bool = True) -
     """
     folder = _folder(package_name)
     if folder is not None:
-        return str(folder)
-    path = Path(_installed()[package_name]) / "share" / package_name
+        return str(share_directory(folder))
+    path = Path(installed_packages()[package_name]) / "share" / package_name
     if print_warning and not path.exists():
         warnings.warn(f"the share directory of {package_name}, {path}, does not exist", stacklevel=2)
     return str(path)
@@ -105,8 +109,8 @@ def _folder(name: str) -> Path | None:
     """Return the folder of a package that was not installed; None for one that was. Raises if there is none."""
     if _NAME.fullmatch(name) is None:
         raise PackageNameError(f"'{name}' is not a valid package name")
-    found = find_package(name) or _standard().get(name)
-    if found is None and name not in _installed():
+    found = find_package(name) or _standard().get(name) or _counterparts().get(name)
+    if found is None and name not in installed_packages():
         if _may_lack.get():
             return NOT_HERE / name
         where = [str(each) for each in dict.fromkeys(list_packages().values())][:3]
@@ -124,13 +128,7 @@ def _standard() -> dict[str, Path]:
     return {package: folder / package for kind in KINDS for package in STANDARD[kind]}
 
 
-def _installed() -> dict[str, str]:
-    """Return the packages in ROS 2's index: name to prefix."""
-    found: dict[str, str] = {}
-    for prefix in get_search_paths():
-        index = Path(prefix) / RESOURCE_INDEX_SUBFOLDER / "packages"
-        if index.is_dir():
-            for each in sorted(index.iterdir()):
-                if each.is_file() and not each.name.startswith("."):
-                    found.setdefault(each.name, prefix)
-    return found
+def _counterparts() -> dict[str, Path]:
+    """Return the ROS packages that have counterparts here, each with the folder of these."""
+    folder = PACKAGE / "counterparts"
+    return {package: folder / package if (folder / package).is_dir() else folder for package in COUNTERPARTS}

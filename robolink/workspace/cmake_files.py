@@ -1,0 +1,135 @@
+"""Parser of a package's CMakeLists.txt for what it installs. Nothing is run: `if` and `foreach` are not followed.
+
+Variables are known if the file sets them: `set`, `list(APPEND)`, `file(GLOB)`, and the names of CMake for the package's
+folder and name.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from robolink.system.plainfile import read_plain
+from robolink.workspace.literals import MOST_FILES
+
+LONGEST = 200_000
+"""Largest file that is read, in bytes."""
+MOST = 2000
+"""Upper bound of the commands and of the words of a command that are read."""
+
+_COMMAND = re.compile(r"([A-Za-z_]\w*)\s*\(((?:[^()\"]|\"(?:[^\"\\]|\\.)*\")*)\)")
+_COMMENT = re.compile(r"(\"(?:[^\"\\]|\\.)*\")|#[^\n]*")
+_WORD = re.compile(r"\"((?:[^\"\\]|\\.)*)\"|([^\s\"]+)")
+_VARIABLE = re.compile(r"\$\{(\w+)\}")
+_KEYWORD = re.compile(
+    "DESTINATION|RENAME|PERMISSIONS|USE_SOURCE_PERMISSIONS|PATTERN|REGEX|FILES_MATCHING|EXCLUDE|OPTIONAL|COMPONENT|TYPE|"
+    "CONFIGURATIONS|RUNTIME|LIBRARY|ARCHIVE|EXPORT|INCLUDES|FILE_PERMISSIONS|DIRECTORY_PERMISSIONS"
+)
+_FOLDERS = ("CMAKE_CURRENT_SOURCE_DIR", "CMAKE_SOURCE_DIR", "PROJECT_SOURCE_DIR", "CMAKE_CURRENT_LIST_DIR")
+
+
+@dataclass(frozen=True)
+class Install:
+    """An `install(...)`: its `kind` (PROGRAMS, FILES, DIRECTORY, TARGETS), `sources`, `destination` and new name."""
+
+    kind: str
+    sources: list[str]
+    destination: str
+    rename: str = ""
+
+
+class CMakeFile:
+    """CMakeLists.txt of the package in `folder`; empty if there is none."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._variables = {name: ["."] for name in _FOLDERS}
+        self.installs: list[Install] = []
+        self.compiled: list[str] = []
+        """Names of the executables that are compiled."""
+        text = _COMMENT.sub(lambda match: match[1] or "", _read(folder / "CMakeLists.txt"))
+        for command in itertools.islice(_COMMAND.finditer(text), MOST):
+            self._run(command[1].lower(), self._words(command[2]))
+
+    def scripts(self) -> dict[str, Path]:
+        """Return the Python programs that are installed: name to file."""
+        found: dict[str, Path] = {}
+        for each in self.installs:
+            if each.destination.startswith("lib/") and each.kind in ("PROGRAMS", "FILES", "DIRECTORY"):
+                for path in self._files(each):
+                    if is_python(path):
+                        found.setdefault(each.rename or path.name, path)
+        return dict(itertools.islice(found.items(), MOST))
+
+    def _files(self, install: Install) -> Iterator[Path]:
+        for each in install.sources:
+            path = self._folder / each
+            if install.kind == "DIRECTORY":
+                yield from sorted(found for found in itertools.islice(path.rglob("*"), MOST) if found.is_file())
+            elif path.is_file():
+                yield path
+
+    def _run(self, command: str, words: list[str]) -> None:
+        match command, words:
+            case "project", [name, *_]:
+                self._variables["PROJECT_NAME"] = self._variables["CMAKE_PROJECT_NAME"] = [name]
+            case "set", [name, *values]:
+                self._variables[name] = values
+            case "list", ["APPEND", name, *values]:
+                self._variables[name] = [*self._variables.get(name, []), *values][:MOST]
+            case "file", ["GLOB" | "GLOB_RECURSE" as kind, name, *patterns]:
+                self._variables[name] = list(self._globbed(patterns, kind == "GLOB_RECURSE"))
+            case "install", [kind, *rest]:
+                self.installs.append(_install(kind, rest))
+            case "add_executable", [name, *_]:
+                self.compiled.append(name)
+            case "rclcpp_components_register_node", _ if "EXECUTABLE" in words[:-1]:
+                self.compiled.append(words[words.index("EXECUTABLE") + 1])
+
+    def _globbed(self, patterns: list[str], recursive: bool) -> Iterator[str]:
+        for each in patterns:
+            if not each.startswith("/") and ".." not in each.split("/"):
+                with contextlib.suppress(ValueError, NotImplementedError):  # no pattern at all
+                    found = self._folder.rglob(each) if recursive else self._folder.glob(each)
+                    listed = itertools.islice(found, MOST_FILES)
+                    yield from sorted(path.relative_to(self._folder).as_posix() for path in listed)
+
+    def _words(self, text: str) -> list[str]:
+        """Return the words of a command, with the values of variables; unknown ones are left out."""
+        words: list[str] = []
+        for quoted, plain in itertools.islice(_WORD.findall(text), MOST):
+            whole = _VARIABLE.fullmatch(plain)
+            if whole is not None:
+                words += self._variables.get(whole[1], [])
+            else:
+                words.append(_VARIABLE.sub(lambda match: ";".join(self._variables.get(match[1], [])), quoted or plain))
+        return [each.removeprefix("./") for each in words[:MOST]]
+
+
+def _install(kind: str, words: list[str]) -> Install:
+    end = next((index for index, each in enumerate(words) if _KEYWORD.fullmatch(each)), len(words))
+    options = dict(zip(words[end:], words[end + 1 :], strict=False))
+    return Install(kind, words[:end], options.get("DESTINATION", "").rstrip("/"), options.get("RENAME", ""))
+
+
+def is_python(path: Path) -> bool:
+    """True if the file `path` has the suffix .py, or if its first line names Python."""
+    if path.suffix == ".py":
+        return not path.name.startswith("__")
+    try:
+        with path.open("rb") as file:
+            first = file.readline(200)
+    except OSError:
+        return False
+    return first.startswith(b"#!") and b"python" in first
+
+
+def _read(path: Path) -> str:
+    try:
+        return read_plain(path, LONGEST).decode("utf-8-sig", errors="replace")
+    except (OSError, ValueError):
+        return ""

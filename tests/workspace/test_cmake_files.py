@@ -1,0 +1,109 @@
+"""A package's CMakeLists.txt is read for what it installs, and never run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robolink.exceptions import NotFoundError
+from robolink.workspace import NodeSource, RosProgramError, executable, find_executable
+from robolink.workspace.cmake_files import CMakeFile
+
+SCRIPTS = {"drive.py": "", "turn.py": "", "tool.sh": "#!/bin/sh\n", "look": "#!/usr/bin/env python3\n", "data": "x"}
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """A package in CMake with some files in `scripts/`."""
+    (tmp_path / "scripts").mkdir()
+    for name, text in SCRIPTS.items():
+        (tmp_path / "scripts" / name).write_text(text)
+    (tmp_path / "package.xml").write_text("<package><name>mixed</name></package>")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("install(PROGRAMS\n  scripts/drive.py scripts/tool.sh scripts/gone.py\n DESTINATION lib/mixed)", "drive.py"),
+        (
+            "# install(PROGRAMS scripts/drive.py DESTINATION lib/x)\nINSTALL(PROGRAMS scripts/look DESTINATION lib/x)",
+            "look",
+        ),
+        ('project(m)\ninstall(PROGRAMS "scripts/drive.py" DESTINATION "lib/${PROJECT_NAME}" RENAME drive)', "drive"),
+        ("set(ALL scripts/drive.py scripts/turn.py)\ninstall(PROGRAMS ${ALL} DESTINATION lib/m)", "drive.py turn.py"),
+        ("file(GLOB ALL scripts/*.py)\ninstall(PROGRAMS ${ALL} DESTINATION lib/m)", "drive.py turn.py"),
+        (
+            "set(A)\nlist(APPEND A ${CMAKE_SOURCE_DIR}/scripts/turn.py)\ninstall(PROGRAMS ${A} DESTINATION lib/m)",
+            "turn.py",
+        ),
+        ("install(DIRECTORY scripts/ DESTINATION lib/m USE_SOURCE_PERMISSIONS)", "drive.py look turn.py"),
+        ("install(PROGRAMS scripts/drive.py DESTINATION share/m)", ""),
+        ("install(PROGRAMS ${unknown} DESTINATION lib/m)\ninstall(\n", ""),
+    ],
+)
+def test_python_programs_that_are_installed(package: Path, text: str, names: str) -> None:
+    (package / "CMakeLists.txt").write_text(text)
+    found = CMakeFile(package).scripts()
+    assert sorted(found) == names.split()
+    assert all(each.is_file() for each in found.values())
+
+
+def test_they_are_executables_with_and_without_their_suffix(package: Path) -> None:
+    (package / "CMakeLists.txt").write_text("install(PROGRAMS scripts/drive.py DESTINATION lib/${PROJECT_NAME})")
+    assert executable(package, "drive.py") is None  # project() is missing: nobody knows where it goes
+    (package / "CMakeLists.txt").write_text(
+        "project(mixed)\ninstall(PROGRAMS scripts/drive.py DESTINATION lib/${PROJECT_NAME})"
+    )
+    source = NodeSource("drive.py", package / "scripts/drive.py")
+    assert executable(package, "drive.py") == executable(package, "drive") == source
+
+
+def test_what_is_compiled_is_named(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(package)
+    (package / "CMakeLists.txt").write_text(
+        "project(mixed)\nadd_executable(talker src/talker.cpp)\nadd_library(a src/a.cpp)\n"
+        'rclcpp_components_register_node(a PLUGIN "m::A" EXECUTABLE listener)\n'
+    )
+    assert CMakeFile(package).compiled == ["talker", "listener"]
+    with pytest.raises(RosProgramError, match=r"mixed talker is not here: its package's CMakeLists\.txt compiles it"):
+        find_executable("mixed", "talker")
+    with pytest.raises(NotFoundError, match="no executable named 'speaker' in package mixed"):
+        find_executable("mixed", "speaker")
+
+
+PIECES = [
+    "install(",
+    "PROGRAMS ",
+    "file(GLOB x ",
+    "*",
+    "**",
+    "../",
+    "/",
+    ")",
+    '"',
+    "#",
+    "\n",
+    "${x}",
+    "set(x ",
+    "\\",
+    "[",
+]
+
+
+@given(st.lists(st.sampled_from(PIECES) | st.text(max_size=4), max_size=40))
+def test_any_text_is_read(tmp_path_factory: pytest.TempPathFactory, pieces: list[str]) -> None:
+    folder = tmp_path_factory.getbasetemp() / "any_cmake"
+    folder.mkdir(exist_ok=True)
+    (folder / "CMakeLists.txt").write_text("".join(pieces), encoding="utf-8")
+    read = CMakeFile(folder)
+    assert all(path.is_relative_to(folder) for path in read.scripts().values())
+
+
+@pytest.mark.parametrize("text", ["a(" * 90_000, 'a("' * 60_000, '"' + "\\" * 150_000, "set(x ${x} ${x})\n" * 12_000])
+def test_a_hostile_file_takes_no_time(package: Path, text: str) -> None:
+    (package / "CMakeLists.txt").write_text(text)
+    assert CMakeFile(package).installs == []
