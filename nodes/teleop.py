@@ -1,19 +1,17 @@
 """Drive a robot by the keyboard; it stops when no key has come for half a second."""
 
-import atexit
 import contextlib
-import os
-import re
-import sys
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import robolink
 from robolink import Node, Parameter
 from robolink.clock import Clock
 from robolink.clock_type import ClockType
+from robolink.control.keyboard import Keyboard, NoKeyboard, NoTerminalError, open_keyboard
 from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.parameters.descriptors import described
+from robolink.text.keys import split_keys
 
 HELP = (
     "drive with w a s d, the arrows or u i o j k l m , . - with shift an omnidirectional robot goes sideways - "
@@ -62,25 +60,6 @@ SPEED_STEPS = {
 }
 """Factors of the speed ahead and of the turning speed, for the keys that change speeds."""
 
-ARROWS = dict(zip("ABCDHPMK", ("up", "down", "right", "left") * 2, strict=True))
-"""Arrow keys by the last letter that a terminal sends for them (A to D), or that Windows' console sends."""
-
-KEY = re.compile(r"\x1b(?:\[[0-9;]*|O)(?P<escape>[A-Za-z~])|[\x00\xe0](?P<windows>.)|(?P<plain>.)", re.DOTALL)
-
-
-class NoTerminalError(RobolinkError, OSError):
-    """There is no terminal to read keys from."""
-
-
-class Keyboard(Protocol):
-    """A source of keys."""
-
-    def read(self) -> str:
-        """Return the text typed since the last call; never waits."""
-
-    def close(self) -> None:
-        """Restore the terminal."""
-
 
 class Speeds(NamedTuple):
     """The speeds that a key asks for, in m/s and rad/s."""
@@ -103,7 +82,7 @@ class Teleop(Node):
         words = "end at once where no terminal is, in place of living on without keys"
         required = self.declare_parameter("require_terminal", True, described(words, read_only=True)).value
         try:
-            self.keyboard = keyboard or open_keyboard()
+            self.keyboard = keyboard or open_keyboard("teleop")
         except NoTerminalError as error:
             if required:
                 self.destroy_node()
@@ -177,93 +156,11 @@ def changed(speeds: Speeds, key: str) -> Speeds:
 
 
 def keys(text: str) -> list[str]:
-    """Split what a terminal sent into keys: letters, `up`, `down`, `left`, `right`, and nothing for others.
+    """Split what a terminal sent into keys: letters, `up`, `down`, `left`, `right`, and words for others.
 
     A letter is small, unless shift makes a difference.
     """
-    found = []
-    for match in KEY.finditer(text):
-        special = match["escape"] or match["windows"]
-        plain = match["plain"]
-        found.append(ARROWS.get(special, "") if special else plain if plain in DIRECTIONS else plain.lower())
-    return found
-
-
-def open_keyboard() -> Keyboard:
-    """Open the terminal's keyboard, each key at once and without echo. Raises NoTerminalError."""
-    if not sys.stdin or not sys.stdin.isatty():
-        raise NoTerminalError("teleop reads keys from a terminal, and its standard input is none")
-    keyboard: Keyboard = WindowsKeyboard() if sys.platform == "win32" else PosixKeyboard(sys.stdin.fileno())
-    atexit.register(keyboard.close)
-    return keyboard
-
-
-class NoKeyboard:
-    """A keyboard without keys, for processes without a terminal."""
-
-    def read(self) -> str:
-        """Return ''."""
-        return ""
-
-    def close(self) -> None:
-        """Nothing was opened."""
-
-
-class PosixKeyboard:
-    """A terminal as Linux and macOS have it."""
-
-    def __init__(self, terminal: int) -> None:
-        self._terminal = terminal
-        if sys.platform != "win32":
-            import termios
-            import tty
-
-            if in_background(terminal):
-                raise NoTerminalError("teleop reads keys from its terminal, and it runs there in the background")
-            self._found = termios.tcgetattr(terminal)
-            tty.setcbreak(terminal)
-
-    def read(self) -> str:
-        """Return the text typed since the last call."""
-        import select
-
-        if not select.select([self._terminal], [], [], 0.0)[0]:
-            return ""
-        return os.read(self._terminal, 1024).decode(errors="replace")
-
-    def close(self) -> None:
-        """Restore the terminal."""
-        if sys.platform != "win32":
-            import termios
-
-            with contextlib.suppress(termios.error):  # the terminal is gone
-                termios.tcsetattr(self._terminal, termios.TCSADRAIN, self._found)
-
-
-def in_background(terminal: int) -> bool:
-    """True if the shell has put this process into the background, where it may not touch the terminal."""
-    if sys.platform != "win32":
-        with contextlib.suppress(OSError):  # it is not the terminal that controls this process
-            return os.tcgetpgrp(terminal) != os.getpgrp()
-    return False
-
-
-class WindowsKeyboard:
-    """The console of Windows."""
-
-    def read(self) -> str:
-        """Return the text typed since the last call."""
-        text = ""
-        if sys.platform == "win32":
-            import msvcrt
-
-            # An arrow is two: the second waits in a buffer into which `kbhit` looks for `getch`, not for `getwch`.
-            while msvcrt.kbhit():
-                text += msvcrt.getch().decode("latin-1")
-        return text
-
-    def close(self) -> None:
-        """Nothing was changed."""
+    return [key if key in DIRECTIONS else key.lower() for key in split_keys(text)]
 
 
 def main(args: list[str] | None = None) -> None:

@@ -34,6 +34,18 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
     "tf2_ros": {
         "static_transform_publisher": Counterpart("nodes/static_transform_publisher", "Publishes one fixed transform."),
     },
+    "turtlesim": {
+        "draw_square": Counterpart(
+            "robolink.counterparts.turtlesim.draw_square:DrawSquare", "Has a turtle draw squares."
+        ),
+        "mimic": Counterpart("robolink.counterparts.turtlesim.mimic:Mimic", "Drives a turtle as another one swims."),
+        "turtle_teleop_key": Counterpart(
+            "robolink.counterparts.turtlesim.turtle_teleop_key:main", "Drives a turtle by the keyboard."
+        ),
+        "turtlesim_node": Counterpart(
+            "robolink.counterparts.turtlesim.turtlesim_node:main", "Simulates turtles that draw, shown in the browser."
+        ),
+    },
 }
 """Counterparts by package and executable."""
 

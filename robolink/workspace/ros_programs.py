@@ -54,7 +54,6 @@ PACKAGES = {
     "demo_nodes_cpp": "first nodes are 'robolink run first_node' and 'robolink run velocity_publisher'",
     "tf2_ros": "here there are 'robolink tf' and 'robolink run static_transform_publisher'",
     "tf2_tools": "here there is 'robolink tf tree'",
-    "turtlesim": "a window with a turtle; 'robolink run world' is a world to drive in, 'robolink run teleop' drives",
     "gazebo_ros": f"Gazebo, a simulator in C++; {_WORLD}",
     "gazebo": f"Gazebo, a simulator in C++; {_WORLD}",
     "gazebo_plugins": f"parts of Gazebo, in C++; {_WORLD}",

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
-from pathlib import Path
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -29,8 +25,8 @@ teleop = load_node_file("teleop")
         ("wI ", ["w", "i", " "]),
         ("\x1b[A\x1bOBa", ["up", "down", "a"]),
         ("\xe0H\x00M", ["up", "right"]),
-        ("\x1b[1;2D\x1b[3~\x1b[15~j", ["left", "", "", "j"]),
-        ("\x1b", ["\x1b"]),
+        ("\x1b[1;2D\x1b[3~\x1b[15~j", ["left", "j"]),
+        ("\x1b", ["escape"]),
         ("", []),
     ],
 )
@@ -155,39 +151,3 @@ def test_who_ends_it_on_the_way_stops_the_robot(system: System) -> None:
     system.run(0.1)
     assert heard[-1] == Twist()
     assert keyboard.closed
-
-
-# The terminal
-
-
-def test_without_a_terminal_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    with Path(os.devnull).open() as nothing:
-        monkeypatch.setattr(sys, "stdin", nothing)
-        with pytest.raises(teleop.NoTerminalError, match="reads keys from a terminal"):
-            teleop.open_keyboard()
-    monkeypatch.setattr(sys, "stdin", None)
-    with pytest.raises(OSError, match="reads keys from a terminal"):
-        teleop.open_keyboard()
-
-
-if sys.platform != "win32":
-    import pty
-    import select
-    import termios
-
-    def test_a_terminal_gives_keys_at_once_and_is_given_back() -> None:
-        controller, terminal = pty.openpty()
-        try:
-            found = termios.tcgetattr(terminal)
-            keyboard = teleop.PosixKeyboard(terminal)
-            assert not termios.tcgetattr(terminal)[3] & (termios.ECHO | termios.ICANON)
-            assert keyboard.read() == ""
-            os.write(controller, b"w\x1b[A")
-            assert select.select([terminal], [], [], 30.0)[0]  # the kernel takes its time to hand them on
-            assert keyboard.read() == "w\x1b[A"
-            keyboard.close()
-            assert termios.tcgetattr(terminal) == found
-        finally:
-            os.close(controller)
-            os.close(terminal)
-        keyboard.close()  # the terminal is gone: nothing to give back

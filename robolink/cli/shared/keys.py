@@ -4,59 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import os
-import re
 import sys
 import time
 from collections.abc import Callable, Iterator
 
+from robolink.text.keys import split_keys
+
 Read = Callable[[float], str]
 """Function that waits up to so many seconds for a key, and returns its name; '' if none came."""
 
-_NAMES = {
-    "[A": "up",
-    "[B": "down",
-    "[C": "right",
-    "[D": "left",
-    "[H": "home",
-    "[F": "end",
-    "[5~": "pageup",
-    "[6~": "pagedown",
-    "\r": "enter",
-    "\n": "enter",
-    "\x1b": "escape",
-    "\x7f": "backspace",
-    "\b": "backspace",
-    "\t": "tab",
-    "\xe0H": "up",
-    "\xe0P": "down",
-    "\xe0M": "right",
-    "\xe0K": "left",
-    "\xe0G": "home",
-    "\xe0O": "end",
-    "\xe0I": "pageup",
-    "\xe0Q": "pagedown",
-}
-"""Names of keys that are no letters, by what a terminal sends, without the escape character, and Windows' console."""
-
-_KEY = re.compile(r"\x1b[\[O](?P<special>[0-9;]*[A-Za-z~])|(?P<windows>[\x00\xe0].)|(?P<plain>.)", re.DOTALL)
-
 _WINDOWS_LOOK = 0.02
 """Interval between two looks at Windows' console, in seconds: it cannot be waited for together with a timeout."""
-
-
-def split_keys(text: str) -> list[str]:
-    """Return the names of the keys in what a terminal has sent: a character, or a word such as `up` or `enter`.
-
-    >>> split_keys("q\\x1b[A \\r")
-    ['q', 'up', ' ', 'enter']
-    """
-    found = []
-    for match in _KEY.finditer(text):
-        special, plain = match["special"], match["plain"]
-        name = _NAMES.get(f"[{special}", "") if special else _NAMES.get(match["windows"] or plain, plain or "")
-        if name:
-            found.append(name)
-    return found
 
 
 @contextlib.contextmanager
