@@ -1,1 +1,1 @@
-"""Python packages of ROS 2 other than rclpy: message_filters, rosidl_runtime_py, ament_index_python."""
+"""Python packages of ROS 2 other than rclpy: message_filters, cv_bridge, rosbag2_py, nav2_simple_commander, others."""

@@ -28,6 +28,7 @@ ROOMS = {
     "webots_ros2_driver": "robolink.webots_controller",
     "ament_index_python": "robolink.companions.ament_index",
     "rosbag2_py": "robolink.companions.rosbag2_py",
+    "nav2_simple_commander": "robolink.companions.nav2_simple_commander",
     "launch": "robolink.companions.launch",
     **dict.fromkeys(
         [
@@ -104,7 +105,6 @@ INSTEAD = {
     "roslib": "that is ROS 1, and ROS 2 needs nothing in its place",
     "rosbag": "that is ROS 1: 'robolink bag' and rosbag2_py have the bags of ROS 2",
     "actionlib": "that is ROS 1: rclpy.action has ActionServer and ActionClient",
-    "nav2_simple_commander": "rclpy.action.ActionClient with nav2_msgs.action.NavigateToPose does what it does",
     "move_base_msgs": "that is ROS 1: nav2_msgs.action.NavigateToPose is what ROS 2 has",
     "uuid_msgs": "that is ROS 1: unique_identifier_msgs is what ROS 2 has",
     "sensor_msgs.point_cloud2": "that is ROS 1: sensor_msgs_py.point_cloud2 is what ROS 2 has",

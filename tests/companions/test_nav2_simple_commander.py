@@ -1,0 +1,366 @@
+"""BasicNavigator: a plain script drives a robot by Nav2's actions and services, against a small Nav2 and `goto`."""
+
+from __future__ import annotations
+
+import functools
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robolink.action import ActionServer, CancelResponse, GoalResponse
+from robolink.companions.nav2_simple_commander.clients import ACTIONS
+from robolink.interfaces.geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from robolink.interfaces.lifecycle_msgs.srv import GetState
+from robolink.interfaces.nav2_msgs import action, srv
+from robolink.node import Node
+from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.task import Future
+from robolink.testing import System
+
+PROGRAM = """
+import rclpy
+from geometry_msgs.msg import PoseStamped
+from nav2_simple_commander.robot_navigator import BasicNavigator, RunningTask, TaskResult
+
+def at(x, y=0.0, frame="map"):
+    pose = PoseStamped()
+    pose.header.frame_id = frame
+    pose.pose.position.x, pose.pose.position.y = x, y
+    pose.pose.orientation.w = 1.0
+    return pose
+
+def wait(nav):
+    while not nav.isTaskComplete():
+        pass
+    return nav.getResult().name
+
+def main():
+    rclpy.init()
+    nav = BasicNavigator()
+    say = lambda *words: nav.info("said: " + " ".join(map(str, words)))
+{body}
+    say("the end")
+    rclpy.shutdown()
+
+if __name__ == "__main__":
+    main()
+"""
+CLEARING: dict[str, type[Any]] = {
+    "local_costmap/clear_entirely_local_costmap": srv.ClearEntireCostmap,
+    "global_costmap/clear_entirely_global_costmap": srv.ClearEntireCostmap,
+    "local_costmap/clear_costmap_except_region": srv.ClearCostmapExceptRegion,
+    "local_costmap/clear_costmap_around_robot": srv.ClearCostmapAroundRobot,
+    "local_costmap/clear_costmap_around_pose": srv.ClearCostmapAroundPose,
+}
+Begin = Callable[[str], None]
+Run = Callable[[str], list[str]]
+
+
+class Nav2(Node):
+    """Nav2's servers: a goal at x takes x seconds, one at x < 0 fails at once, one at x > 100 is refused."""
+
+    def __init__(self) -> None:
+        super().__init__("nav2")
+        self.got, self.poses, self.active_from = list[Any](), list[float](), 0.0
+        for kind, name in ACTIONS.items():
+            ActionServer(
+                self,
+                kind,
+                name,
+                self.execute,
+                goal_callback=self.on_goal,
+                cancel_callback=lambda _: CancelResponse.ACCEPT,
+            )
+        for name, service in CLEARING.items():
+            self.create_service(service, name, self.on_clear)
+        for node in ("amcl", "bt_navigator"):
+            self.create_service(GetState, f"{node}/get_state", self.on_state)
+        for name in ("local_costmap", "global_costmap"):
+            self.create_service(srv.GetCostmap, f"{name}/get_costmap", functools.partial(self.on_get, name))
+        self.create_service(srv.LoadMap, "map_server/load_map", self.on_load)
+        self.create_service(srv.ManageLifecycleNodes, "lifecycle_manager_navigation/manage_nodes", self.on_manage)
+        self.amcl = self.create_publisher(
+            PoseWithCovarianceStamped, "amcl_pose", QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        )
+        self.create_subscription(PoseWithCovarianceStamped, "initialpose", self.on_initial_pose, 10)
+
+    def seconds(self) -> float:
+        return self.get_clock().now().nanoseconds / 1e9
+
+    def on_goal(self, goal: Any) -> GoalResponse:
+        self.got.append(goal)
+        return GoalResponse.REJECT if where(goal) > 100 else GoalResponse.ACCEPT
+
+    async def execute(self, handle: Any) -> Any:
+        kind = next(each for each in ACTIONS if isinstance(handle.request, each.Goal))
+        left = where(handle.request)
+        if left < 0:
+            handle.abort()
+            fields = {"error_code": 208, "error_msg": "a wall"} if "error_msg" in kind.Result.__ros_fields__ else {}
+            return kind.Result(**fields)
+        while left > 0:
+            await self.pause(min(left, 0.5))
+            left -= 0.5
+            if "distance_remaining" in kind.Feedback.__ros_fields__:
+                handle.publish_feedback(kind.Feedback(distance_remaining=left))
+            if handle.is_cancel_requested:
+                handle.canceled()
+                return kind.Result()
+        handle.succeed()
+        result: Any = kind.Result()
+        if "path" in kind.Result.__ros_fields__:
+            result.path.poses = [PoseStamped(), PoseStamped()]
+        return result
+
+    def pause(self, seconds: float) -> Future[None]:
+        future: Future[None] = Future()
+
+        def end() -> None:
+            timer.destroy()
+            future.set_result(None)
+
+        timer = self.create_timer(seconds, end)
+        return future
+
+    def on_state(self, _: Any, response: GetState.Response) -> GetState.Response:
+        response.current_state.label = "active" if self.seconds() >= self.active_from else "inactive"
+        return response
+
+    def on_initial_pose(self, pose: PoseWithCovarianceStamped) -> None:
+        self.poses.append(pose.pose.pose.position.x)
+        if len(self.poses) > 1:
+            self.amcl.publish(pose)
+
+    def on_clear(self, request: Any, response: Any) -> Any:
+        self.got.append(request)
+        return response
+
+    def on_get(self, name: str, _: Any, response: srv.GetCostmap.Response) -> srv.GetCostmap.Response:
+        response.map.metadata.layer = name
+        return response
+
+    def on_load(self, request: srv.LoadMap.Request, response: srv.LoadMap.Response) -> srv.LoadMap.Response:
+        response.result = 0 if request.map_url == "lab.yaml" else response.RESULT_MAP_DOES_NOT_EXIST
+        return response
+
+    def on_manage(self, request: Any, response: Any) -> Any:
+        self.got.append(request.command)
+        response.success = request.command == request.STARTUP
+        return response
+
+
+def where(goal: Any) -> float:
+    """Where a goal is: the x of its pose, its last or its first; 1 of a goal without."""
+    for name in ("pose", "goal", "start"):
+        if hasattr(goal, name):
+            return float(getattr(goal, name).pose.position.x)
+    poses = getattr(goal, "poses", None) or getattr(goal, "goals", None)
+    return float(poses[-1].pose.position.x) if poses else 1.0
+
+
+@pytest.fixture
+def begin(system: System, tmp_path: Path) -> Callable[[str], None]:
+    """Start the body of a script."""
+
+    def begin(body: str) -> None:
+        file = tmp_path / "script.py"
+        file.write_text(PROGRAM.replace("{body}", textwrap.indent(textwrap.dedent(body), "    ")))
+        system.start(file)
+
+    return begin
+
+
+@pytest.fixture
+def run(system: System, begin: Begin) -> Run:
+    """Run the body of a script to its end; what it said."""
+
+    def run(body: str) -> list[str]:
+        begin(body)
+        system.expect_log("said: the end", within=120.0)
+        said = [each.message.removeprefix("said: ") for each in system.logs if each.message.startswith("said: ")]
+        return said[:-1]
+
+    return run
+
+
+@pytest.fixture
+def nav2(system: System) -> Nav2:
+    made: Nav2 = system.start(Nav2)
+    return made
+
+
+def test_a_goal_is_reached_with_feedback_on_the_way(nav2: Nav2, run: Run) -> None:
+    said = run("""
+        say(nav.getResult().name, nav.isTaskComplete())
+        say(nav.goToPose(at(2.0), behavior_tree="tree.xml"), nav.isTaskComplete(), nav.getFeedback())
+        left = set()
+        while not nav.isTaskComplete(task=RunningTask.NAVIGATE_TO_POSE):
+            if feedback := nav.getFeedback():
+                left.add(feedback.distance_remaining)
+        say(sorted(left), nav.getResult() == TaskResult.SUCCEEDED, nav.getTaskError())
+    """)
+    assert said == [
+        "UNKNOWN True",
+        "RunningTask.NAVIGATE_TO_POSE False None",
+        "[0.5, 1.0, 1.5] True (0, '')",
+    ]
+    assert (nav2.got[0].behavior_tree, nav2.got[0].pose.header.frame_id) == ("tree.xml", "map")
+
+
+def test_a_goal_is_cancelled_fails_or_is_refused(nav2: Nav2, run: Run) -> None:
+    said = run("""
+        nav.goToPose(at(50.0))
+        nav.cancelTask()
+        say(wait(nav))
+        nav.goToPose(at(-1.0))
+        say(wait(nav), nav.getTaskError())
+        say(nav.goToPose(at(101.0)), nav.isTaskComplete(), nav.getResult().name, nav.getTaskError())
+        nav.cancelTask()
+        nav.goToPose(at(0.5))
+        say(wait(nav))
+    """)
+    assert said == ["CANCELED", "FAILED (208, 'a wall')", "None True UNKNOWN (0, '')", "SUCCEEDED"]
+    assert len(nav2.got) == 4
+
+
+@pytest.mark.usefixtures("nav2")
+def test_a_server_that_goes_away_fails_the_task(begin: Begin, system: System) -> None:
+    begin("""
+        nav.goToPose(at(50.0))
+        say(wait(nav), nav.getTaskError())
+    """)
+    system.expect_log("Navigating to goal")
+    system.run(2.0)
+    system.crash("nav2")
+    assert "went away" in system.expect_log("said: FAILED", within=20.0).message
+
+
+def test_it_waits_for_a_server(begin: Begin, system: System) -> None:
+    begin("nav.goToPose(at(0.5)); say(wait(nav))")
+    system.run(5.5)
+    notes = [each.message for each in system.logs if "not available" in each.message]
+    assert notes == ["'NavigateToPose' action server not available, waiting..."] * 5
+    system.start(Nav2)
+    assert system.expect_log("said: SUCCEEDED", within=5.0)
+
+
+def test_each_task_goes_to_its_own_server(nav2: Nav2, run: Run) -> None:
+    said = run("""
+        from geographic_msgs.msg import GeoPose
+        from nav_msgs.msg import Goals, Path
+        path = Path(poses=[at(1.0)])
+        tasks = [
+            nav.goThroughPoses([at(0.1), at(0.2)]),
+            nav.goThroughPoses(Goals(goals=[at(0.1)])),
+            nav.followWaypoints([at(0.1), at(0.3)]),
+            nav.followGpsWaypoints([GeoPose()]),
+            nav.followPath(path, "RPP", "precise"),
+            nav.spin(spin_dist=2, time_allowance=3, disable_collision_checks=True),
+            nav.backup(0.25, 0.125, 4),
+            nav.driveOnHeading(dist=1.5, speed=0.5, time_allowance=2.5),
+            nav.assistedTeleop(60),
+            nav.dockRobotByPose(at(0.5), "plug", nav_to_dock=False),
+            nav.dockRobotByID("home"),
+            nav.undockRobot("plug"),
+        ]
+        say([task.value for task in tasks])
+    """)
+    assert said == ["[2, 2, 4, 5, 3, 6, 7, 8, 9, 10, 10, 11]"]
+    through, goals, points, gps, path, spin, back, ahead, teleop, by_pose, by_id, undock = nav2.got
+    assert [len(each.poses) for each in (through, goals, points)] == [2, 1, 2]
+    assert len(gps.gps_poses) == 1
+    assert (len(path.path.poses), path.controller_id, path.goal_checker_id) == (1, "RPP", "precise")
+    assert (spin.target_yaw, spin.time_allowance.sec) == (2.0, 3)
+    assert (back.target.x, back.speed, back.time_allowance.sec) == (0.25, 0.125, 4)
+    assert (ahead.target.x, ahead.speed, ahead.time_allowance.nanosec) == (1.5, 0.5, 500_000_000)
+    assert teleop.time_allowance.sec == 60
+    assert (by_pose.use_dock_id, by_pose.dock_type, by_pose.navigate_to_staging_pose) == (False, "plug", False)
+    assert (by_id.use_dock_id, by_id.dock_id, by_id.navigate_to_staging_pose) == (True, "home", True)
+    assert undock.dock_type == "plug"
+
+
+def test_paths_are_planned_and_smoothed(nav2: Nav2, run: Run) -> None:
+    said = run("""
+        path = nav.getPath(at(0.0), at(1.0), planner_id="A", use_start=True)
+        say(len(path.poses), nav.getResult().name)
+        say(nav.getPath(at(0.0), at(-1.0)), nav.getTaskError())
+        say(nav.getPath(at(0.0), at(101.0)))
+        say(len(nav.getPathThroughPoses(at(0.0), [at(0.5), at(1.0)]).poses))
+        say(len(nav.smoothPath(path, "S", max_duration=0.5, check_for_collision=True).poses))
+        path, route = nav.getRoute(at(0.5), at(1.0))
+        say(len(path.poses), type(route).__name__, type(nav.getRoute(3, 4)).__name__)
+        try:
+            nav.getRoute(3, at(1.0))
+        except TypeError as error:
+            say(error)
+    """)
+    assert said[:5] == ["2 SUCCEEDED", "None (208, 'a wall')", "None", "2", "2"]
+    assert said[5:] == ["2 Route list", "getRoute: expected two poses or two numbers of nodes for start and goal"]
+    plan, _, _, _, smooth, by_pose, by_number = nav2.got
+    assert (plan.planner_id, plan.use_start) == ("A", True)
+    assert (smooth.smoother_id, smooth.max_smoothing_duration.nanosec) == ("S", 500_000_000)
+    assert smooth.check_for_collisions
+    assert (by_pose.use_poses, by_number.use_poses) == (True, False)
+    assert (by_number.start_id, by_number.goal_id) == (3, 4)
+
+
+def test_it_waits_until_nav2_is_active(nav2: Nav2, run: Run) -> None:
+    nav2.active_from = nav2.seconds() + 5.0
+    said = run("""
+        nav.setInitialPose(at(3.0))
+        begun = nav.get_clock().now()
+        nav.waitUntilNav2Active()
+        say(round((nav.get_clock().now() - begun).nanoseconds / 1e9))
+        nav.waitUntilNav2Active(localizer="robot_localization")
+    """)
+    assert said == ["7"]  # it looks each 2 s, then the pose is sent again, and answered
+    assert nav2.poses == [3.0, 3.0]
+
+
+def test_costmaps_and_maps(nav2: Nav2, run: Run) -> None:
+    said = run("""
+        nav.clearAllCostmaps()
+        nav.clearCostmapExceptRegion(3)
+        nav.clearCostmapAroundRobot(1.5)
+        nav.clearCostmapAroundPose(at(2.0), 0.5)
+        say(nav.getGlobalCostmap().metadata.layer, nav.getLocalCostmap().metadata.layer)
+        say(nav.changeMap("lab.yaml"), nav.changeMap("none.yaml"))
+    """)
+    assert said == ["global_costmap local_costmap", "True False"]
+    assert [getattr(each, "reset_distance", None) for each in nav2.got] == [None, None, 3.0, 1.5, 0.5]
+
+
+def test_a_map_that_is_not_there_is_named(nav2: Nav2, run: Run, system: System) -> None:
+    run('nav.changeMap("none.yaml")')
+    assert any("RESULT_MAP_DOES_NOT_EXIST" in each.message for each in system.logs)
+
+
+def test_lifecycle_managers_start_and_stop_their_nodes(nav2: Nav2, run: Run, system: System) -> None:
+    run("""
+        nav.lifecycleStartup()
+        nav.lifecycleShutdown()
+        nav.destroyNode()
+        nav = BasicNavigator("other")
+    """)
+    assert nav2.got == [srv.ManageLifecycleNodes.Request.STARTUP, srv.ManageLifecycleNodes.Request.SHUTDOWN]
+    assert any(
+        each.message == "Shutting down /lifecycle_manager_navigation/manage_nodes failed" for each in system.logs
+    )
+
+
+def test_it_drives_the_simulated_robot(run: Run, system: System) -> None:
+    system.launch("goto")
+    assert run("""
+        nav.goToPose(at(2.0, 1.0, frame="odom"))
+        say(wait(nav))
+    """) == ["SUCCEEDED"]
+    pose = system.robot().pose
+    assert (pose.x, pose.y) == pytest.approx((2.0, 1.0), abs=0.3)
+
+
+def test_every_action_of_nav2_that_a_navigator_uses_is_in_the_table() -> None:
+    others = {"ComputeAndTrackRoute", "DummyBehavior", "FollowObject", "Wait"}
+    assert {each.__name__ for each in ACTIONS} == set(action.__all__) - others
