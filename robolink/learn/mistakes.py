@@ -54,7 +54,7 @@ def mistake_of(error: BaseException, file: Path) -> Mistake | None:
         linecache.checkcache(str(file))
         return Mistake("exception", _told(error), lines[-1], linecache.getline(str(file), lines[-1]).rstrip())
     if isinstance(error, RobolinkError):
-        return Mistake("file", _told_plainly(error))
+        return Mistake("file", _told_plainly(error).replace(str(file), file.name))
     return None
 
 

@@ -21,11 +21,34 @@ LONGEST = 2.0
 """Most seconds of a processor that a check may take; a process to check in takes 0.3 more (docs/learn.md)."""
 
 FAILS = {
+    "01_walk": "a step in direction 90 ended at (-0.13, 0.27), and not at (0.00, 0.30)",
     "02_hello": "there is no node that stays: main() comes to its end at once",
     "03_timer": 'after 1.5 s the log should have "count 1", and has count 0',
     "04_publisher": "nothing came on cmd_vel in three seconds",
+    "05_ramp": "its first speeds are 0.0, 0.1, 0.1, 0.1",
+    "06_square": "it drove on until it touched the wall: it never turned",
     "07_subscriber": "a scan came, and nothing was published on nearest: does it subscribe to scan?",
     "08_stop": "it drove 2.8 m into the wall",
+    "09_react": "it drove 0.00 m in four seconds, and the way was free",
+    "10_odometry": "after 2.5 m it still drives with 0.4 m/s",
+    "11_talk": "there is no node called listener, only talker",
+    "12_service": "the call of power got no answer: does the callback return the response?",
+    "13_client": "AttributeError: 'NoneType' object has no attribute 'sum'",
+    "14_parameter": "the parameter was set to 0.5, and it still asks for 0.30 m/s",
+    "15_limits": "it accepted 3.0 m/s, which is far too fast",
+    "16_launch": "16_launch.yaml:11:5: nodes[0].parameter: unknown key 'parameter': write `parameters`",
+    "17_two_robots": "ada stands: she needs a reactive_controller in the namespace ada",
+    "18_pid": "after ten seconds the speed is 0.61 m/s, and not 1.0",
+    "19_qos": "who subscribed two seconds later heard nothing",
+    "20_frames": "base_link is the child of laser: it should be the other way round",
+    "21_where": 'LookupException: "odom" passed to lookupTransform argument target_frame does not exist.',
+    "22_action": "the goal ended as aborted: whoever asked must think that it failed",
+    "23_bag": "the robot drove 1.94 m, and driven() returned 250.00",
+    "24_testing": "it passes with a program that never drives",
+    "25_camera": "the yellow thing is in the middle, and it said 40.00",
+    "26_safe": "no scan came for two seconds, and it still drives with 0.3 m/s",
+    "27_states": "in half a minute its states were: DRIVE, BACK",
+    "28_follow_wall": "it drove 0.0 m in five seconds",
 }
 """First sentence that is bad, for the file as it is given."""
 
@@ -87,7 +110,8 @@ def test_its_sentences_are_those_that_its_check_tells(exercise: Exercise) -> Non
     tree = ast.parse((exercise.folder / "check.py").read_text(encoding="utf-8"))
     calls = [each for each in ast.walk(tree) if isinstance(each, ast.Call)]
     told = {each.args[0].value for each in calls if ast.unparse(each.func) == "trial.tell" and is_text(each.args[0])}
-    assert told == set(exercise.settings.results)
+    texts = {each.value for each in ast.walk(tree) if is_text(each)}
+    assert told <= set(exercise.settings.results) <= texts
 
 
 @named
@@ -114,5 +138,5 @@ def placeholders(text: str) -> set[str]:
     return set(re.findall(r"\{(\w+)", text))
 
 
-def is_text(node: ast.expr) -> TypeGuard[ast.Constant]:
+def is_text(node: ast.AST) -> TypeGuard[ast.Constant]:
     return isinstance(node, ast.Constant)

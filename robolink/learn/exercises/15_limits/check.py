@@ -1,0 +1,25 @@
+"""Check of a callback that refuses values of a parameter."""
+
+from __future__ import annotations
+
+from robolink.learn.trial import Trial
+from robolink.parameter import Parameter
+
+
+def check(trial: Trial) -> None:
+    """Set good and bad values."""
+    node = trial.start()
+    trial.run(0.5)
+
+    def reason(value: float) -> str | None:
+        result = node.set_parameters([Parameter("speed", value=value)])[0]
+        return None if result.successful else str(result.reason)
+
+    refused = reason(0.5)
+    trial.tell("accepts", refused is None, reason=refused)
+    fast = reason(3.0)
+    trial.tell("fast", fast is not None)
+    trial.tell("back", reason(-0.2) is not None)
+    trial.tell("reason", fast, reason=fast)
+    speed = node.get_parameter("speed").value
+    trial.tell("keeps", speed == 0.5, speed=speed)

@@ -1,0 +1,65 @@
+"""Check of a test: it has to pass with a good program, and to fail with each of two bad ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from robolink import Node
+from robolink.interfaces.geometry_msgs.msg import Twist
+from robolink.interfaces.sensor_msgs.msg import LaserScan
+from robolink.learn.trial import SEED, Trial
+from robolink.testing import System
+
+
+class Good(Node):
+    """A program that drives, and stops before what is near."""
+
+    def __init__(self) -> None:
+        super().__init__("careful")
+        self.publisher = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_subscription(LaserScan, "scan", self.on_scan, 10)
+
+    def on_scan(self, scan: LaserScan) -> None:
+        """Answer a scan."""
+        twist = Twist()
+        twist.linear.x = self.speed(min(scan.ranges))
+        self.publisher.publish(twist)
+
+    def speed(self, nearest: float) -> float:
+        """Return the speed in m/s."""
+        return 0.3 if nearest >= 0.5 else 0.0
+
+
+class NeverDrives(Good):
+    """A program that always stands."""
+
+    def speed(self, nearest: float) -> float:
+        """Return the speed in m/s."""
+        return 0.0
+
+
+class NeverStops(Good):
+    """A program that always drives."""
+
+    def speed(self, nearest: float) -> float:
+        """Return the speed in m/s."""
+        return 0.3
+
+
+def check(trial: Trial) -> None:
+    """Run the test with each program."""
+    test = trial.module().test_it_stops_before_what_is_near
+    error = failure(test, Good)
+    trial.tell("good", not error, text=error)
+    trial.tell("never_drives", failure(test, NeverDrives))
+    trial.tell("never_stops", failure(test, NeverStops))
+
+
+def failure(test: Any, program: type[Node]) -> str:
+    """Run the test; return the text of its failure, '' if it passes."""
+    with System(seed=SEED) as system:
+        try:
+            test(system, program)
+        except AssertionError as error:
+            return str(error).partition("\n")[0] or "assert"
+    return ""
