@@ -20,6 +20,9 @@ SETTINGS, CHECK = "exercise.yaml", "check.py"
 GIVEN = ("given.py", "given.yaml")
 """Names of the file that a student gets: a program or a launch file."""
 
+LONGEST_NAME = 60
+"""Most letters of an exercise's name."""
+
 _NAME = re.compile(r"(?:\d+_)?([a-z][a-z0-9_]*)")
 _COMMENT = re.compile(r"^([ \t]*)# \{(\w+)\}[ \t]*$", re.MULTILINE)
 

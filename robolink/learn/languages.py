@@ -55,7 +55,7 @@ _WORDS: dict[str, tuple[str, str]] = {
         "robolink learn start    writes the exercises into a folder, to begin with",
         "robolink learn start    grava os exercícios em uma pasta, para começar",
     ),
-    "written": ("{count} exercises in {folder}", "{count} exercícios em {folder}"),
+    "written": ("exercises in {folder}: {count}", "exercícios em {folder}: {count}"),
     "all there": ("all exercises are in {folder} already", "todos os exercícios já estão em {folder}"),
     "go": ("cd {folder}, then: robolink learn", "cd {folder}, e depois: robolink learn"),
     "reset": (

@@ -10,8 +10,9 @@ import pytest
 
 from robolink.cli.shared.output import say
 from robolink.learn.exercise import Exercise, chosen, read_course
-from robolink.learn.isolated import MOST_PRINTED, check_apart
+from robolink.learn.isolated import check_apart
 from robolink.learn.lines import reported
+from robolink.learn.process import MOST_PRINTED
 from robolink.learn.report import Report
 
 HELLO = chosen(read_course(), "hello")

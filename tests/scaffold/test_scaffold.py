@@ -24,7 +24,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_no_placeholder_is_left_in_any_file() -> None:
-    for kind in ("project", "node", "world"):
+    for kind in ("project", "node", "world", "exercise"):
         for path, text in rendered(kind, {"NAME": "demo", "CLASS": "Demo"}).items():
             assert "@" not in path
             assert "@NAME@" not in text
@@ -33,7 +33,7 @@ def test_no_placeholder_is_left_in_any_file() -> None:
 
 
 def test_every_template_is_of_a_kind() -> None:
-    assert sorted(each.name for each in TEMPLATES.iterdir()) == ["node", "project", "world"]
+    assert sorted(each.name for each in TEMPLATES.iterdir()) == ["exercise", "node", "project", "world"]
 
 
 def test_a_project_launches_what_its_files_say(here: Path) -> None:

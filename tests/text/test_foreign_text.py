@@ -198,6 +198,8 @@ EXCUSED = {
     "learn hint": "shows texts of exercises",
     "learn show": "shows texts of exercises",
     "learn reset": "shows names of exercises",
+    "learn new": "shows names that it has checked, and the path that it was given",
+    "learn prove": "shows texts of exercises",
     "learn-check": "is a check's own process, whose lines `learn check` prints",
     "new project": "shows names that it has checked, and the path that it was given",
     "new node": "shows names that it has checked",

@@ -96,3 +96,25 @@ def reset(context: typer.Context, name: Name, language: Language = "") -> None:
     from robolink.cli.learn import work
 
     work.reset(name, work.language_of(language or context.obj))
+
+
+@app.command("new")
+def new(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, such as stop_early.")],
+    folder: Annotated[str, typer.Option("--folder", metavar="FOLDER", help="Default: exercises.")] = "",
+) -> None:
+    """Make an exercise of your own, for your students: a text, a given file, a check and a solution."""
+    from robolink.cli.learn import teach
+
+    teach.new(name, folder)
+
+
+@app.command("prove")
+def prove(
+    folder: Annotated[str, typer.Argument(metavar="[FOLDER]", help="Default: exercises.")] = "",
+) -> None:
+    """Prove exercises: as given each has to fail, and its solution has to pass; the exit code is 1 if one does not."""
+    from robolink.cli.learn import teach
+
+    if not teach.prove(folder):
+        raise typer.Exit(1)

@@ -36,23 +36,23 @@ def list_exercises(language: Language | None) -> None:
     """List the exercises, with the progress of the folder in which the student is."""
     folder = find_folder()
     if folder is None:
-        _say_all(course_listed(read_course(), language or default_language()))
+        say_all(course_listed(read_course(), language or default_language()))
         return
     _speak(folder, language)
-    _say_all(listed(folder))
+    say_all(listed(folder))
 
 
 def start(path: str, source: str, language: Language | None) -> None:
     """Write the given files that are not there yet."""
     folder = start_folder(path, language=language, source=source)
-    shown = _shown(folder.path)
+    place = shown(folder.path)
     written = folder.write()
     key = "written" if written else "all there"
-    say(words(folder.language, key, count=len(written), folder=shown))
+    say(words(folder.language, key, count=len(written), folder=place))
     if folder.path != Path.cwd():
-        say(words(folder.language, "go", folder=shown))
+        say(words(folder.language, "go", folder=place))
     else:
-        _say_all(next_step(folder))
+        say_all(next_step(folder))
 
 
 def check(name: str, language: Language | None) -> bool:
@@ -70,7 +70,7 @@ def check_all(language: Language | None) -> bool:
         if report.passed:
             folder.finish(each)
         passed += report.passed
-        _say_all(
+        say_all(
             [f"  {'✓' if report.passed else '✗'} {each.file}  {each.title(folder.language)} ({report.seconds:.1f} s)"]
         )
     say(words(folder.language, "heading", done=passed, all=len(folder.course)))
@@ -110,7 +110,7 @@ def hint(name: str, language: Language | None) -> None:
 def show(name: str, language: Language | None) -> None:
     """Show what an exercise asks for."""
     folder = _here(language)
-    _say_all(task(folder.chosen(name), folder.language))
+    say_all(task(folder.chosen(name), folder.language))
 
 
 def reset(name: str, language: Language | None) -> None:
@@ -135,15 +135,16 @@ def _speak(folder: StudentFolder, language: Language | None) -> None:
 
 def _check(folder: StudentFolder, exercise: Exercise) -> bool:
     report = check_apart(exercise, folder.file_of(exercise), folder.language)
-    _say_all(["", f"{exercise.file}: {exercise.title(folder.language)}"])
-    _say_all(reported(exercise, report, folder.language))
+    say_all(["", f"{exercise.file}: {exercise.title(folder.language)}"])
+    say_all(reported(exercise, report, folder.language))
     if report.passed:
         folder.finish(exercise)
-        _say_all(["", *next_step(folder)])
+        say_all(["", *next_step(folder)])
     return report.passed
 
 
-def _say_all(lines: Iterable[str]) -> None:
+def say_all(lines: Iterable[str]) -> None:
+    """Write lines, with marks that the terminal has."""
     for each in lines:
         say(_fit(each))
 
@@ -159,6 +160,7 @@ def _fit(line: str) -> str:
     return line
 
 
-def _shown(path: Path) -> str:
+def shown(path: Path) -> str:
+    """Return a path as one types it here."""
     here = Path.cwd()
     return os.path.relpath(path, here) if path.is_relative_to(here) else str(path)

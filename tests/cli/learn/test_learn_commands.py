@@ -61,7 +61,7 @@ def test_before_the_start_it_lists_them_all(here: Path, capsys: Captured) -> Non
 def test_start_says_where_to_go(here: Path, capsys: Captured) -> None:
     assert main(["learn", "start", "aula", "--language", "pt"]) == 0
     out = capsys.readouterr().out
-    assert out == f"{len(read_course())} exercícios em aula\ncd aula, e depois: robolink learn\n"
+    assert out == f"exercícios em aula: {len(read_course())}\ncd aula, e depois: robolink learn\n"
     assert main(["learn", "start", "aula"]) == 0
     assert capsys.readouterr().out.startswith("todos os exercícios já estão em aula\n")
 
@@ -152,3 +152,19 @@ def test_a_real_check(student: Path, capsys: Captured) -> None:
     (student / "02_hello.py").write_bytes((SOLUTIONS / "02_hello.py").read_bytes())
     assert main(["learn", "check", "hello"]) == 0
     assert "02_hello.py is done" in capsys.readouterr().out
+
+
+def test_a_teacher_s_exercises(here: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    assert main(["learn", "new", "stop_early"]) == 0
+    assert f"made {Path('exercises/01_stop_early/check.py')}\n" in capsys.readouterr().out
+    monkeypatch.setattr("robolink.cli.learn.teach.check_apart", lambda *_: BAD)
+    assert main(["learn", "prove"]) == 1
+    out = capsys.readouterr().out
+    assert out == "01_stop_early\n  ✓ given.py fails: it stands\n  ✗ solution.py fails: it stands\n"
+    assert main(["learn", "start", "aula", "--from", "exercises", "--language", "pt"]) == 0
+    monkeypatch.chdir(here / "aula")
+    capsys.readouterr()
+    assert main(["learn"]) == 0
+    assert "01_stop_early.py  Ande para a frente\n" in capsys.readouterr().out
+    assert main(["learn", "new", "Bad Name"]) == 1
+    assert capsys.readouterr().err.startswith("robolink: 'Bad Name' is no name for an exercise")

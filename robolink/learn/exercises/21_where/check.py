@@ -8,7 +8,7 @@ from robolink.tf2 import StaticTransformBroadcaster, TransformBroadcaster
 
 
 def check(trial: Trial) -> None:
-    """Say nothing, then where the frames are, then that the robot has moved."""
+    """Publish nothing, then where the frames are, then that the robot has moved."""
     trial.start()
     said = trial.system.messages("distance")
     trial.run(1.2)

@@ -1,0 +1,82 @@
+"""Child process for a student's program: its output is bounded, and nothing of it is left."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+from typing import IO
+
+MOST_PRINTED = 20_000
+"""Most bytes of what a program prints that are kept."""
+
+_OURS = ("world", "test", "robolink")
+"""Loggers whose lines a student does not need."""
+
+
+def run_apart(words: Sequence[str], work: Path, longest: float) -> str:
+    """Run a process to its end, or kill it and all that it has started; return what it printed.
+
+    Args:
+        words: Its command line.
+        work: Its working directory.
+        longest: Seconds after which it is killed.
+    """
+    environ = {**os.environ, "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8", "OPENBLAS_NUM_THREADS": "1"}
+    kept: list[bytes] = []
+    with subprocess.Popen(
+        words,
+        cwd=work,
+        env=environ,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        start_new_session=True,
+    ) as process:
+        assert process.stdout is not None
+        reader = threading.Thread(target=_keep, args=(process.stdout, kept), daemon=True)
+        reader.start()
+        try:
+            process.wait(longest)
+        except subprocess.TimeoutExpired:
+            pass
+        finally:
+            _kill(process)
+            reader.join(1.0)
+    return b"".join(kept)[:MOST_PRINTED].decode("utf-8", errors="replace")
+
+
+def _keep(stream: IO[bytes], kept: list[bytes]) -> None:
+    """Read a stream to its end, and keep its beginning."""
+    left = MOST_PRINTED
+    with contextlib.suppress(OSError, ValueError):
+        while part := os.read(stream.fileno(), 65536):
+            if left > 0:
+                kept.append(part[:left])
+                left -= len(part)
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    """End a process and all that it has started."""
+    with contextlib.suppress(OSError):
+        if sys.platform == "win32":
+            process.kill()
+        else:
+            os.killpg(process.pid, signal.SIGKILL)
+
+
+def show_own_lines() -> None:
+    """Print what the student's nodes log, as `INFO robo: hello`, and nothing of the world's."""
+    from robolink import logging
+    from robolink.logging import Record
+
+    def show(record: Record) -> None:
+        if record.name.partition(".")[0] not in _OURS:
+            print(f"[{record.severity.name}] {record.name}: {record.message}", flush=True)  # noqa: T201
+
+    logging.set_console_handler(show)

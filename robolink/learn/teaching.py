@@ -1,0 +1,97 @@
+"""Exercises of a teacher: a new one from a template, and the proof that one can be solved and must be."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from robolink.learn.exercise import LONGEST_NAME, SETTINGS, Exercise, ExerciseError
+from robolink.learn.languages import Language
+from robolink.learn.report import Report
+from robolink.scaffold.rendering import rendered
+from robolink.system.paths import expanded
+
+FOLDER = "exercises"
+"""Name of the folder for a teacher's exercises."""
+
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
+
+Check = Callable[[Exercise, Path, Language], Report]
+
+
+def new_exercise(name: str, folder: str = "") -> Path:
+    """Make an exercise that works, to be changed; return its folder.
+
+    Args:
+        name: Name of the exercise: small letters, digits and `_`.
+        folder: Folder of the exercises; by default the working directory if it has some, else `FOLDER` in it.
+
+    Raises:
+        ExerciseError: (a ValueError) if the name is not valid, or there is such an exercise.
+        OSError: if the files cannot be written.
+    """
+    if not _NAME.fullmatch(name) or len(name) > LONGEST_NAME:
+        raise ExerciseError(
+            f"'{name[:LONGEST_NAME]}' is no name for an exercise: small letters, digits and '_', as in stop_early"
+        )
+    here = Path.cwd()
+    place = expanded(folder) if folder else here if any(here.glob(f"*/{SETTINGS}")) else here / FOLDER
+    there = [each.parent.name for each in place.glob(f"*/{SETTINGS}")]
+    if any(each.partition("_")[2] == name for each in there):
+        raise ExerciseError(f"{place} has an exercise '{name}' already: take another name")
+    numbers = [int(each.partition("_")[0]) for each in there if each.partition("_")[0].isdecimal()]
+    made = place / f"{max(numbers, default=0) + 1:02}_{name}"
+    made.mkdir(parents=True)
+    for path, text in rendered("exercise", {"NAME": name}).items():
+        (made / path).write_text(text, encoding="utf-8", newline="\n")
+    return made
+
+
+class Proof(NamedTuple):
+    """Finding about an exercise: whether it is as it should be, and a sentence."""
+
+    exercise: Exercise
+    good: bool
+    text: str
+
+
+def proofs(course: list[Exercise], check: Check) -> Iterator[Proof]:
+    """Yield for each exercise and language that the given file fails, and then that the solution passes.
+
+    Args:
+        course: The exercises.
+        check: Runs a check: `robolink.learn.isolated.check_apart`, for example.
+    """
+    with tempfile.TemporaryDirectory(prefix="robolink-learn-") as scratch:
+        for exercise in course:
+            file = Path(scratch, exercise.file)
+            file.write_text(exercise.given_text("en"), encoding="utf-8")
+            yield _of_given(exercise, check(exercise, file, "en"))
+            solution = exercise.given.with_name(f"solution{exercise.given.suffix}")
+            if solution.is_file():
+                file.write_bytes(solution.read_bytes())
+                yield _of_solution(exercise, solution, check(exercise, file, "pt"))
+
+
+def _of_given(exercise: Exercise, report: Report) -> Proof:
+    if report.mistake is not None and report.mistake.kind == "check":
+        return Proof(exercise, False, f"the check is broken: {report.mistake.text}")
+    if report.passed:
+        return Proof(exercise, False, f"{exercise.given.name} passes already: there is nothing to do")
+    return Proof(exercise, True, f"{exercise.given.name} fails: {_told(report)}")
+
+
+def _of_solution(exercise: Exercise, solution: Path, report: Report) -> Proof:
+    if report.passed:
+        return Proof(exercise, True, f"{solution.name} passes in {report.seconds:.1f} s")
+    return Proof(exercise, False, f"{solution.name} fails: {_told(report)}")
+
+
+def _told(report: Report) -> str:
+    if report.mistake is not None:
+        place = f" (line {report.mistake.line})" if report.mistake.line else ""
+        return f"{report.mistake.text or report.mistake.kind}{place}"
+    return next((each.text for each in report.lines if not each.good), "its check told nothing")
