@@ -8,7 +8,7 @@ from typing import NamedTuple
 from xml.parsers import expat
 
 from robolink.exceptions import DocumentError
-from robolink.system.plainfile import read_plain
+from robolink.system.plainfile import read_plain, size
 
 LARGEST = 5_000_000
 """Largest file that is read, in bytes."""
@@ -61,6 +61,8 @@ def read(path: Path) -> Element:
 
 def parse(content: bytes, name: str) -> Element:
     """Return the root element of an XML text; raises DocumentError with its place."""
+    if len(content) > LARGEST:
+        raise DocumentError(f"it is longer than {size(LARGEST)}", name)
     parser = expat.ParserCreate(namespace_separator=" ")
     parser.buffer_text = True
     found: list[Element] = []
@@ -68,7 +70,7 @@ def parse(content: bytes, name: str) -> Element:
     count = 0
 
     def refuse(*_: object) -> None:
-        raise DocumentError("no DOCTYPE and no entities, which a policy does not need", name, parser.CurrentLineNumber)
+        raise DocumentError("a DOCTYPE or entities, which are not read here", name, parser.CurrentLineNumber)
 
     def begin(tag: str, attributes: dict[str, str]) -> None:
         nonlocal count
