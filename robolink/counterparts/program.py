@@ -1,0 +1,36 @@
+"""Main function of a counterpart's node: reads the command line, spins the node, and ends in good order."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Callable
+
+import robolink
+from robolink.exceptions import ExternalShutdownException, RobolinkError
+from robolink.node import Node
+from robolink.utilities import remove_ros_args
+
+
+class UsageError(RobolinkError, ValueError):
+    """Arguments on the command line that a program does not take."""
+
+
+def spin_program(make: Callable[[list[str]], Node], args: list[str] | None = None) -> None:
+    """Make a node, and spin it until its context ends.
+
+    Args:
+        make: Makes the node from the program's own arguments, without its name and without those for ROS.
+        args: Command line with the program's name; None for `sys.argv`.
+    """
+    with robolink.init(args=args), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        node = make(own_words(args))
+        try:
+            robolink.spin(node)
+        finally:
+            node.destroy_node()
+
+
+def own_words(args: list[str] | None = None) -> list[str]:
+    """Return a program's own arguments, without its name and without those for ROS; `args` as in `spin_program`."""
+    return remove_ros_args(sys.argv if args is None else args)[1:]

@@ -1,0 +1,230 @@
+"""Parser of URDF: XML to a robot model; each mistake is one line with file and line.
+
+It checks what ROS's parser checks: names are there and used once, links exist, the links are one tree.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TypeVar
+
+from robolink.counterparts.urdf.model import KINDS, Joint, Mimic, Robot, Vector
+from robolink.documents import xmltext
+from robolink.documents.xmltext import Element
+from robolink.exceptions import DocumentError, nearest
+from robolink.geometry.transformations import quaternion_from_euler
+from robolink.system.terminal import shown
+from robolink.tf2.rigid import Rigid
+
+T = TypeVar("T")
+
+XACRO = re.compile(r"\{http://(www\.)?ros\.org/(wiki/xacro|xacro)")
+"""Beginning of a tag of xacro, which is left in a text that has not gone through xacro."""
+DECLARATION = re.compile(r"\s*<\?xml[^>]*\?>")
+NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
+
+def read_urdf(path: Path) -> Robot:
+    """Read a URDF file. Raises DocumentError, with file and line, for whatever is wrong in it."""
+    return robot_of(xmltext.read(path))
+
+
+def read_text(path: Path) -> str:
+    """Return the text of a URDF file that has no mistake. Raises DocumentError, with file and line."""
+    read_urdf(path)
+    return path.read_text(encoding="utf-8", errors="replace")
+
+
+def parse_urdf(text: str, name: str = "robot_description") -> Robot:
+    """Return the robot model of a URDF text.
+
+    Args:
+        text: The text.
+        name: Name of the text's source in errors.
+
+    Raises:
+        DocumentError: for whatever is wrong in it; the text begins with `name` and the line.
+    """
+    # A declaration speaks of the encoding of a file; and XML allows nothing before it, where texts have empty lines.
+    blank = DECLARATION.match(text)
+    if blank is not None:
+        text = "\n" * blank[0].count("\n") + text[blank.end() :]
+    try:
+        content = text.encode()
+    except UnicodeEncodeError:
+        raise DocumentError("it has characters that are none (surrogates)", name) from None
+    return robot_of(xmltext.parse(content, name))
+
+
+def robot_of(root: Element) -> Robot:
+    """Return the robot model of an XML element. Raises DocumentError."""
+    if root.tag != "robot":
+        raise root.mistake(f"expected <robot>, got <{shown(root.tag)}>: this is no URDF")
+    for each in root.children:
+        if XACRO.match(each.tag):
+            raise each.mistake("a tag of xacro: run the file through xacro first (robolink run xacro xacro FILE)")
+    links = _once(root, "link")
+    if not links:
+        raise root.mistake("a robot needs a <link>")
+    joints = {name: _joint(each, links) for name, each in _once(root, "joint").items()}
+    places = {each.attributes["name"]: each for each in root.all("joint")}
+    _check_mimics(joints, places)
+    return Robot(root.attributes.get("name", ""), _root(root, links, joints, places), tuple(links), joints)
+
+
+def _once(root: Element, tag: str) -> dict[str, Element]:
+    """Return the elements of a tag by their names, which are there and differ."""
+    found: dict[str, Element] = {}
+    for each in root.all(tag):
+        name = _needed(each, "name")
+        if name in found:
+            raise each.mistake(f"a second {tag} '{shown(name)}'; the first is in line {found[name].line}")
+        found[name] = each
+    return found
+
+
+def _needed(element: Element, attribute: str) -> str:
+    value = element.attributes.get(attribute, "")
+    if not value:
+        raise element.mistake(f'<{element.tag}> needs {attribute}="..."')
+    return value
+
+
+def _joint(element: Element, links: dict[str, Element]) -> Joint:
+    name, kind = element.attributes["name"], _needed(element, "type")
+    if kind not in KINDS:
+        raise element.mistake(f"joint '{shown(name)}': unknown type '{shown(kind)}'{nearest(kind, KINDS)}")
+    parent, child = (_link(element, end, links) for end in ("parent", "child"))
+    limit, safety = _first(element, "limit"), _first(element, "safety_controller")
+    if limit is None and kind in ("revolute", "prismatic"):
+        raise element.mistake(f'joint \'{shown(name)}\' is {kind} and needs <limit lower="..." upper="..."/>')
+    return Joint(
+        name,
+        kind,
+        parent,
+        child,
+        origin=_origin(_first(element, "origin")),
+        axis=_axis(_first(element, "axis"), kind),
+        lower=None if limit is None else _number(limit, "lower", 0.0),
+        upper=None if limit is None else _number(limit, "upper", 0.0),
+        soft=(_soft(safety, "soft_lower_limit"), _soft(safety, "soft_upper_limit")),
+        mimic=_mimic(_first(element, "mimic")),
+    )
+
+
+def _link(element: Element, end: str, links: dict[str, Element]) -> str:
+    name = element.attributes["name"]
+    found = _first(element, end)
+    if found is None:
+        raise element.mistake(f"joint '{shown(name)}' needs <{end} link=\"...\"/>")
+    link = _needed(found, "link")
+    if link not in links:
+        raise found.mistake(f"joint '{shown(name)}': no link named '{shown(link)}'{nearest(link[:100], links)}")
+    return link
+
+
+def _origin(element: Element | None) -> Rigid:
+    if element is None:
+        return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+    x, y, z = _vector(element, "xyz", (0.0, 0.0, 0.0))
+    qx, qy, qz, qw = quaternion_from_euler(*_vector(element, "rpy", (0.0, 0.0, 0.0)))
+    return (x, y, z, float(qx), float(qy), float(qz), float(qw))
+
+
+def _axis(element: Element | None, kind: str) -> Vector:
+    x, y, z = (1.0, 0.0, 0.0) if element is None else _vector(element, "xyz", (1.0, 0.0, 0.0))
+    length = math.hypot(x, y, z)
+    if length > 0.0:
+        return (x / length, y / length, z / length)
+    if element is not None and kind not in ("fixed", "floating"):
+        raise element.mistake("an axis of length 0 has no direction")
+    return (1.0, 0.0, 0.0)
+
+
+def _mimic(element: Element | None) -> Mimic | None:
+    if element is None:
+        return None
+    return Mimic(_needed(element, "joint"), _number(element, "multiplier", 1.0), _number(element, "offset", 0.0))
+
+
+def _soft(element: Element | None, attribute: str) -> float | None:
+    return None if element is None or attribute not in element.attributes else _number(element, attribute, 0.0)
+
+
+def _first(element: Element, tag: str) -> Element | None:
+    return next(element.all(tag), None)
+
+
+def _vector(element: Element, attribute: str, default: Vector) -> Vector:
+    if attribute not in element.attributes:
+        return default
+    words = element.attributes[attribute].split()
+    if len(words) != 3:
+        raise element.mistake(f"{attribute}: expected three numbers, got '{shown(element.attributes[attribute], 60)}'")
+    x, y, z = (_as_number(element, attribute, each) for each in words)
+    return (x, y, z)
+
+
+def _number(element: Element, attribute: str, default: float) -> float:
+    text = element.attributes.get(attribute)
+    return default if text is None else _as_number(element, attribute, text.strip())
+
+
+def _as_number(element: Element, attribute: str, text: str) -> float:
+    value = float(text) if NUMBER.fullmatch(text[:400]) else math.nan
+    if not math.isfinite(value):
+        raise element.mistake(f"{attribute}: expected a number, got '{shown(text, 60)}'")
+    return value
+
+
+def _check_mimics(joints: dict[str, Joint], places: dict[str, Element]) -> None:
+    """Refuse joints that follow joints which are not there, or each other in a circle."""
+    followed = {each.name: each.mimic.joint for each in joints.values() if each.mimic is not None}
+    for name, other in followed.items():
+        if other not in joints:
+            raise places[name].mistake(f"mimic: no joint named '{shown(other)}'{nearest(other[:100], joints)}")
+    if circle := _circle(followed):
+        raise places[circle[0]].mistake(f"joints mimic each other in a circle: {_arrows(circle)}")
+
+
+def _root(root: Element, links: dict[str, Element], joints: dict[str, Joint], places: dict[str, Element]) -> str:
+    """Return the link that no joint moves. Raises DocumentError if the links are no tree."""
+    above: dict[str, Joint] = {}
+    for each in joints.values():
+        if each.child in above:
+            both = f"'{shown(above[each.child].name)}' and '{shown(each.name)}'"
+            raise places[each.name].mistake(f"link '{shown(each.child)}' is the child of two joints, {both}")
+        above[each.child] = each
+    parents = {child: joint.parent for child, joint in above.items()}
+    if circle := _circle(parents):
+        raise places[above[circle[0]].name].mistake(f"links are below each other in a circle: {_arrows(circle)}")
+    first, *others = (each for each in links if each not in above)
+    if others:
+        reason = f"two roots, '{shown(first)}' and '{shown(others[0])}': a joint has to connect them"
+        raise links[others[0]].mistake(reason)
+    return first
+
+
+def _circle(above: dict[str, str]) -> list[str]:
+    """Return names that lead to themselves, [] if none does. Looks at each name once."""
+    done: set[str] = set()
+    for start in above:
+        way: dict[str, None] = {}
+        name: str | None = start
+        while name is not None and name not in done and name not in way:
+            way[name] = None
+            name = above.get(name)
+        if name is not None and name in way:
+            names = list(way)
+            return names[names.index(name) :]
+        done |= way.keys()
+    return []
+
+
+def _arrows(names: Iterable[str]) -> str:
+    listed = [shown(each) for each in names]
+    few = listed if len(listed) <= 6 else [*listed[:5], "..."]
+    return " -> ".join([*few, listed[0]])
