@@ -1,0 +1,1 @@
+"""Counterpart of joint_state_publisher: positions for all joints of a robot model."""
