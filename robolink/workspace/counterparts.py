@@ -28,11 +28,38 @@ class Counterpart(NamedTuple):
 
 
 COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
+    "joint_state_publisher": {
+        "joint_state_publisher": Counterpart(
+            "robolink.counterparts.joint_state_publisher.joint_state_publisher:main", "Publishes a state of each joint."
+        ),
+    },
+    "joint_state_publisher_gui": {
+        "joint_state_publisher_gui": Counterpart(
+            "robolink.counterparts.joint_state_publisher.joint_state_publisher:gui_main",
+            "Publishes a state of each joint, which parameters set.",
+        ),
+    },
+    "robot_state_publisher": {
+        "robot_state_publisher": Counterpart(
+            "robolink.counterparts.robot_state_publisher.robot_state_publisher:main", "Publishes a robot's transforms."
+        ),
+    },
     "teleop_twist_keyboard": {
         "teleop_twist_keyboard": Counterpart("nodes/teleop", "Drives a robot by the keyboard."),
     },
     "tf2_ros": {
+        "buffer_server": Counterpart(
+            "robolink.counterparts.tf2_ros.buffer_server:main", "Serves look-ups of transforms."
+        ),
         "static_transform_publisher": Counterpart("nodes/static_transform_publisher", "Publishes one fixed transform."),
+        "tf2_echo": Counterpart("robolink.cli.tf.ros_programs:tf2_echo", "Shows where a frame is in another."),
+        "tf2_monitor": Counterpart("robolink.cli.tf.ros_programs:tf2_monitor", "Shows who publishes transforms."),
+    },
+    "tf2_tools": {
+        "view_frames": Counterpart("robolink.cli.tf.ros_programs:view_frames", "Writes the tree of frames as a graph."),
+    },
+    "xacro": {
+        "xacro": Counterpart("robolink.counterparts.xacro.xacro:main", "Prints the XML of a file with macros."),
     },
     "turtlesim": {
         "draw_square": Counterpart(

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from robolink.cli.shared.output import say, say_json
 from robolink.cli.shared.session import node_of, opened
-from robolink.cli.tf.watch import NoTransformsError, Seen, Watch
+from robolink.cli.tf.watch import TOPICS, NoTransformsError, Seen, Watch
 from robolink.system.terminal import shown
 from robolink.tf2.listing import Frame, as_dot
 
@@ -37,21 +37,32 @@ class Node(NamedTuple):
 
 def run(wait: float, topics: tuple[str, str], form: str) -> None:
     """Listen, then show the tree as ``text``, ``json`` or ``dot``. Raises NoTransformsError if nothing comes."""
+    watch = listened(wait, topics)
+    links, now = list(watch.links.values()), time.time_ns()
+    found = nodes(links, now)
+    wrong = [*problems(found, links), *refusals(watch.refused)]
+    if form == "json":
+        say_json(_data(found, wrong))
+    elif form == "dot":
+        say(graph(links, now))
+    else:
+        say("\n".join([*map(_drawable, lines(found)), *(f"! {each}" for each in wrong)]))
+
+
+def listened(wait: float, topics: tuple[str, str] = TOPICS) -> Watch:
+    """Return all that is heard of transforms within `wait` seconds. Raises NoTransformsError if nothing comes."""
     with opened() as context:
         watch = Watch(node_of(context), topics)
         watch.listen(wait)
         watch.await_names(NAMED_WITHIN)
         if not watch.links:
             raise NoTransformsError(f"no transforms within {wait:g} s; {watch.why_nothing()}")
-        links, now = list(watch.links.values()), time.time_ns()
-    found = nodes(links, now)
-    wrong = [*problems(found, links), *refusals(watch.refused)]
-    if form == "json":
-        say_json(_data(found, wrong))
-    elif form == "dot":
-        say(as_dot([_in_graph(each) for each in found.values()], reference(links, now)))
-    else:
-        say("\n".join([*map(_drawable, lines(found)), *(f"! {each}" for each in wrong)]))
+    return watch
+
+
+def graph(links: list[Seen], now: int) -> str:
+    """Return the tree as a graph for Graphviz; `now` is this computer's clock in ns."""
+    return as_dot([_in_graph(each) for each in nodes(links, now).values()], reference(links, now))
 
 
 def nodes(links: list[Seen], now: int) -> dict[str, Node]:

@@ -1,0 +1,1 @@
+"""Counterparts of programs of tf2_ros that are nodes."""
