@@ -118,7 +118,6 @@ INSTEAD = {
     "moveit_commander": "it needs MoveIt",
     "moveit_configs_utils": "it needs MoveIt",
     "xacro": "it is on PyPI: pip install xacro",
-    "xacro": "it is a package of its own: pip install xacro",
 }
 """Advice for the names that programs for ROS 2 import and that robolink lacks; a name may be below another."""
 

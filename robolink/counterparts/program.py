@@ -31,6 +31,17 @@ def spin_program(make: Callable[[list[str]], Node], args: list[str] | None = Non
             node.destroy_node()
 
 
+def spin_times(make: Callable[[], Node], count: int) -> None:
+    """Make a node, and let `count` of its callbacks run; it ends earlier with its context, which has begun."""
+    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        node = make()
+        for _ in range(count):
+            if not robolink.ok():
+                break
+            robolink.spin_once(node)
+        node.destroy_node()
+
+
 def own_words(args: list[str] | None = None) -> list[str]:
     """Return a program's own arguments, without its name and without those for ROS; `args` as in `spin_program`."""
     return remove_ros_args(sys.argv if args is None else args)[1:]

@@ -27,7 +27,37 @@ class Counterpart(NamedTuple):
     """Purpose, as one sentence that begins with a verb."""
 
 
+_CPP, _PY = "robolink.counterparts.demo_nodes_cpp", "robolink.counterparts.demo_nodes_py"
+
 COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
+    "demo_nodes_cpp": {
+        "add_two_ints_client": Counterpart(f"{_CPP}.add_two_ints_client:main", "Asks for a sum."),
+        "add_two_ints_server": Counterpart(
+            f"{_CPP}.add_two_ints_server:AddTwoIntsServer", "Adds two numbers on request."
+        ),
+        "listener": Counterpart(f"{_CPP}.listener:Listener", "Logs what it hears."),
+        "parameter_blackboard": Counterpart(f"{_CPP}.parameter_blackboard:ParameterBlackboard", "Keeps parameters."),
+        "talker": Counterpart(f"{_CPP}.talker:Talker", "Publishes a count each second."),
+    },
+    "demo_nodes_py": {
+        "add_two_ints_client": Counterpart(f"{_PY}.add_two_ints_client:main", "Asks for a sum."),
+        "add_two_ints_client_async": Counterpart(f"{_PY}.add_two_ints_client_async:main", "Asks for a sum."),
+        "add_two_ints_server": Counterpart(
+            f"{_PY}.add_two_ints_server:AddTwoIntsServer", "Adds two numbers on request."
+        ),
+        "async_param_client": Counterpart(f"{_PY}.async_param_client:main", "Sets and gets parameters."),
+        "introspection": Counterpart(f"{_PY}.introspection:main", "Has calls observed."),
+        "listener": Counterpart(f"{_PY}.listener:Listener", "Logs what it hears."),
+        "listener_qos": Counterpart(f"{_PY}.listener_qos:main", "Logs what it hears, best effort or reliably."),
+        "listener_serialized": Counterpart(
+            f"{_PY}.listener_serialized:SerializedListener", "Logs the bytes of what it hears."
+        ),
+        "set_parameters_callback": Counterpart(
+            f"{_PY}.set_parameters_callback:SetParametersCallback", "Sets a parameter by another one."
+        ),
+        "talker": Counterpart(f"{_PY}.talker:Talker", "Publishes a count each second."),
+        "talker_qos": Counterpart(f"{_PY}.talker_qos:main", "Publishes a count, best effort or reliably."),
+    },
     "joint_state_publisher": {
         "joint_state_publisher": Counterpart(
             "robolink.counterparts.joint_state_publisher.joint_state_publisher:main", "Publishes a state of each joint."
@@ -35,7 +65,7 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
     },
     "joint_state_publisher_gui": {
         "joint_state_publisher_gui": Counterpart(
-            "robolink.counterparts.joint_state_publisher.joint_state_publisher:gui_main",
+            "robolink.counterparts.joint_state_publisher.joint_state_publisher_gui:main",
             "Publishes a state of each joint, which parameters set.",
         ),
     },

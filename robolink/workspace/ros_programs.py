@@ -23,10 +23,6 @@ _MAPS = f"makes maps, in C++; {_THERE}"
 COMPILED = f"its package's CMakeLists.txt compiles it, and robolink runs Python; {_THERE}"
 """Advice for a program in C++ of a user's own package."""
 PROGRAMS = {
-    ("demo_nodes_py", "talker"): "'robolink pub /chatter String \"{data: hello}\"' publishes as it does",
-    ("demo_nodes_cpp", "talker"): "'robolink pub /chatter String \"{data: hello}\"' publishes as it does",
-    ("demo_nodes_py", "listener"): "'robolink topic echo /chatter' hears as it does",
-    ("demo_nodes_cpp", "listener"): "'robolink topic echo /chatter' hears as it does",
     ("rmw_zenoh_cpp", "rmw_zenohd"): "robolink needs no router, and meets one that runs (docs/ros2.md)",
     ("gazebo_ros", "spawn_entity"): f"puts a robot into Gazebo; {_WORLD}",
     ("gazebo_ros", "gzclient"): "Gazebo's window; 'robolink view' shows the world in the browser instead",
@@ -47,8 +43,6 @@ PACKAGES = {
     "rqt_plot": "a window; 'robolink view' has a panel with plots, 'robolink plot topic' draws into a file",
     "rqt_*": "a window; 'robolink view' has panels for topics, plots, images, logs, services and parameters",
     "rqt": "a window; 'robolink view' has panels for topics, plots, images, logs, services and parameters",
-    "demo_nodes_py": "first nodes are 'robolink run first_node' and 'robolink run velocity_publisher'",
-    "demo_nodes_cpp": "first nodes are 'robolink run first_node' and 'robolink run velocity_publisher'",
     "gazebo_ros": f"Gazebo, a simulator in C++; {_WORLD}",
     "gazebo": f"Gazebo, a simulator in C++; {_WORLD}",
     "gazebo_plugins": f"parts of Gazebo, in C++; {_WORLD}",

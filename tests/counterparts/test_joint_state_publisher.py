@@ -6,7 +6,6 @@ from typing import Any
 
 import pytest
 
-from robolink.counterparts.joint_state_publisher import joint_state_publisher
 from robolink.counterparts.joint_state_publisher.joint_state_publisher import JointStatePublisher
 from robolink.counterparts.joint_state_publisher.joints import FreeJoint, Joints, Settings, dependent_of
 from robolink.counterparts.robot_state_publisher.robot_state_publisher import RobotStatePublisher
@@ -119,7 +118,7 @@ def test_rules_that_are_none_are_one_line(given: dict[str, Any], said: str) -> N
 
 
 def test_the_one_with_a_window_says_what_serves_as_sliders(system: System) -> None:
-    system.start(joint_state_publisher.gui_main)
+    system.start("joint_state_publisher_gui joint_state_publisher_gui")
     system.publish("/robot_description", String(data=ARM), LATCHED)
     system.expect_log("robolink param set joint_state_publisher_gui zeros.JOINT 0.5")
     system.expect("/joint_states")

@@ -27,10 +27,6 @@ from robolink.parameters.descriptors import described
 from robolink.qos import DurabilityPolicy, QoSProfile
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-WITHOUT_SLIDERS = (
-    "there are no sliders here: set a joint by the parameter zeros.JOINT, such as 'robolink param set"
-    " joint_state_publisher zeros.JOINT 0.5', or from the page of 'robolink view'"
-)
 
 
 class JointStatePublisher(Node):
@@ -152,21 +148,9 @@ def make(words: list[str]) -> Node:
     return JointStatePublisher(read_text(Path(words[0])) if words else "")
 
 
-def make_without_sliders(words: list[str]) -> Node:
-    """Make the node joint_state_publisher_gui: the same, with a line that says what serves as sliders."""
-    node = JointStatePublisher(read_text(Path(words[0])) if words else "", "joint_state_publisher_gui")
-    node.get_logger().info(WITHOUT_SLIDERS.replace(" joint_state_publisher ", f" {node.get_name()} "))
-    return node
-
-
 def main(args: list[str] | None = None) -> None:
     """Publish the joints of the robot on the topic robot_description, or in the file that is the first argument."""
     spin_program(make, args)
-
-
-def gui_main(args: list[str] | None = None) -> None:
-    """Publish joints as `main` does, in the place of joint_state_publisher_gui."""
-    spin_program(make_without_sliders, args)
 
 
 if __name__ == "__main__":

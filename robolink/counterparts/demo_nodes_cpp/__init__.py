@@ -1,0 +1,1 @@
+"""Counterparts of demo_nodes_cpp's programs that tutorials start, in Python."""

@@ -1,0 +1,29 @@
+"""Ask the service /add_two_ints for 2 + 3, and log the sum."""
+
+from __future__ import annotations
+
+import contextlib
+
+import robolink
+from robolink.client import Client
+from robolink.exceptions import ExternalShutdownException
+from robolink.interfaces.example_interfaces.srv import AddTwoInts
+from robolink.node import Node
+
+
+def main(args: list[str] | None = None) -> None:
+    """Ask for a sum, and log it."""
+    with robolink.init(args=args), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        node = Node("add_two_ints_client")
+        client: Client = node.create_client(AddTwoInts, "add_two_ints")
+        while not client.wait_for_service(timeout_sec=1.0):
+            node.get_logger().info("service not available, waiting again...")
+        future = client.call_async(AddTwoInts.Request(a=2, b=3))
+        robolink.spin_until_future_complete(node, future)
+        result = future.result()
+        if result is not None:
+            node.get_logger().info(f"Result of add_two_ints: {result.sum}")
+
+
+if __name__ == "__main__":
+    main()

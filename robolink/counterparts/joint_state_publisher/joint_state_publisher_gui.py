@@ -1,0 +1,31 @@
+"""Publish a state for each joint of a robot, in the place of the program with a window: parameters are its sliders."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from robolink.counterparts.joint_state_publisher.joint_state_publisher import JointStatePublisher
+from robolink.counterparts.program import spin_program
+from robolink.counterparts.urdf.parser import read_text
+from robolink.node import Node
+
+WITHOUT_SLIDERS = (
+    "there are no sliders here: set a joint by the parameter zeros.JOINT, such as 'robolink param set"
+    " joint_state_publisher zeros.JOINT 0.5', or from the page of 'robolink view'"
+)
+
+
+def make(words: list[str]) -> Node:
+    """Make the node joint_state_publisher_gui: the same, with a line that says what serves as sliders."""
+    node = JointStatePublisher(read_text(Path(words[0])) if words else "", "joint_state_publisher_gui")
+    node.get_logger().info(WITHOUT_SLIDERS.replace(" joint_state_publisher ", f" {node.get_name()} "))
+    return node
+
+
+def main(args: list[str] | None = None) -> None:
+    """Publish the joints of the robot on the topic robot_description, or in the file that is the first argument."""
+    spin_program(make, args)
+
+
+if __name__ == "__main__":
+    main()
