@@ -69,6 +69,22 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
             "Publishes a state of each joint, which parameters set.",
         ),
     },
+    "nav2_lifecycle_manager": {
+        "lifecycle_manager": Counterpart(
+            "robolink.counterparts.nav2_lifecycle_manager.lifecycle_manager:main", "Starts managed nodes in order."
+        ),
+    },
+    "nav2_map_server": {
+        "map_saver_cli": Counterpart(
+            "robolink.counterparts.nav2_map_server.map_saver_cli:main", "Saves a map, and ends."
+        ),
+        "map_saver_server": Counterpart(
+            "robolink.counterparts.nav2_map_server.map_saver_server:main", "Saves maps on request."
+        ),
+        "map_server": Counterpart(
+            "robolink.counterparts.nav2_map_server.map_server:main", "Publishes a map of a file."
+        ),
+    },
     "robot_state_publisher": {
         "robot_state_publisher": Counterpart(
             "robolink.counterparts.robot_state_publisher.robot_state_publisher:main", "Publishes a robot's transforms."
