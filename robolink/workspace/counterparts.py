@@ -28,6 +28,7 @@ class Counterpart(NamedTuple):
 
 
 _CPP, _PY = "robolink.counterparts.demo_nodes_cpp", "robolink.counterparts.demo_nodes_py"
+_TOOLS = "robolink.counterparts.topic_tools"
 
 COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
     "demo_nodes_cpp": {
@@ -104,8 +105,13 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
     "tf2_tools": {
         "view_frames": Counterpart("robolink.cli.tf.ros_programs:view_frames", "Writes the tree of frames as a graph."),
     },
-    "xacro": {
-        "xacro": Counterpart("robolink.counterparts.xacro.xacro:main", "Prints the XML of a file with macros."),
+    "topic_tools": {
+        "delay": Counterpart(f"{_TOOLS}.delay:main", "Passes on messages, some time later."),
+        "demux": Counterpart(f"{_TOOLS}.demux:main", "Passes on messages to one of several topics."),
+        "drop": Counterpart(f"{_TOOLS}.drop:main", "Passes on messages, but for some of them."),
+        "mux": Counterpart(f"{_TOOLS}.mux:main", "Passes on messages of one of several topics."),
+        "relay": Counterpart(f"{_TOOLS}.relay:main", "Passes on messages to another topic."),
+        "throttle": Counterpart(f"{_TOOLS}.throttle:main", "Passes on so many messages or bytes per second."),
     },
     "turtlesim": {
         "draw_square": Counterpart(
@@ -118,6 +124,9 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
         "turtlesim_node": Counterpart(
             "robolink.counterparts.turtlesim.turtlesim_node:main", "Simulates turtles that draw, shown in the browser."
         ),
+    },
+    "xacro": {
+        "xacro": Counterpart("robolink.counterparts.xacro.xacro:main", "Prints the XML of a file with macros."),
     },
 }
 """Counterparts by package and executable."""

@@ -39,7 +39,7 @@ class MapSaveError(RobolinkError, ValueError):
 
 
 class Saving(NamedTuple):
-    """How a map is saved: `path` without its ending, `form` pgm or png, thresholds from 0 to 1."""
+    """Choices for saving a map: `path` without its ending, `form` pgm or png, thresholds from 0 to 1."""
 
     path: str
     form: str = ""

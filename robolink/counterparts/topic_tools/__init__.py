@@ -1,0 +1,1 @@
+"""Counterparts of topic_tools: programs that pass on messages of any type as bytes."""

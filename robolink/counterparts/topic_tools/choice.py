@@ -1,0 +1,100 @@
+"""Choice among topics by the services ~/add, ~/delete, ~/list and ~/select, for mux and demux."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from robolink.node import Node
+
+NONE = "__none"
+"""Name of no topic."""
+
+
+class Kinds(NamedTuple):
+    """Service classes of a choice."""
+
+    add: type[Any]
+    delete: type[Any]
+    list: type[Any]
+    select: type[Any]
+
+
+class Choice:
+    """The topics of a node, one of which is selected, and the services that change them.
+
+    Args:
+        node: Node that offers the services.
+        kinds: Service classes.
+        topics: Topics at the beginning.
+        selected: The selected one; `NONE` for none.
+        on_select: Called with a topic that has been selected.
+    """
+
+    def __init__(
+        self, node: Node, kinds: Kinds, topics: list[str], selected: str, on_select: Callable[[str], None]
+    ) -> None:
+        self.node, self.topics, self.selected, self._on_select = node, topics, selected, on_select
+        self.name = node.get_name()
+        for service in Kinds._fields:
+            node.create_service(getattr(kinds, service), f"~/{service}", getattr(self, service))
+
+    def _find(self, topic: str) -> str | None:
+        """Return the topic of this name, which may be spelled in another way."""
+        if not topic:
+            return None
+        full = self.node.resolve_topic_name(topic)
+        return next((each for each in self.topics if self.node.resolve_topic_name(each) == full), None)
+
+    def add(self, request: Any, response: Any) -> Any:
+        """Add a topic."""
+        topic = request.topic
+        self._say(f"trying to add {topic} to {self.name}")
+        if topic == NONE:
+            self._warn(f"failed to add topic {topic} to {self.name}, because it's reserved for special use")
+        elif topic in self.topics:
+            self._warn(f"tried to add a topic that {self.name} was already listening to: [{topic}]")
+        else:
+            self.node.resolve_topic_name(topic)
+            self.topics.append(topic)
+            self._say(f"added {topic} to {self.name}")
+            response.success = True
+        return response
+
+    def delete(self, request: Any, response: Any) -> Any:
+        """Remove a topic that is not selected."""
+        found = self._find(request.topic)
+        if found is None:
+            self._warn(f"tried to delete non-subscribed topic {request.topic} from {self.name}")
+        elif found == self._find(self.selected):
+            self._warn(f"tried to delete currently selected topic {request.topic} from {self.name}")
+        else:
+            self.topics.remove(found)
+            self._say(f"deleted topic {request.topic} from {self.name}")
+            response.success = True
+        return response
+
+    def list(self, request: Any, response: Any) -> Any:
+        """List the topics."""
+        response.topics = self.topics
+        return response
+
+    def select(self, request: Any, response: Any) -> Any:
+        """Select a topic, or none."""
+        response.prev_topic = self.selected if self._find(self.selected) else ""
+        if request.topic == NONE:
+            self._say(f"{self.name} selected to no input.")
+        elif self._find(request.topic) is None:
+            self._warn(f"{request.topic} is none of the topics of {self.name}: add it first")
+            return response
+        else:
+            self._say(f"{self.name} selected input: [{request.topic}]")
+        self.selected, response.success = request.topic, True
+        self._on_select(self.selected)
+        return response
+
+    def _say(self, text: str) -> None:
+        self.node.get_logger().info(text)
+
+    def _warn(self, text: str) -> None:
+        self.node.get_logger().warning(text)
