@@ -13,7 +13,7 @@ from tools.docs_site.pages import DOCS, Page, pages
 
 WRITTEN = [each for each in pages("en") if each.source is not None and DOCS / "en" in each.source.parents]
 RUN = [each for each in WRITTEN if blocks(each.text())]
-REASONS = {"installs packages"}
+REASONS = {"installs packages", "needs a robot", "needs ROS 2"}
 """Why blocks are not run, over all pages."""
 
 

@@ -125,7 +125,7 @@ def test_a_term_is_explained_where_it_comes_first(number: int, language: str) ->
 def test_terms_are_all_that_is_in_bold() -> None:
     for language in LANGUAGES:
         text = "\n".join(prose(page) for page in LEARN if page.language == language)
-        bold = {each.lower() for each in re.findall(r"\*\*(.+?)\*\*", text)}
+        bold = {each.lower() for each in re.findall(r"\*\*(..+?)\*\*", text)}
         known = {each[language].lower() for each in terms()}
         assert bold - known - {f"{each}s" for each in known} == set()
 

@@ -27,7 +27,7 @@ from tests.support.console import fits
 from tools.docs_site.markdown import Block, blocks
 
 PATIENCE = 60.0
-FIRST_WORDS = 3.0
+FIRST_WORDS = 1.5
 """Seconds that a command which goes on has for its first line, before the next command is typed."""
 ENDS = {
     "launch": ("--duration", "--validate", "--status", "--list", "--stop", "stop", "restart"),

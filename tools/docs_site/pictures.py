@@ -10,6 +10,8 @@ from html import escape
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from robolink.image import to_array
+from robolink.image.png import png_of
 from robolink.testing import System
 from tools.docs_site.markdown import blocks
 from tools.docs_site.pages import DOCS
@@ -40,6 +42,12 @@ PICTURES: dict[str, Drive | Boxes] = {
     "node": Boxes(("careful", "world"), ()),
     "publish_subscribe": Drive("careful.py", "empty_room", 14.0, "learn/publish_subscribe.md"),
     "laser": Drive("careful.py", "empty_room", 12.0, "learn/laser.md"),
+    "pid": Drive("follow.py", "hall.yaml", 32.0, "learn/pid.md", {"kd": 5.0}),
+    "launch": Boxes(("team.yaml", "world", "/ada", "/eve"), ((0, 1, ""), (1, 2, "scan"), (2, 3, ""))),
+    "see_record": Boxes(("robot", "bag", "follow"), ((0, 1, "/scan"), (1, 2, "/scan"))),
+    "testing": Boxes(("test", "careful"), ((0, 1, "/scan"), (1, 0, "/cmd_vel"))),
+    "real_robot": Boxes(("laptop", "robot"), ((0, 1, "/cmd_vel"), (1, 0, "/scan"))),
+    "ros2_course": Boxes(("rclpy", "world"), ((0, 1, "/cmd_vel"), (1, 0, "/scan"))),
     "services_parameters": Boxes(("you", "careful"), ((0, 1, "/go"), (1, 0, "ok"))),
 }
 WIDE, HIGH, GAP, TOP = 170, 80, 190, 60
@@ -55,7 +63,10 @@ TIP = (
 
 def write(names: list[str]) -> None:
     """Write the named pictures, or all."""
-    for name in names or PICTURES:
+    for name in names or (*PICTURES, "camera"):
+        if name == "camera":
+            (FOLDER / "camera.png").write_bytes(seen())
+            continue
         described = PICTURES[name]
         text = driven(described) if isinstance(described, Drive) else boxes(described)
         (FOLDER / f"{name}.svg").write_text(text, encoding="utf-8")
@@ -64,24 +75,35 @@ def write(names: list[str]) -> None:
 def driven(described: Drive) -> str:
     """Let a page's program drive in virtual time, and draw its path."""
     with tempfile.TemporaryDirectory() as folder, System(seed=1) as system:
-        system.start("world", parameters={"world": described.world})
+        write_files_of(described.page, Path(folder))
+        world, program = (_found(Path(folder), each) for each in (described.world, described.program))
+        system.start("world", parameters={"world": world})
         poses, scans = system.messages("/ground_truth"), system.messages("/scan")
-        system.start(program_of(described, Path(folder)), parameters=described.parameters or {})
+        system.start(program, parameters=described.parameters or {})
         system.run(described.seconds)
-    path = [(each.pose.pose.position.x, each.pose.pose.position.y) for each in poses]
-    last = poses[-1].pose.pose.orientation
-    beams = hits(scans[-1], path[-1], (last.z, last.w)) if scans else []
-    return svg(described.world, path, beams, path[-1])
+        path = [(each.pose.pose.position.x, each.pose.pose.position.y) for each in poses]
+        last = poses[-1].pose.pose.orientation
+        beams = hits(scans[-1], path[-1], (last.z, last.w)) if scans else []
+        return svg(world, path, beams, path[-1])
 
 
-def program_of(described: Drive, folder: Path) -> str | Path:
-    """Return the node's name, or the file into which the page's program is written."""
-    if not described.page:
-        return described.program
-    shown = blocks((DOCS / "en" / described.page).read_text(encoding="utf-8"))
-    file = folder / described.program
-    file.write_text([each.text for each in shown if each.title == described.program][-1], encoding="utf-8")
-    return file
+def write_files_of(page: str, folder: Path) -> None:
+    """Write the files that a page shows; '' for none."""
+    for block in blocks((DOCS / "en" / page).read_text(encoding="utf-8")) if page else []:
+        if block.title:
+            (folder / block.title).write_text(block.text, encoding="utf-8")
+
+
+def _found(folder: Path, name: str) -> str:
+    return str(folder / name) if (folder / name).exists() else name
+
+
+def seen() -> bytes:
+    """Return a PNG of what the camera sees in the world `track`."""
+    with System(seed=1) as system:
+        system.start("world", parameters={"world": "track"})
+        image = system.expect("/camera/image_raw", within=5.0)
+    return png_of(to_array(image, "rgb8"))
 
 
 def boxes(described: Boxes) -> str:
