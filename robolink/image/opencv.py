@@ -42,23 +42,33 @@ def opencv(purpose: str) -> Any:
 
 def lacking(error: BaseException) -> ImageError | None:
     """Return the error that tells what to install, if `error` is a program's failed import of OpenCV; else None."""
-    if not isinstance(error, ImportError) or (error.name or "").partition(".")[0] != "cv2":
+    if not isinstance(error, ImportError):
         return None
     frames = [each for each, _ in traceback.walk_tb(error.__traceback__)]
+    modules = [each.f_globals.get("__name__", "") for each in frames]
     others = ("robolink.", "runpy", "importlib", "cv2")
-    files = [each.f_code.co_filename for each in frames if not each.f_globals.get("__name__", "").startswith(others)]
+    files = [each.f_code.co_filename for each, name in zip(frames, modules, strict=True) if not name.startswith(others)]
+    program = Path(files[-1]).name if files else "this program"
+    if error.name is None and modules and _is_of_opencv(modules[-1]):  # it is for another numpy, which says so again
+        return _unloadable(program, error)
+    if not _is_of_opencv(error.name or ""):
+        return None
     try:
-        opencv(Path(files[-1]).name if files else "this program")
+        opencv(program)
     except ImageError as reason:
         return reason
     return None
+
+
+def _is_of_opencv(module: str) -> bool:
+    return module.partition(".")[0] == "cv2"
 
 
 def _unloadable(purpose: str, error: Exception) -> ImageError:
     reason = " ".join(str(error).split())[:200]
     return ImageError(
         f"{purpose} needs OpenCV, which is installed but cannot be loaded ({reason}):"
-        " pip uninstall opencv-python, then pip install opencv-python-headless"
+        " pip uninstall opencv-python, then pip install -U opencv-python-headless"
     )
 
 

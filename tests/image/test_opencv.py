@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -44,6 +45,7 @@ def test_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     [
         ImportError("libGL.so.1: cannot open shared object file:\n No such file or directory"),
         ModuleNotFoundError("No module named 'numpy.core.multiarray'", name="numpy.core.multiarray"),
+        ImportError("numpy.core.multiarray failed to import"),
         AttributeError("_ARRAY_API not found"),
     ],
 )
@@ -51,7 +53,7 @@ def test_broken(monkeypatch: pytest.MonkeyPatch, error: Exception) -> None:
     importing(monkeypatch, error)
     said = refusal()
     assert said.startswith("JPEG needs OpenCV, which is installed but cannot be loaded (")
-    assert said.endswith("pip install opencv-python-headless")
+    assert said.endswith("pip install -U opencv-python-headless")
     assert "\n" not in said
 
 
@@ -76,6 +78,21 @@ def test_a_programs_failed_import_names_the_program(monkeypatch: pytest.MonkeyPa
     assert str(lacking(caught.value)) == words
     assert str(lacking(ModuleNotFoundError("No module named 'cv2.aruco'", name="cv2.aruco"))) == words.replace(
         "test_opencv.py", "this program"
+    )
+
+
+def test_one_that_is_built_for_another_numpy_is_no_fault_of_the_program(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Such an OpenCV fails in its own file, by an error that does not name it."""
+    (tmp_path / "cv2.py").write_text("raise ImportError('numpy.core.multiarray failed to import')\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "cv2")
+    with pytest.raises(ImportError) as caught:
+        import cv2  # noqa: F401
+    said = str(lacking(caught.value))
+    assert said.startswith(
+        "test_opencv.py needs OpenCV, which is installed but cannot be loaded (numpy.core.multiarray"
     )
 
 
