@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import hashlib
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from robolink.exceptions import DocumentError
+from robolink.image.png import png_of
 from robolink.sim import Shot, World, load_world
 from robolink.sim.worldfile import check_world
 
@@ -16,12 +21,16 @@ robots:
 """
 
 
-def world(more: str) -> World:
-    """Return a world with more keys of its camera, at the time of its first image."""
-    made = World(load_world("eye.yaml", text=TEXT.replace("MORE", more)))
+def at_first_image(made: World) -> World:
+    """Let a world go on until its cameras have their first image."""
     for _ in range(10):
         made.step()
     return made
+
+
+def world(more: str) -> World:
+    """Return a world with more keys of its camera, at the time of its first image."""
+    return at_first_image(World(load_world("eye.yaml", text=TEXT.replace("MORE", more))))
 
 
 def shot(made: World) -> Shot:
@@ -109,3 +118,47 @@ def test_what_moves_and_what_is_pushed_is_seen_where_it_is() -> None:
     pusher = made.robots["pusher"].pose
     assert ball.y > -2.95
     assert ahead[120, 160] == pytest.approx(ball.y - pusher.y - 0.1, abs=0.01)
+
+
+THINGS = """
+walls: [{polyline: [[4, -3], [4, 3]], height: 1.2, colour: silver}]
+obstacles: [{box: [0.4, 0.4], pose: [2, 0.6, 0.3], height: 0.3, colour: teal}, {circle: 0.2, pose: [3, -0.6]}]
+"""
+PAINTED = """
+world: {name: painted, floor: {colour: '#96918c', image: picture.png, resolution: 0.02, origin: [0, -1]}}
+paint: [{line: [[0, 0], [2, 0], [3, 1]], radius: 0.5, width: 0.05, colour: yellow}, {circle: 0.2, pose: [2, 0]}]
+signs: [{tag: 36h11/3, pose: [4, 0, 3.1416], z: 0.5, size: 0.3}, {image: picture.png, pose: [4, 1, 3], z: 1, size: 0.3}]
+robots: [{name: eye, pose: [0, 0], sensors: [{camera: camera, pitch: 10, noise: 3, depth: true, width: 200}]}]
+"""
+
+
+@pytest.mark.parametrize("has_opencv", [True, False])
+def test_the_bytes_of_an_image_are_the_same_everywhere(
+    has_opencv: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not has_opencv:
+        monkeypatch.setitem(sys.modules, "cv2", None)
+    picture = np.arange(60 * 90 * 3, dtype=np.uint32).reshape(60, 90, 3) * 2654435761 >> 24
+    (tmp_path / "picture.png").write_bytes(png_of(picture.astype(np.uint8)))
+    (tmp_path / "painted.yaml").write_text(THINGS + PAINTED, encoding="utf-8")
+    found = shot(at_first_image(World(load_world(tmp_path / "painted.yaml"), seed=5)))
+    digest = hashlib.sha256(found.image("bgr8").tobytes() + found.depths().astype("<f4").tobytes()).hexdigest()
+    assert digest[:16] == "73df6db5882bfcec"
+
+
+@pytest.mark.parametrize(
+    ("place", "ahead"),
+    [
+        ("z: 50", np.inf),  # above all
+        ("offset: [2, 0.6]", 0.2095),  # in a box: its side
+        ("offset: [2.2, 0.6]", -np.inf),  # nearer to the side than the range begins
+        ("offset: [3, -0.6]", 1.0),  # in a cylinder, which has no inside
+        ("offset: [4, 0]", np.inf),  # in the wall, which has no thickness
+    ],
+)
+def test_a_camera_above_all_or_inside_of_a_thing(place: str, ahead: float) -> None:
+    eye = f"robots: [{{name: eye, pose: [0, 0], sensors: [{{camera: camera, {place}}}]}}]"
+    found = shot(at_first_image(World(load_world("inside.yaml", text=THINGS + eye))))
+    assert found.image().shape == (240, 320, 3)
+    assert found.depths()[120, 160] == pytest.approx(ahead, abs=1e-4)
+    assert not np.isnan(found.depths()).any()
