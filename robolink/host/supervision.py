@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import signal
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from robolink import logging
+from robolink.impl.log_output import DEFAULT_FORMAT, Record, compile_format
+from robolink.launch.planning import processes
 from robolink.launch.readiness import Readiness
+from robolink.running.defaults import get_defaults
+from robolink.supervisor.director import Add, Director, Request, Signal, Stop, Tell
 from robolink.supervisor.policy import Action, Ask, Policy, Say, Start
 from robolink.supervisor.rules import Step, described, is_orderly
 from robolink.transport.memory import MemoryTransport
@@ -17,8 +24,11 @@ if TYPE_CHECKING:
     from robolink.host.host import Host
     from robolink.host.program import Program
     from robolink.launch.planning import Launched
+    from robolink.launch.reading.entry import Entry
+    from robolink.launch.system import Direct
 
 
+_AS_LINE = compile_format(DEFAULT_FORMAT)
 PATIENCE = 5.0
 """Virtual seconds from one step of ending a program to the next harder one."""
 
@@ -26,8 +36,17 @@ PATIENCE = 5.0
 class Supervision:
     """Starts programs that wait for others, and applies the rules when programs end.
 
-    The launch file's rules hold, `respawn`, `on_exit` and `start_after`, in the host's time. Nothing is decided within
-    a program's turn, but right after it. `say` is called with each line that people should read.
+    Commands are left out: they know no virtual time. The launch file's rules hold, `respawn`, `on_exit` and
+    `start_after`, in the host's time. Nothing is decided within a program's turn, but right after it.
+
+    Args:
+        host: Host of the programs.
+        launched: The programs, and commands.
+        say: Called with each line that people should read.
+        ends: Time of the end, in s; None has none.
+        direct: Maker of the director of a launch file with timers and event handlers; None has none.
+        on_added: Called with each program that the director adds.
+        env: Variables of these, besides their own.
     """
 
     def __init__(
@@ -37,10 +56,15 @@ class Supervision:
         *,
         say: Callable[[str], object] | None = None,
         ends: float | None = None,
+        direct: Direct | None = None,
+        on_added: Callable[[Launched], object] = lambda launched: None,
+        env: Mapping[str, str] | None = None,
     ) -> None:
         self.host = host
-        self.policy = Policy({each.name: each.rules for each in launched}, ends=ends, patience=PATIENCE)
-        self._launched = {each.name: each for each in launched}
+        programs = [each for each in launched if each.members]
+        self.policy = Policy({each.name: each.rules for each in programs}, ends=ends, patience=PATIENCE)
+        self._launched = {each.name: each for each in programs}
+        self._commands = [each.name for each in launched if not each.members]
         self._say = say or (lambda text: None)
         self.crashes: Counter[str] = Counter()
         """Number of crashes by faults, by program."""
@@ -50,8 +74,11 @@ class Supervision:
         """Time of the system's end, in s; None while it runs."""
         self._struck: set[str] = set()
         self._spared: set[str] = set()
-        self._readiness = Readiness({each.name: each.held_by for each in launched})
+        self._readiness = Readiness({each.name: each.held_by for each in programs})
         self._session: MemoryTransport | None = None
+        self._on_added, self._env = on_added, env or {}
+        self._director = None if direct is None else direct(self._plan)
+        self._is_end_told = self._is_listening = False
         host.on_exit.append(self._on_exit)
 
     @property
@@ -64,7 +91,10 @@ class Supervision:
         if self._readiness.held:
             self._session = MemoryTransport(bus=self.host.bus)
             self._session.watch(graph_pattern(), self._on_token)
-        self._do(self.policy.begin(self.host.now))
+        asked = self._asked(lambda director: director.begin(self.host.now))
+        for name in self._commands:
+            asked += self._left_out(name)
+        self._do([*self.policy.begin(self.host.now), *asked])
 
     # What faults need of those who run programs
 
@@ -113,6 +143,8 @@ class Supervision:
             self.host.on_exit.remove(self._on_exit)
         if self._session is not None:
             self._session.close()
+        if self._is_listening:
+            logging.remove_handler(self._on_log)
 
     def _on_exit(self, program: Program) -> None:
         name, code, cause = program.name, program.returncode or 0, _cause(program)
@@ -123,7 +155,12 @@ class Supervision:
         if name in self._spared:
             self._spared.remove(name)
         elif name in self._launched:
-            self._soon(lambda: self._do(self.policy.exited(name, code, self.host.now, cause)))
+            self._soon(lambda: self._do(self._exited(name, code, cause)))
+
+    def _exited(self, name: str, code: int, cause: str) -> list[Action]:
+        now = self.host.now
+        actions = self.policy.exited(name, code, now, cause)
+        return [*actions, *self._asked(lambda director: director.exited(name, code, now))]
 
     def _on_token(self, text: str, alive: bool) -> None:
         for name in self._readiness.note_token(text, alive):
@@ -140,12 +177,22 @@ class Supervision:
                 self._ask(each.name, each.step)
             elif isinstance(each, Say):
                 self._say(each.text)
-        deadline = self.policy.deadline
+        self._tell_end()
+        deadline = self._deadline()
         if self.policy.is_over:
             self.ended_at = self.host.now if self.ended_at is None else self.ended_at
         elif deadline is not None:
             # of 0.1 + 0.2 the host's nanoseconds are a hair earlier, and nothing would be due for ever
-            self.host.at(deadline, lambda: self._do(self.policy.woken(max(self.host.now, deadline))))
+            self.host.at(deadline, lambda: self._do(self._woken(max(self.host.now, deadline))))
+
+    def _deadline(self) -> float | None:
+        deadlines = [self.policy.deadline, None if self._director is None else self._director.deadline]
+        return min((each for each in deadlines if each is not None), default=None)
+
+    def _woken(self, now: float) -> list[Action]:
+        due = None if self._director is None else self._director.deadline
+        asked = [] if due is None or now < due else self._asked(lambda director: director.woken(now))
+        return [*self.policy.woken(now), *asked]
 
     def _start(self, name: str) -> None:
         if name in self.host.programs:
@@ -153,6 +200,8 @@ class Supervision:
         else:
             each = self._launched[name]
             self.host.start(name, each.members, env=each.env)
+        if self._director is not None:
+            self._soon(lambda: self._do(self._asked(lambda director: director.started(name, 0, self.host.now))))
 
     def _ask(self, name: str, step: Step) -> None:
         if self.host.program(name).is_over:  # a fault has ended it, and was to start it again
@@ -161,6 +210,74 @@ class Supervision:
             self.host.interrupt(name)
         else:
             self.host.crash(name)
+
+    # What the director decides
+
+    def _plan(self, entries: list[Entry]) -> list[Launched]:
+        return [replace(each, env={**self._env, **each.env}) for each in processes(entries)]
+
+    def _asked(self, ask: Callable[[Director[Launched]], Sequence[Request[Launched]]]) -> list[Action]:
+        """Ask the director, if there is one; return the actions that carry out what it asks for."""
+        if self._director is None:
+            return []
+        actions: list[Action] = []
+        for each in ask(self._director):
+            actions += self._carried_out(each)
+        self.policy.expects_more = self._director.deadline is not None
+        if self._director.hears_lines and not self._is_listening:
+            self._is_listening = True
+            logging.add_handler(self._on_log)
+        return actions
+
+    def _carried_out(self, request: Request[Launched]) -> list[Action]:
+        now = self.host.now
+        if isinstance(request, Add):
+            return self._added(request.process)
+        if isinstance(request, Stop):
+            return self.policy.stop_one(request.name, now)
+        if isinstance(request, Signal):
+            return [] if request.name not in self.host.programs else self._signalled(request)
+        if isinstance(request, Tell):
+            return [Say(request.text)]
+        return self.policy.end(request.reason, request.code, now)
+
+    def _added(self, launched: Launched) -> list[Action]:
+        """Add a program; a command is left out."""
+        name = launched.name
+        if not launched.members:
+            self._soon(lambda: self._do(self._left_out(name)))
+            return [Say(f"{name} is left out: a command knows no virtual time")]
+        self._launched[name] = launched
+        self._on_added(launched)
+        return self.policy.add(name, launched.rules, self.host.now)
+
+    def _left_out(self, name: str) -> list[Action]:
+        return self._asked(lambda director: director.left_out(name, self.host.now))
+
+    def _signalled(self, request: Signal) -> list[Action]:
+        """Interrupt a program, or kill it, as a signal would do that it does not handle."""
+        if request.number == signal.SIGINT:
+            self.host.interrupt(request.name)
+        else:
+            self.host.crash(request.name)
+        return []
+
+    def _on_log(self, record: Record) -> None:
+        """Pass a line of a program's log to the director, as it would stand in the output of its process."""
+        program = get_defaults().program
+        name = "" if program is None else program.name
+        if program is None or self.host.programs.get(name) is not program:
+            return
+        line = f"{_AS_LINE(record)}\n".encode()
+        self._soon(lambda: self._do(self._asked(lambda director: director.line(name, line, self.host.now))))
+
+    def _tell_end(self) -> None:
+        """Inform the director once that the system is ending."""
+        if self._director is not None and self.policy.step is not None and not self._is_end_told:
+            self._is_end_told = True
+            actions = self._asked(lambda director: director.stopping(self.host.now))
+            self.policy.expects_more = False
+            self._do(actions)
 
 
 def _cause(program: Program) -> str:

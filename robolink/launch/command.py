@@ -24,6 +24,7 @@ from robolink.system.own_command import own_command
 from robolink.workspace import VARIABLE
 
 if TYPE_CHECKING:
+    from robolink.launch.system import Direct
     from robolink.supervisor.events import Event
     from robolink.supervisor.monitoring.file_watch import Watch
 
@@ -46,6 +47,7 @@ def launch(
     shows_view: bool = False,
     enclave: str = "",
     notes: Iterable[str] = (),
+    direct: Direct | None = None,
 ) -> int:
     """Run a system until Ctrl-C, the end of `duration`, or the end of a process that ends the system.
 
@@ -62,6 +64,7 @@ def launch(
         enclave: Enclave with whose keys it is recorded, viewed and waited for, where security is on. '' is `/`, and for
             the launcher that of the file's first node that has one.
         notes: Lines of the launch file's own, printed first.
+        direct: Maker of the director that starts and stops more while the system runs; None has none.
 
     Returns:
         The exit code of the system.
@@ -93,7 +96,9 @@ def launch(
         start: Callable[[Process, Lifeline], Child] = Child
         if server is not None:
             start = functools.partial(Child, server=stack.enter_context(contextlib.closing(server)))
-        supervisor = Supervisor(to_run, output=output, logs=RunLogs(path.stem), on_event=on_event, start=start)
+        director = None if direct is None else direct(lambda added: _to_run(processes(added), watches))
+        logs = RunLogs(path.stem)
+        supervisor = Supervisor(to_run, output=output, logs=logs, on_event=on_event, start=start, director=director)
         for line in (*notes, *protection.unprotected(entries, os.environ)):
             supervisor.say(line)
         if server is not None:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import NamedTuple, Protocol, TypeVar
 
 from robolink.exceptions import DocumentError
 from robolink.launch.reading.arguments import ArgumentHelp
@@ -15,9 +15,20 @@ from robolink.launch.reading.entries import read_launch_file, read_with_mistakes
 from robolink.launch.reading.entry import Entry
 from robolink.launch.reading.kinds import is_of_ros
 from robolink.launch.reading.record import record_of as own_record_of
+from robolink.supervisor.director import Director
 from robolink.workspace import Folder
 
 _NOTHING: Mapping[str, str] = MappingProxyType({})
+
+
+T = TypeVar("T")
+
+
+class Direct(Protocol):
+    """Maker of the director of a launch file with timers or event handlers; it is called once."""
+
+    def __call__(self, plan: Callable[[list[Entry]], Sequence[T]]) -> Director[T]:
+        """Return the director; `plan` returns the processes in which entries run that are added later."""
 
 
 class System(NamedTuple):
@@ -27,10 +38,16 @@ class System(NamedTuple):
     """Nodes and commands to start at once."""
     notes: list[str] = []
     """Lines for people: what is left out, and what the launch file itself wants to be printed."""
+    direct: Direct | None = None
+    """Maker of what goes on while the system runs; None where nothing does."""
 
 
 def read_system(
-    path: str | os.PathLike[str], given: Mapping[str, str] = _NOTHING, *, workspace: Folder = None
+    path: str | os.PathLike[str],
+    given: Mapping[str, str] = _NOTHING,
+    *,
+    workspace: Folder = None,
+    foresee: bool = False,
 ) -> System:
     """Read a launch file of any kind.
 
@@ -38,6 +55,8 @@ def read_system(
         path: The launch file.
         given: Launch arguments by name, as people type them.
         workspace: Folder in which the nodes of a launch file that is in no workspace are looked up.
+        foresee: True adds the entries that timers and event handlers will start, as far as that is known; then it is
+            for looking, not for running.
 
     Returns:
         What it starts.
@@ -49,16 +68,27 @@ def read_system(
     path = Path(path)
     if not is_of_ros(path):
         return System(read_launch_file(path, given, workspace=workspace))
-    from robolink.launch.ros.reading import visited
+    from robolink.launch.ros.reading import foresee_all, visited
 
     visit = visited(path, given, workspace)
-    return System([each.entry for each in visit.started], visit.context.said)
+    if foresee:
+        foresee_all(visit)
+    entries, notes = [each.entry for each in visit.started], list(visit.context.said)
+    visit.context.said.clear()
+    if foresee or not visit.goes_on:
+        return System(entries, notes)
+    from robolink.launch.ros.reactions import Reactions
+
+    def direct(plan: Callable[[list[Entry]], Sequence[T]]) -> Director[T]:
+        return Reactions(visit, plan)
+
+    return System(entries, notes, direct)
 
 
 def read_system_with_mistakes(
     path: str | os.PathLike[str], given: Mapping[str, str] = _NOTHING, *, workspace: Folder = None
 ) -> tuple[System, list[DocumentError]]:
-    """Read a launch file as `read_system` does, but return its mistakes in place of raising them.
+    """Read a launch file as `read_system` does, with `foresee`, but return its mistakes in place of raising them.
 
     Args:
         path: The launch file.
@@ -69,7 +99,7 @@ def read_system_with_mistakes(
         entries, mistakes = read_with_mistakes(path, given, workspace=workspace)
         return System(entries), mistakes
     try:
-        return read_system(path, given, workspace=workspace), []
+        return read_system(path, given, workspace=workspace, foresee=True), []
     except DocumentError as error:  # a program stops at its first one
         return System([]), [error]
 

@@ -28,6 +28,7 @@ from robolink.simulate.undeclared import undeclared
 from robolink.transport.base import NumberingOutlet
 
 if TYPE_CHECKING:
+    from robolink.launch.system import Direct
     from robolink.node import Node
     from robolink.sim import Robot
     from robolink.simulate.recording import SimulatedRecording
@@ -63,6 +64,7 @@ def simulate(
     given: Collection[str] = (),
     watching: Watching | None = None,
     record: str | Path = "",
+    direct: Direct | None = None,
 ) -> SimulationResult:
     """Run a system in virtual time; the same entries, seed and faults publish the same bytes.
 
@@ -76,6 +78,7 @@ def simulate(
         given: Parameters that were set, named as by `with_parameters`. One that its node does not declare is a failure.
         watching: Callbacks during the run.
         record: Folder of a bag that gets all that is published, in virtual time; '' for none.
+        direct: Maker of the director that starts and stops more while the system runs; None has none.
 
     Returns:
         The result. Its failures are programs that failed, such parameters, and faults with a name that nobody had.
@@ -90,10 +93,9 @@ def simulate(
     told = watching or Watching()
     with ExitStack() as stack:
         stack.enter_context(numpy_seeded(seed or 0))
-        nodes = [each for each in processes(entries) if each.members]
-        launched = [replace(each, env={**_SAME_EVERYWHERE, **each.env}) for each in nodes]
+        launched = [replace(each, env={**_SAME_EVERYWHERE, **each.env}) for each in processes(entries)]
         errors = stack.enter_context(_console(told.log))
-        run = _Run(launched, faults or FaultsDescription(), seed or 0, told)
+        run = _Run(launched, faults or FaultsDescription(), seed or 0, told, direct)
         run.given = given
         run.host.wishes = {} if seed is None else {"seed": seed}
         stack.callback(run.host.close)
@@ -143,18 +145,34 @@ class _Session(FaultyTransport):
 class _Run:
     """A system in its host."""
 
-    def __init__(self, launched: Sequence[Launched], faults: FaultsDescription, seed: int, told: Watching) -> None:
+    def __init__(
+        self,
+        launched: Sequence[Launched],
+        faults: FaultsDescription,
+        seed: int,
+        told: Watching,
+        direct: Direct | None,
+    ) -> None:
         self.trace, self.seed, self._told = Trace(), seed, told
         self.host = Host(seed=seed, connect=self._session, clock=self._clock)
-        self.supervision = Supervision(self.host, launched, say=told.say)
+        self.supervision = Supervision(
+            self.host, launched, say=told.say, direct=direct, on_added=self._add, env=_SAME_EVERYWHERE
+        )
         self.injector = Injector(self.host.bus, self.host.time, self.supervision, seed=seed)
+        self._launched: list[Launched] = []
         for each in launched:
-            self.injector.register(each.name, [entry.name for entry in each.entries])
+            if each.members:
+                self._add(each)
         self.injector.add_all(faults)
-        self._launched, self._interrupted = launched, False
+        self._interrupted = False
         self.given: Collection[str] = ()
         """Parameters that nodes are to declare."""
         self._recording: SimulatedRecording | None = None
+
+    def _add(self, launched: Launched) -> None:
+        """Note a program, also one that is added while the system runs."""
+        self._launched.append(launched)
+        self.injector.register(launched.name, [entry.name for entry in launched.entries])
 
     def record(self, path: str | Path) -> SimulatedRecording:
         """Record what is published into a bag."""

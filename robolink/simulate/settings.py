@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import msgspec
 
@@ -14,6 +14,11 @@ from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.launch import Entry
 from robolink.text.names import meant
 
+if TYPE_CHECKING:
+    from robolink.launch.system import System
+    from robolink.supervisor.director import Director
+
+T = TypeVar("T")
 ASSIGN = ":="
 
 
@@ -55,6 +60,37 @@ def with_parameters(entries: Sequence[Entry], values: Mapping[str, Any]) -> list
     for place, value in values.items():
         changed = _with_parameter(changed, place, value)
     return changed
+
+
+def with_settings(system: System, values: Mapping[str, Any], foreseen: Callable[[], list[Entry]]) -> System:
+    """Return a system with parameters set, also those of nodes that its launch file starts later.
+
+    Args:
+        system: The system; it is not changed.
+        values: Values by node and parameter, as for `with_parameters`.
+        foreseen: Returns all entries that the launch file will start, as far as that is known.
+
+    Returns:
+        The system with these values.
+
+    Raises:
+        NotFoundError: with the nearest name, if a node is not there.
+    """
+    if system.direct is None or not values:
+        return system._replace(entries=with_parameters(system.entries, values))
+    with_parameters(foreseen(), values)
+
+    def known(entries: Sequence[Entry]) -> list[Entry]:
+        names = [each.name for each in entries]
+        fitting = {place: each for place, each in values.items() if meant(place.lstrip("/").partition(".")[0], names)}
+        return with_parameters(entries, fitting)
+
+    made = system.direct
+
+    def direct(plan: Callable[[list[Entry]], Sequence[T]]) -> Director[T]:
+        return made(lambda entries: plan(known(entries)))
+
+    return system._replace(entries=known(system.entries), direct=direct)
 
 
 def _with_parameter(entries: list[Entry], place: str, value: Any) -> list[Entry]:

@@ -90,6 +90,8 @@ class Policy:
         self.step: Step | None = None
         """Last step by which the whole system was asked to stop; None if it was not."""
         self.ends = ends
+        self.expects_more = False
+        """True while further processes may be added, so that the system goes on without any."""
         self._patience = patience
         self._code: int | None = None
         self._is_requested = False
@@ -105,7 +107,7 @@ class Policy:
         """True once no process runs and none will."""
         if self.step is Step.GIVE_UP:
             return True
-        coming = any(each.state in ("held", "waiting") for each in self.processes.values())
+        coming = self.expects_more or any(each.state in ("held", "waiting") for each in self.processes.values())
         return not self.alive and (self.step is not None or not coming)
 
     @property
@@ -133,6 +135,22 @@ class Policy:
         for each in self.processes.values():
             each.since = now
         return self._start_all(lambda each: each.state == "waiting" and each.due is None, now)
+
+    def add(self, name: str, rules: Rules, now: float) -> list[Action]:
+        """Add a process and start it, unless it is held or the system is ending."""
+        each = self.processes[name] = _tracked(name, rules)
+        each.since = now
+        if self.step is not None:
+            _move(each, "stopped", now)
+            return []
+        return self._start(each, now) if each.state == "waiting" else []
+
+    def end(self, reason: str, code: int, now: float) -> list[Action]:
+        """Handle that something other than a process or the user ends the system, with this exit code."""
+        if self.step is not None:
+            return []
+        self._code = code
+        return [Say(reason), *self._harder(now)]
 
     def released(self, name: str, now: float) -> list[Action]:
         """Handle that the conditions of a held process are met."""

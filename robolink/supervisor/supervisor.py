@@ -15,6 +15,7 @@ from types import FrameType
 from typing import TextIO, TypeAlias
 
 from robolink.exceptions import NotFoundError
+from robolink.supervisor.director import Add, Director, Request, Signal, Stop, Tell
 from robolink.supervisor.events import Status
 from robolink.supervisor.policy import Action, Ask, Policy, Say, Start
 from robolink.supervisor.processes.affinity import set_affinity
@@ -55,6 +56,7 @@ class Supervisor:
         on_event: Called with each `Event`, on a background thread.
         clock: Source of monotonic time, in seconds.
         start: Starts a process; tests pass a fake.
+        director: Adds and ends processes while the system runs; None has none.
 
     >>> Supervisor([Process("hello", [sys.executable, "-c", "print('hi')"])]).run()
     [hello] hi
@@ -72,6 +74,7 @@ class Supervisor:
         on_event: OnEvent | None = None,
         clock: Callable[[], float] = time.monotonic,
         start: Callable[[Process, Lifeline], Child] = Child,
+        director: Director[Process] | None = None,
     ) -> None:
         self._processes = {each.name: each for each in processes}
         self._output = output or sys.stdout
@@ -83,7 +86,9 @@ class Supervisor:
         self._events: queue.SimpleQueue[_Event] = queue.SimpleQueue()
         self._policy = Policy({each.name: each.rules for each in processes}, patience=patience)
         self._lock = threading.Lock()  # held whenever the policy is asked
-        self._has_begun = False
+        self._director = director
+        self._has_begun = self._is_end_told = self._is_running = False
+        self._said_before: list[str] = []
         self.leavings: list[Path] = []
         """Files that the guardian removes if this process is killed; fill it before or while entering `beside`."""
         self.is_asked_to_end = False
@@ -108,6 +113,7 @@ class Supervisor:
             self._lifeline = stack.enter_context(closing(Lifeline()))
             self._guardian = stack.enter_context(closing(Guardian(self._lifeline.mark, leavings=self.leavings)))
             stack.callback(self._clear_away)
+            self._tell_first()
             self._do(self._begin(duration))
             self._has_begun = True
             while not self._policy.is_over:
@@ -115,6 +121,7 @@ class Supervisor:
                 with self._lock:
                     actions = event(self._clock())
                 self._do(actions)
+                self._tell_end()
             self._dispatcher.ended(self._policy.code, self._policy.alive)
         return self._policy.code
 
@@ -146,7 +153,10 @@ class Supervisor:
 
     def say(self, text: str) -> None:
         """Print `text` to the user as a line of the launcher's own; after the end it is lost."""
-        self._events.put(lambda now: [Say(text)])
+        if self._is_running:
+            self._events.put(lambda now: [Say(text)])
+        else:
+            self._said_before.append(text)
 
     def status(self) -> list[Status]:
         """Return the current state of each process."""
@@ -176,20 +186,73 @@ class Supervisor:
         self.say(f"nobody reads the output any more: {reason}")
         self.stop()
 
+    def _tell_first(self) -> None:
+        """Print the lines that were said before `run`, above all that follows from the begin."""
+        for text in self._said_before:
+            self._dispatcher.say(text)
+        self._is_running = True
+
     def _begin(self, duration: float | None) -> list[Action]:
         now = self._clock()
         with self._lock:
             self._policy.ends = None if duration is None else now + duration
-            return self._policy.begin(now)
+            asked = [] if self._director is None else self._directed(self._director.begin(now), now)
+            return [*self._policy.begin(now), *asked]
 
     def _next_event(self) -> _Event:
         """Wait for the next event, which is a wake-up when the policy's deadline comes first."""
-        deadline = self._policy.deadline
+        deadline = self._deadline()
         timeout = _LOOK_UP if deadline is None else min(_LOOK_UP, max(0.0, deadline - self._clock()))
         try:
             return get_within(self._events, timeout)
         except queue.Empty:
-            return self._policy.woken
+            return self._woken
+
+    def _deadline(self) -> float | None:
+        deadlines = [self._policy.deadline, None if self._director is None else self._director.deadline]
+        return min((each for each in deadlines if each is not None), default=None)
+
+    def _woken(self, now: float) -> list[Action]:
+        due = None if self._director is None else self._director.deadline
+        asked = [] if due is None or now < due else self._ask(lambda director: director.woken(now), now)
+        return [*self._policy.woken(now), *asked]
+
+    # What the director decides
+
+    def _ask(self, ask: Callable[[Director[Process]], Sequence[Request[Process]]], now: float) -> list[Action]:
+        """Ask the director, if there is one; return the actions that follow."""
+        return [] if self._director is None else self._directed(ask(self._director), now)
+
+    def _directed(self, requests: Sequence[Request[Process]], now: float) -> list[Action]:
+        """Return the actions that carry out a director's requests."""
+        assert self._director is not None
+        actions: list[Action] = []
+        self._policy.expects_more = self._director.deadline is not None
+        for each in requests:
+            if isinstance(each, Add):
+                self._processes[each.process.name] = each.process
+                self._dispatcher.add(each.process.name)
+                actions += self._policy.add(each.process.name, each.process.rules, now)
+            elif isinstance(each, Stop):
+                actions += self._policy.stop_one(each.name, now)
+            elif isinstance(each, Signal):
+                if each.name in self._children:
+                    self._children[each.name].signal(each.number)
+            elif isinstance(each, Tell):
+                actions.append(Say(each.text))
+            else:
+                actions += self._policy.end(each.reason, each.code, now)
+        return actions
+
+    def _tell_end(self) -> None:
+        """Inform the director once that the system is ending."""
+        if self._director is not None and self._policy.step is not None and not self._is_end_told:
+            self._is_end_told = True
+            with self._lock:
+                now = self._clock()
+                actions = self._ask(lambda director: director.stopping(now), now)
+            self._policy.expects_more = False
+            self._do(actions)
 
     def _do(self, actions: list[Action]) -> None:
         asked = [each for each in actions if isinstance(each, Ask)]
@@ -217,7 +280,16 @@ class Supervisor:
         if process.cpu and (why_not := set_affinity(child.group, process.cpu)):
             self._dispatcher.say(f"{name}: {why_not}")
         self._dispatcher.started(name, child.group, self._policy.processes[name].restarts)
-        child.watch(self._dispatcher.line, lambda name, code: self._events.put(partial(self._exited, name, code)))
+        child.watch(self._line, lambda name, code: self._events.put(partial(self._exited, name, code)))
+        if self._director is not None:
+            pid = child.group
+            self._events.put(lambda now: self._ask(lambda director: director.started(name, pid, now), now))
+
+    def _line(self, name: str, line: bytes) -> None:
+        """Pass on a line of a process; called on a thread of its own."""
+        self._dispatcher.line(name, line)
+        if self._director is not None and self._director.hears_lines:
+            self._events.put(lambda now: self._ask(lambda director: director.line(name, line, now), now))
 
     def _exited(self, name: str, returncode: int, now: float, cause: str = "") -> list[Action]:
         child = self._children.pop(name, None)
@@ -226,6 +298,7 @@ class Supervisor:
         each = self._policy.processes[name]
         cause = self._dispatcher.exited(each, 0 if child is None else child.group, returncode, cause)
         actions = self._policy.exited(name, returncode, now, cause)
+        actions += self._ask(lambda director: director.exited(name, returncode, now), now)
         if each.state == "waiting" and each.due is not None:
             self._dispatcher.restarting(name, each.due - now)
         return actions

@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 from robolink.documents.yamlfile import spell
 from robolink.logging import get_logger
-from robolink.simulate.settings import with_parameters
+from robolink.simulate.settings import with_settings
 from robolink.workspace import find_launch, find_node
 
 if TYPE_CHECKING:
     from robolink.launch import Entry
+    from robolink.launch.system import System as LaunchSystem
     from robolink.testing.stage import Wanted
 
 
-def read(file: str | PathLike[str], arguments: Mapping[str, Any], values: Mapping[str, Any]) -> list[Entry]:
+def read(file: str | PathLike[str], arguments: Mapping[str, Any], values: Mapping[str, Any]) -> LaunchSystem:
     """Read a launch file; `values` are parameters as ``{"wall_follower.speed": 0.2}``.
 
     Raises NotFoundError for a file, node or argument that does not exist, and DocumentError for a mistake in the file.
@@ -26,10 +27,11 @@ def read(file: str | PathLike[str], arguments: Mapping[str, Any], values: Mappin
     from robolink.launch.system import read_system
 
     given = {name: value if isinstance(value, str) else spell(value) for name, value in arguments.items()}
-    system = read_system(find_launch(fspath(file)), given)
+    path = find_launch(fspath(file))
+    system = read_system(path, given)
     for note in system.notes:
         get_logger("robolink.testing").warning(note)
-    return with_parameters(system.entries, values)
+    return with_settings(system, values, lambda: read_system(path, given, foresee=True).entries)
 
 
 def entry_of(spec: str, wanted: Wanted) -> list[Entry]:

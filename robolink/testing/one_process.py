@@ -6,7 +6,7 @@ import inspect
 import re
 import traceback
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from os import PathLike
 from pathlib import Path
@@ -31,7 +31,8 @@ from robolink.text.names import meant, the_one
 from robolink.transport.memory import MemoryTransport
 
 if TYPE_CHECKING:
-    from robolink.launch import Entry, Launched
+    from robolink.launch import Launched
+    from robolink.launch.system import System as LaunchSystem
     from robolink.logging import Record
     from robolink.message import Message
     from robolink.running.timebase import TimeBase
@@ -126,9 +127,9 @@ class OneProcess:
         names = (first if number == 1 else f"{first}_{number}" for number in range(1, len(self.host.programs) + 2))
         return next(each for each in names if each not in self.host.programs)
 
-    def launch(self, entries: Sequence[Entry], faults: str | PathLike[str] | None = None) -> None:
+    def launch(self, system: LaunchSystem, faults: str | PathLike[str] | None = None) -> None:
         """Start the nodes of a launch file by its rules, with the faults of a file; commands are left out."""
-        launched = processes(entries)
+        launched = processes(system.entries)
         for each in launched:
             self._register(each)
         if faults is not None:
@@ -138,7 +139,7 @@ class OneProcess:
                 logging.get_logger("robolink.testing").warning(
                     f"{each.name} is left out: a command knows no virtual time"
                 )
-        supervision = Supervision(self.host, [each for each in launched if each.members])
+        supervision = Supervision(self.host, launched, direct=system.direct, on_added=self._register)
         self.supervisions.append(supervision)
         supervision.begin()
         self.run_until(lambda: False, 0.0)

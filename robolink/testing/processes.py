@@ -32,7 +32,7 @@ from robolink.transport.zenoh import ZenohTransport
 from robolink.wire import NodeToken, graph_pattern
 
 if TYPE_CHECKING:
-    from robolink.launch import Entry
+    from robolink.launch.system import System as LaunchSystem
     from robolink.message import Message
     from robolink.supervisor.events import Exited
     from robolink.task import Future
@@ -125,13 +125,13 @@ class Processes:
         names = (name if number == 1 else f"{name}_{number}" for number in range(1, len(taken) + 2))
         return next(each for each in names if each not in taken)
 
-    def launch(self, entries: Sequence[Entry], faults: str | PathLike[str] | None = None) -> None:
+    def launch(self, system: LaunchSystem, faults: str | PathLike[str] | None = None) -> None:
         """Start the nodes of a launch file, and wait until every node is made that waits for nothing."""
         __tracebackhide__ = True
         if faults is not None:
             self.faults.read(faults)
         before = set(self.node.context.graph.nodes())
-        launch = Launch(entries, self.domain, NETWORK, self._exits.put)
+        launch = Launch(system.entries, self.domain, NETWORK, self._exits.put, direct=system.direct)
         self._begin(launch)
         self._announced(before, ", ".join(launch.names), launch.awaited_nodes)
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 from robolink.testing.node_names import Named
 
 if TYPE_CHECKING:
-    from robolink.launch.reading.entries import Entry
+    from robolink.launch.system import System as LaunchSystem
     from robolink.logging import Record
     from robolink.message import Message
     from robolink.node import Node
@@ -81,7 +81,7 @@ class Stage(Protocol):
     def start(self, wanted: Wanted) -> Any:
         """Start a node; return it, or its stand-in."""
 
-    def launch(self, entries: Sequence[Entry], faults: str | PathLike[str] | None = None) -> None:
+    def launch(self, system: LaunchSystem, faults: str | PathLike[str] | None = None) -> None:
         """Start the nodes of a launch file, with the faults of a file, which may concern their very start."""
 
     def stop(self, program: str) -> None:

@@ -21,6 +21,7 @@ from robolink.supervisor.rules import Rules
 
 if TYPE_CHECKING:
     from robolink.launch import Entry
+    from robolink.launch.system import Direct
 
 TOLD_WITHIN = 5.0
 """Timeout of a supervisor's answer to a request, in seconds."""
@@ -33,7 +34,13 @@ class Launch:
     """
 
     def __init__(
-        self, entries: Sequence[Entry], domain: int, network: str, on_exit: Callable[[Exited], object], alone: str = ""
+        self,
+        entries: Sequence[Entry],
+        domain: int,
+        network: str,
+        on_exit: Callable[[Exited], object],
+        alone: str = "",
+        direct: Direct | None = None,
     ) -> None:
         launched = processes(entries)
         self._launched = {alone: replace(launched[0], name=alone)} if alone else {each.name: each for each in launched}
@@ -45,12 +52,20 @@ class Launch:
             "ROS_DOMAIN_ID": str(domain),
         }
         self._on_exit, self._alone = on_exit, bool(alone)
-        self._start_anew(list(self._launched.values()))
+        self._start_anew(list(self._launched.values()), direct)
 
-    def _start_anew(self, launched: Sequence[Launched]) -> None:
+    def _start_anew(self, launched: Sequence[Launched], direct: Direct | None = None) -> None:
         mine = [self._process(each) for each in launched]
-        self.supervisor = Supervisor(mine, output=sys.stderr, on_event=self._on_event)
+        director = None if direct is None else direct(self._added)
+        self.supervisor = Supervisor(mine, output=sys.stderr, on_event=self._on_event, director=director)
         self.thread = threading.Thread(target=self._run, name="system under test", daemon=True)
+
+    def _added(self, entries: list[Entry]) -> list[Process]:
+        """Return the processes of entries that a launch file adds while its system runs."""
+        launched = processes(entries)
+        self._launched.update((each.name, each) for each in launched)
+        self.names += [each.name for each in launched if each.name not in self.names]
+        return [self._process(each) for each in launched]
 
     def _process(self, launched: Launched) -> Process:
         made = as_process(launched)

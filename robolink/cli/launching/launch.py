@@ -221,7 +221,7 @@ def _draw(asked: LaunchFile, options: Options, format_: str) -> None:
     from robolink.launch.looking.look import looks_of
     from robolink.launch.system import read_system
 
-    entries, notes = read_system(asked.path, asked.given, workspace=options.workspace)
+    entries, notes, _ = read_system(asked.path, asked.given, workspace=options.workspace, foresee=True)
     for note in notes:
         tell(f"robolink: {note}")
     looks = looks_of(entries)
@@ -237,8 +237,8 @@ def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
     from robolink.supervisor import watch_lifeline
 
     watch_lifeline()  # a launcher that another one launched ends with it
-    entries, notes = read_system(asked.path, asked.given, workspace=options.workspace)
-    if not entries:
+    entries, notes, direct = read_system(asked.path, asked.given, workspace=options.workspace)
+    if not entries and direct is None:
         return _nothing(asked, notes)
     from robolink.launch.command import launch
 
@@ -255,6 +255,7 @@ def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
         record="" if record == BY_DATE else record,
         enclave=options.enclave,
         notes=notes,
+        direct=direct,
     )
 
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from robolink.faults import FaultsDescription
     from robolink.launch import Entry
+    from robolink.launch.system import Direct
     from robolink.simulate.repeat import SeedRun
     from robolink.simulate.run import Watching
 
@@ -140,7 +141,7 @@ def _compute_in_one_thread() -> None:
 
 
 def _once(ctx: typer.Context, options: Options, seed: int | None, as_json: bool, verbose: bool) -> int:
-    path, entries, faults = _read(ctx, options)
+    path, entries, faults, direct = _read(ctx, options)
     from robolink.simulate import failed_by, simulate
     from robolink.simulate.settings import parse_settings
 
@@ -155,6 +156,7 @@ def _once(ctx: typer.Context, options: Options, seed: int | None, as_json: bool,
             given=parse_settings(options.settings),
             watching=_watching(progress, verbose),
             record=options.record,
+            direct=direct,
         )
     result = failed_by(result, options.fail_on)
     if as_json:
@@ -165,11 +167,11 @@ def _once(ctx: typer.Context, options: Options, seed: int | None, as_json: bool,
     return INTERRUPTED if result.interrupted else 1 if result.failures else 0
 
 
-def _read(ctx: typer.Context, options: Options) -> tuple[Path, list[Entry], FaultsDescription | None]:
+def _read(ctx: typer.Context, options: Options) -> tuple[Path, list[Entry], FaultsDescription | None, Direct | None]:
     """Read all files before anything is run, so that mistakes in them are found first."""
     from robolink.cli.launching.launch_arguments import launch_file
     from robolink.launch.system import read_system
-    from robolink.simulate.settings import SettingError, parse_settings, with_parameters
+    from robolink.simulate.settings import SettingError, parse_settings, with_settings
 
     folder = options.workspace or None
     try:
@@ -180,15 +182,16 @@ def _read(ctx: typer.Context, options: Options) -> tuple[Path, list[Entry], Faul
     system = read_system(path, given, workspace=folder)
     for note in system.notes:
         tell(f"robolink: {note}")
-    entries = with_parameters(system.entries, settings)
+    system = with_settings(system, settings, lambda: read_system(path, given, workspace=folder, foresee=True).entries)
+    entries = system.entries
     if not options.faults:
-        return path, entries, None
+        return path, entries, None, system.direct
     from robolink.faults.file import check_nodes, read_faults
     from robolink.workspace import find_faults
 
     document = read_faults(find_faults(options.faults, workspace=folder))
     check_nodes(document, [each.name for each in entries])
-    return path, entries, document.value
+    return path, entries, document.value, system.direct
 
 
 def _watching(progress: Progress, verbose: bool) -> Watching:

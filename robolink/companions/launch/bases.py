@@ -119,6 +119,9 @@ class Action(LaunchDescriptionEntity):
         **unknown: Refused: raises LaunchArgumentError with the nearest name that there is.
     """
 
+    lasts = False
+    """True if it is done only later, as a process is when it has ended."""
+
     def __init__(self, *, condition: Condition | None = None, **unknown: Any) -> None:
         for name in unknown:
             raise no_argument(type(self), name)
@@ -148,7 +151,11 @@ class Action(LaunchDescriptionEntity):
         if self.condition is not None and not self.condition.evaluate(context):
             return None
         context.executed.append(self)
-        return self.execute(context)
+        try:
+            return self.execute(context)
+        finally:
+            if not self.lasts:
+                context.completed(self)
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
         """Do it in `context`; return the entities that come next, None for none."""
@@ -189,6 +196,8 @@ class BaseEventHandler:
 
     def __init__(self, *, matcher: Callable[[Event], bool], handle_once: bool = False) -> None:
         self._matcher, self.handle_once = matcher, handle_once
+        self.around: dict[str, dict[str, Any]] = {}
+        """Values of the context where it was registered."""
         self.place = calling_place()
 
     @property
@@ -293,6 +302,8 @@ class LaunchContext:
         """Actions executed since the launcher last looked."""
         self.handlers: list[BaseEventHandler] = []
         """Event handlers, the last one registered first."""
+        self.finished: list[Action] = []
+        """Actions that are done since the launcher last looked; none before there is a handler."""
         self.said: list[str] = []
         """Lines for people since the launcher last looked."""
         self.asked: set[str] = set()
@@ -348,11 +359,25 @@ class LaunchContext:
 
     def register_event_handler(self, event_handler: BaseEventHandler, append: bool = False) -> None:
         """Add `event_handler`, before those that are there, or behind them with `append`."""
+        event_handler.around = self.snapshot()
         self.handlers.insert(len(self.handlers) if append else 0, event_handler)
 
     def unregister_event_handler(self, event_handler: BaseEventHandler) -> None:
         """Remove `event_handler`; raises ValueError if it is not there."""
         self.handlers.remove(event_handler)
+
+    def snapshot(self) -> dict[str, dict[str, Any]]:
+        """Return a copy of the values that later actions may need: the locals, the configurations, the environment."""
+        return {
+            "locals": self.get_locals_as_dict(),
+            "launch_configurations": dict(self.launch_configurations),
+            "environment": dict(self.environment),
+        }
+
+    def completed(self, action: Action) -> None:
+        """Note that `action` is done, if a handler may want to know."""
+        if self.handlers:
+            self.finished.append(action)
 
     def would_handle_event(self, event: Event) -> bool:
         """Return whether a handler means `event`."""

@@ -14,7 +14,6 @@ from robolink.exceptions import DocumentError, nearest
 from robolink.launch.reading.arguments import ArgumentHelp
 from robolink.launch.reading.lookup import home_of
 from robolink.launch.ros.entries import EntryMaker
-from robolink.launch.ros.failures import as_document_error
 from robolink.launch.ros.surroundings import surroundings
 from robolink.launch.ros.visit import Visit
 from robolink.system.terminal import shown
@@ -46,6 +45,12 @@ def visited(path: Path, given: Mapping[str, str], workspace: Folder) -> Visit:
         visit.run([visit.first])
     _note_unread(context, given)
     return visit
+
+
+def foresee_all(visit: Visit) -> None:
+    """Add to a visit what timers and event handlers will start, as far as that is known. Raises DocumentError."""
+    with surroundings(visit.maker.home):
+        visit.foresee()
 
 
 def arguments_of(path: Path, workspace: Folder = None) -> list[ArgumentHelp]:
@@ -94,6 +99,3 @@ def _note_unread(context: LaunchContext, given: Mapping[str, str]) -> None:
         if name not in context.asked:
             hint = nearest(name, context.asked) or f": there is {', '.join(sorted(context.asked)) or 'none'}"
             context.said.append(f"nothing reads the argument '{shown(name)}'{hint}")
-
-
-__all__ = ["arguments_of", "as_document_error", "visited"]

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any, TypeVar
 
 from robolink.companions.ament_index.packages import package_not_here
-from robolink.companions.launch.actions import ExecuteLocal, IncludeLaunchDescription, RegisterEventHandler, TimerAction
-from robolink.companions.launch.bases import Action, LaunchContext, LaunchDescriptionEntity, Place, entities_in
+from robolink.companions.launch.actions import EmitEvent, ExecuteLocal, IncludeLaunchDescription, LogInfo, TimerAction
+from robolink.companions.launch.bases import (
+    SCOPED,
+    Action,
+    LaunchContext,
+    LaunchDescriptionEntity,
+    Place,
+    entities_in,
+)
 from robolink.companions.launch.event_handlers import OnProcessExit
 from robolink.companions.launch.launch_description_sources import LaunchFileNotFoundError
 from robolink.exceptions import DocumentError
@@ -21,6 +29,9 @@ from robolink.launch.ros.programs import include_absent
 
 MOST_VISITED = 100_000
 """Most entities of a launch; a function that returns itself would never end."""
+
+
+T = TypeVar("T")
 
 
 @dataclass
@@ -46,13 +57,18 @@ class Visit:
     top: Path
     started: list[Started] = field(default_factory=list)
     """Processes that are to start, since the last look."""
-    timers: list[TimerAction] = field(default_factory=list)
-    """Timers that begin, since the last look."""
-    other: list[Action] = field(default_factory=list)
-    """Actions that only a launch that runs can carry out, since the last look."""
+    timers: list[tuple[TimerAction, dict[str, Any]]] = field(default_factory=list)
+    """Timers that begin, since the last look, each with the values around it."""
+    absent: list[ExecuteLocal] = field(default_factory=list)
+    """Processes that are left out, since the last look."""
     first: LaunchDescriptionEntity | None = None
     """The launch file itself as an entity: without it nothing is left."""
     _visited: int = 0
+
+    @property
+    def goes_on(self) -> bool:
+        """True if timers, handlers or events are left: more may happen while the processes run."""
+        return bool(self.timers or self.context.handlers or self.context.emitted)
 
     def run(self, entities: Iterable[LaunchDescriptionEntity]) -> None:
         """Visit entities and all that they bring along, depth first. Raises DocumentError with the user's line."""
@@ -65,6 +81,42 @@ class Visit:
                     raise self._error(each, f"it never ends: more than {MOST_VISITED:,} actions were visited")
                 inside = self._visit(each)
             waiting.extend(inside[::-1])
+
+    def foresee(self) -> None:
+        """Visit what timers and handlers will bring as far as that is known, as if it came now; lines are not said."""
+        seen = {id(each.action) for each in self.started}
+        while True:
+            timers, self.timers = self.timers, []
+            waiting = [(timer.actions, around) for timer, around in timers]
+            handlers = [each for each in self.context.handlers if id(each) not in seen]
+            seen.update(map(id, handlers))
+            waiting += [(each.describe()[1], each.around) for each in handlers]
+            if not waiting:
+                return
+            for entities, around in waiting:
+                new = [each for each in entities if id(each) not in seen and not isinstance(each, (LogInfo, EmitEvent))]
+                seen.update(map(id, new))
+                self.run_within(new, around)
+
+    def run_within(self, entities: Iterable[LaunchDescriptionEntity], around: Mapping[str, Mapping[str, Any]]) -> None:
+        """Visit entities with the values around them at an earlier time, where these are not set now."""
+        self.within(around, lambda: self.run(entities))
+
+    def within(self, around: Mapping[str, Mapping[str, Any]], act: Callable[[], T]) -> T:
+        """Return what `act()` returns, called with such values."""
+        context = self.context
+        context.extend_locals({name: each for name, each in around["locals"].items() if name != "event"})
+        changed: list[tuple[dict[str, Any], str]] = []
+        for which in SCOPED:
+            values = getattr(context, which)
+            for name in [each for each in around[which] if each not in values]:
+                values[name] = around[which][name]
+                changed.append((values, name))
+        try:
+            return act()
+        finally:
+            for values, name in changed:
+                values.pop(name, None)
 
     def _visit(self, entity: LaunchDescriptionEntity) -> list[LaunchDescriptionEntity]:
         try:
@@ -85,24 +137,27 @@ class Visit:
                 raise
             self.say_at(entity, f"left out: {reason_of(error)}")
             return []
+        self.check(entity, inside)
+        self._note_file()
+        return inside
+
+    def check(self, entity: object, inside: Iterable[object]) -> None:
+        """Raise DocumentError, at the line of `entity`, unless all that it brings along can be visited."""
         for each in inside:
             if not isinstance(each, LaunchDescriptionEntity):
                 raise self._error(entity, f"an action is expected, got {type(each).__name__}")
-        self._note_file()
-        return inside
 
     def _take(self, action: Action) -> None:
         """Take over an action whose effect is beyond the context."""
         if isinstance(action, ExecuteLocal):
             self._start(action)
         elif isinstance(action, TimerAction):
-            self.timers.append(action)
-        elif not isinstance(action, RegisterEventHandler):
-            self.other.append(action)
+            self.timers.append((action, self.context.snapshot()))
 
     def _start(self, action: ExecuteLocal) -> None:
         entry = self.maker.make(action, self.context)
         if entry is None:
+            self.absent.append(action)
             return
         if action.on_exit is not None and not ends_launch(action.on_exit):
             self.context.register_event_handler(OnProcessExit(target_action=action, on_exit=action.on_exit))

@@ -110,6 +110,17 @@ class Child:
         else:
             self._popen.terminate()
 
+    def signal(self, number: int) -> None:
+        """Send a signal to the process group; on Windows whatever it is ends the process."""
+        if self._has_ended:
+            return
+        if sys.platform != "win32":
+            signal_group(self.group, signal.Signals(number))
+        elif number == signal.SIGINT:
+            self.ask(Step.INTERRUPT)
+        else:
+            self._popen.terminate()
+
     def pause(self) -> None:
         """Pause the process group (SIGSTOP)."""
         if sys.platform != "win32" and not self._has_ended:

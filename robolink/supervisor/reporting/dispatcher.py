@@ -42,6 +42,12 @@ class EventDispatcher:
         if logs is not None:
             logs.open(list(names), self.say)
 
+    def add(self, name: str) -> None:
+        """Note a process that is added while the system runs; call this before its first line."""
+        self._printer.add(name)
+        if self._logs is not None:
+            self._logs.add(name)
+
     def started(self, name: str, pid: int, restarts: int) -> None:
         """Report that a process was started; call this before its first line."""
         self._causes[name] = Cause()

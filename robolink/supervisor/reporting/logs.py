@@ -78,6 +78,16 @@ class RunLogs:
         _point_to(folder)
         remove_old_runs(home, self._kept)
 
+    def add(self, name: str) -> None:
+        """Create the file of one more process, `name`, once the folder is there."""
+        if self.folder is None or self._own is None:
+            return
+        try:
+            file = file_names([*self._files, name])[name]
+            self._files = {**self._files, name: _File(self.folder / file)}
+        except OSError as error:
+            self._give_up(f"no more logs are kept: {error} ({self.folder})")
+
     def line(self, name: str, line: bytes) -> None:
         """Write a `line` of the process `name`; called from one thread for each process."""
         self._write(self._files.get(name), line if line.endswith(b"\n") else line + b"\n")

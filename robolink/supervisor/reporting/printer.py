@@ -27,12 +27,17 @@ class Printer:
 
     def __init__(self, output: TextIO, names: Iterable[str], troubles: Troubles | None = None) -> None:
         has_colour = wants_colour(output)
+        self._has_colour = has_colour
         self._prefixes = prefixes([*names, OWN_NAME], has_colour)
         self._colours_logs = has_colour and os.environ.get("RCUTILS_COLORIZED_OUTPUT") != "0"
         writer = Writer(output)
         self._queue: BackgroundQueue[bytes] = BackgroundQueue(
             lambda lines: writer.write(b"".join(lines)), troubles or Troubles(), name="printer"
         )
+
+    def add(self, name: str) -> None:
+        """Make the prefix of one more process, `name`, in the next colour."""
+        self._prefixes = {**self._prefixes, name: prefixes([*self._prefixes, name], self._has_colour)[name]}
 
     def line(self, name: str, line: bytes) -> None:
         """Print one line of a process, of all control codes only colours; blocks while too much waits."""

@@ -57,6 +57,8 @@ class ExecuteLocal(Action):
         **kwargs: `condition`, and the settings that are of no effect here: `IGNORED`.
     """
 
+    lasts = True
+
     def __init__(
         self,
         *,
@@ -68,6 +70,8 @@ class ExecuteLocal(Action):
         respawn_max_retries: int = -1,
         **kwargs: Any,
     ) -> None:
+        self.is_left_out = False
+        """True if it cannot run here."""
         super().__init__(**{name: value for name, value in kwargs.items() if name not in IGNORED})
         if on_exit is not None and not callable(on_exit):
             check_actions(on_exit, f"{type(self).__name__}(on_exit=...)")

@@ -28,6 +28,8 @@ class TimerAction(Action):
         **kwargs: `condition`.
     """
 
+    lasts = True
+
     def __init__(
         self,
         *,

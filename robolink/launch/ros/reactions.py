@@ -1,0 +1,225 @@
+"""Interpreter of a launch file that goes on: timers, event handlers and emitted events, as a director of the system.
+
+It knows no processes and no clock: `robolink.supervisor.director` says what it hears and what it may ask for. `plan`
+makes a process of its entries, a real one or a program in virtual time.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Generic, TypeVar
+
+from robolink.companions.launch import events
+from robolink.companions.launch.actions import ExecuteLocal, TimerAction
+from robolink.companions.launch.bases import BaseEventHandler, Event, entities_in
+from robolink.companions.launch.event_handlers import OnProcessIO, OnShutdown
+from robolink.companions.launch.events import process as process_events
+from robolink.exceptions import DocumentError
+from robolink.launch.reading.entry import Entry
+from robolink.launch.ros.surroundings import surroundings
+from robolink.launch.ros.visit import Visit
+from robolink.supervisor.director import Add, End, Request, Signal, Stop, Tell
+
+MOST_EVENTS = 10_000
+"""Most events that may follow from each other at one time; two handlers that emit events might go on for ever."""
+T = TypeVar("T")
+
+
+class Reactions(Generic[T]):
+    """Director of the system of one launch file.
+
+    Args:
+        visit: Visit of the file, up to the first timer or event.
+        plan: Returns the processes in which entries run.
+    """
+
+    def __init__(self, visit: Visit, plan: Callable[[list[Entry]], Sequence[T]]) -> None:
+        self._visit, self._plan = visit, plan
+        self._timers: list[tuple[float, int, TimerAction, dict[str, Any]]] = []
+        self._numbers = itertools.count()
+        self._actions: dict[str, ExecuteLocal] = {}
+        self._requests: list[Request[T]] = []
+        self._shutdown = events.Shutdown(reason="the system is stopped", due_to_sigint=True)
+        self._is_stopping = False
+        for each in visit.started:
+            self._actions[each.entry.name] = each.action
+        visit.started.clear()
+
+    @property
+    def hears_lines(self) -> bool:
+        """True if a handler wants the lines of the processes."""
+        return any(isinstance(each, OnProcessIO) for each in self._visit.context.handlers)
+
+    @property
+    def deadline(self) -> float | None:
+        """Time of the next timer."""
+        while self._timers and self._timers[0][2].is_canceled:
+            heapq.heappop(self._timers)
+        return self._timers[0][0] if self._timers and not self._is_stopping else None
+
+    def begin(self, now: float) -> list[Request[T]]:
+        """Begin the timers, and handle what the file has emitted already."""
+        return self._following(now, lambda: None)
+
+    def started(self, name: str, pid: int, now: float) -> list[Request[T]]:
+        """Handle that a process runs."""
+        action = self._actions.get(name)
+        if action is None:
+            return []
+        details = _details(action, name, pid)
+        action.process_details = {**details, "action": action}
+        return self._following(now, lambda: self._emit(process_events.ProcessStarted(action=action, **details)))
+
+    def exited(self, name: str, returncode: int, now: float) -> list[Request[T]]:
+        """Handle that a process has ended."""
+        action = self._actions.get(name)
+        if action is None:
+            return []
+        action.return_code = returncode
+        details = _details(action, name, (action.process_details or {}).get("pid", 0))
+
+        def emit() -> None:
+            self._emit(process_events.ProcessExited(action=action, returncode=returncode, **details))
+            self._visit.context.completed(action)
+
+        return self._following(now, emit)
+
+    def left_out(self, name: str, now: float) -> list[Request[T]]:
+        """Handle that a process is not started: what waits for it goes on."""
+        action = self._actions.get(name)
+        return [] if action is None else self._following(now, lambda: self._go_on_without(action))
+
+    def line(self, name: str, line: bytes, now: float) -> list[Request[T]]:
+        """Handle a line of a process; the launcher reads standard output and errors as one."""
+        action = self._actions.get(name)
+        if action is None:
+            return []
+        details = _details(action, name, (action.process_details or {}).get("pid", 0))
+
+        def emit() -> None:
+            for fd in (1, 2):
+                self._emit(process_events.ProcessIO(action=action, text=line, fd=fd, **details))
+
+        return self._following(now, emit)
+
+    def stopping(self, now: float) -> list[Request[T]]:
+        """Handle that the system ends: handlers of the shutdown run, and no timer does any more."""
+        self._is_stopping = self._visit.context.is_shutdown = True
+        return self._following(now, lambda: self._handle(self._shutdown))
+
+    def woken(self, now: float) -> list[Request[T]]:
+        """Carry out the timers whose time has come."""
+
+        def fire() -> None:
+            while (deadline := self.deadline) is not None and deadline <= now:
+                _, _, timer, around = heapq.heappop(self._timers)
+                self._visit.run_within(timer.actions, around)
+                self._visit.context.completed(timer)
+
+        return self._following(now, fire)
+
+    # What follows from an event
+
+    def _following(self, now: float, act: Callable[[], None]) -> list[Request[T]]:
+        """Carry out `act`, and all that follows from it at once; return the requests."""
+        try:
+            with surroundings(self._visit.maker.home):
+                act()
+                self._settle(now)
+        except DocumentError as error:
+            self._requests.append(End(str(error), 1))
+        requests, self._requests = self._requests, []
+        return requests
+
+    def _settle(self, now: float) -> None:
+        context = self._visit.context
+        for _ in range(MOST_EVENTS):
+            self._take_over(now)
+            if not context.emitted:
+                return
+            event = context.emitted.pop(0)
+            with self._visit.placing(None):
+                self._carry_out(event)
+        raise DocumentError(f"it never ends: more than {MOST_EVENTS:,} events follow from each other")
+
+    def _take_over(self, now: float) -> None:
+        """Turn what the visit has asked for since the last look into requests and timers."""
+        visit = self._visit
+        said, visit.context.said[:] = list(visit.context.said), []
+        self._requests += map(Tell, said)
+        for timer, around in visit.timers:
+            with visit.placing(timer):
+                due = now + timer.seconds(visit.context)
+            heapq.heappush(self._timers, (due, next(self._numbers), timer, around))
+        visit.timers.clear()
+        started, visit.started[:] = list(visit.started), []
+        for each in started:
+            self._actions[each.entry.name] = each.action
+        if started and not self._is_stopping:
+            self._requests += map(Add, self._plan([each.entry for each in started]))
+        finished, visit.context.finished = visit.context.finished, []
+        complete = [events.ExecutionComplete(action=each) for each in finished]
+        visit.context.emitted += [each for each in complete if visit.context.would_handle_event(each)]
+        absent, visit.absent[:] = list(visit.absent), []
+        for action in absent:
+            self._go_on_without(action)
+
+    def _go_on_without(self, action: ExecuteLocal) -> None:
+        """Let what waits for a process that is left out go on, as if it had started and ended well."""
+        details = _details(action, "", 0)
+        self._emit(process_events.ProcessStarted(action=action, **details))
+        event = process_events.ProcessExited(action=action, returncode=0, **details)
+        for handler in list(self._visit.context.handlers):
+            if handler.matches(event) and _starts_only(handler):
+                self._react(handler, event)
+
+    def _emit(self, event: Event) -> None:
+        self._visit.context.emit_event_sync(event)
+
+    def _carry_out(self, event: Event) -> None:
+        """Do what an event asks for, and run its handlers."""
+        if isinstance(event, events.Shutdown):
+            self._shutdown = event
+            self._requests.append(End(f"the launch file ends the system: {event.reason}"))
+            return
+        if isinstance(event, process_events.SignalProcess):
+            self._requests += [Signal(name, int(event.signal)) for name in self._meant(event)]
+        elif isinstance(event, process_events.ShutdownProcess):
+            self._requests += [Stop(name) for name in self._meant(event)]
+        elif isinstance(event, events.IncludeLaunchDescription):
+            self._visit.run([event.launch_description])
+        self._handle(event)
+
+    def _meant(self, event: process_events.ProcessTargetedEvent) -> list[str]:
+        return [name for name, action in self._actions.items() if event.process_matcher(action)]
+
+    def _handle(self, event: Event) -> None:
+        for handler in list(self._visit.context.handlers):
+            with self._visit.placing(handler):
+                is_meant = handler.matches(event)
+            if is_meant and (not self._is_stopping or isinstance(handler, OnShutdown) or event is not self._shutdown):
+                self._react(handler, event)
+
+    def _react(self, handler: BaseEventHandler, event: Event) -> None:
+        context = self._visit.context
+        with self._visit.placing(handler):
+            entities = self._visit.within(handler.around, lambda: entities_in(handler.handle(event, context)))
+        self._visit.check(handler, entities)
+        self._visit.run_within(entities, handler.around)
+
+
+def _details(action: ExecuteLocal, name: str, pid: int) -> dict[str, Any]:
+    described = action.process_description
+    cmd = [each if isinstance(each, str) else getattr(each, "text", str(each)) for each in described.cmd]
+    return {"name": name, "cmd": cmd, "cwd": None, "env": None, "pid": pid}
+
+
+def _starts_only(handler: BaseEventHandler) -> bool:
+    """True if what follows is known, and ends nothing."""
+    from robolink.companions.launch.actions import EmitEvent
+
+    known: Iterable[Any] = handler.describe()[1]
+    found = list(known)
+    return bool(found) and not any(isinstance(each, EmitEvent) for each in found)

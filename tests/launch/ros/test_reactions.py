@@ -1,0 +1,280 @@
+"""Timers, event handlers and events of ROS 2's launch files: what is asked of the launcher, and when."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robolink.cli.main import main
+from robolink.exceptions import NotFoundError
+from robolink.interfaces.std_msgs.msg import String
+from robolink.launch.reading.entry import Entry
+from robolink.launch.system import read_system
+from robolink.supervisor.director import Add, Director, End, Signal, Stop, Tell
+from robolink.testing import System
+from tests.support.ros_launch import FIRST, write
+from tests.support.ros_launch import TALKER as TALKER_CODE
+
+TALKER = 'Node(package="bot", executable="talker", name="{}")'
+
+
+def directed(package: Path, body: str) -> Director[str]:
+    """Director of a launch file whose processes are names."""
+
+    def plan(entries: list[Entry]) -> Sequence[str]:
+        return [each.name for each in entries]
+
+    system = read_system(write(package, body))
+    assert system.direct is not None
+    return system.direct(plan)
+
+
+def test_a_file_without_any_has_no_director(package: Path) -> None:
+    assert read_system(write(package, TALKER.format("a") + ", LogInfo(msg='x')")).direct is None
+
+
+def test_a_timer_starts_processes_when_its_time_has_come(package: Path) -> None:
+    director = directed(
+        package,
+        f"""
+        SetLaunchConfiguration("period", "2"),
+        GroupAction([PushRosNamespace("g"), TimerAction(period=LaunchConfiguration("period"), actions=[
+            {TALKER.format("a")}, TimerAction(period=1.5, actions=[LogInfo(msg="later")])])]),
+        TimerAction(period=1.0, actions=[LogInfo(msg=ThisLaunchFileDir())]),
+        """,
+    )
+    assert director.begin(10.0) == []
+    assert director.deadline == 11.0
+    assert director.woken(11.0) == [Tell(str(package / "launch"))]
+    assert director.deadline == 12.0
+    assert director.woken(11.9) == []
+    assert director.woken(12.0) == [Add("g/a")]
+    assert director.deadline == 13.5
+    assert director.woken(14.0) == [Tell("later")]
+    assert director.deadline is None
+
+
+def test_a_timer_can_be_cancelled_and_ends_with_the_launch(package: Path) -> None:
+    director = directed(
+        package,
+        """
+        def generate_launch_description():
+            timer = TimerAction(period=5.0, actions=[LogInfo(msg="never")])
+            cancel = OpaqueFunction(function=lambda context: timer.cancel())
+            return LaunchDescription([timer, TimerAction(period=1.0, actions=[cancel]),
+                                      TimerAction(period=9.0, actions=[LogInfo(msg="never")])])
+        """,
+    )
+    director.begin(0.0)
+    assert (director.woken(1.0), director.deadline) == ([], 9.0)
+    assert (director.stopping(2.0), director.deadline) == ([], None)
+
+
+HANDLERS = """
+def generate_launch_description():
+    first, second = (Node(package="bot", executable="talker", name=name) for name in "ab")
+    return LaunchDescription([first, second,
+        RegisterEventHandler(OnProcessStart(target_action=first, on_start=[
+            LogInfo(msg=["pid ", LocalSubstitution("event.pid")])])),
+        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=lambda event, context: [
+            LogInfo(msg=f"{event.process_name} {event.returncode}"), Node(package="bot", executable="once")])),
+        RegisterEventHandler(OnProcessExit(on_exit=[LogInfo(msg="any")], handle_once=True)),
+        RegisterEventHandler(OnProcessIO(
+            target_action=second, on_stdout=lambda event: LogInfo(msg=event.text.decode()))),
+        RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg="over")])),
+    ])
+"""
+
+
+def test_handlers_react_to_processes(package: Path) -> None:
+    director = directed(package, HANDLERS)
+    assert (director.begin(0.0), director.deadline, director.hears_lines) == ([], None, True)
+    assert director.started("a", 77, 0.1) == [Tell("pid 77")]
+    assert director.started("b", 78, 0.1) == []
+    assert director.line("a", b"no\n", 0.2) == []
+    assert director.line("b", b"yes\n", 0.2) == [Tell("yes\n")]
+    assert director.exited("a", 3, 0.3) == [Tell("any"), Tell("a 3"), Add("once")]
+    assert director.exited("b", 0, 0.3) == []
+    assert director.exited("unknown", 0, 0.3) == []
+    assert director.stopping(0.4) == [Tell("over")]
+
+
+def test_events_end_processes_and_the_launch(package: Path) -> None:
+    director = directed(
+        package,
+        """
+        def generate_launch_description():
+            node = Node(package="bot", executable="talker", name="a")
+            is_node = events.matches_action(node)
+            def after(period, event):
+                return TimerAction(period=period, actions=[EmitEvent(event=event)])
+            return LaunchDescription([node,
+                after(1.0, events.process.SignalProcess(signal_number="SIGINT", process_matcher=is_node)),
+                after(2.0, events.process.ShutdownProcess(process_matcher=is_node)),
+                after(3.0, events.Shutdown(reason="enough"))])
+        """,
+    )
+    director.begin(0.0)
+    assert director.woken(1.0) == [Signal("a", 2)]
+    assert director.woken(2.0) == [Stop("a")]
+    assert director.woken(3.0) == [End("the launch file ends the system: enough")]
+
+
+def test_what_waits_for_something_left_out_goes_on(package: Path) -> None:
+    director = directed(
+        package,
+        f"""
+        def generate_launch_description():
+            gone = Node(package="gazebo_ros", executable="spawn_entity.py")
+            return LaunchDescription([gone,
+                RegisterEventHandler(OnProcessExit(target_action=gone, on_exit=[{TALKER.format("a")}])),
+                RegisterEventHandler(OnProcessStart(target_action=gone, on_start=[{TALKER.format("b")}])),
+                RegisterEventHandler(OnProcessExit(target_action=gone, on_exit=[Shutdown()]))])
+        """,
+    )
+    assert director.begin(0.0) == [Add("a"), Add("b")]
+
+
+def test_an_action_is_complete(package: Path) -> None:
+    director = directed(
+        package,
+        """
+        def generate_launch_description():
+            said = LogInfo(msg="said")
+            timer = TimerAction(period=1.0, actions=[])
+            return LaunchDescription([
+                RegisterEventHandler(OnExecutionComplete(target_action=said, on_completion=[LogInfo(msg="done")])),
+                RegisterEventHandler(OnExecutionComplete(target_action=timer, on_completion=[LogInfo(msg="rang")])),
+                said, timer])
+        """,
+    )
+    assert director.begin(0.0) == [Tell("done")]
+    assert director.woken(1.0) == [Tell("rang")]
+
+
+@pytest.mark.parametrize(
+    ("reaction", "line", "text"),
+    [
+        ("lambda event, context: 1 / 0", 3, "ZeroDivisionError: division by zero"),
+        ("[LogInfo(msg=LaunchConfiguration('none'))]", 3, "no launch argument is called 'none'"),
+        ("lambda event, context: ['x']", 3, "an action is expected, got str"),
+    ],
+)
+def test_a_mistake_in_a_handler_ends_the_launch(package: Path, reaction: str, line: int, text: str) -> None:
+    director = directed(package, f"{TALKER.format('a')},\nRegisterEventHandler(OnProcessStart(on_start={reaction})),")
+    (end,) = director.started("a", 1, 0.0)
+    assert end == End(f"{package}/launch/bot.launch.py:{FIRST + line}: {text}", 1)
+
+
+def test_events_that_follow_from_each_other_without_end(package: Path) -> None:
+    director = directed(
+        package,
+        """
+        def again(event, context):
+            return [EmitEvent(event=events.ExecutionComplete(action=None))]
+
+        def generate_launch_description():
+            return LaunchDescription([
+                RegisterEventHandler(OnExecutionComplete(on_completion=again)), LogInfo(msg="begin")])
+        """,
+    )
+    end = director.begin(0.0)[-1]
+    assert isinstance(end, End)
+    assert "it never ends" in end.reason
+
+
+# In virtual time
+
+SYSTEM = """
+def generate_launch_description():
+    once = Node(package="bot", executable="once", parameters=[{"after": 3.0, "code": 0}])
+    command = ExecuteProcess(cmd=["python3", "-c", "1"], name="command")
+    return LaunchDescription([once, command,
+        RegisterEventHandler(OnProcessExit(target_action=once, on_exit=[
+            Node(package="bot", executable="talker", name="second")])),
+        RegisterEventHandler(OnProcessExit(target_action=command, on_exit=[
+            Node(package="bot", executable="talker", name="first")])),
+        TimerAction(period=20.0, actions=[Shutdown(reason="enough")])])
+"""
+
+
+def test_a_system_in_virtual_time_goes_on(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(package, SYSTEM)
+    result: Any
+    assert main(["simulate", "bot", "bot", "--duration", "60", "--set", "second.word:=set"]) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith("bot.launch: 20 s in")
+    assert "/chatter" in out
+    assert "the launch file ends the system: enough" in err
+    assert main(["simulate", "bot", "bot", "--set", "secnd.word:=set"]) == 1
+    result = capsys.readouterr().err
+    assert "no node named 'secnd' in the launch file (did you mean 'second'?)" in result
+
+
+def test_a_system_under_test_goes_on(package: Path, system: System) -> None:
+    said = system.messages("chatter", type=String)
+    system.launch(write(package, SYSTEM), set={"second.word": "two", "first.word": "one"})
+    system.run(2.5)
+    assert {each.data for each in said} == {"one"}
+    system.run(3.0)
+    assert {each.data for each in said} == {"one", "two"}
+    system.run(16.0)
+    before = len(said)
+    system.run(5.0)
+    assert len(said) == before
+    with pytest.raises(NotFoundError, match="no node named 'third'"):
+        system.launch(write(package, SYSTEM), set={"third.word": "x"})
+
+
+def test_a_line_of_the_log_in_virtual_time(package: Path, system: System) -> None:
+    logs = "def tell(self):\n        self.get_logger().info('ready')"
+    (package / "bot" / "talker.py").write_text(TALKER_CODE.replace("def tell(self):", logs))
+    write(
+        package,
+        """
+        def heard(event):
+            return Node(package="bot", executable="talker", name="b") if b"ready" in event.text else None
+
+        def generate_launch_description():
+            a = Node(package="bot", executable="talker", name="a", remappings=[("chatter", "other")])
+            return LaunchDescription([a, RegisterEventHandler(OnProcessIO(target_action=a, on_stderr=heard))])
+        """,
+    )
+    system.launch(package / "launch" / "bot.launch.py")
+    system.expect("chatter", type=String, within=5.0)
+
+
+@pytest.mark.processes
+def test_a_system_of_processes_goes_on(package: Path) -> None:
+    write(
+        package,
+        """
+        def generate_launch_description():
+            first = ExecuteProcess(cmd=["python3", "-c", "print('one')"], name="first")
+            second = ExecuteProcess(cmd=["python3", "-c", "import time; time.sleep(60)"], name="second")
+            return LaunchDescription([first,
+                RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[second])),
+                RegisterEventHandler(OnProcessIO(target_action=first, on_stdout=lambda event: LogInfo(msg="heard"))),
+                RegisterEventHandler(OnProcessStart(target_action=second, on_start=[
+                    TimerAction(period=0.1, actions=[Shutdown(reason="enough")])])),
+                RegisterEventHandler(OnShutdown(on_shutdown=[
+                    LogInfo(msg=["over: ", LocalSubstitution("event.reason")])])),
+            ])
+        """,
+    )
+    command = [sys.executable, "-m", "robolink", "launch", "bot", "bot.launch.py"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    lines = done.stdout.splitlines()
+    assert [each for each in lines if each != "[launch] heard"] == [
+        "[first] one",
+        "[launch] first has ended",
+        "[launch] the launch file ends the system: enough",
+        "[launch] over: enough",
+    ]
+    assert lines.index("[first] one") < lines.index("[launch] heard")
