@@ -70,6 +70,18 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
             "Publishes a state of each joint, which parameters set.",
         ),
     },
+    "joy": {
+        "game_controller_node": Counterpart(
+            "robolink.counterparts.joy.game_controller_node:main", "Publishes a gamepad's state in one order for all."
+        ),
+        "joy_enumerate_devices": Counterpart(
+            "robolink.counterparts.joy.joy_enumerate_devices:main", "Lists the gamepads of this machine."
+        ),
+        "joy_node": Counterpart("robolink.counterparts.joy.joy_node:main", "Publishes a gamepad's state."),
+    },
+    "joy_linux": {
+        "joy_linux_node": Counterpart("robolink.counterparts.joy.joy_linux_node:main", "Publishes a gamepad's state."),
+    },
     "nav2_lifecycle_manager": {
         "lifecycle_manager": Counterpart(
             "robolink.counterparts.nav2_lifecycle_manager.lifecycle_manager:main", "Starts managed nodes in order."
@@ -91,8 +103,15 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
             "robolink.counterparts.robot_state_publisher.robot_state_publisher:main", "Publishes a robot's transforms."
         ),
     },
+    "teleop_twist_joy": {
+        "teleop_node": Counterpart(
+            "robolink.counterparts.teleop_twist_joy.teleop_node:main", "Drives a robot by a gamepad."
+        ),
+    },
     "teleop_twist_keyboard": {
-        "teleop_twist_keyboard": Counterpart("nodes/teleop", "Drives a robot by the keyboard."),
+        "teleop_twist_keyboard": Counterpart(
+            "robolink.counterparts.teleop_twist_keyboard.teleop_twist_keyboard:main", "Drives a robot by the keyboard."
+        ),
     },
     "tf2_ros": {
         "buffer_server": Counterpart(

@@ -102,7 +102,7 @@ def test_executables_of_ros_2s_own_packages_that_robolink_has(top: Path) -> None
     source, args = asked("tf2_ros", "static_transform_publisher", "--x", "1")
     assert source.path == built_in_workspace() / "nodes/static_transform_publisher.py"
     assert args == ["--x", "1"]
-    assert asked("teleop_twist_keyboard", "teleop_twist_keyboard")[0].name == "teleop"
+    assert asked("teleop-twist-keyboard", "teleop_twist_keyboard")[0].attribute == "main"
     with pytest.raises(NotFoundError, match="robolink needs no router"):
         asked("rmw_zenoh_cpp", "rmw_zenohd")
     own = write_package(top / "src", "tf2_ros", {"static_transform_publisher.py": ""})

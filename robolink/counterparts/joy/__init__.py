@@ -1,0 +1,1 @@
+"""Counterparts of joy and joy_linux: the state of a gamepad as messages."""

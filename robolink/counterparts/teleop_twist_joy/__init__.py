@@ -1,0 +1,1 @@
+"""Counterpart of teleop_twist_joy: velocity commands from a gamepad."""

@@ -1,0 +1,1 @@
+"""Counterpart of teleop_twist_keyboard: velocity commands by the keys of a terminal."""
