@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
 import pytest
 
+from robolink.companions.launch.bases import LaunchContext
+from robolink.companions.launch.substitutions.commands import Command
+from robolink.companions.launch.substitutions.failure import SubstitutionFailure
 from robolink.counterparts.urdf import parse_urdf
 from robolink.counterparts.xacro import expanded, xacro
 from robolink.exceptions import DocumentError, RobolinkError
@@ -121,3 +125,15 @@ def test_without_the_package_it_says_how_to_get_it(folder: Path, monkeypatch: py
     monkeypatch.setitem(sys.modules, "xacro", None)
     with pytest.raises(ImportError, match="pip install xacro"):
         expanded([written(folder, WHEELS)])
+
+
+@pytest.mark.processes
+def test_launch_files_get_the_same_text(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")  # as in a venv
+    file = written(folder, '<xacro:include filename="$(find bot)/urdf/wheels.xacro"/>')
+    written(folder, WHEELS, "wheels.xacro")
+    found = Command(["xacro ", file, " prefix:=b_"]).perform(LaunchContext())
+    assert parse_urdf(found).links == ("base", "b_left", "b_right")
+    (folder / "urdf/wheels.xacro").write_text("<robot>")
+    with pytest.raises(SubstitutionFailure, match=r"wheels.xacro:1:8: no XML: no element found"):
+        Command(["xacro ", file]).perform(LaunchContext())

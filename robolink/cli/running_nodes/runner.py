@@ -57,6 +57,8 @@ if TYPE_CHECKING:
     from robolink.node import Node
 
 INTERRUPTED, TERMINATED = 130, 143
+_ASSIGNED = ("xacro",)
+"""Programs whose own arguments are `NAME:=VALUE`."""
 _PACKAGE = str(Path(__file__).resolve().parents[2])
 _COUNTERPARTS = str(Path(_PACKAGE, "counterparts"))
 
@@ -263,7 +265,8 @@ def _note_termination() -> list[int]:
 
 def _start(source: NodeSource, args: list[str]) -> Any:
     found = load_node(source)
-    _tell_of_unread(args, nobody_reads=isinstance(found, type))
+    if source.name not in _ASSIGNED:
+        _tell_of_unread(args, nobody_reads=isinstance(found, type))
     if isinstance(found, type):
         return spin(found)
     check_needs_nothing(found)
@@ -345,15 +348,20 @@ def _place(error: Exception) -> str:
     place, trace = "", error.__traceback__
     while trace is not None and trace.tb_next is not None:
         file = trace.tb_frame.f_code.co_filename
-        if not file.startswith("<") and not is_ours(trace) and is_ours(trace.tb_next):
+        if not file.startswith("<") and not _is_built_in(file) and not is_ours(trace) and is_ours(trace.tb_next):
             place = f"{file}:{trace.tb_lineno}"
         trace = trace.tb_next
     return place
 
 
+def _is_built_in(file: str) -> bool:
+    """True if a file is one of a node that comes with robolink."""
+    return file.startswith((str(built_in_workspace() / "nodes"), _COUNTERPARTS))
+
+
 def is_ours(trace: TracebackType) -> bool:
     """True if a frame is robolink's own or Python's import machinery, and not of a built-in node."""
     file = trace.tb_frame.f_code.co_filename
-    is_node = file.startswith((str(built_in_workspace() / "nodes"), _COUNTERPARTS))
+    is_node = _is_built_in(file)
     is_python = Path(file).name == "runpy.py" or Path(file).parent.name == "importlib"
     return not is_node and (file.startswith(("<frozen", _PACKAGE)) or is_python)

@@ -69,23 +69,20 @@ class Command(Substitution):
 def program_of(words: list[str], context: LaunchContext) -> list[str]:
     """Return a command line, `words`, with the program's path on the PATH of `context`.
 
-    `xacro` is the Python module where no program of this name is found. Raises SubstitutionFailure if there is none.
+    Raises SubstitutionFailure if there is no such program.
     """
+    name = Path(words[0]).name
+    if name == "xacro" and importlib.util.find_spec("xacro") is not None:
+        # Not the script that pip puts on the PATH, whose $(find PACKAGE) needs ament_index_python.
+        return [sys.executable, "-m", "robolink", "run", "xacro", "xacro", "--", *words[1:]]
     found = shutil.which(words[0], path=context.environment.get("PATH"))
     if found is not None:
         return [found, *words[1:]]
-    name = Path(words[0]).name
     if name in ("python", "python3"):
         return [sys.executable, *words[1:]]
     if name == "xacro":
-        if importlib.util.find_spec("xacro") is None:
-            raise SubstitutionFailure("xacro is not installed: pip install xacro")
-        return [sys.executable, "-c", _XACRO, *words[1:]]
+        raise SubstitutionFailure("xacro is not installed: pip install xacro")
     raise SubstitutionFailure(f"no program '{shown(words[0])}' is found on the PATH")
-
-
-_XACRO = "import robolink.compat, xacro; xacro.main()"
-"""Program that runs xacro, whose $(find PACKAGE) needs ament_index_python."""
 
 
 class FindExecutable(Substitution):
