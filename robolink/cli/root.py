@@ -38,6 +38,7 @@ COMMANDS = {
         "robolink.cli.launching.simulate", "Run a system in virtual time, with faults, as fast as it goes."
     ),
     "new": Entry("robolink.cli.new", "Make a project, a node or a world to begin with."),
+    "pkg": Entry("robolink.cli.pkg", "Make packages, and see which there are and what they have."),
     "learn": Entry("robolink.cli.learn", "Learn by exercises that are checked in a simulated world."),
     "run-together": Entry("robolink.cli.running_nodes.run_together", ""),
     "look-into": Entry("robolink.cli.running_nodes.look_into", ""),
@@ -69,7 +70,6 @@ OF_ROS2 = {
     "component": "nodes of a launch file share a process where it says 'process: NAME' (docs/launch.md)",
     "daemon": "there is none to start or stop: each command looks by itself",
     "multicast": "nothing is sent by multicast but with --network lan; 'robolink doctor' looks at the network",
-    "pkg": "nothing is built; 'robolink run --list' shows what can be run, and a package is a folder in src/",
 }
 """Commands of ros2 that robolink lacks, each with what to do instead."""
 

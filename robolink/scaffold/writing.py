@@ -38,7 +38,7 @@ def new_project(path: str) -> Made:
     name = checked("project", folder.name)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ScaffoldError(f"{path} is there already and not empty: take another name, or an empty folder")
-    return _written(folder, name, rendered("project", {"NAME": name}))
+    return written(folder, name, rendered("project", {"NAME": name}))
 
 
 def new_node(name: str, *, workspace: Folder = None) -> Made:
@@ -57,8 +57,8 @@ def new_node(name: str, *, workspace: Folder = None) -> Made:
     files = rendered("node", {"NAME": name, "CLASS": class_name(name)})
     folder = _workspace(workspace)
     if folder is None:
-        return _written(Path.cwd(), name, {f"{name}.py": files[f"nodes/{name}.py"]})
-    return _written(folder, name, files)
+        return written(Path.cwd(), name, {f"{name}.py": files[f"nodes/{name}.py"]})
+    return written(folder, name, files)
 
 
 def new_world(name: str, *, workspace: Folder = None) -> Made:
@@ -77,8 +77,8 @@ def new_world(name: str, *, workspace: Folder = None) -> Made:
     files = rendered("world", {"NAME": name})
     folder = _workspace(workspace)
     if folder is None:
-        return _written(Path.cwd(), name, {f"{name}.yaml": files[f"configs/worlds/{name}.yaml"]})
-    return _written(folder, name, files)
+        return written(Path.cwd(), name, {f"{name}.yaml": files[f"configs/worlds/{name}.yaml"]})
+    return written(folder, name, files)
 
 
 def _workspace(asked: Folder) -> Path | None:
@@ -89,7 +89,11 @@ def _workspace(asked: Folder) -> Path | None:
     return found
 
 
-def _written(folder: Path, name: str, files: Mapping[str, str]) -> Made:
+def written(folder: Path, name: str, files: Mapping[str, str]) -> Made:
+    """Write `files`, texts by relative path, into a `folder`, and return the record of the thing called `name`.
+
+    Raises ScaffoldError if one of them is there already.
+    """
     there = [each for each in files if (folder / each).exists()]
     if there:
         raise ScaffoldError(f"{folder / there[0]} is there already, and stays as it is: take another name")

@@ -51,6 +51,10 @@ def source_packages(top: Path) -> dict[str, Path]:
         seen, found = {path: _changed(path) for path in (top, top / "package.xml")}, {}
         for each in _packages_below(top / "src", seen):
             found.setdefault(package_name_of(each), each)
+        for each in _folders_in(top) if found else ():  # beside src/, as colcon finds them
+            if (each / "package.xml").is_file() and _is_package(each):
+                seen[each / "package.xml"] = _changed(each / "package.xml")
+                found.setdefault(package_name_of(each), each)
         if not found and _is_package(top):
             found[package_name_of(top)] = top
         if not found and not any((top / part).is_dir() for part in PARTS):

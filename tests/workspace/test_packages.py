@@ -313,3 +313,10 @@ def test_a_clone_of_any_python_project_is_no_workspace(tmp_path: Path) -> None:
     (tmp_path / "setup.py").touch()
     (tmp_path / "docs").mkdir()
     assert packages_of(tmp_path) == (None, [])
+
+
+def test_packages_beside_src_count_as_for_colcon(tmp_path: Path) -> None:
+    top = tmp_path.resolve()
+    for place, name in (("src", "robot_a"), ("", "robot_b"), ("install", "robot_c")):
+        write_package(top / place, name, {"a.py": ""})
+    assert packages_of(top / "robot_b") == (top, ["robot_a", "robot_b"])

@@ -87,6 +87,15 @@ def interface_packages(incomplete: str) -> list[str]:
     return offered({each.partition("/")[0] for each in _type_names("", "msg", "srv", "action")}, incomplete)
 
 
+def package_names(incomplete: str) -> list[str]:
+    """Return the names of all packages."""
+    with contextlib.suppress(Exception):
+        from robolink.companions.ament_index import get_packages_with_prefixes
+
+        return offered(get_packages_with_prefixes(), incomplete)
+    return []
+
+
 def runnable_nodes(ctx: Context, incomplete: str) -> list[str]:
     """Return the nodes that `robolink run` knows by name, and the packages that have executables."""
     with contextlib.suppress(Exception):

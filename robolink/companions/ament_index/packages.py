@@ -19,12 +19,14 @@ from robolink.workspace.built_in import PACKAGE
 from robolink.workspace.counterparts import COUNTERPARTS
 from robolink.workspace.find import find_package, list_packages
 from robolink.workspace.installed import installed_packages
+from robolink.workspace.ros_programs import instead_of
 from robolink.workspace.share import share_directory
 
 NOT_HERE = Path(os.path.abspath(os.sep)) / "package-not-here"  # noqa: PTH100 - on Windows with its drive
 """Folder, which does not exist, of packages that are not here, while `packages_may_lack`."""
 _may_lack: ContextVar[bool] = ContextVar("packages may lack", default=False)
 
+_OF_TYPES = re.compile(r"_(msgs|interfaces|srvs|actions)$")
 _NAME = re.compile(r"[a-zA-Z0-9][a-zA-Z0-9_-]+", re.ASCII)
 
 
@@ -109,7 +111,9 @@ def _folder(name: str) -> Path | None:
     """Return the folder of a package that was not installed; None for one that was. Raises if there is none."""
     if _NAME.fullmatch(name) is None:
         raise PackageNameError(f"'{name}' is not a valid package name")
-    found = find_package(name) or _standard().get(name) or _counterparts().get(name)
+    found = find_package(name) or _counterparts().get(name)
+    if found is None and (_OF_TYPES.search(name) or instead_of(name) is None):
+        found = _standard().get(name)  # of slam_toolbox and the like robolink has the types, and no files
     if found is None and name not in installed_packages():
         if _may_lack.get():
             return NOT_HERE / name

@@ -1,0 +1,166 @@
+"""robolink pkg: make packages, and see which there are, where they are and what they have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from robolink.cli.shared import complete
+from robolink.cli.shared.listed_options import ListedOptions
+from robolink.cli.shared.options import choice
+from robolink.cli.shared.output import say, tell
+
+if TYPE_CHECKING:
+    from robolink.scaffold import NewPackage
+    from robolink.workspace import NodeSource
+
+app = typer.Typer(no_args_is_help=True, help="Make packages, and see which there are and what they have.")
+
+Package = Annotated[str, typer.Argument(metavar="PACKAGE", help="Its name.", autocompletion=complete.package_names)]
+
+
+@app.command("create", cls=ListedOptions)
+def create(
+    package_name: Annotated[str, typer.Argument(metavar="PACKAGE", help="Its name, such as my_robot.")],
+    build_type: Annotated[
+        str, choice("--build-type", ["ament_cmake", "ament_python"], "What builds it elsewhere")
+    ] = "ament_cmake",
+    node_name: Annotated[str, typer.Option("--node-name", metavar="NAME", help="A first program, in Python.")] = "",
+    library_name: Annotated[str, typer.Option("--library-name", metavar="NAME", help="A first library.")] = "",
+    dependencies: Annotated[
+        list[str] | None, typer.Option("--dependencies", metavar="PACKAGE...", help="Packages that it needs.")
+    ] = None,
+    description: Annotated[str, typer.Option("--description", help="For package.xml.")] = "TODO: Package description",
+    license_: Annotated[str, typer.Option("--license", help="For package.xml.")] = "TODO: License declaration",
+    maintainer_name: Annotated[str, typer.Option("--maintainer-name", help="For package.xml.")] = "",
+    maintainer_email: Annotated[str, typer.Option("--maintainer-email", help="For package.xml.")] = "",
+    package_format: Annotated[str, choice("--package-format", ["2", "3"], "Of package.xml")] = "3",
+    destination: Annotated[
+        Path, typer.Option("--destination-directory", metavar="FOLDER", help="Where to make its folder.")
+    ] = Path(),
+) -> None:
+    """Make a package that runs here at once, and that colcon builds: in the folder src/ of a workspace, say."""
+    from robolink.scaffold import NewPackage, new_package
+
+    user = maintainer_name or _user()
+    email = maintainer_email or f"{user}@todo.todo"
+    wanted = NewPackage(
+        package_name, build_type, int(package_format), description, license_, user, email,
+        tuple(dependencies or ()), node_name, library_name,
+    )  # fmt: skip
+    made = new_package(wanted, destination.absolute())
+    _tell_of(wanted, destination, made.files)
+
+
+def _tell_of(wanted: NewPackage, destination: Path, files: list[str]) -> None:
+    say("going to create a new package")
+    facts = {
+        "package name": wanted.name,
+        "destination directory": destination.absolute(),
+        "package format": wanted.package_format,
+        "version": "0.0.0",
+        "description": wanted.description,
+        "maintainer": [f"{wanted.maintainer} <{wanted.email}>"],
+        "licenses": [wanted.license],
+        "build type": wanted.build_type,
+        "dependencies": list(wanted.dependencies),
+        **({"node_name": wanted.node} if wanted.node else {}),
+        **({"library_name": wanted.library} if wanted.library else {}),
+    }
+    for name, value in facts.items():
+        say(f"{name}: {value}")
+    say(f"creating folder ./{wanted.name}")
+    for each in files:
+        say(f"creating ./{wanted.name}/{each}")
+    if wanted.license.startswith("TODO"):
+        tell("say under which licence others may use it: <license> in package.xml, and a file LICENSE")
+    if wanted.node:
+        say(f"\nnext:\n  robolink run {wanted.name} {wanted.node}")
+
+
+def _user() -> str:
+    import getpass
+
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError, ImportError):  # a user without a name
+        return "user"
+
+
+@app.command("list")
+def list_packages() -> None:
+    """List the packages: the workspace's, those that come with robolink, those that were installed."""
+    from robolink.companions.ament_index import get_packages_with_prefixes
+
+    say("\n".join(sorted(get_packages_with_prefixes())))
+
+
+@app.command("prefix")
+def prefix(
+    package_name: Package, share: Annotated[bool, typer.Option("--share", help="Its share directory instead.")] = False
+) -> None:
+    """Show the folder in which a package is: its own, if it was never built."""
+    from robolink.companions.ament_index import get_package_prefix, get_package_share_directory
+
+    say(get_package_share_directory(package_name) if share else get_package_prefix(package_name))
+
+
+@app.command("executables")
+def executables(
+    package_name: Annotated[
+        str,
+        typer.Argument(metavar="PACKAGE", help="Only those of this package.", autocompletion=complete.package_names),
+    ] = "",
+    full_path: Annotated[bool, typer.Option("--full-path", help="Their files instead.")] = False,
+) -> None:
+    """List the executables that `robolink run PACKAGE EXECUTABLE` runs: of a package, or of all."""
+    from robolink.companions.ament_index import get_package_prefix, get_packages_with_prefixes
+
+    if package_name:
+        get_package_prefix(package_name)  # raises for one that is not there
+    for package in [package_name] if package_name else sorted(get_packages_with_prefixes()):
+        for name, source in sorted(_executables_of(package).items()):
+            if not full_path:
+                say(f"{package} {name}")
+            elif source.path is not None:
+                say(str(source.path))
+
+
+def _executables_of(package: str) -> dict[str, NodeSource]:
+    """Return the executables that a package names, those that have a counterpart, and those that were installed."""
+    from robolink.workspace import counterparts_of, executable_of, find_package, named_executables
+    from robolink.workspace.installed import installed_executables
+
+    folder = find_package(package)
+    found = {each.name: each for each in (named_executables(folder) if folder is not None else ())}
+    for name in (*counterparts_of(package), *installed_executables(package)):
+        source = executable_of(package, name, folder)
+        if source is not None:
+            found.setdefault(name, source)
+    return found
+
+
+@app.command("xml")
+def xml(
+    package_name: Package,
+    tag: Annotated[str, typer.Option("--tag", "-t", metavar="TAG", help="Only the texts of this element.")] = "",
+) -> None:
+    """Show the package.xml of a package, or the texts of one of its elements."""
+    from robolink.companions.ament_index import get_package_share_directory
+    from robolink.documents import xmltext
+    from robolink.exceptions import NotFoundError
+    from robolink.system.plainfile import read_plain
+
+    file = Path(get_package_share_directory(package_name), "package.xml")
+    if not file.is_file():
+        raise NotFoundError("package.xml", package_name, (), f"{file.parent}, since the package comes with robolink")
+    if not tag:
+        say(read_plain(file, xmltext.LARGEST).decode("utf-8", errors="replace").rstrip())
+        return
+    root = xmltext.read(file)
+    found = [each.text for each in root.all(tag)]
+    if not found:
+        raise NotFoundError("element", tag, [each.tag for each in root.children], str(file))
+    say("\n".join(found))

@@ -1,0 +1,112 @@
+"""Writer of new ROS 2 packages, as `ros2 pkg create` makes them: they run here as they are, and colcon builds them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+from robolink.scaffold.naming import ScaffoldError, checked, class_name
+from robolink.scaffold.rendering import rendered
+from robolink.scaffold.writing import Made, written
+
+PYTHON, CMAKE = BUILD_TYPES = ("ament_python", "ament_cmake")
+"""Build types of packages that can be made."""
+_DEPENDENCY = re.compile(r"[A-Za-z0-9][A-Za-z0-9_+.-]*")
+_LIBRARY = """
+add_library(@LIBRARY@ src/@LIBRARY@.cpp)
+target_include_directories(@LIBRARY@ PUBLIC
+  $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+  $<INSTALL_INTERFACE:include/${PROJECT_NAME}>)
+install(DIRECTORY include/ DESTINATION include/${PROJECT_NAME})
+install(TARGETS @LIBRARY@ ARCHIVE DESTINATION lib LIBRARY DESTINATION lib RUNTIME DESTINATION bin)
+"""
+
+
+@dataclass(frozen=True)
+class NewPackage:
+    """Description of a new package for `new_package`; `node` and `library` are names, '' for none."""
+
+    name: str
+    build_type: str = CMAKE
+    package_format: int = 3
+    description: str = "TODO: Package description"
+    license: str = "TODO: License declaration"
+    maintainer: str = "user"
+    email: str = "user@todo.todo"
+    dependencies: Sequence[str] = ()
+    node: str = ""
+    library: str = ""
+
+
+def new_package(wanted: NewPackage, destination: Path) -> Made:
+    """Make the package that is `wanted` in a folder of its name below `destination`.
+
+    A node is a Python program in both build types, since robolink runs no C++.
+
+    Raises:
+        ScaffoldError: (a ValueError) if a name is not valid, or the folder is there already.
+        OSError: if the files cannot be written.
+    """
+    for kind, name in (("package", wanted.name), ("node", wanted.node), ("library", wanted.library)):
+        if name and not checked(kind, name).isidentifier():
+            raise ScaffoldError(f"'{name}' is no name for a {kind}: Python imports no '-', take '_'")
+    for each in wanted.dependencies:
+        if not _DEPENDENCY.fullmatch(each):
+            raise ScaffoldError(f"'{each[:60]}' is no name of a package to depend on")
+    if wanted.node and wanted.node == wanted.library:
+        raise ScaffoldError(f"the node and the library cannot both be called '{wanted.node}'")
+    if (destination / wanted.name).exists():
+        raise ScaffoldError(
+            f"{destination / wanted.name} is there already: take another name or --destination-directory"
+        )
+    files = _python(wanted) if wanted.build_type == PYTHON else _cmake(wanted)
+    return written(destination / wanted.name, wanted.name, files)
+
+
+def _python(wanted: NewPackage) -> dict[str, str]:
+    name, node, library = wanted.name, wanted.node, wanted.library
+    script = f"\n            '{node} = {name}.{node}:main'," if node else ""
+    added = {f"{name}/{node}.py": _node(name)} if node else {}
+    if library:
+        added[f"{name}/{library}/__init__.py"] = ""
+    return {**rendered("package_python", {**_words(wanted), "SCRIPTS": script}), **added}
+
+
+def _cmake(wanted: NewPackage) -> dict[str, str]:
+    node, library = wanted.node, wanted.library
+    find = "".join(f"find_package({each} REQUIRED)\n" for each in wanted.dependencies)
+    install = _LIBRARY.replace("@LIBRARY@", library) if library else ""
+    added = {}
+    if library:
+        guard = f"{wanted.name}__{library}_HPP_".upper()
+        words = {"NAME": wanted.name, "LIBRARY": library, "CLASS": class_name(library), "GUARD": guard}
+        added = rendered("package_library", words)
+    if node:
+        install += f"\ninstall(PROGRAMS scripts/{node}.py DESTINATION lib/${{PROJECT_NAME}} RENAME {node})\n"
+        added[f"scripts/{node}.py"] = "#!/usr/bin/env python3\n\n\n" + _node(wanted.name)
+    words = {**_words(wanted), "FIND": find, "INSTALL": install}
+    return {**rendered("package_cmake", words), **added}
+
+
+def _node(package: str) -> str:
+    return f"def main():\n    print('Hi from {package}.')\n\n\nif __name__ == '__main__':\n    main()\n"
+
+
+def _words(wanted: NewPackage) -> dict[str, str]:
+    dependencies = "".join(f"  <depend>{escape(each)}</depend>\n" for each in wanted.dependencies)
+    texts = {
+        "MAINTAINER": wanted.maintainer,
+        "DESCRIPTION": wanted.description,
+        "LICENSE": wanted.license,
+    }
+    return {
+        **{f"PY_{key}": repr(text) for key, text in {**texts, "EMAIL": wanted.email}.items()},
+        "FORMAT": str(wanted.package_format),
+        "NAME": wanted.name,
+        "EMAIL": escape(wanted.email, {'"': "&quot;"}),
+        **{key: escape(text) for key, text in texts.items()},
+        "DEPENDENCIES": f"\n{dependencies}" if dependencies else "",
+    }
