@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import signal
 import sys
 import threading
@@ -164,6 +165,8 @@ class _Sending:
 
     def __init__(self, client: ActionClient, executor: Executor, manner: Manner) -> None:
         self._client, self._executor, self._manner = client, executor, manner
+        self._unheard: OSError | None = None
+        """Error of the output, once nobody reads the feedback any more."""
 
     def run(self, goal: Any, name: str, deadline: float) -> int:
         """Send the goal, show feedback and result, and return the exit code."""
@@ -201,8 +204,13 @@ class _Sending:
         return int(response.status != GoalStatus.STATUS_SUCCEEDED)
 
     def _show_feedback(self, message: Any) -> None:
+        if self._unheard is not None:
+            return
         feedback = message.feedback
-        self._manner.say(f"Feedback:\n    {show.as_yaml(feedback, WHOLE)}\n", feedback=feedback)
+        try:
+            self._manner.say(f"Feedback:\n    {show.as_yaml(feedback, WHOLE)}\n", feedback=feedback)
+        except OSError as error:  # raised where it is waited for: a callback that raises is logged
+            self._unheard = error
 
     def _cancel(self, goal_id: UUID) -> None:
         """Cancel the goal, even if the answer is not known yet that it was accepted."""
@@ -229,4 +237,9 @@ class _Sending:
         return "" if answer.goals_canceling else REASONS.get(answer.return_code, f"return code {answer.return_code}")
 
     def _spin(self, future: Any, seconds: float | None = None) -> None:
-        self._executor.spin_until_future_complete(future, None if seconds is None else max(0.0, seconds))
+        """Wait for a future; raise the error of the output if its reader goes meanwhile."""
+        before, deadline = self._unheard, math.inf if seconds is None else time.monotonic() + max(0.0, seconds)
+        while not future.done() and self._unheard is before and (left := deadline - time.monotonic()) > 0.0:
+            self._executor.spin_once_until_future_complete(future, None if left == math.inf else left)
+        if self._unheard is not None and self._unheard is not before:
+            raise self._unheard

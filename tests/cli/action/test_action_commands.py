@@ -127,6 +127,18 @@ def test_a_reader_that_goes_away_cancels_the_goal_too(sums: Sums, monkeypatch: p
     assert sums.canceled.wait(PATIENCE)
 
 
+@pytest.mark.usefixtures("served")
+def test_so_does_one_of_the_feedback(sums: Sums, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    def vanish(text: str) -> None:
+        if text.startswith("Feedback"):
+            raise BrokenPipeError
+
+    when_said(monkeypatch, goal, "say", vanish)
+    assert main(["action", "send_goal", "/lab/sums", "order: -1", "--feedback"]) == 141
+    assert sums.canceled.wait(PATIENCE)
+    assert capsys.readouterr().err == "", "it is no fault of a callback"
+
+
 def test_a_type_that_is_not_installed_is_asked_of_the_server(node: Node, capsys: Captured) -> None:
     def polish(handle: ServerGoalHandle) -> Polish.Result:
         handle.succeed()
