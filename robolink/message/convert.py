@@ -10,6 +10,10 @@ from robolink.message.annotations import FieldType
 from robolink.message.base import Message
 from robolink.message.check import explain
 
+_FLOATS = ("float32", "float64")
+_EXACT = 2**53
+"""Bound of the integers that are floats without loss."""
+
 
 def from_builtins(cls: type[Message], data: Any) -> Any:
     """Return a message of the class `cls` from a mapping; fields that `data` leaves out keep their defaults.
@@ -51,6 +55,8 @@ def _value(kind: FieldType, value: Any, path: str) -> Any:
     if kind.message is None:
         if kind.base == "byte":
             return _octets(kind, value)
+        if kind.base in _FLOATS and kind.shape == "one" and type(value) is int and abs(value) < _EXACT:
+            return float(value)
         return value
     if kind.shape == "one":
         return _nested(kind.message, value, path)
