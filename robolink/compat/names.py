@@ -26,6 +26,7 @@ ROOMS = {
     "rosidl_parser.definition": "robolink.message.slot_types",
     "rosidl_runtime_py": "robolink.companions.rosidl_runtime",
     "webots_ros2_driver": "robolink.webots_controller",
+    "turtlesim_msgs": "robolink.interfaces.turtlesim",
     "ament_index_python": "robolink.companions.ament_index",
     "rosbag2_py": "robolink.companions.rosbag2_py",
     "nav2_simple_commander": "robolink.companions.nav2_simple_commander",

@@ -54,6 +54,13 @@ def test_every_message_package_is_there(kind: str) -> None:
 
 
 @pytest.mark.usefixtures("compat")
+@pytest.mark.parametrize(("kind", "name"), [("msg", "Pose"), ("srv", "Spawn"), ("action", "RotateAbsolute")])
+def test_turtlesims_types_have_their_newer_package_too(kind: str, name: str) -> None:
+    types = importlib.import_module(f"turtlesim_msgs.{kind}")
+    assert getattr(types, name) is interfaces.find(f"turtlesim/{kind}/{name}", kind)
+
+
+@pytest.mark.usefixtures("compat")
 @pytest.mark.parametrize("kind", list(STANDARD))
 def test_the_modules_in_which_rosidl_defines_a_type_are_there(kind: str) -> None:
     from robolink.compat.names import snake_case
