@@ -19,14 +19,21 @@ NUMBERS = itertools.count()
 
 
 @contextmanager
-def a_node_that_commands_see(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
-    """The node /lab/robot, on domain 7 of a network of its own that commands use too while this lasts."""
+def a_context_that_commands_see(monkeypatch: pytest.MonkeyPatch) -> Iterator[Context]:
+    """A context on domain 7 of a network of its own that commands use too while this lasts."""
     url = f"memory://commands{next(NUMBERS)}"
     monkeypatch.setenv("ROBOLINK_TRANSPORT", url)
     monkeypatch.setenv("ROS_DOMAIN_ID", "7")
     context = Context(transport=url)
     context.init([])
     with context:
+        yield context
+
+
+@contextmanager
+def a_node_that_commands_see(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
+    """The node /lab/robot in such a context."""
+    with a_context_that_commands_see(monkeypatch) as context:
         yield made(context, "robot", "/lab")
 
 
