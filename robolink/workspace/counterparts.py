@@ -28,7 +28,14 @@ class Counterpart(NamedTuple):
 
 
 _CPP, _PY = "robolink.counterparts.demo_nodes_cpp", "robolink.counterparts.demo_nodes_py"
-_TOOLS = "robolink.counterparts.topic_tools"
+_EXAMPLES, _TOOLS = "robolink.counterparts.examples_rclpy", "robolink.counterparts.topic_tools"
+
+
+def _forms(noun: str) -> list[str]:
+    """Return the names of the example programs with topics, which do the same."""
+    inner = "lambda" if noun == "subscriber" else "local_function"
+    return [f"{noun}_{each}" for each in (inner, "member_function", "old_school")]
+
 
 COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
     "demo_nodes_cpp": {
@@ -58,6 +65,41 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
         ),
         "talker": Counterpart(f"{_PY}.talker:Talker", "Publishes a count each second."),
         "talker_qos": Counterpart(f"{_PY}.talker_qos:main", "Publishes a count, best effort or reliably."),
+    },
+    **{
+        f"examples_rclpy_minimal_{package}": {name: Counterpart(f"{_EXAMPLES}.{target}", purpose) for name in names}
+        for package, target, purpose, names in (
+            ("publisher", "minimal_publisher:MinimalPublisher", "Publishes a count.", _forms("publisher")),
+            ("subscriber", "minimal_subscriber:MinimalSubscriber", "Logs what it hears.", _forms("subscriber")),
+            (
+                "service",
+                "minimal_service:MinimalService",
+                "Adds two numbers on request.",
+                ["service", "service_member_function"],
+            ),
+            (
+                "client",
+                "minimal_client:main",
+                "Asks for a sum.",
+                ["client", "client_async", "client_async_callback", "client_async_member_function"],
+            ),
+            (
+                "action_server",
+                "minimal_action_server:MinimalActionServer",
+                "Computes Fibonacci's numbers.",
+                ["server", "server_not_composable"],
+            ),
+            (
+                "action_client",
+                "minimal_action_client:main",
+                "Asks for Fibonacci's numbers.",
+                ["client", "client_asyncio", "client_not_composable"],
+            ),
+        )
+    },
+    "image_tools": {
+        "cam2image": Counterpart("robolink.counterparts.image_tools.cam2image:main", "Publishes a camera's pictures."),
+        "showimage": Counterpart("robolink.counterparts.image_tools.showimage:main", "Shows pictures in a window."),
     },
     "joint_state_publisher": {
         "joint_state_publisher": Counterpart(

@@ -1,0 +1,22 @@
+"""Add two numbers at the service /add_two_ints."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from robolink.interfaces.example_interfaces.srv import AddTwoInts
+from robolink.node import Node
+
+
+class MinimalService(Node):
+    """A node that adds two numbers on request. `options` are those of `Node`."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("minimal_service", **options)
+        self.create_service(AddTwoInts, "add_two_ints", self.on_request)
+
+    def on_request(self, request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
+        """Add."""
+        response.sum = request.a + request.b
+        self.get_logger().info(f"Incoming request\na: {request.a} b: {request.b}")
+        return response
