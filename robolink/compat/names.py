@@ -29,6 +29,7 @@ ROOMS = {
     "turtlesim_msgs": "robolink.interfaces.turtlesim",
     "ament_index_python": "robolink.companions.ament_index",
     "rosbag2_py": "robolink.companions.rosbag2_py",
+    "nav2_common": "robolink.companions.nav2_common",
     "nav2_simple_commander": "robolink.companions.nav2_simple_commander",
     "launch": "robolink.companions.launch",
     **dict.fromkeys(

@@ -248,3 +248,19 @@ def test_a_prefix_stands_in_front(package: Path) -> None:
     )
     (launched,) = processes([entry])
     assert as_process(launched).argv[:4] == [Path(sys.executable).as_posix(), "-X", "dev", own_command()[0]]
+
+
+def test_a_rewritten_file_gives_the_parameters_of_a_node(package: Path) -> None:
+    (package / "config" / "a.yaml").write_text("/**: {ros__parameters: {word: one, period: 2.0}}")
+    entry = only(
+        package,
+        """
+        Node(package="bot", executable="talker", name="one", parameters=[ParameterFile(
+            __import__("nav2_common.launch", fromlist=["launch"]).RewrittenYaml(
+                source_file=get_package_share_directory("bot") + "/config/a.yaml", root_key="",
+                param_rewrites={"period": LaunchConfiguration("period")}, convert_types=True),
+            allow_substs=True)]),
+        """,
+        period="0.5",
+    )
+    assert entry.node.parameters == {"word": "one", "period": 0.5}
