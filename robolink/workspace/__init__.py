@@ -1,7 +1,13 @@
 """The workspace: a folder of nodes, systems and types, which are found (`find`) and loaded (`load`) by name."""
 
 from robolink.workspace.built_in import built_in_workspace
-from robolink.workspace.counterparts import COUNTERPARTS, counterparts_of, executable_of, lacking_executable
+from robolink.workspace.counterparts import (
+    COUNTERPARTS,
+    counterpart,
+    counterparts_of,
+    executable_of,
+    lacking_executable,
+)
 from robolink.workspace.find import (
     VARIABLE,
     find_executable,
@@ -36,6 +42,7 @@ __all__ = [
     "RosProgramError",
     "built_in_workspace",
     "canonical",
+    "counterpart",
     "counterparts_of",
     "executable",
     "executable_of",

@@ -150,6 +150,22 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
             "robolink.counterparts.teleop_twist_joy.teleop_node:main", "Drives a robot by a gamepad."
         ),
     },
+    **{
+        package: {package: Counterpart(f"robolink.cli.view.ros_programs:{package}", purpose)}
+        for package, purpose in (
+            ("rqt_console", "Opens the log of robolink view."),
+            ("rqt_graph", "Opens the graph of robolink view."),
+            ("rqt_image_view", "Opens the images of robolink view."),
+            ("rqt_plot", "Opens the plots of robolink view."),
+            ("rqt_reconfigure", "Opens the parameters of robolink view."),
+            ("rqt_robot_steering", "Opens the panel of robolink view that drives."),
+            ("rqt_service_caller", "Opens the services of robolink view."),
+            ("rqt_topic", "Opens the topics of robolink view."),
+            ("rviz2", "Opens the world of robolink view."),
+        )
+    },
+    "rqt": {"rqt": Counterpart("robolink.cli.view.ros_programs:rqt", "Opens panels of robolink view.")},
+    "rqt_gui": {"rqt_gui": Counterpart("robolink.cli.view.ros_programs:rqt", "Opens panels of robolink view.")},
     "teleop_twist_keyboard": {
         "teleop_twist_keyboard": Counterpart(
             "robolink.counterparts.teleop_twist_keyboard.teleop_twist_keyboard:main", "Drives a robot by the keyboard."
@@ -198,7 +214,7 @@ def counterparts_of(package: str) -> Mapping[str, Counterpart]:
     return COUNTERPARTS.get(canonical(package), {})
 
 
-def source_of(package: str, name: str) -> NodeSource | None:
+def counterpart(package: str, name: str) -> NodeSource | None:
     """Return the source of the counterpart of the executable `name` of `package`; None if there is none."""
     row = counterparts_of(package).get(canonical(name).removesuffix(".py"))
     if row is None:
@@ -220,7 +236,7 @@ def executable_of(package: str, name: str, folder: Path | None) -> NodeSource | 
         folder: Folder of the user's own package of this name; None if there is none.
     """
     own = None if folder is None else executable(folder, name)
-    return own or source_of(package, name) or named(name, installed_executables(package))
+    return own or counterpart(package, name) or named(name, installed_executables(package))
 
 
 def lacking_executable(package: str, name: str, folder: Path | None) -> NotFoundError | None:

@@ -38,11 +38,7 @@ PROGRAMS = {
 }
 """Advice by package and program."""
 PACKAGES = {
-    "rviz2": f"a window in C++; 'robolink view' shows robots, maps and images in the browser, and {_ANYWHERE}",
-    "rqt_graph": "a window; 'robolink view' has a panel with nodes and topics, 'robolink node graph' draws as text",
-    "rqt_plot": "a window; 'robolink view' has a panel with plots, 'robolink plot topic' draws into a file",
-    "rqt_*": "a window; 'robolink view' has panels for topics, plots, images, logs, services and parameters",
-    "rqt": "a window; 'robolink view' has panels for topics, plots, images, logs, services and parameters",
+    "rqt*": "a window; 'robolink view' has panels for topics, plots, images, logs, services and parameters",
     "gazebo_ros": f"Gazebo, a simulator in C++; {_WORLD}",
     "gazebo": f"Gazebo, a simulator in C++; {_WORLD}",
     "gazebo_plugins": f"parts of Gazebo, in C++; {_WORLD}",

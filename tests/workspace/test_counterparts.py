@@ -9,7 +9,7 @@ import pytest
 from robolink.cli.main import main
 from robolink.exceptions import NotFoundError
 from robolink.workspace import counterparts, find_executable, find_node
-from robolink.workspace.counterparts import Counterpart, source_of
+from robolink.workspace.counterparts import Counterpart, counterpart
 from tests.support.ros_tree import write_package
 
 
@@ -30,7 +30,7 @@ def test_a_row_is_a_file_and_a_name_in_it() -> None:
     assert source.path.parts[-2:] == ("control", "pid.py")
     assert (source.name, source.attribute) == ("control_node", "PID")
     assert find_node("ros-control-demo control_node.py") == source
-    package = source_of("ros_control_demo", "info")
+    package = counterpart("ros_control_demo", "info")
     assert package is not None
     assert package.path is not None
     assert package.path.parts[-2:] == ("bag", "__init__.py")

@@ -34,6 +34,7 @@ from robolink.workspace import (
     RosProgramError,
     built_in_workspace,
     canonical,
+    counterpart,
     counterparts_of,
     executable_of,
     find_launch,
@@ -132,6 +133,9 @@ def found(command: NodeCommand, workspace: str | None) -> tuple[NodeSource, list
     try:
         return find_node(name, workspace=workspace), words
     except NotFoundError:
+        alone = counterpart(name, name)  # rviz2 and rqt are programs, and packages
+        if alone is not None and folder is None:
+            return alone, words
         asked = words[0] if command.before > 0 else ""
         error = _lacking(name, asked, folder, workspace)
         if error is None:

@@ -15,6 +15,20 @@ if TYPE_CHECKING:
 
 app = typer.Typer(help="Show a running system, or a bag, in the browser.")
 
+PANELS = (
+    "world", "topics", "plot", "log", "teleop", "services", "parameters", "images", "graph", "actions", "turtlesim",
+)  # fmt: skip
+"""Names of the page's panels, as `page/layout.js` has them."""
+
+
+def _checked_panels(names: str) -> str:
+    from robolink.exceptions import nearest
+
+    for each in names.split("+") if names else ():
+        if each not in PANELS:
+            raise typer.BadParameter(f"no panel '{each[:50]}'{nearest(each[:50], PANELS)}: {', '.join(PANELS)}")
+    return names
+
 
 @app.command("view")
 def view(
@@ -29,6 +43,9 @@ def view(
     bag: Annotated[
         Path | None, typer.Option("--bag", metavar="FILE", help="Show this bag instead of a running system.")
     ] = None,
+    panels: Annotated[
+        str, typer.Option("--panels", metavar="NAME+NAME", help="Panels to begin with.", callback=_checked_panels)
+    ] = "",
     token: Annotated[
         str, typer.Option("--token", metavar="TEXT", help="Secret in the address; by default a new one each time.")
     ] = "",
@@ -43,29 +60,37 @@ def view(
     _end_with_the_terminal()
     settings = Settings(host, port, token, read_only)
     if bag is not None:
-        _show_bag(bag, settings, browser)
+        _show_bag(bag, settings, browser, panels)
     else:
-        _show_system(settings, browser, enclave)
+        show_system(settings, browser, enclave, panels)
 
 
-def _show_system(settings: Settings, browser: bool, enclave: str) -> None:
+def show_system(settings: Settings, browser: bool, enclave: str = "", panels: str = "") -> None:
+    """Serve the page of the running system until Ctrl-C.
+
+    Args:
+        settings: Where and for whom.
+        browser: True opens the page.
+        enclave: Enclave whose keys it has.
+        panels: Names of panels to begin with, parted by ``+``; '' leaves it to the browser's memory.
+    """
     from robolink.cli.shared.session import node_of, opened
     from robolink.view.server import View
     from robolink.view.sources.live import LiveSource
 
     with opened(enclave) as context, View(LiveSource(node_of(context)), settings) as server:
-        _announce(server, browser)
+        _announce(server, browser, panels)
         context.graph.wait_for(lambda: not context.ok(), None)
 
 
-def _show_bag(path: Path, settings: Settings, browser: bool) -> None:
+def _show_bag(path: Path, settings: Settings, browser: bool, panels: str) -> None:
     from robolink.bag.reader import open_bag
     from robolink.cli.shared.session import opened
     from robolink.view.server import View
     from robolink.view.sources.bag import BagSource
 
     with open_bag(path) as bag, opened() as context, View(BagSource(bag), settings) as server:
-        _announce(server, browser)
+        _announce(server, browser, panels)
         context.graph.wait_for(lambda: not context.ok(), None)
 
 
@@ -78,16 +103,17 @@ def _end_with_the_terminal() -> None:
         signal.signal(signal.SIGHUP, lambda number, frame: signal.raise_signal(signal.SIGTERM))
 
 
-def _announce(server: View, browser: bool) -> None:
-    say(f"robolink view: {server.address}")
+def _announce(server: View, browser: bool, panels: str) -> None:
+    address = f"{server.address}#{panels}" if panels else server.address
+    say(f"robolink view: {address}")
     if server.exposed:
         import socket
 
-        others = f"http://{socket.gethostname()}:{server.port}/?{server.address.partition('?')[2]}"
+        others = f"http://{socket.gethostname()}:{server.port}/?{address.partition('?')[2]}"
         tell(f"others on the network open {others}: whoever has the token can drive the robots")
         tell("the connection is not encrypted: who listens on the network can read the token (docs/view.md)")
     if browser:
         from robolink.system.browser import open_in_browser
 
-        if not open_in_browser(server.address):
+        if not open_in_browser(address):
             tell("no browser here: open the address above")
