@@ -118,9 +118,9 @@ def test_rules_that_are_none_are_one_line(given: dict[str, Any], said: str) -> N
 
 
 def test_the_one_with_a_window_says_what_serves_as_sliders(system: System) -> None:
-    system.start("joint_state_publisher_gui joint_state_publisher_gui")
+    system.start("joint_state_publisher_gui joint_state_publisher_gui", name="sliders")
     system.publish("/robot_description", String(data=ARM), LATCHED)
-    system.expect_log("robolink param set joint_state_publisher_gui zeros.JOINT 0.5")
+    system.expect_log("robolink param set sliders zeros.JOINT 0.5")
     system.expect("/joint_states")
-    system.set_parameter("joint_state_publisher_gui", "zeros.left", 1.0)
+    system.set_parameter("sliders", "zeros.left", 1.0)
     assert positions(system.expect("/joint_states"))["right"] == -1.5

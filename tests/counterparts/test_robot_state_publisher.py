@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from robolink.counterparts.robot_state_publisher import robot_state_publisher
 from robolink.counterparts.robot_state_publisher.robot_state_publisher import RobotStatePublisher
 from robolink.exceptions import DocumentError, InvalidParameterValueException, RobolinkError
 from robolink.interfaces.geometry_msgs.msg import TransformStamped
@@ -136,13 +135,21 @@ def test_without_a_description_it_says_what_to_do(system: System) -> None:
 def test_a_file_serves_as_an_argument(system: System, tmp_path: Path) -> None:
     file = tmp_path / "arm.urdf"
     file.write_text(ARM)
-    system.start(robot_state_publisher.main, args=[str(file)])
+    system.start("robot_state_publisher robot_state_publisher", args=[str(file)])
     assert frames(system.expect("/tf_static")) == [("base_link", "camera")]
     system.expect_log("Assuming argument is name of URDF file.")
+    assert system.parameter("robot_state_publisher", "robot_description") == ARM
 
 
-def test_a_mistake_in_a_file_has_its_place(tmp_path: Path) -> None:
+def test_the_parameter_goes_before_the_file(system: System) -> None:
+    node = "robot_state_publisher robot_state_publisher"
+    system.start(node, args=["nowhere.urdf"], parameters={"robot_description": ARM})
+    assert frames(system.expect("/tf_static")) == [("base_link", "camera")]
+
+
+def test_a_mistake_in_a_file_has_its_place(system: System, tmp_path: Path) -> None:
     file = tmp_path / "broken.urdf"
     file.write_text(robot(links="a b"))
-    with pytest.raises(DocumentError, match=r"broken.urdf:2: two roots"):
-        robot_state_publisher.make([str(file)])
+    for path, said in ((file, r"broken.urdf:2: two roots"), (tmp_path / "nowhere", r"nowhere: No such file")):
+        with pytest.raises(DocumentError, match=said):
+            system.start("robot_state_publisher robot_state_publisher", args=[str(path)])

@@ -36,7 +36,6 @@ class JointStatePublisher(Node):
 
     Args:
         description: URDF text; '' waits for it on the topic robot_description.
-        name: Name of the node.
         options: Those of `Node`.
 
     Raises:
@@ -44,9 +43,9 @@ class JointStatePublisher(Node):
         DocumentError: if the description is no robot; the text has the line.
     """
 
-    def __init__(self, description: str = "", name: str = "joint_state_publisher", **options: Any) -> None:
+    def __init__(self, description: str = "", **options: Any) -> None:
         options.setdefault("automatically_declare_parameters_from_overrides", True)
-        super().__init__(name, allow_undeclared_parameters=True, **options)
+        super().__init__("joint_state_publisher", allow_undeclared_parameters=True, **options)
         self._joints: Joints | None = None
         try:
             self._set_up(description)

@@ -16,8 +16,8 @@ WITHOUT_SLIDERS = (
 
 
 def make(words: list[str]) -> Node:
-    """Make the node joint_state_publisher_gui: the same, with a line that says what serves as sliders."""
-    node = JointStatePublisher(read_text(Path(words[0])) if words else "", "joint_state_publisher_gui")
+    """Make the node, whose name is joint_state_publisher in ROS too, and say what serves as sliders."""
+    node = JointStatePublisher(read_text(Path(words[0])) if words else "")
     node.get_logger().info(WITHOUT_SLIDERS.replace(" joint_state_publisher ", f" {node.get_name()} "))
     return node
 

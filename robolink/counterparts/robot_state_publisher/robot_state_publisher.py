@@ -36,7 +36,7 @@ class RobotStatePublisher(Node):
     """A node that publishes a robot's description, and the transforms between its links.
 
     Args:
-        description: URDF text that serves where the parameter robot_description is empty.
+        file: URDF file that serves where the parameter robot_description is empty.
         options: Those of `Node`.
 
     Raises:
@@ -44,17 +44,19 @@ class RobotStatePublisher(Node):
         DocumentError: if the description is no robot; the text has the line.
     """
 
-    def __init__(self, description: str = "", **options: Any) -> None:
+    def __init__(self, file: Path | None = None, **options: Any) -> None:
         super().__init__("robot_state_publisher", **options)
         try:
-            self._set_up(description)
+            self._set_up(file)
         except RobolinkError:
             self.destroy_node()
             raise
 
-    def _set_up(self, description: str) -> None:
+    def _set_up(self, file: Path | None) -> None:
         self._from_topic = self._declare("use_robot_description_topic", False, "take the description from the topic")
-        text = self._declare("robot_description", description, "the robot as URDF")
+        text = self._declare("robot_description", "", "the robot as URDF")
+        if not text and file is not None:
+            text = self._read(file)
         self._declare("publish_frequency", 20.0, "most transforms of a joint per second, in Hz")
         self._declare("frame_prefix", "", "text before the name of each frame")
         self._declare("ignore_timestamp", False, "publish whatever the stamps of joint_states are")
@@ -82,6 +84,16 @@ class RobotStatePublisher(Node):
 
     def _declare(self, name: str, default: Any, description: str) -> Any:
         return self.declare_parameter(name, default, described(description)).value
+
+    def _read(self, file: Path) -> str:
+        """Take the description of a file as the parameter's value. Raises DocumentError."""
+        text = read_text(file)
+        self.get_logger().warning(
+            "No robot_description parameter, but command-line argument available.  Assuming argument is name of URDF"
+            " file."
+        )
+        self.set_parameters([Parameter("robot_description", value=text)])
+        return text
 
     def _use(self, text: str) -> None:
         """Publish a description, and the fixed transforms of its robot. Raises DocumentError."""
@@ -196,13 +208,7 @@ def _raise_refused(parameter: Parameter[Any]) -> None:
 
 def make(words: list[str]) -> Node:
     """Make the node from its own arguments: none, or the path of a URDF file."""
-    node = RobotStatePublisher(read_text(Path(words[0])) if words else "")
-    if words:
-        node.get_logger().warning(
-            "No robot_description parameter, but command-line argument available.  Assuming argument is name of URDF"
-            " file."
-        )
-    return node
+    return RobotStatePublisher(Path(words[0]) if words else None)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -16,6 +16,7 @@ from robolink.documents import xmltext
 from robolink.documents.xmltext import Element
 from robolink.exceptions import DocumentError, nearest
 from robolink.geometry.transformations import quaternion_from_euler
+from robolink.system.plainfile import read_plain
 from robolink.system.terminal import shown
 from robolink.tf2.rigid import Rigid
 
@@ -23,13 +24,24 @@ T = TypeVar("T")
 
 XACRO = re.compile(r"\{http://(www\.)?ros\.org/(wiki/xacro|xacro)")
 """Beginning of a tag of xacro, which is left in a text that has not gone through xacro."""
-DECLARATION = re.compile(r"\s*<\?xml[^>]*\?>")
+DECLARATION = re.compile(r"<\?xml\s[^>]*\?>")
+"""XML's declaration. It speaks of the encoding of a file, so that a text needs none; and XML allows nothing before it,
+where files have empty lines and comments."""
+PROLOG = 4000
+"""Number of characters in which it is looked for."""
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
 def read_urdf(path: Path) -> Robot:
     """Read a URDF file. Raises DocumentError, with file and line, for whatever is wrong in it."""
-    return robot_of(xmltext.read(path))
+    try:
+        content = read_plain(path, xmltext.LARGEST)
+    except (OSError, ValueError) as error:
+        raise DocumentError(getattr(error, "strerror", None) or str(error), str(path)) from None
+    late = DECLARATION.search(content[:PROLOG].decode("latin-1"))
+    if late is not None and late.start() > 0:
+        content = _blank(late[0]).encode().join((content[: late.start()], content[late.end() :]))
+    return robot_of(xmltext.parse(content, str(path)))
 
 
 def read_text(path: Path) -> str:
@@ -48,10 +60,9 @@ def parse_urdf(text: str, name: str = "robot_description") -> Robot:
     Raises:
         DocumentError: for whatever is wrong in it; the text begins with `name` and the line.
     """
-    # A declaration speaks of the encoding of a file; and XML allows nothing before it, where texts have empty lines.
-    blank = DECLARATION.match(text)
-    if blank is not None:
-        text = "\n" * blank[0].count("\n") + text[blank.end() :]
+    declared = DECLARATION.search(text[:PROLOG])
+    if declared is not None:
+        text = text[: declared.start()] + _blank(declared[0]) + text[declared.end() :]
     try:
         content = text.encode()
     except UnicodeEncodeError:
@@ -63,9 +74,16 @@ def robot_of(root: Element) -> Robot:
     """Return the robot model of an XML element. Raises DocumentError."""
     if root.tag != "robot":
         raise root.mistake(f"expected <robot>, got <{shown(root.tag)}>: this is no URDF")
-    for each in root.children:
-        if XACRO.match(each.tag):
-            raise each.mistake("a tag of xacro: run the file through xacro first (robolink run xacro xacro FILE)")
+    try:
+        return _robot(root)
+    except DocumentError as error:
+        if any(XACRO.match(each.tag) for each in root.children):  # which are ignored otherwise, as other unknown tags
+            hint = "it has tags of xacro: run it through xacro first (robolink run xacro xacro FILE)"
+            raise DocumentError(f"{error.message}; {hint}", error.file, error.line) from None
+        raise
+
+
+def _robot(root: Element) -> Robot:
     links = _once(root, "link")
     if not links:
         raise root.mistake("a robot needs a <link>")
@@ -73,6 +91,10 @@ def robot_of(root: Element) -> Robot:
     places = {each.attributes["name"]: each for each in root.all("joint")}
     _check_mimics(joints, places)
     return Robot(root.attributes.get("name", ""), _root(root, links, joints, places), tuple(links), joints)
+
+
+def _blank(declaration: str) -> str:
+    return "\n" * declaration.count("\n")
 
 
 def _once(root: Element, tag: str) -> dict[str, Element]:
