@@ -40,6 +40,8 @@ COMMANDS = {
     "new": Entry("robolink.cli.new", "Make a project, a node or a world to begin with."),
     "pkg": Entry("robolink.cli.pkg", "Make packages, and see which there are and what they have."),
     "learn": Entry("robolink.cli.learn", "Learn by exercises that are checked in a simulated world."),
+    "race": Entry("robolink.cli.race", "Race programs in a simulated world: a score for a seed."),
+    "race-run": Entry("robolink.cli.race.serving", ""),
     "run-together": Entry("robolink.cli.running_nodes.run_together", ""),
     "look-into": Entry("robolink.cli.running_nodes.look_into", ""),
     "pub": Entry("robolink.cli.topic.command", "Publish messages: short for topic pub.", "pub"),

@@ -9,9 +9,9 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
+from typing import Protocol
 
 from robolink.learn.report import Mistake
-from robolink.learn.trial import Trial
 
 LOOK = 0.05
 """Period of its looks, in seconds."""
@@ -23,31 +23,40 @@ ASLEEP = 20.0
 """Seconds of real time without any progress: the program waits for something that does not come."""
 
 
+class Watched(Protocol):
+    """Protocol of what is watched: the run of a student's file."""
+
+    file: Path
+
+    def moment(self) -> tuple[float, int]:
+        """Return how far it is."""
+
+
 class Watchdog(threading.Thread):
-    """Thread that calls `found` with the mistake when a trial stands still.
+    """Thread that calls `found` with the mistake when a run stands still.
 
     Args:
-        trial: The trial.
+        watched: The run.
         found: Called once, on this thread.
         stuck: Seconds of a processor.
         asleep: Seconds of real time.
     """
 
     def __init__(
-        self, trial: Trial, found: Callable[[Mistake], object], *, stuck: float = STUCK, asleep: float = ASLEEP
+        self, watched: Watched, found: Callable[[Mistake], object], *, stuck: float = STUCK, asleep: float = ASLEEP
     ) -> None:
         super().__init__(name="robolink learn's watchdog", daemon=True)
-        self._trial, self._found, self._stuck, self._asleep = trial, found, stuck, asleep
+        self._watched, self._found, self._stuck, self._asleep = watched, found, stuck, asleep
         self._over = threading.Event()
 
     def run(self) -> None:
         """Look until stopped."""
-        moment, used, since = self._trial.moment(), time.process_time(), time.monotonic()
+        moment, used, since = self._watched.moment(), time.process_time(), time.monotonic()
         while not self._over.wait(LOOK):
-            if self._trial.moment() != moment:
-                moment, used, since = self._trial.moment(), time.process_time(), time.monotonic()
+            if self._watched.moment() != moment:
+                moment, used, since = self._watched.moment(), time.process_time(), time.monotonic()
             elif time.process_time() - used > self._stuck or time.monotonic() - since > self._asleep:
-                self._found(where_stuck(self._trial.file))
+                self._found(where_stuck(self._watched.file))
                 return
 
     def stop(self) -> None:

@@ -202,6 +202,8 @@ EXCUSED = {
     "learn reset": "shows names of exercises",
     "learn new": "shows names that it has checked, and the path that it was given",
     "learn prove": "shows texts of exercises",
+    "race": "shows what went wrong with a program by `say`, which escapes it: tests/cli/race/test_race_command.py",
+    "race-run": "is a run's own process, whose result `race` prints",
     "learn-check": "is a check's own process, whose lines `learn check` prints",
     "new project": "shows names that it has checked, and the path that it was given",
     "new node": "shows names that it has checked",

@@ -1,0 +1,60 @@
+"""robolink race: a score for programs that drive a simulated robot, which anybody can compute again."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from robolink.cli.shared.output import say, say_json, tell
+from robolink.constants import MOST_SEED
+
+app = typer.Typer(no_args_is_help=True)
+
+RACES = ("line", "maze", "follow")
+"""Names of the races."""
+
+
+@app.command()
+def race(
+    name: Annotated[
+        str, typer.Argument(metavar="line|maze|follow", help="The race.", autocompletion=lambda: list(RACES))
+    ],
+    files: Annotated[
+        list[str],
+        typer.Argument(metavar="FILE...", help="Programs, names of nodes, or folders of students."),
+    ],
+    seed: Annotated[
+        int, typer.Option("--seed", metavar="N", help="Of the world and of all chance.", min=0, max=MOST_SEED)
+    ] = 1,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON: a list with an object for each program.")] = False,
+    as_csv: Annotated[bool, typer.Option("--csv", help="CSV, for a spreadsheet.")] = False,
+) -> None:
+    """Race programs in a simulated world, each alone, in virtual time; print a table with a hash of each run.
+
+    line: one lap along a painted line. maze: to the far corner of a maze, another one for each seed. follow: along the
+    walls of a room. The same program and seed have the same score and hash on every computer. A broken program gets a
+    line that says why.
+    """
+    if name not in RACES:
+        from robolink.exceptions import nearest
+
+        raise typer.BadParameter(f"'{name[:100]}' is none of {', '.join(RACES)}{nearest(name[:100], RACES)}")
+    if as_json and as_csv:
+        raise typer.BadParameter("--json and --csv do not go together")
+    from robolink.race import table
+    from robolink.race.apart import race_all
+    from robolink.race.programs import programs_of
+    from robolink.race.races import RACES as RULES
+
+    rules = RULES[name]
+    programs = programs_of(name, files)
+    many = len(programs) > 1
+    results = race_all(rules, programs, seed, on_done=lambda each: tell(f"{each.program} is done") if many else None)
+    if as_json:
+        say_json(table.rows(rules, results, seed))
+    elif as_csv:
+        say(table.as_csv(rules, results, seed).removesuffix("\n"))
+    else:
+        for line in table.table(rules, results, seed):
+            say(line)

@@ -1,0 +1,1 @@
+"""Races of simulated robots: programs get a score for a seed, which anybody can compute again."""

@@ -1,0 +1,94 @@
+"""Run of one program in a race, in this process and in virtual time."""
+
+from __future__ import annotations
+
+import hashlib
+import struct
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robolink.learn.mistakes import mistake_in, mistake_of
+from robolink.learn.report import Mistake
+from robolink.race.races import Race
+from robolink.race.result import Result
+
+if TYPE_CHECKING:
+    from robolink.race.judges import Judge
+    from robolink.testing import System
+    from robolink.testing.robots import SimulatedRobot
+
+STEP = 0.05
+"""Virtual seconds from one look of the judge to the next."""
+
+_STATE = struct.Struct("<3dI")
+
+
+class Drive:
+    """One run of a program in a race.
+
+    Args:
+        race: The race.
+        program: A file, or the name of a node as `robolink run` finds it.
+        seed: Seed of the world and of all chance.
+    """
+
+    def __init__(self, race: Race, program: str, seed: int) -> None:
+        self.file = Path(program)
+        self._race, self._program, self._seed = race, program, seed
+        self._system: System | None = None
+        self._judge: Judge = race.judge(seed)
+        self._digest = hashlib.sha256()
+        self._contacts = 0
+
+    def moment(self) -> tuple[float, int]:
+        """Return how far the run is, for a watchdog."""
+        return (0.0 if self._system is None else self._system.time), 0
+
+    def result(self, mistake: Mistake | None = None) -> Result:
+        """Return the result so far, with the mistake that ended the program, if one did."""
+        score = None if mistake is not None else self._judge.score()
+        return Result(
+            self._program,
+            None if score is None else round(score, 3),
+            round(self._judge.progress, 3),
+            self._contacts,
+            self._digest.hexdigest(),
+            mistake,
+        )
+
+    def run(self) -> Result:
+        """Run it to its end; nothing that the program does raises."""
+        mistake = mistake_in(self.file) if self.file.suffix == ".py" else None
+        if mistake is None:
+            mistake = self._ran()
+        return self.result(mistake)
+
+    def _ran(self) -> Mistake | None:
+        from robolink.testing import System
+
+        try:
+            with tempfile.TemporaryDirectory(prefix="robolink-race-") as scratch:
+                world = Path(scratch, "world.yaml")
+                world.write_text(self._race.world(self._seed), encoding="utf-8")
+                self._system = System(seed=self._seed)
+                try:
+                    self._system.start("world", parameters={"world": str(world)})
+                    robot = self._system.robot()
+                    self._system.start(self.file if self.file.suffix == ".py" else self._program)
+                    self._drive(self._system, robot)
+                finally:
+                    self._system.close()
+        except BaseException as error:  # noqa: BLE001 - whatever a program raises is told
+            return mistake_of(error, self.file) or Mistake("elsewhere", f"{type(error).__name__}: {error}"[:500])
+        return None
+
+    def _drive(self, system: System, robot: SimulatedRobot) -> None:
+        steps = round(self._race.seconds / STEP)
+        for number in range(1, steps + 1):
+            system.run(STEP)
+            pose, self._contacts = robot.pose, robot.contacts
+            self._digest.update(_STATE.pack(pose.x, pose.y, pose.theta, self._contacts))
+            self._judge.see(number * STEP, pose.x, pose.y, self._contacts)
+            if self._judge.is_over:
+                return

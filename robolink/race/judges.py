@@ -1,0 +1,130 @@
+"""Judges of races: they see where a robot is, again and again, and know its score."""
+
+from __future__ import annotations
+
+import math
+from typing import Protocol
+
+from robolink.race.closed_line import ClosedLine, Progress
+from robolink.race.maze import GOAL, Maze
+
+PENALTY = 5.0
+"""Seconds, or metres, that each contact costs."""
+
+
+class Judge(Protocol):
+    """Judge of one run."""
+
+    @property
+    def is_over(self) -> bool:
+        """True once the race is finished."""
+
+    @property
+    def progress(self) -> float:
+        """Share of the way that the robot has come, from 0 to 1; for races that have an end."""
+
+    def see(self, time: float, x: float, y: float, contacts: int) -> None:
+        """Note that the robot is at (x, y) in metres at this time in seconds, with so many contacts since the start."""
+
+    def score(self) -> float | None:
+        """Return the score, None for a race that was not finished."""
+
+
+class LapJudge:
+    """Judge of a lap: the score is its time in seconds, and some more for each contact; less is better.
+
+    Args:
+        line: The line to drive along; the robot has to stay within `reach` metres of it.
+        reach: Metres.
+    """
+
+    def __init__(self, line: ClosedLine, reach: float) -> None:
+        self._length = line.length
+        self._progress = Progress(line, 0.0, reach)
+        self._time = self._contacts = 0.0
+        self._finish: float | None = None
+
+    @property
+    def is_over(self) -> bool:
+        """True once the lap is complete."""
+        return self._finish is not None
+
+    @property
+    def progress(self) -> float:
+        """Share of the lap."""
+        return max(0.0, min(1.0, self._progress.metres / self._length))
+
+    def see(self, time: float, x: float, y: float, contacts: int) -> None:
+        """Note where the robot is."""
+        before, then = self._progress.metres, self._time
+        self._progress.see(x, y)
+        self._time, self._contacts = time, contacts
+        now = self._progress.metres
+        if self._finish is None and now >= self._length:
+            self._finish = then + (time - then) * (self._length - before) / (now - before)
+
+    def score(self) -> float | None:
+        """Return the time of the lap."""
+        return None if self._finish is None else self._finish + PENALTY * self._contacts
+
+
+class MazeJudge:
+    """Judge of a maze: the score is the time in seconds to its goal, and some more for each contact; less is better.
+
+    Args:
+        maze: The maze.
+        reach: Distance in metres from the middle of the last cell at which it is reached.
+    """
+
+    def __init__(self, maze: Maze, reach: float) -> None:
+        self._steps, self._reach = maze.steps_to_goal(), reach
+        self._longest = self._least = self._steps[0, 0]
+        self._contacts = 0
+        self._finish: float | None = None
+
+    @property
+    def is_over(self) -> bool:
+        """True once the goal is reached."""
+        return self._finish is not None
+
+    @property
+    def progress(self) -> float:
+        """Share of the cells on the way to the goal."""
+        return 1.0 - self._least / self._longest
+
+    def see(self, time: float, x: float, y: float, contacts: int) -> None:
+        """Note where the robot is."""
+        self._least = min(self._least, self._steps.get((math.floor(x), math.floor(y)), self._least))
+        self._contacts = contacts
+        if self._finish is None and math.dist((x, y), (GOAL[0] + 0.5, GOAL[1] + 0.5)) <= self._reach:
+            self._finish = time
+
+    def score(self) -> float | None:
+        """Return the time to the goal."""
+        return None if self._finish is None else self._finish + PENALTY * self._contacts
+
+
+class WallJudge:
+    """Judge of following a wall: the score is metres of it, less some for each contact; more is better.
+
+    Args:
+        wall: The wall.
+        nearest: Least distance from the wall at which a way counts, in metres.
+        farthest: Largest distance from the wall at which a way counts, in metres.
+    """
+
+    is_over = False
+    progress = 1.0
+
+    def __init__(self, wall: ClosedLine, nearest: float, farthest: float) -> None:
+        self._progress = Progress(wall, nearest, farthest)
+        self._contacts = 0
+
+    def see(self, time: float, x: float, y: float, contacts: int) -> None:
+        """Note where the robot is."""
+        self._progress.see(x, y)
+        self._contacts = contacts
+
+    def score(self) -> float | None:
+        """Return the metres of wall."""
+        return self._progress.metres - PENALTY * self._contacts

@@ -1,0 +1,70 @@
+"""Tables of a race: for people, and as CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+
+from robolink.learn.languages import words
+from robolink.race.races import Race
+from robolink.race.result import Result, ranked
+
+SHOWN = 16
+"""Digits of a hash that the table for people shows."""
+
+COLUMNS = ["place", "program", "score", "unit", "progress", "contacts", "seed", "hash", "error"]
+
+
+def table(race: Race, results: Sequence[Result], seed: int) -> Iterator[str]:
+    """Yield the lines of a table for people."""
+    yield f"{race.name}, seed {seed}: {race.rule}"
+    longest = max((len(each.program) for each in results), default=0)
+    for place, each in ranked(race, results):
+        yield f"{place or '-':>3}  {each.program:{longest}}  {_said(race, each)}"
+
+
+def _said(race: Race, result: Result) -> str:
+    if result.mistake is not None:
+        return error_of(result)
+    contacts = f"{result.contacts} contact{'' if result.contacts == 1 else 's'}"
+    score = f"{result.progress:.0%} of the way" if result.score is None else f"{result.score:.2f} {race.unit}"
+    return f"{score:>15}  {contacts:>11}  {result.hash[:SHOWN]}"
+
+
+def error_of(result: Result) -> str:
+    """Return in one line what went wrong with a program; '' if nothing did."""
+    mistake = result.mistake
+    if mistake is None:
+        return ""
+    head = words("en", mistake.kind, file=result.program, line=mistake.line, text=mistake.text)
+    told = mistake.text.partition("\n")[0]
+    return f"{head} {told}" if mistake.kind in ("syntax", "exception", "elsewhere") else head
+
+
+def as_csv(race: Race, results: Sequence[Result], seed: int) -> str:
+    """Return a table as CSV, with a head."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for row in rows(race, results, seed):
+        writer.writerow(["" if row[each] is None else row[each] for each in COLUMNS])
+    return text.getvalue()
+
+
+def rows(race: Race, results: Sequence[Result], seed: int) -> list[dict[str, object]]:
+    """Return a table as rows of values by column; place and score are None for a program without a score."""
+    return [
+        {
+            "place": place or None,
+            "program": each.program,
+            "score": each.score,
+            "unit": race.unit,
+            "progress": each.progress,
+            "contacts": each.contacts,
+            "seed": seed,
+            "hash": each.hash,
+            "error": error_of(each),
+        }
+        for place, each in ranked(race, results)
+    ]

@@ -1,0 +1,75 @@
+"""robolink race: tables for people, as JSON and as CSV."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+
+from robolink.cli.main import main
+from robolink.cli.race import RACES
+from robolink.learn.report import Mistake
+from robolink.race import apart, races
+from robolink.race.result import Result
+
+Captured = pytest.CaptureFixture[str]
+RESULTS = {
+    "a.py": Result("a.py", 41.5, 1.0, 0, "ab" * 32),
+    "b.py": Result("b.py", None, 0.31, 2, "cd" * 32),
+    "c.py": Result("c.py", mistake=Mistake("exception", "NameError: name 'x\x1b[2J'", 4, "    x")),
+}
+
+
+@pytest.fixture
+def three(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for each in RESULTS:
+        (tmp_path / each).write_text("")
+
+    def race_all(
+        race: races.Race, programs: Sequence[str], seed: int, *, on_done: Callable[[Result], object]
+    ) -> list[Result]:
+        found = [RESULTS[each] for each in programs]
+        for each in found:
+            on_done(each)
+        return found
+
+    monkeypatch.setattr(apart, "race_all", race_all)
+
+
+def test_its_races_are_those_that_there_are() -> None:
+    assert list(RACES) == list(races.RACES)
+
+
+@pytest.mark.usefixtures("three")
+def test_a_table_for_people(capsys: Captured) -> None:
+    assert main(["race", "line", "c.py", "b.py", "a.py", "--seed", "7"]) == 0
+    out, err = capsys.readouterr()
+    assert out.splitlines() == [
+        "line, seed 7: the time of one lap along the line, and 5 s for each contact",
+        "  1  a.py          41.50 s   0 contacts  abababababababab",
+        "  -  b.py   31% of the way   2 contacts  cdcdcdcdcdcdcdcd",
+        "  -  c.py  your program stopped with an error at line 4: NameError: name 'x\\x1b[2J'",
+    ]
+    assert err == "c.py is done\nb.py is done\na.py is done\n"
+
+
+@pytest.mark.usefixtures("three")
+def test_a_table_for_programs(capsys: Captured) -> None:
+    assert main(["race", "maze", "a.py", "--json"]) == 0
+    (row,) = json.loads(capsys.readouterr().out)
+    assert row["score"] == 41.5
+    assert row["hash"] == "ab" * 32
+    assert main(["race", "maze", "a.py", "--csv"]) == 0
+    assert capsys.readouterr().out.splitlines()[1] == f"1,a.py,41.5,s,1.0,0,1,{'ab' * 32},"
+
+
+@pytest.mark.usefixtures("three")
+def test_wrong_usage(capsys: Captured) -> None:
+    assert main(["race", "lime", "a.py"]) == 2
+    assert "'lime' is none of line, maze, follow (did you mean 'line'?)" in capsys.readouterr().err
+    assert main(["race", "line", "a.py", "--json", "--csv"]) == 2
+    assert main(["race", "line", "aa.py"]) == 1
+    assert capsys.readouterr().err.endswith("robolink: no file named 'aa.py' (did you mean 'a.py'?)\n")
