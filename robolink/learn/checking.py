@@ -54,7 +54,14 @@ def _ran(trial: Trial) -> Mistake | None:
     except ExerciseError as error:
         return Mistake("check", str(error))
     except BaseException as error:  # noqa: BLE001 - whatever a student's file raises is told
-        return mistake_of(error, trial.file) or Mistake("check", _place(error, trial.exercise))
+        return mistake_of(error, trial.file) or _of_use(error, trial) or Mistake("check", _place(error, trial.exercise))
+    return None
+
+
+def _of_use(error: BaseException, trial: Trial) -> Mistake | None:
+    """Return the mistake of a module that lacks a name, or has a function with other arguments, as a check found."""
+    if trial.has_imported and isinstance(error, (AttributeError, TypeError)):
+        return Mistake("use", str(error).replace("module 'student'", trial.file.name))
     return None
 
 

@@ -101,6 +101,10 @@ _WORDS: dict[str, tuple[str, str]] = {
         "ele chegou ao fim: há um rclpy.spin?",
     ),
     "file": ("{text}", "{text}"),
+    "use": (
+        "your program lacks something that the exercise asks for: {text}",
+        "falta no seu programa algo que o exercício pede: {text}",
+    ),
     "check": (
         "the check of this exercise is broken, not your program: {text}",
         "o teste deste exercício está com defeito, não o seu programa: {text}",

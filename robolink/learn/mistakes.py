@@ -52,9 +52,11 @@ def mistake_of(error: BaseException, file: Path) -> Mistake | None:
     lines = [each.lineno or 0 for each in traceback.extract_tb(error.__traceback__) if _is(each.filename, file)]
     if lines:
         linecache.checkcache(str(file))
-        return Mistake("exception", _told(error), lines[-1], linecache.getline(str(file), lines[-1]).rstrip())
+        return Mistake(
+            "exception", _shortly(_told(error), file), lines[-1], linecache.getline(str(file), lines[-1]).rstrip()
+        )
     if isinstance(error, RobolinkError):
-        return Mistake("file", _told_plainly(error).replace(str(file), file.name))
+        return Mistake("file", _shortly(_told_plainly(error), file))
     return None
 
 
@@ -72,6 +74,11 @@ def _told(error: BaseException) -> str:
     if isinstance(error, RobolinkError):
         text = f"{type(error).__name__}: {_told_plainly(error)}"
     return text if "Did you mean" in text else text + suggestion(error)
+
+
+def _shortly(text: str, file: Path) -> str:
+    """Return a text in which the student's file has its short name."""
+    return text.replace(str(file), file.name)
 
 
 def _told_plainly(error: RobolinkError) -> str:

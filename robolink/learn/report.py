@@ -6,7 +6,9 @@ from typing import Literal
 
 from msgspec import Struct
 
-Kind = Literal["syntax", "exception", "elsewhere", "stuck", "stuck somewhere", "ended", "ended all", "file", "check"]
+Kind = Literal[
+    "syntax", "exception", "elsewhere", "stuck", "stuck somewhere", "ended", "ended all", "file", "use", "check"
+]
 
 
 class Line(Struct, frozen=True):

@@ -34,6 +34,8 @@ class Trial:
         """Sentences so far."""
         self._system: System | None = None
         self._started: list[Any] = []
+        self.has_imported = False
+        """True once the check has imported the file as a module."""
 
     @property
     def folder(self) -> Path:
@@ -91,6 +93,7 @@ class Trial:
         module.__file__ = str(self.file)
         code = compile(self.file.read_bytes(), str(self.file), "exec")  # not by its .pyc, which may be a second older
         sys.modules["student"] = module
+        self.has_imported = True
         try:
             exec(code, module.__dict__)  # noqa: S102 - it is what a student wrote and wants to run
         finally:
@@ -129,6 +132,13 @@ class Trial:
             raise
         except ExpectationError:
             return None
+
+    @property
+    def published(self) -> str:
+        """Names of the topics that the student's nodes publish, for a sentence; '-' for none."""
+        system = self.system
+        names = [each for each in system.topics if any(node != "/world" for node in system.publishers(each))]
+        return ", ".join(each.lstrip("/") for each in names) or "-"
 
     def moment(self) -> tuple[float, int]:
         """Return how far the check is, for a watchdog: its virtual time and its number of sentences."""

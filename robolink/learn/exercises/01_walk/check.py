@@ -6,6 +6,9 @@ import math
 
 from robolink.learn.trial import Trial
 
+NEAR = 0.005
+"""Metres: 3.14 for pi is good enough."""
+
 
 def check(trial: Trial) -> None:
     """Take steps, and compare positions."""
@@ -13,12 +16,12 @@ def check(trial: Trial) -> None:
     for direction, name, end in ((0, "ahead", (0.3, 0.0)), (90, "left", (0.0, 0.3))):
         walk = module.Walk()
         walk.step(direction)
-        trial.tell(name, math.dist((walk.x, walk.y), end) < 1e-6, x=walk.x, y=walk.y)
+        trial.tell(name, math.dist((walk.x, walk.y), end) < NEAR, x=walk.x, y=walk.y)
     walk = module.Walk()
     module.square(walk)
     trial.tell("steps", len(walk.history) == 21, count=len(walk.history) - 1)
     xs, ys = zip(*walk.history, strict=True)
     width, height = max(xs) - min(xs), max(ys) - min(ys)
-    trial.tell("sides", abs(width - 1.5) < 1e-6 and abs(height - 1.5) < 1e-6, width=width, height=height)
+    trial.tell("sides", abs(width - 1.5) < NEAR and abs(height - 1.5) < NEAR, width=width, height=height)
     away = math.hypot(walk.x, walk.y)
-    trial.tell("back", away < 1e-6, metres=away)
+    trial.tell("back", away < NEAR, metres=away)

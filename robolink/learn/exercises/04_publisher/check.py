@@ -10,7 +10,7 @@ def check(trial: Trial) -> None:
     robot = trial.world("empty_room")
     trial.start()
     twist = trial.heard("cmd_vel", within=3.0)
-    trial.tell("says", twist is not None)
+    trial.tell("says", twist is not None, topics=trial.published)
     trial.tell("speed", abs(twist.linear.x - 0.3) < 1e-6, speed=twist.linear.x)
     sent = trial.system.messages("cmd_vel")
     trial.run(2.0)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from robolink import Node
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import LaserScan
+from robolink.learn.mistakes import mistake_of
 from robolink.learn.trial import SEED, Trial
 from robolink.testing import System
 
@@ -48,18 +47,18 @@ class NeverStops(Good):
 
 def check(trial: Trial) -> None:
     """Run the test with each program."""
-    test = trial.module().test_it_stops_before_what_is_near
-    error = failure(test, Good)
+    error = failure(trial, Good)
     trial.tell("good", not error, text=error)
-    trial.tell("never_drives", failure(test, NeverDrives))
-    trial.tell("never_stops", failure(test, NeverStops))
+    trial.tell("never_drives", failure(trial, NeverDrives))
+    trial.tell("never_stops", failure(trial, NeverStops))
 
 
-def failure(test: Any, program: type[Node]) -> str:
-    """Run the test; return the text of its failure, '' if it passes."""
+def failure(trial: Trial, program: type[Node]) -> str:
+    """Run the test; return the line at which it fails, '' if it passes."""
     with System(seed=SEED) as system:
         try:
-            test(system, program)
+            trial.module().test_it_stops_before_what_is_near(system, program)
         except AssertionError as error:
-            return str(error).partition("\n")[0] or "assert"
+            mistake = mistake_of(error, trial.file)
+            return mistake.code.strip() if mistake else str(error)
     return ""
