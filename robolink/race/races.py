@@ -20,7 +20,7 @@ class Race(NamedTuple):
 
     name: str
     rule: str
-    """What counts, in a sentence."""
+    """Rule of the score, in a sentence."""
     unit: str
     """Unit of the score."""
     less_is_better: bool
