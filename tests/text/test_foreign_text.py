@@ -48,6 +48,7 @@ from robolink.system.terminal import escaped, fit, is_fit, quoted, shown
 from robolink.tf2 import StaticTransformBroadcaster
 from robolink.transport import connect
 from robolink.world_node.robot_commands import joint_refusal
+from tests.support.excused_commands import EXCUSED
 from tests.support.seen_by_commands import a_node_that_commands_see, spinning, when_said
 from tests.support.transforms import transform
 
@@ -179,44 +180,6 @@ TRIED: dict[str, list[Tried]] = {
     "network limit": [Tried(["network", "limit", EVIL])],
     "router": [Tried(["router", "--listen", EVIL]), Tried(["router", "--connect", EVIL])],
     "run": [Tried(["run", EVIL]), tried("run --list"), tried("run nodes/evil.py"), tried("run nodes/ends.py")],
-}
-
-EXCUSED = {
-    "security create_keystore": "shows nothing, or the path that it was given, as the others do",
-    "security generate_policy": "writes a file, and shows a text of robolink's own",
-    "bag list": "shows texts of robolink's own",
-    "top": "names nodes, topics and types, which are plain",
-    "view": "prints an address of its own",
-    "bag record": "names topics, which are plain, and its own counts",
-    "doctor": "cuts all it has found to one line of plain letters: tests/cli/doctor/test_doctor_checks.py",
-    "wtf": "is doctor",
-    "image show": "draws a picture, and names an encoding as `topic echo --image` does",
-    "plot odom": "draws a picture, and names only topics",
-    "plot path": "draws a picture, and names only topics",
-    "plot topic": "draws a picture, and names only topics and fields",
-    "learn start": "shows texts of robolink's own, and the path that it was given",
-    "learn check": "shows what a program prints by `say`, which escapes it: tests/learn/test_isolated.py",
-    "learn watch": "is learn check, again and again",
-    "learn hint": "shows texts of exercises",
-    "learn show": "shows texts of exercises",
-    "learn reset": "shows names of exercises",
-    "learn new": "shows names that it has checked, and the path that it was given",
-    "learn prove": "shows texts of exercises",
-    "race": "shows what went wrong with a program by `say`, which escapes it: tests/cli/race/test_race_command.py",
-    "race-run": "is a run's own process, whose result `race` prints",
-    "learn-check": "is a check's own process, whose lines `learn check` prints",
-    "new project": "shows names that it has checked, and the path that it was given",
-    "new node": "shows names that it has checked",
-    "new world": "shows names that it has checked",
-    "pkg list": "lists names that the rules of packages allow",
-    "pkg prefix": "shows the path of a folder, as `pwd` does",
-    "pkg executables": "lists names of files and of programs, as `ls` does",
-    "world list": "names the files of a workspace, as `ls` does",
-    "world schema": "shows a text of robolink's own",
-    "interface list": "lists names that the rules of types allow",
-    "interface packages": "lists names that the rules of packages allow",
-    "run-together": "is a launcher's own process, whose lines the launcher prints",
-    "look-into": "is a launcher's own process, which answers the launcher",
 }
 
 
