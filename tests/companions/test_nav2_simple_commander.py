@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import functools
+import math
 import textwrap
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from robolink.action import ActionServer, CancelResponse, GoalResponse
 from robolink.companions.nav2_simple_commander.clients import ACTIONS
-from robolink.interfaces.geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
-from robolink.interfaces.lifecycle_msgs.srv import GetState
+from robolink.companions.nav2_simple_commander.utils import euler_to_quaternion
 from robolink.interfaces.nav2_msgs import action, srv
-from robolink.node import Node
-from robolink.qos import DurabilityPolicy, QoSProfile
-from robolink.task import Future
 from robolink.testing import System
+from tests.support.small_nav2 import Nav2
 
 PROGRAM = """
 import rclpy
@@ -48,117 +43,8 @@ def main():
 if __name__ == "__main__":
     main()
 """
-CLEARING: dict[str, type[Any]] = {
-    "local_costmap/clear_entirely_local_costmap": srv.ClearEntireCostmap,
-    "global_costmap/clear_entirely_global_costmap": srv.ClearEntireCostmap,
-    "local_costmap/clear_costmap_except_region": srv.ClearCostmapExceptRegion,
-    "local_costmap/clear_costmap_around_robot": srv.ClearCostmapAroundRobot,
-    "local_costmap/clear_costmap_around_pose": srv.ClearCostmapAroundPose,
-}
 Begin = Callable[[str], None]
 Run = Callable[[str], list[str]]
-
-
-class Nav2(Node):
-    """Nav2's servers: a goal at x takes x seconds, one at x < 0 fails at once, one at x > 100 is refused."""
-
-    def __init__(self) -> None:
-        super().__init__("nav2")
-        self.got, self.poses, self.active_from = list[Any](), list[float](), 0.0
-        for kind, name in ACTIONS.items():
-            ActionServer(
-                self,
-                kind,
-                name,
-                self.execute,
-                goal_callback=self.on_goal,
-                cancel_callback=lambda _: CancelResponse.ACCEPT,
-            )
-        for name, service in CLEARING.items():
-            self.create_service(service, name, self.on_clear)
-        for node in ("amcl", "bt_navigator"):
-            self.create_service(GetState, f"{node}/get_state", self.on_state)
-        for name in ("local_costmap", "global_costmap"):
-            self.create_service(srv.GetCostmap, f"{name}/get_costmap", functools.partial(self.on_get, name))
-        self.create_service(srv.LoadMap, "map_server/load_map", self.on_load)
-        self.create_service(srv.ManageLifecycleNodes, "lifecycle_manager_navigation/manage_nodes", self.on_manage)
-        self.amcl = self.create_publisher(
-            PoseWithCovarianceStamped, "amcl_pose", QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        )
-        self.create_subscription(PoseWithCovarianceStamped, "initialpose", self.on_initial_pose, 10)
-
-    def seconds(self) -> float:
-        return self.get_clock().now().nanoseconds / 1e9
-
-    def on_goal(self, goal: Any) -> GoalResponse:
-        self.got.append(goal)
-        return GoalResponse.REJECT if where(goal) > 100 else GoalResponse.ACCEPT
-
-    async def execute(self, handle: Any) -> Any:
-        kind = next(each for each in ACTIONS if isinstance(handle.request, each.Goal))
-        left = where(handle.request)
-        if left < 0:
-            handle.abort()
-            fields = {"error_code": 208, "error_msg": "a wall"} if "error_msg" in kind.Result.__ros_fields__ else {}
-            return kind.Result(**fields)
-        while left > 0:
-            await self.pause(min(left, 0.5))
-            left -= 0.5
-            if "distance_remaining" in kind.Feedback.__ros_fields__:
-                handle.publish_feedback(kind.Feedback(distance_remaining=left))
-            if handle.is_cancel_requested:
-                handle.canceled()
-                return kind.Result()
-        handle.succeed()
-        result: Any = kind.Result()
-        if "path" in kind.Result.__ros_fields__:
-            result.path.poses = [PoseStamped(), PoseStamped()]
-        return result
-
-    def pause(self, seconds: float) -> Future[None]:
-        future: Future[None] = Future()
-
-        def end() -> None:
-            timer.destroy()
-            future.set_result(None)
-
-        timer = self.create_timer(seconds, end)
-        return future
-
-    def on_state(self, _: Any, response: GetState.Response) -> GetState.Response:
-        response.current_state.label = "active" if self.seconds() >= self.active_from else "inactive"
-        return response
-
-    def on_initial_pose(self, pose: PoseWithCovarianceStamped) -> None:
-        self.poses.append(pose.pose.pose.position.x)
-        if len(self.poses) > 1:
-            self.amcl.publish(pose)
-
-    def on_clear(self, request: Any, response: Any) -> Any:
-        self.got.append(request)
-        return response
-
-    def on_get(self, name: str, _: Any, response: srv.GetCostmap.Response) -> srv.GetCostmap.Response:
-        response.map.metadata.layer = name
-        return response
-
-    def on_load(self, request: srv.LoadMap.Request, response: srv.LoadMap.Response) -> srv.LoadMap.Response:
-        response.result = 0 if request.map_url == "lab.yaml" else response.RESULT_MAP_DOES_NOT_EXIST
-        return response
-
-    def on_manage(self, request: Any, response: Any) -> Any:
-        self.got.append(request.command)
-        response.success = request.command == request.STARTUP
-        return response
-
-
-def where(goal: Any) -> float:
-    """Where a goal is: the x of its pose, its last or its first; 1 of a goal without."""
-    for name in ("pose", "goal", "start"):
-        if hasattr(goal, name):
-            return float(getattr(goal, name).pose.position.x)
-    poses = getattr(goal, "poses", None) or getattr(goal, "goals", None)
-    return float(poses[-1].pose.position.x) if poses else 1.0
 
 
 @pytest.fixture
@@ -222,7 +108,12 @@ def test_a_goal_is_cancelled_fails_or_is_refused(nav2: Nav2, run: Run) -> None:
         nav.goToPose(at(0.5))
         say(wait(nav))
     """)
-    assert said == ["CANCELED", "FAILED (208, 'a wall')", "None True UNKNOWN (0, '')", "SUCCEEDED"]
+    assert said == [
+        "CANCELED",
+        "FAILED (208, 'a wall')",
+        "None True UNKNOWN (0, 'Navigating to goal: 101.0 0.0: the request was rejected!')",
+        "SUCCEEDED",
+    ]
     assert len(nav2.got) == 4
 
 
@@ -298,13 +189,45 @@ def test_paths_are_planned_and_smoothed(nav2: Nav2, run: Run) -> None:
             say(error)
     """)
     assert said[:5] == ["2 SUCCEEDED", "None (208, 'a wall')", "None", "2", "2"]
-    assert said[5:] == ["2 Route list", "getRoute: expected two poses or two numbers of nodes for start and goal"]
+    assert said[5:] == ["2 Route list", "expected two poses or two numbers of nodes for start and goal of the route"]
     plan, _, _, _, smooth, by_pose, by_number = nav2.got
     assert (plan.planner_id, plan.use_start) == ("A", True)
     assert (smooth.smoother_id, smooth.max_smoothing_duration.nanosec) == ("S", 500_000_000)
     assert smooth.check_for_collisions
     assert (by_pose.use_poses, by_number.use_poses) == (True, False)
     assert (by_number.start_id, by_number.goal_id) == (3, 4)
+
+
+def test_a_route_is_tracked_beside_another_task(nav2: Nav2, run: Run) -> None:
+    said = run("""
+        from nav_msgs.msg import Path
+        route = nav.getAndTrackRoute(at(4.0), at(5.0))
+        say(route.name, nav.isTaskComplete(route), nav.getFeedback(route))
+        nav.followPath(Path())
+        say(wait(nav), nav.isTaskComplete(task=route))
+        while not nav.isTaskComplete(task=route):
+            pass
+        say(nav.getResult().name, len([*iter(lambda: nav.getFeedback(route), None)]))
+        nav.getAndTrackRoute(at(0.0), at(50.0))
+        nav.cancelTask()
+        while not nav.isTaskComplete(task=route):
+            pass
+        say(nav.getResult().name)
+        say(nav.getAndTrackRoute(at(0.0), at(101.0)), nav.getTaskError()[0], nav.isTaskComplete(route))
+    """)
+    assert said == [
+        "COMPUTE_AND_TRACK_ROUTE False None",
+        "SUCCEEDED False",
+        "SUCCEEDED 10",
+        "CANCELED",
+        "None 400 True",
+    ]
+    assert all(each.use_poses for each in nav2.got if isinstance(each, action.ComputeAndTrackRoute.Goal))
+
+
+def test_a_rotation_by_its_angles() -> None:
+    turned = euler_to_quaternion(yaw=math.pi / 2)
+    assert (turned.z, turned.w) == pytest.approx((math.sqrt(0.5), math.sqrt(0.5)))
 
 
 def test_it_waits_until_nav2_is_active(nav2: Nav2, run: Run) -> None:
@@ -362,5 +285,5 @@ def test_it_drives_the_simulated_robot(run: Run, system: System) -> None:
 
 
 def test_every_action_of_nav2_that_a_navigator_uses_is_in_the_table() -> None:
-    others = {"ComputeAndTrackRoute", "DummyBehavior", "FollowObject", "Wait"}
+    others = {"DummyBehavior", "FollowObject", "Wait"}
     assert {each.__name__ for each in ACTIONS} == set(action.__all__) - others

@@ -24,6 +24,7 @@ ACTIONS: dict[type[Action], str] = {
     action.ComputePathToPose: "compute_path_to_pose",
     action.ComputePathThroughPoses: "compute_path_through_poses",
     action.ComputeRoute: "compute_route",
+    action.ComputeAndTrackRoute: "compute_and_track_route",
     action.SmoothPath: "smooth_path",
     action.Spin: "spin",
     action.BackUp: "backup",

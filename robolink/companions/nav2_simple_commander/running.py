@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from robolink.action.client_goal_handle import ClientGoalHandle
@@ -36,6 +36,9 @@ class Tasks(Servers):
         self.result_future: Future[Any] | None = None
         self.feedback: Any = None
         self.status: int | None = None
+        self.route_goal_handle: ClientGoalHandle | None = None
+        self.route_result_future: Future[Any] | None = None
+        self.route_feedback: list[Any] = []
         self.clearTaskError()
 
     def isTaskComplete(self, task: RunningTask | None = RunningTask.NONE) -> bool:
@@ -44,22 +47,25 @@ class Tasks(Servers):
         Callbacks of the node run meanwhile. True as well when no task was begun.
 
         Args:
-            task: Kind of task, as Kilted's programs give it; there is one task at a time, so it is ignored.
+            task: Kind of task. Only COMPUTE_AND_TRACK_ROUTE matters, which goes on beside another task.
         """
-        if self.result_future is None:
+        future = self.route_result_future if task is RunningTask.COMPUTE_AND_TRACK_ROUTE else self.result_future
+        if future is None:
             return True
-        spin_until_future_complete(self, self.result_future, timeout_sec=A_LOOK)
-        if not self.result_future.done():
+        spin_until_future_complete(self, future, timeout_sec=A_LOOK)
+        if not future.done():
             return False
-        self._end_()
+        self._end_(future)
         return True
 
     def getFeedback(self, task: RunningTask | None = RunningTask.NONE) -> Any:
         """Return the last feedback of the task, a message of its action's ``Feedback``; None before the first.
 
         Args:
-            task: Kind of task, as Kilted's programs give it; ignored.
+            task: Kind of task. Of COMPUTE_AND_TRACK_ROUTE each call returns the next feedback, None after the last.
         """
+        if task is RunningTask.COMPUTE_AND_TRACK_ROUTE:
+            return self.route_feedback.pop(0) if self.route_feedback else None
         return self.feedback
 
     def getResult(self) -> TaskResult:
@@ -85,10 +91,12 @@ class Tasks(Servers):
         self.last_action_error_msg = error_msg
 
     def cancelTask(self) -> None:
-        """Cancel the task. Its end is seen by `isTaskComplete`, and `getResult` is CANCELED then."""
+        """Cancel the task, and the tracking of a route. Its end is seen by `isTaskComplete`."""
         self.info("Canceling current task.")
-        if self.goal_handle is not None and self.result_future is not None:
-            self._clients_.complete(self.goal_handle.cancel_goal_async())
+        goals = (self.goal_handle, self.result_future), (self.route_goal_handle, self.route_result_future)
+        for handle, future in goals:
+            if handle is not None and future is not None:
+                self._clients_.complete(handle.cancel_goal_async())
 
     # Planning
 
@@ -146,14 +154,34 @@ class Tasks(Servers):
         Raises:
             TypeError: if one end is a pose and the other a number.
         """
-        if isinstance(start, PoseStamped) and isinstance(goal, PoseStamped):
-            asked = action.ComputeRoute.Goal(start=start, goal=goal, use_start=use_start, use_poses=True)
-        elif isinstance(start, int) and isinstance(goal, int):
-            asked = action.ComputeRoute.Goal(start_id=start, goal_id=goal, use_start=use_start)
-        else:
-            raise TypeError("getRoute: expected two poses or two numbers of nodes for start and goal")
+        asked = _ends(action.ComputeRoute.Goal(use_start=use_start), start, goal)
         result = self._ended_(action.ComputeRoute, asked, "Getting route")
         return None if result is None else [result.path, result.route]
+
+    def getAndTrackRoute(
+        self, start: int | PoseStamped, goal: int | PoseStamped, use_start: bool = False
+    ) -> RunningTask | None:
+        """Find a route and report the robot's progress on it, beside a task that drives there.
+
+        Args:
+            start: Pose or number of a node at which the route begins.
+            goal: Pose or number of a node at which it ends.
+            use_start: False begins where the robot is, if `start` is a pose.
+
+        Returns:
+            The kind of task, for `isTaskComplete` and `getFeedback`; None if the goal was rejected.
+
+        Raises:
+            TypeError: if one end is a pose and the other a number.
+        """
+        asked = _ends(action.ComputeAndTrackRoute.Goal(use_start=use_start), start, goal)
+        self.route_result_future, self.route_feedback = None, []
+        handle = self._sent_(action.ComputeAndTrackRoute, asked, "Computing and tracking route", self._on_progress_)
+        self.route_goal_handle = handle
+        if handle is None:
+            return None
+        self.route_result_future = handle.get_result_async()
+        return RunningTask.COMPUTE_AND_TRACK_ROUTE
 
     def smoothPath(
         self, path: Path, smoother_id: str = "", max_duration: float = 2.0, check_for_collision: bool = False
@@ -182,15 +210,26 @@ class Tasks(Servers):
 
     def _begin_(self, kind: type[Action], goal: Any, words: str) -> bool:
         """Send a goal, in place of the present one; False if the server rejects it."""
-        self.clearTaskError()
         self.result_future = self.feedback = self.status = None
-        self.info(f"{words}...")
-        self.goal_handle = self._clients_.send(kind, goal, self._on_feedback_)
-        if not self.goal_handle.accepted:
-            self.error(f"{words}: the request was rejected!")
+        self.goal_handle = self._sent_(kind, goal, words, self._on_feedback_)
+        if self.goal_handle is None:
             return False
         self.result_future = self.goal_handle.get_result_async()
         return True
+
+    def _sent_(
+        self, kind: type[Action], goal: Any, words: str, on_feedback: Callable[[Any], None]
+    ) -> ClientGoalHandle | None:
+        """Send a goal; return its handle, None if the server rejects it."""
+        self.clearTaskError()
+        self.info(f"{words}...")
+        handle = self._clients_.send(kind, goal, on_feedback)
+        if handle.accepted:
+            return handle
+        refused = f"{words}: the request was rejected!"
+        self.error(refused)
+        self.setTaskError(getattr(kind.Result, "UNKNOWN", 0), refused)
+        return None
 
     def _ended_(self, kind: type[Action], goal: Any, words: str) -> Any:
         """Send a goal and wait for its end; return its result, None unless it succeeded."""
@@ -198,17 +237,18 @@ class Tasks(Servers):
             return None
         while not self.isTaskComplete():
             pass
-        if self.getResult() is TaskResult.SUCCEEDED:
-            return self._response_().result
+        if self.getResult() is TaskResult.SUCCEEDED and self.result_future is not None:
+            response: Any = self.result_future.result()
+            return response.result
         self.warn(f"{words} failed with status code {self.status}: {self.last_action_error_msg}")
         return None
 
-    def _end_(self) -> None:
-        """Read status and error of the goal that has ended. One whose server went away has failed."""
+    def _end_(self, future: Future[Any]) -> None:
+        """Read status and error of a goal that has ended. One whose server went away has failed."""
         try:
-            response = self._response_()
+            response: Any = future.result()
         except ServiceError as error:
-            if self.status is None:
+            if self.status != GoalStatus.STATUS_ABORTED:
                 self.error(str(error))
             self.status = GoalStatus.STATUS_ABORTED
             self.setTaskError(0, str(error))
@@ -218,9 +258,19 @@ class Tasks(Servers):
             result = response.result
             self.setTaskError(getattr(result, "error_code", 0), getattr(result, "error_msg", ""))
 
-    def _response_(self) -> Any:
-        """Return the status and result of the goal that has ended. Raises ServiceError if its server went away."""
-        return None if self.result_future is None else self.result_future.result()
-
     def _on_feedback_(self, message: Any) -> None:
         self.feedback = message.feedback
+
+    def _on_progress_(self, message: Any) -> None:
+        self.route_feedback.append(message.feedback)
+
+
+def _ends(asked: Any, start: int | PoseStamped, goal: int | PoseStamped) -> Any:
+    """Return a goal for the route server with both ends in it, as poses or as numbers."""
+    if isinstance(start, PoseStamped) and isinstance(goal, PoseStamped):
+        asked.start, asked.goal, asked.use_poses = start, goal, True
+    elif isinstance(start, int) and isinstance(goal, int):
+        asked.start_id, asked.goal_id = start, goal
+    else:
+        raise TypeError("expected two poses or two numbers of nodes for start and goal of the route")
+    return asked
