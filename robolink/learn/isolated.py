@@ -12,7 +12,7 @@ import msgspec
 from robolink.learn.checking import check
 from robolink.learn.exercise import Exercise, read_exercise
 from robolink.learn.languages import Language
-from robolink.learn.process import run_apart, show_own_lines
+from robolink.learn.process import limit_memory, run_apart, show_own_lines
 from robolink.learn.report import Mistake, Report
 from robolink.learn.trial import Trial
 from robolink.learn.watchdog import Watchdog, end_process
@@ -67,6 +67,7 @@ def serve(folder: Path, file: Path, out: Path, language: Language) -> None:
         language: Language of the sentences.
     """
     sys.dont_write_bytecode = True  # no __pycache__ beside the student's file
+    limit_memory()
     show_own_lines()
     trials: list[Trial] = []
 

@@ -15,6 +15,9 @@ from typing import IO
 MOST_PRINTED = 20_000
 """Most bytes of what a program prints that are kept."""
 
+MOST_MEMORY = 4 * 2**30
+"""Most bytes of address space that a program may have."""
+
 _OURS = ("world", "test", "robolink")
 """Loggers whose lines a student does not need."""
 
@@ -68,6 +71,16 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
             process.kill()
         else:
             os.killpg(process.pid, signal.SIGKILL)
+
+
+def limit_memory() -> None:
+    """Let this process have `MOST_MEMORY` at most, where the system can limit it: more is a MemoryError."""
+    if sys.platform == "linux":
+        import resource
+
+        _, most = resource.getrlimit(resource.RLIMIT_AS)
+        wanted = MOST_MEMORY if most == resource.RLIM_INFINITY else min(MOST_MEMORY, most)
+        resource.setrlimit(resource.RLIMIT_AS, (wanted, most))
 
 
 def show_own_lines() -> None:

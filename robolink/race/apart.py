@@ -11,7 +11,7 @@ from pathlib import Path
 
 import msgspec
 
-from robolink.learn.process import run_apart, show_own_lines
+from robolink.learn.process import limit_memory, run_apart, show_own_lines
 from robolink.learn.report import Mistake
 from robolink.learn.watchdog import Watchdog, end_process
 from robolink.race.driving import Drive
@@ -79,6 +79,7 @@ def serve(name: str, program: str, seed: int, out: Path) -> None:
         out: File for the result.
     """
     sys.dont_write_bytecode = True
+    limit_memory()
     show_own_lines()
     drive = Drive(RACES[name], program, seed)
 

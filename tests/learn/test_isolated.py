@@ -65,6 +65,15 @@ def test_what_does_not_even_let_others_run_is_killed(tmp_path: Path) -> None:
     assert time.monotonic() - begin < 20.0
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such limit")
+def test_a_program_that_wants_all_memory_is_told(tmp_path: Path) -> None:
+    report = tried(SOLUTION.replace("    rclpy.spin(node)", "    text = 'a' * 10**10"), tmp_path)
+    assert report.mistake is not None
+    assert report.mistake.kind == "exception"
+    assert report.mistake.text == "MemoryError"
+    assert report.mistake.code == "    text = 'a' * 10**10"
+
+
 def test_a_flood_of_words_is_cut(tmp_path: Path) -> None:
     flood = SOLUTION.replace("    rclpy.spin(node)", "    print('x' * 5_000_000)\n    rclpy.spin(node)")
     report = tried(flood, tmp_path)
