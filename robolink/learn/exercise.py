@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -63,12 +64,16 @@ class Settings(Struct, forbid_unknown_fields=True, frozen=True):
 
 @dataclass(frozen=True)
 class Exercise:
-    """An exercise: its name, its folder, and what its exercise.yaml has."""
+    """An exercise: its name, its folder, and the file that a student begins with."""
 
     name: str
     folder: Path
     given: Path
-    settings: Settings
+
+    @functools.cached_property
+    def settings(self) -> Settings:
+        """Content of its exercise.yaml, read when it is first asked for. Raises DocumentError if it has a mistake."""
+        return load(self.folder / SETTINGS, Settings)
 
     @property
     def file(self) -> str:
@@ -101,14 +106,13 @@ class Exercise:
 
 
 def read_exercise(folder: Path) -> Exercise:
-    """Read an exercise.
+    """Find an exercise.
 
     Args:
         folder: Its folder, with exercise.yaml, check.py and a given file; its name is the exercise's, after a number.
 
     Raises:
         ExerciseError: (a ValueError) if a file is missing, or the folder's name is no name.
-        DocumentError: if exercise.yaml has a mistake, with `file:line:column`.
     """
     named = _NAME.fullmatch(folder.name)
     if named is None:
@@ -119,18 +123,17 @@ def read_exercise(folder: Path) -> Exercise:
             raise ExerciseError(f"{folder} has no {name}: `robolink learn new` makes an exercise with all its files")
     if given is None:
         raise ExerciseError(f"{folder} has no {' or '.join(GIVEN)}, the file that a student begins with")
-    return Exercise(named[1], folder, given, load(folder / SETTINGS, Settings))
+    return Exercise(named[1], folder, given)
 
 
 def read_course(folder: Path | None = None) -> list[Exercise]:
-    """Read all exercises of a folder, in the order of their folders' names.
+    """Find all exercises of a folder, in the order of their folders' names.
 
     Args:
         folder: The folder; None is that of the exercises that come with robolink.
 
     Raises:
         ExerciseError: (a ValueError) if there is none, or one is not complete.
-        DocumentError: if an exercise.yaml has a mistake, with `file:line:column`.
     """
     place = BUILT_IN if folder is None else folder
     found = sorted(each.parent for each in place.glob(f"*/{SETTINGS}"))

@@ -6,17 +6,18 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import msgspec
 
-from robolink.learn.checking import check
 from robolink.learn.exercise import Exercise, read_exercise
 from robolink.learn.languages import Language
 from robolink.learn.process import limit_memory, run_apart, show_own_lines
 from robolink.learn.report import Mistake, Report
-from robolink.learn.trial import Trial
-from robolink.learn.watchdog import Watchdog, end_process
 from robolink.system.own_command import own_command
+
+if TYPE_CHECKING:
+    from robolink.learn.trial import Trial
 
 LONGEST = 60.0
 """Seconds of real time after which a check is ended from outside, whatever it does."""
@@ -66,6 +67,9 @@ def serve(folder: Path, file: Path, out: Path, language: Language) -> None:
         out: File for the report.
         language: Language of the sentences.
     """
+    from robolink.learn.checking import check  # late: whoever asks for a check does not need it
+    from robolink.learn.watchdog import Watchdog, end_process
+
     sys.dont_write_bytecode = True  # no __pycache__ beside the student's file
     limit_memory()
     show_own_lines()

@@ -32,7 +32,8 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def shown(start: str) -> list[str]:
     """Return the lines of the console that begins with this command, below it and before the next command."""
     (console,) = (each for each in CONSOLES if f"$ {start}\n" in each)
-    return console.partition(f"$ {start}\n")[2].partition("$ ")[0].splitlines()
+    below: str = console.partition(f"$ {start}\n")[2]
+    return below.partition("$ ")[0].splitlines()
 
 
 def test_every_verb_is_named() -> None:

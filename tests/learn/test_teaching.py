@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
+from robolink.exceptions import DocumentError
 from robolink.learn.checking import check
 from robolink.learn.exercise import Exercise, ExerciseError, read_course
 from robolink.learn.languages import Language
@@ -89,3 +91,22 @@ def test_a_comment_that_is_nowhere(here: Path) -> None:
     (exercise,) = read_course(here / "exercises")
     with pytest.raises(ExerciseError, match=r"no comment 'todo' in exercise\.yaml"):
         exercise.given_text("en")
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("title: {en: a}\ntext: {en: b}\nresult: {}\n", "unknown key 'result'"),
+        ("title: {en: a}\n", "missing"),
+        ("title: a\n", "expected"),
+        ("{", "exercise.yaml:"),
+        ("", "exercise.yaml:"),
+    ],
+)
+def test_a_mistake_in_its_file_has_its_place(here: Path, text: str, told: str) -> None:
+    folder = new_exercise("one")
+    (folder / "exercise.yaml").write_text(text)
+    (exercise,) = read_course(here / "exercises")
+    with pytest.raises(DocumentError, match=re.escape(told)) as error:
+        exercise.given_text("en")
+    assert "\n" not in str(error.value)
