@@ -83,7 +83,7 @@ class Plan(NamedTuple):
 
     def thinned(self) -> list[str] | None:
         """Return the key expressions of the topics that limits thin; None if nothing may be sent again after a cut."""
-        if self.environ.get("ROS_SECURITY_ENABLE"):  # whoever asked would get topics that its own rights do not name
+        if self.secure is not None:  # whoever asked would get topics that its own rights do not name
             return None
         if self.limits is None:
             return []

@@ -30,6 +30,13 @@ def test_no_domain(text: str) -> None:
     assert len(str(caught.value)) < 120
 
 
+@pytest.mark.parametrize("value", [None, "", "false", "False"])
+def test_security_that_is_switched_off_takes_no_recovery_away(value: str | None) -> None:
+    found = network.plan("lan", 0, {} if value is None else {"ROS_SECURITY_ENABLE": value})
+    assert found.thinned() == []
+    assert found._replace(secure=lambda _: None).thinned() is None
+
+
 @pytest.mark.parametrize(
     ("argument", "environ", "asked_by", "value"),
     [
