@@ -125,9 +125,9 @@ class Host:
             argv += ["-p", f"{key}:={spell(value)}"]
         for match, replacement in (remappings or {}).items():
             argv += ["-r", f"{match}:={replacement}"]
-        called = self._free_name(called or f"{namespace.strip('/')}/{own}".lstrip("/"))
-        adopt(sys.modules.get(getattr(node_class, "__module__", "")))
-        program = self._start(called, [Part(own, node_class, argv)], {})
+        called = called or f"{namespace.strip('/')}/{own}".lstrip("/")
+        program = self.start_class(node_class, called, [own, *argv[1:]])
+        called = program.name
         if not self.run_until(lambda: program.has_begun, START_PATIENCE):
             raise HostError(f"{called} is still not made after {START_PATIENCE:g} s: it waits while it is made")
         if program.error is not None:
@@ -136,6 +136,12 @@ class Host:
         if not program.nodes:
             raise HostError(f"{called} ended with exit code {program.returncode} while it was made")
         return program.nodes[0]
+
+    def start_class(self, node_class: Callable[[], Node], called: str, argv: Sequence[str] = ()) -> Program:
+        """Start a program of one Node class, `called` so or nearly so; give it. It begins as the host runs."""
+        called = self._free_name(called)
+        adopt(sys.modules.get(getattr(node_class, "__module__", "")))
+        return self._start(called, [Part((argv or [called])[0], node_class, list(argv) or [called])], {})
 
     def _free_name(self, name: str) -> str:
         names = (name if number == 1 else f"{name}_{number}" for number in range(1, len(self.programs) + 2))

@@ -7,12 +7,14 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from robolink import logging
 from robolink.impl.log_output import DEFAULT_FORMAT, Record, compile_format
 from robolink.launch.planning import processes
 from robolink.launch.readiness import Readiness
+from robolink.launch.ros.stage import NODE
+from robolink.node import Node
 from robolink.running.defaults import get_defaults
 from robolink.supervisor.director import Add, Director, Request, Signal, Stop, Tell
 from robolink.supervisor.policy import Action, Ask, Policy, Say, Start
@@ -29,8 +31,26 @@ if TYPE_CHECKING:
 
 
 _AS_LINE = compile_format(DEFAULT_FORMAT)
+LOOK_AGAIN = 0.01
+"""Virtual seconds between two looks of the launcher's own node at what it is to do."""
 PATIENCE = 5.0
 """Virtual seconds from one step of ending a program to the next harder one."""
+
+
+class _Own(Node):
+    """The launcher's own node, which carries out what waits for it."""
+
+    acts: ClassVar[list[Callable[[Node], object]]]
+
+    def __init__(self) -> None:
+        super().__init__(NODE, enable_rosout=False, start_parameter_services=False)
+        self.create_timer(LOOK_AGAIN, self.act)
+        self.act()
+
+    def act(self) -> None:
+        """Carry out what waits."""
+        while self.acts:
+            self.acts.pop(0)(self)
 
 
 class Supervision:
@@ -77,7 +97,9 @@ class Supervision:
         self._readiness = Readiness({each.name: each.held_by for each in programs})
         self._session: MemoryTransport | None = None
         self._on_added, self._env = on_added, env or {}
-        self._director = None if direct is None else direct(self._plan)
+        self._own: Program | None = None
+        self._waiting: list[Callable[[Node], object]] = []
+        self._director: Director[Launched] | None = None if direct is None else direct(self)
         self._is_end_told = self._is_listening = False
         host.on_exit.append(self._on_exit)
 
@@ -213,8 +235,19 @@ class Supervision:
 
     # What the director decides
 
-    def _plan(self, entries: list[Entry]) -> list[Launched]:
+    def plan(self, entries: list[Entry]) -> list[Launched]:
+        """Return the programs in which entries run that the director adds."""
         return [replace(each, env={**self._env, **each.env}) for each in processes(entries)]
+
+    def with_node(self, act: Callable[[Node], object]) -> None:
+        """Call `act` with the launcher's own node, in the turn of its program, which begins with the first call."""
+        self._waiting.append(act)
+        if self._own is None:
+            self._own = self.host.start_class(type("Own", (_Own,), {"acts": self._waiting}), NODE)
+
+    def post(self, act: Callable[[float], Sequence[Request[Launched]]]) -> None:
+        """Call `act` with the time right after the present turn, and carry out what it returns."""
+        self._soon(lambda: self._do(self._asked(lambda _: act(self.host.now))))
 
     def _asked(self, ask: Callable[[Director[Launched]], Sequence[Request[Launched]]]) -> list[Action]:
         """Ask the director, if there is one; return the actions that carry out what it asks for."""

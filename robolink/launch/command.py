@@ -25,6 +25,7 @@ from robolink.workspace import VARIABLE
 
 if TYPE_CHECKING:
     from robolink.launch.system import Direct
+    from robolink.supervisor.director import Director
     from robolink.supervisor.events import Event
     from robolink.supervisor.monitoring.file_watch import Watch
 
@@ -96,8 +97,7 @@ def launch(
         start: Callable[[Process, Lifeline], Child] = Child
         if server is not None:
             start = functools.partial(Child, server=stack.enter_context(contextlib.closing(server)))
-        director = None if direct is None else direct(lambda added: _to_run(processes(added), watches))
-        logs = RunLogs(path.stem)
+        director, logs = _director(direct, watches, stack), RunLogs(path.stem)
         supervisor = Supervisor(to_run, output=output, logs=logs, on_event=on_event, start=start, director=director)
         for line in (*notes, *protection.unprotected(entries, os.environ)):
             supervisor.say(line)
@@ -114,6 +114,19 @@ def launch(
             beside.append(Figures(supervisor.status, say=supervisor.say))
         watch = waiting(held, supervisor.release, supervisor.say, enclave=enclave or _enclave(entries))
         return supervisor.run(duration, [*beside, watch])
+
+
+def _director(
+    direct: Direct | None, watches: bool, stack: contextlib.ExitStack
+) -> Callable[[Supervisor], Director[Process]] | None:
+    """Return the maker of a supervisor's director; what is added is planned as the rest. None where nothing goes on."""
+    if direct is None:
+        return None
+    from robolink.launch.ros.process_stage import ProcessStage
+
+    return lambda supervisor: direct(
+        stack.enter_context(ProcessStage(supervisor, lambda added: _to_run(processes(added), watches)))
+    )
 
 
 def _enclave(entries: Iterable[Entry]) -> str:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 from robolink.exceptions import DocumentError
 from robolink.launch.reading.arguments import ArgumentHelp
@@ -18,6 +18,9 @@ from robolink.launch.reading.record import record_of as own_record_of
 from robolink.supervisor.director import Director
 from robolink.workspace import Folder
 
+if TYPE_CHECKING:
+    from robolink.launch.ros.stage import Stage
+
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
@@ -27,8 +30,8 @@ T = TypeVar("T")
 class Direct(Protocol):
     """Maker of the director of a launch file with timers or event handlers; it is called once."""
 
-    def __call__(self, plan: Callable[[list[Entry]], Sequence[T]]) -> Director[T]:
-        """Return the director; `plan` returns the processes in which entries run that are added later."""
+    def __call__(self, stage: Stage[T]) -> Director[T]:
+        """Return the director; `stage` runs its system."""
 
 
 class System(NamedTuple):
@@ -79,8 +82,8 @@ def read_system(
         return System(entries, notes)
     from robolink.launch.ros.reactions import Reactions
 
-    def direct(plan: Callable[[list[Entry]], Sequence[T]]) -> Director[T]:
-        return Reactions(visit, plan)
+    def direct(stage: Stage[T]) -> Director[T]:
+        return Reactions(visit, stage)
 
     return System(entries, notes, direct)
 

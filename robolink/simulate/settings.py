@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import msgspec
 
@@ -15,8 +15,10 @@ from robolink.launch import Entry
 from robolink.text.names import meant
 
 if TYPE_CHECKING:
+    from robolink.launch.ros.stage import Stage
     from robolink.launch.system import System
-    from robolink.supervisor.director import Director
+    from robolink.node import Node
+    from robolink.supervisor.director import Director, Request
 
 T = TypeVar("T")
 ASSIGN = ":="
@@ -87,10 +89,29 @@ def with_settings(system: System, values: Mapping[str, Any], foreseen: Callable[
 
     made = system.direct
 
-    def direct(plan: Callable[[list[Entry]], Sequence[T]]) -> Director[T]:
-        return made(lambda entries: plan(known(entries)))
+    def direct(stage: Stage[T]) -> Director[T]:
+        return made(_Adjusted(stage, known))
 
     return system._replace(entries=known(system.entries), direct=direct)
+
+
+class _Adjusted(Generic[T]):
+    """Stage that changes entries before it plans them."""
+
+    def __init__(self, stage: Stage[T], adjust: Callable[[list[Entry]], list[Entry]]) -> None:
+        self._stage, self._adjust = stage, adjust
+
+    def plan(self, entries: list[Entry]) -> Sequence[T]:
+        """Return the processes in which the changed entries run."""
+        return self._stage.plan(self._adjust(entries))
+
+    def with_node(self, act: Callable[[Node], object]) -> None:
+        """Call `act` with the launcher's own node."""
+        self._stage.with_node(act)
+
+    def post(self, act: Callable[[float], Sequence[Request[T]]]) -> None:
+        """Call `act` where the director is asked."""
+        self._stage.post(act)
 
 
 def _with_parameter(entries: list[Entry], place: str, value: Any) -> list[Entry]:

@@ -56,7 +56,7 @@ class Supervisor:
         on_event: Called with each `Event`, on a background thread.
         clock: Source of monotonic time, in seconds.
         start: Starts a process; tests pass a fake.
-        director: Adds and ends processes while the system runs; None has none.
+        director: Maker of what adds and ends processes while the system runs; None has none.
 
     >>> Supervisor([Process("hello", [sys.executable, "-c", "print('hi')"])]).run()
     [hello] hi
@@ -74,7 +74,7 @@ class Supervisor:
         on_event: OnEvent | None = None,
         clock: Callable[[], float] = time.monotonic,
         start: Callable[[Process, Lifeline], Child] = Child,
-        director: Director[Process] | None = None,
+        director: Callable[[Supervisor], Director[Process]] | None = None,
     ) -> None:
         self._processes = {each.name: each for each in processes}
         self._output = output or sys.stdout
@@ -86,7 +86,7 @@ class Supervisor:
         self._events: queue.SimpleQueue[_Event] = queue.SimpleQueue()
         self._policy = Policy({each.name: each.rules for each in processes}, patience=patience)
         self._lock = threading.Lock()  # held whenever the policy is asked
-        self._director = director
+        self._director = None if director is None else director(self)
         self._has_begun = self._is_end_told = self._is_running = False
         self._said_before: list[str] = []
         self.leavings: list[Path] = []
@@ -150,6 +150,10 @@ class Supervisor:
     def release(self, name: str) -> None:
         """Start the held process `name`, since its conditions are met. Raises NotFoundError."""
         self._put_about(name, lambda now: self._policy.released(name, now))
+
+    def direct(self, act: Callable[[float], Sequence[Request[Process]]]) -> None:
+        """Call `act` with the time in the loop, where the director is asked, and carry out what it returns."""
+        self._events.put(lambda now: self._directed(act(now), now))
 
     def say(self, text: str) -> None:
         """Print `text` to the user as a line of the launcher's own; after the end it is lost."""

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import signal
 import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from robolink.context import Context
 from robolink.exceptions import RobolinkError
 from robolink.launch.planning import Launched, as_process, processes
 from robolink.launch.readiness import Readiness
+from robolink.launch.ros.process_stage import ProcessStage
 from robolink.supervisor import Process, Supervisor
 from robolink.supervisor.events import Event, Exited, Status
 from robolink.supervisor.rules import Rules
@@ -22,6 +25,7 @@ from robolink.supervisor.rules import Rules
 if TYPE_CHECKING:
     from robolink.launch import Entry
     from robolink.launch.system import Direct
+    from robolink.supervisor.director import Director
 
 TOLD_WITHIN = 5.0
 """Timeout of a supervisor's answer to a request, in seconds."""
@@ -52,13 +56,26 @@ class Launch:
             "ROS_DOMAIN_ID": str(domain),
         }
         self._on_exit, self._alone = on_exit, bool(alone)
+        self._stack = ExitStack()
         self._start_anew(list(self._launched.values()), direct)
 
     def _start_anew(self, launched: Sequence[Launched], direct: Direct | None = None) -> None:
         mine = [self._process(each) for each in launched]
-        director = None if direct is None else direct(self._added)
+        director = None if direct is None else functools.partial(self._director, direct)
         self.supervisor = Supervisor(mine, output=sys.stderr, on_event=self._on_event, director=director)
         self.thread = threading.Thread(target=self._run, name="system under test", daemon=True)
+
+    def _director(self, direct: Direct, supervisor: Supervisor) -> Director[Process]:
+        return direct(self._stack.enter_context(ProcessStage(supervisor, self._added, self._make_context)))
+
+    def _make_context(self) -> Context:
+        """Return the context of the launcher's own node, on the domain of the test."""
+        from robolink.transport.zenoh import ZenohTransport
+
+        domain = int(self._env["ROS_DOMAIN_ID"])
+        context = Context(transport=ZenohTransport(domain, self._env["ROBOLINK_NETWORK"]))
+        context.init([], domain_id=domain)
+        return context
 
     def _added(self, entries: list[Entry]) -> list[Process]:
         """Return the processes of entries that a launch file adds while its system runs."""
@@ -78,7 +95,8 @@ class Launch:
 
     def _run(self) -> None:
         try:
-            self.supervisor.run()
+            with self._stack:
+                self.supervisor.run()
         except RobolinkError as error:
             for name in self.names:
                 self._on_exit(Exited(name, 0, 127, "could not be started", str(error), 0.0))

@@ -21,6 +21,7 @@ from launch.event_handlers import *
 from launch.launch_description_sources import *
 from launch.substitutions import *
 from launch_ros.actions import *
+from launch_ros.event_handlers import *
 from launch_ros.substitutions import *
 from launch_ros.descriptions import *
 

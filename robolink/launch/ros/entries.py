@@ -6,10 +6,10 @@ import re
 import shlex
 import shutil
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePath
-from typing import Any
+from typing import Any, NamedTuple
 
 from robolink.companions.launch.actions import ExecuteLocal, Shutdown
 from robolink.companions.launch.bases import LaunchContext, LaunchError, Place
@@ -31,6 +31,30 @@ from robolink.workspace import NodeSource
 
 TERMINALS = ("xterm", "gnome-terminal", "konsole", "lxterminal", "xfce4-terminal", "terminator", "x-terminal-emulator")
 """Programs that launch files put before nodes that read the keyboard."""
+
+
+class Naming(NamedTuple):
+    """Name of a node, '' for that of its program, and its namespace, '' or with a slash in front."""
+
+    name: str
+    namespace: str
+
+
+class Wanted(NamedTuple):
+    """Node that a launch file wants: its program, and what is said of it."""
+
+    program: Program
+    what: str
+    """Name of its executable, or of its plugin."""
+    naming: Naming
+    parameters: Iterable[Any]
+    remappings: Iterable[Any]
+    place: Place
+
+    @property
+    def full_name(self) -> str:
+        """Full name of the node; if it is not given a name, that of its program."""
+        return f"{self.naming.namespace}/{self.naming.name or _default_name(self.program, self.what)}"
 
 
 @dataclass
@@ -69,25 +93,51 @@ class EntryMaker:
             self._leave_out(action, program.absent)
             return None
         name = "" if action.requested_name is None else performed(context, action.requested_name)
-        namespace = self._namespace(action, context)
+        naming = Naming(name, namespace_of(action.requested_namespace, context))
+        wanted = Wanted(program, executable, naming, action.parameters, action.remappings, action.place)
+        action.expanded_name = wanted.full_name
+        words = list(texts_of(action.ros_arguments, context))
+        entry = self._entry_of(
+            wanted, [words, *texts_of(action.arguments, context)], self._shared(action, context), context
+        )
+        return entry if program.source is not None else _compiled(entry, program.path)
+
+    def shared(self, wanted: Wanted, action: ExecuteLocal, process: str, context: LaunchContext) -> Entry:
+        """Return the entry of a component that shares a process.
+
+        Args:
+            wanted: The component.
+            action: Action of its container, whose settings it has.
+            process: Name of the process.
+            context: The context with whose values it is performed.
+        """
+        settings = self._shared(action, context)
+        settings.pop("prefix", None)
+        return self._entry_of(wanted, [[]], {**settings, "process": process}, context)
+
+    def _entry_of(
+        self, wanted: Wanted, words: Sequence[Any], settings: Mapping[str, Any], context: LaunchContext
+    ) -> Entry:
+        """Return the entry of a node; the first of `words` are those behind `--ros-args`."""
+        name, namespace = wanted.naming
         if name:
             _check(validate_node_name, name)
-        shown_name = f"{namespace}/{name or _default_name(program, executable)}"
-        action.expanded_name = shown_name
-        own = parameters_of(action.parameters, shown_name, bool(name), context, lambda text: self._note(action, text))
-        words = [*own.words, *texts_of(action.ros_arguments, context)]
-        extra = ["--ros-args", *words, "--"] if words else []
+        place, source = wanted.place, wanted.program.source
+        own = parameters_of(
+            wanted.parameters, wanted.full_name, bool(name), context, lambda text: self.say(f"{placed(place)}{text}")
+        )
+        of_ros, *others = words
+        extra = [*own.words, *of_ros]
         node = NodeToStart(
-            node=executable if program.source is None else program.source.spec,
+            node=wanted.what if source is None else source.spec,
             name=name,
             namespace=namespace,
             parameters=own.values,
-            remappings=_remappings(action, context),
-            args=[*extra, *texts_of(action.arguments, context)],
-            **self._shared(action, context),
+            remappings=_remappings(wanted.remappings, context),
+            args=[*(["--ros-args", *extra, "--"] if extra else []), *others],
+            **settings,
         )
-        entry = self._entry(action, shown_name, node, program.source, own.wide, own.files)
-        return entry if program.source is not None else _compiled(entry, program.path)
+        return self._entry(place, wanted.full_name, node, source, own.wide, own.files)
 
     def _program(self, package: str | None, executable: str, place: Place) -> Program:
         if package is not None:
@@ -99,15 +149,6 @@ class EntryMaker:
         if shutil.which(executable) is None:
             return Program(absent=f"no program '{shown(executable)}' is on the PATH")
         return Program(path=executable)
-
-    def _namespace(self, action: Node, context: LaunchContext) -> str:
-        around = str(context.launch_configurations.get(NAMESPACE, ""))
-        own = "" if action.requested_namespace is None else performed(context, action.requested_namespace)
-        whole = joined(around, own)
-        whole = whole if whole.startswith("/") or not whole else f"/{whole}"
-        if whole:
-            _check(validate_namespace, whole)
-        return whole
 
     # Commands
 
@@ -128,23 +169,24 @@ class EntryMaker:
         run = [*settings.pop("prefix", ()), *run]
         given = action.process_description.name
         name = performed(context, given) if given is not None else _stem(words)
-        return self._entry(action, f"/{name}", NodeToStart(run=run, **settings), None, frozenset(), [])
+        return self._entry(action.place, f"/{name}", NodeToStart(run=run, **settings), None, frozenset(), [])
 
     # Both
 
     def _entry(
         self,
-        action: ExecuteLocal,
+        place: Place,
         full_name: str,
         node: NodeToStart,
         source: NodeSource | None,
         wide: frozenset[str],
         files: Iterable[Path],
     ) -> Entry:
-        name = self._free(full_name.strip("/") or "process")
-        return Entry(name, node, source, self.home, _errors_at(action.place), wide, self.files | set(files))
+        name = self.free(full_name.strip("/") or "process")
+        return Entry(name, node, source, self.home, _errors_at(place), wide, self.files | set(files))
 
-    def _free(self, name: str) -> str:
+    def free(self, name: str) -> str:
+        """Return a name that no process has yet: this one, or with a number."""
         number, free = 1, name
         while free in self._names:
             number += 1
@@ -176,6 +218,19 @@ class EntryMaker:
 
     def _note(self, action: ExecuteLocal, text: str) -> None:
         self.say(f"{placed(action.place)}{text}")
+
+
+def namespace_of(given: Any, context: LaunchContext) -> str:
+    """Return the namespace of a node within those around it, '' or with a slash in front; `given` is its own or None.
+
+    Raises LaunchError for one that is invalid.
+    """
+    around = str(context.launch_configurations.get(NAMESPACE, ""))
+    whole = joined(around, "" if given is None else performed(context, given))
+    whole = whole if whole.startswith("/") or not whole else f"/{whole}"
+    if whole:
+        _check(validate_namespace, whole)
+    return whole
 
 
 def placed(place: Place) -> str:
@@ -222,10 +277,10 @@ def _command_line(words: list[str], context: LaunchContext) -> list[str] | None:
     return command_of(words, context.environment.get("PATH"))
 
 
-def _remappings(action: Node, context: LaunchContext) -> dict[str, str]:
+def _remappings(given: Iterable[Any], context: LaunchContext) -> dict[str, str]:
     """Return the remappings of a node: those of SetRemap count more, and the first of a name."""
     pairs = list(context.launch_configurations.get(REMAPS, []))
-    for each in action.remappings:
+    for each in given:
         if not isinstance(each, (tuple, list)) or len(each) != 2:
             raise LaunchError(f"a remapping is a pair of two names, got {shown(repr(each))}")
         pairs.append((performed(context, each[0]), performed(context, each[1])))

@@ -7,11 +7,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 from robolink.companions.ament_index.search_paths import get_search_paths
+from robolink.compat.names import snake_case
 from robolink.exceptions import NotFoundError, closest
-from robolink.system.plainfile import read_plain
+from robolink.system.plainfile import LONGEST_SOURCE, read_plain
 from robolink.workspace import (
     NodeSource,
     RosProgramError,
+    executables,
     find_executable,
     find_package,
     instead_of,
@@ -57,6 +59,32 @@ def program_of(package: str, executable: str, home: Path | None) -> Program:
         if _is_compiled(folder, executable):
             return Program(absent=f"{package} {executable} is a C++ program, and robolink builds none")
         raise
+
+
+def component_of(package: str, plugin: str, home: Path | None) -> Program:
+    """Return the Python class of a component, or the reason why it is left out.
+
+    Args:
+        package: Name of the package.
+        plugin: Name of its class, with or without the package and the module: `bot::Talker`, `bot.talker.Talker`.
+        home: Workspace in which packages are looked for; None looks for the nearest.
+    """
+    folder = find_package(package, workspace=home)
+    if folder is None:
+        return Program(absent=include_absent(package))
+    name = re.split(r"::|[./]", plugin)[-1]
+    defined = re.compile(rf"^class\s+{re.escape(name)}\b".encode(), re.MULTILINE)
+    for source in executables(folder).values():
+        if source.path is not None and source.path.suffix == ".py" and defined.search(_text(source.path)):
+            return Program(NodeSource(snake_case(name), source.path, name, module=source.module, root=source.root))
+    return Program(absent=f"package {package} has no Python class of this name, and robolink builds no C++")
+
+
+def _text(path: Path) -> bytes:
+    try:
+        return read_plain(path, LONGEST_SOURCE)
+    except (OSError, ValueError):
+        return b""
 
 
 def include_absent(package: str) -> str:

@@ -1,26 +1,32 @@
 """Interpreter of a launch file that goes on: timers, event handlers and emitted events, as a director of the system.
 
-It knows no processes and no clock: `robolink.supervisor.director` says what it hears and what it may ask for. `plan`
-makes a process of its entries, a real one or a program in virtual time.
+It knows no processes and no clock: `robolink.supervisor.director` says what it hears and what it may ask for.
 """
 
 from __future__ import annotations
 
 import heapq
 import itertools
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any, Generic, TypeVar
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robolink.companions.launch import events
 from robolink.companions.launch.actions import ExecuteLocal, TimerAction
 from robolink.companions.launch.bases import BaseEventHandler, Event, entities_in
 from robolink.companions.launch.event_handlers import OnProcessIO, OnShutdown
 from robolink.companions.launch.events import process as process_events
+from robolink.companions.launch.utilities import is_true
+from robolink.companions.launch_ros.actions.lifecycle import LifecycleNode, transitions
+from robolink.companions.launch_ros.events.lifecycle import ChangeState, StateTransition
 from robolink.exceptions import DocumentError
-from robolink.launch.reading.entry import Entry
+from robolink.launch.ros.stage import Stage
 from robolink.launch.ros.surroundings import surroundings
-from robolink.launch.ros.visit import Visit
+from robolink.launch.ros.visit import Started, Visit
 from robolink.supervisor.director import Add, End, Request, Signal, Stop, Tell
+
+if TYPE_CHECKING:
+    from robolink.interfaces.lifecycle_msgs.msg import TransitionEvent
+    from robolink.launch.ros.lifecycle import Lifecycles
 
 MOST_EVENTS = 10_000
 """Most events that may follow from each other at one time; two handlers that emit events might go on for ever."""
@@ -32,20 +38,22 @@ class Reactions(Generic[T]):
 
     Args:
         visit: Visit of the file, up to the first timer or event.
-        plan: Returns the processes in which entries run.
+        stage: Runner of the system.
     """
 
-    def __init__(self, visit: Visit, plan: Callable[[list[Entry]], Sequence[T]]) -> None:
-        self._visit, self._plan = visit, plan
+    def __init__(self, visit: Visit, stage: Stage[T]) -> None:
+        self._visit, self._stage = visit, stage
+        self._lifecycles: Lifecycles | None = None
         self._timers: list[tuple[float, int, TimerAction, dict[str, Any]]] = []
         self._numbers = itertools.count()
         self._actions: dict[str, ExecuteLocal] = {}
         self._requests: list[Request[T]] = []
         self._shutdown = events.Shutdown(reason="the system is stopped", due_to_sigint=True)
         self._is_stopping = False
-        for each in visit.started:
-            self._actions[each.entry.name] = each.action
+        self._started = list(visit.started)
         visit.started.clear()
+        for each in self._started:
+            self._actions[each.process] = each.action
 
     @property
     def hears_lines(self) -> bool:
@@ -61,7 +69,8 @@ class Reactions(Generic[T]):
 
     def begin(self, now: float) -> list[Request[T]]:
         """Begin the timers, and handle what the file has emitted already."""
-        return self._following(now, lambda: None)
+        started, self._started = self._started, []
+        return self._following(now, lambda: self._live(started))
 
     def started(self, name: str, pid: int, now: float) -> list[Request[T]]:
         """Handle that a process runs."""
@@ -156,9 +165,10 @@ class Reactions(Generic[T]):
         visit.timers.clear()
         started, visit.started[:] = list(visit.started), []
         for each in started:
-            self._actions[each.entry.name] = each.action
+            self._actions[each.process] = each.action
         if started and not self._is_stopping:
-            self._requests += map(Add, self._plan([each.entry for each in started]))
+            self._requests += map(Add, self._stage.plan([each.entry for each in started]))
+            self._live(started)
         finished, visit.context.finished = visit.context.finished, []
         complete = [events.ExecutionComplete(action=each) for each in finished]
         visit.context.emitted += [each for each in complete if visit.context.would_handle_event(each)]
@@ -190,7 +200,47 @@ class Reactions(Generic[T]):
             self._requests += [Stop(name) for name in self._meant(event)]
         elif isinstance(event, events.IncludeLaunchDescription):
             self._visit.run([event.launch_description])
+        elif isinstance(event, ChangeState):
+            self._change(event)
         self._handle(event)
+
+    # Nodes with a lifecycle
+
+    def _live(self, started: Iterable[Started]) -> None:
+        """Hear of the transitions of nodes with a lifecycle, and bring those to life that want it."""
+        for each in started:
+            action = each.action
+            if isinstance(action, LifecycleNode) and action.expanded_name is not None:
+                self._own_lifecycles().watch(action.expanded_name)
+                with self._visit.placing(action):
+                    is_wanted = is_true(self._visit.context, action.autostart)
+                if is_wanted:
+                    self._visit.run(transitions(action.expanded_name, [1, 3]))
+
+    def _change(self, event: ChangeState) -> None:
+        nodes = [each for each in self._actions.values() if isinstance(each, LifecycleNode)]
+        names = [each.expanded_name for each in nodes if event.lifecycle_node_matcher(each)]
+        for name in names or [event.node_name]:
+            if name:
+                self._own_lifecycles().change(name, event.transition_id)
+
+    def _own_lifecycles(self) -> Lifecycles:
+        if self._lifecycles is None:
+            from robolink.launch.ros.lifecycle import Lifecycles  # late: it needs the classes of messages
+
+            def say(text: str) -> None:
+                self._stage.post(lambda now: [Tell(text)])
+
+            self._lifecycles = Lifecycles(self._stage.with_node, self._on_transition, say)
+        return self._lifecycles
+
+    def _on_transition(self, name: str, message: TransitionEvent) -> None:
+        action = next((each for each in self._actions.values() if getattr(each, "expanded_name", "") == name), None)
+        if action is None:
+            action = LifecycleNode(name=name, namespace="", package="unknown", executable="unknown")
+            action.expanded_name = name
+        event = StateTransition(action=action, msg=message)
+        self._stage.post(lambda now: self._following(now, lambda: self._emit(event)))
 
     def _meant(self, event: process_events.ProcessTargetedEvent) -> list[str]:
         return [name for name, action in self._actions.items() if event.process_matcher(action)]

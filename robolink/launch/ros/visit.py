@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,9 +20,12 @@ from robolink.companions.launch.bases import (
 )
 from robolink.companions.launch.event_handlers import OnProcessExit
 from robolink.companions.launch.launch_description_sources import LaunchFileNotFoundError
+from robolink.companions.launch_ros.actions import ComposableNodeContainer, LifecycleNode, LoadComposableNodes
+from robolink.companions.launch_ros.descriptions import ComposableNode
 from robolink.exceptions import DocumentError
 from robolink.launch.reading import limits
 from robolink.launch.reading.entry import Entry
+from robolink.launch.ros.components import components, container_of, target_of
 from robolink.launch.ros.entries import EntryMaker, ends_launch, placed
 from robolink.launch.ros.failures import absent_package, as_document_error, reason_of, users_place
 from robolink.launch.ros.programs import include_absent
@@ -40,6 +43,11 @@ class Started:
 
     action: ExecuteLocal
     entry: Entry
+
+    @property
+    def process(self) -> str:
+        """Name of the process in which it runs."""
+        return self.entry.node.process or self.entry.name
 
 
 @dataclass
@@ -64,11 +72,15 @@ class Visit:
     first: LaunchDescriptionEntity | None = None
     """The launch file itself as an entity: without it nothing is left."""
     _visited: int = 0
+    _containers: dict[str, ComposableNodeContainer] = field(default_factory=dict)
+    _processes: dict[str, str] = field(default_factory=dict)
+    _followed: set[int] = field(default_factory=set)
 
     @property
     def goes_on(self) -> bool:
         """True if timers, handlers or events are left: more may happen while the processes run."""
-        return bool(self.timers or self.context.handlers or self.context.emitted)
+        is_alive = any(isinstance(each.action, LifecycleNode) for each in self.started)
+        return bool(self.timers or self.context.handlers or self.context.emitted or is_alive)
 
     def run(self, entities: Iterable[LaunchDescriptionEntity]) -> None:
         """Visit entities and all that they bring along, depth first. Raises DocumentError with the user's line."""
@@ -149,21 +161,49 @@ class Visit:
 
     def _take(self, action: Action) -> None:
         """Take over an action whose effect is beyond the context."""
-        if isinstance(action, ExecuteLocal):
+        if isinstance(action, ComposableNodeContainer):
+            name = container_of(action, self.context)
+            self._containers[name] = action
+            self._load(action.composable_node_descriptions, name, action)
+        elif isinstance(action, LoadComposableNodes):
+            self._load(action.composable_node_descriptions, target_of(action, self.context), action)
+        elif isinstance(action, ExecuteLocal):
             self._start(action)
         elif isinstance(action, TimerAction):
             self.timers.append((action, self.context.snapshot()))
+
+    def _load(self, described: Sequence[ComposableNode], container: str, action: Action) -> None:
+        """Start components in the process of their container, or in one of their own if that runs already."""
+        of_container = self._containers.get(container)
+        if of_container is None:
+            of_container = ComposableNodeContainer(
+                name=container, package="rclcpp_components", executable="component_container"
+            )
+            of_container.place = action.place
+        process = self._processes.get(container, "")
+        if not any(each.process == process for each in self.started):  # it runs already, or was not there yet
+            process = self._processes[container] = self.maker.free(container)
+        entries = list(components(self.maker, described, of_container, process, self.context))
+        self._follow(of_container)
+        self.started += [Started(of_container, each) for each in entries]
+        if not entries and isinstance(action, ComposableNodeContainer):
+            self.absent.append(action)
 
     def _start(self, action: ExecuteLocal) -> None:
         entry = self.maker.make(action, self.context)
         if entry is None:
             self.absent.append(action)
             return
-        if action.on_exit is not None and not ends_launch(action.on_exit):
-            self.context.register_event_handler(OnProcessExit(target_action=action, on_exit=action.on_exit))
+        self._follow(action)
         self.started.append(Started(action, entry))
         if len(self.started) > limits.MOST_PROCESSES:
             raise self._error(action, f"more than {limits.MOST_PROCESSES:,} processes")
+
+    def _follow(self, action: ExecuteLocal) -> None:
+        """Register what follows the end of a process, unless it is the end of the launch, which a rule decides."""
+        if action.on_exit is not None and not ends_launch(action.on_exit) and id(action) not in self._followed:
+            self._followed.add(id(action))
+            self.context.register_event_handler(OnProcessExit(target_action=action, on_exit=action.on_exit))
 
     def _note_file(self) -> None:
         """Note the launch file that is being visited: it is one of those that `--watch` watches."""

@@ -11,8 +11,8 @@ from tests.support.ros_launch import FIRST, read
 AT = f"bot.launch.py:{FIRST + 2}: "
 LEFT_OUT = [
     (
-        'Node(package="rviz2", executable="rviz2")',
-        "left out: rviz2 rviz2 is not here: a window in C++; 'robo",
+        'Node(package="controller_manager", executable="ros2_control_node")',
+        "left out: controller_manager ros2_control_node is not here: ",
     ),
     ('Node(package="slam_all", executable="go")', "left out: slam_all go is not here: no package of this name is in"),
     ('Node(package="bot", executable="fast")', "left out: bot fast is a C++ program, and robolink builds none"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,8 @@ from robolink.exceptions import NotFoundError
 from robolink.interfaces.std_msgs.msg import String
 from robolink.launch.reading.entry import Entry
 from robolink.launch.system import read_system
-from robolink.supervisor.director import Add, Director, End, Signal, Stop, Tell
+from robolink.node import Node
+from robolink.supervisor.director import Add, Director, End, Request, Signal, Stop, Tell
 from robolink.testing import System
 from tests.support.ros_launch import FIRST, write
 from tests.support.ros_launch import TALKER as TALKER_CODE
@@ -23,15 +24,24 @@ from tests.support.ros_launch import TALKER as TALKER_CODE
 TALKER = 'Node(package="bot", executable="talker", name="{}")'
 
 
-def directed(package: Path, body: str) -> Director[str]:
-    """Director of a launch file whose processes are names."""
+class Names:
+    """Stage whose processes are names, without a node."""
 
-    def plan(entries: list[Entry]) -> Sequence[str]:
+    def plan(self, entries: list[Entry]) -> Sequence[str]:
         return [each.name for each in entries]
 
+    def with_node(self, act: Callable[[Node], object]) -> None:
+        raise AssertionError("no node was expected")
+
+    def post(self, act: Callable[[float], Sequence[Request[str]]]) -> None:
+        raise AssertionError("nothing was expected")
+
+
+def directed(package: Path, body: str) -> Director[str]:
+    """Director of a launch file whose processes are names."""
     system = read_system(write(package, body))
     assert system.direct is not None
-    return system.direct(plan)
+    return system.direct(Names())
 
 
 def test_a_file_without_any_has_no_director(package: Path) -> None:
@@ -256,12 +266,13 @@ def test_a_system_of_processes_goes_on(package: Path) -> None:
         """
         def generate_launch_description():
             first = ExecuteProcess(cmd=["python3", "-c", "print('one')"], name="first")
-            second = ExecuteProcess(cmd=["python3", "-c", "import time; time.sleep(60)"], name="second")
+            second = ExecuteProcess(name="second", cmd=[
+                "python3", "-c", "import time; print('two', flush=True); time.sleep(60)"])
             return LaunchDescription([first,
                 RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[second])),
                 RegisterEventHandler(OnProcessIO(target_action=first, on_stdout=lambda event: LogInfo(msg="heard"))),
-                RegisterEventHandler(OnProcessStart(target_action=second, on_start=[
-                    TimerAction(period=0.1, actions=[Shutdown(reason="enough")])])),
+                RegisterEventHandler(OnProcessIO(target_action=second, on_stdout=lambda event: TimerAction(
+                    period=0.1, actions=[Shutdown(reason="enough")]) if b"two" in event.text else None)),
                 RegisterEventHandler(OnShutdown(on_shutdown=[
                     LogInfo(msg=["over: ", LocalSubstitution("event.reason")])])),
             ])
@@ -270,10 +281,11 @@ def test_a_system_of_processes_goes_on(package: Path) -> None:
     command = [sys.executable, "-m", "robolink", "launch", "bot", "bot.launch.py"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stderr) == (0, "")
-    lines = done.stdout.splitlines()
+    lines = done.stdout.partition("[second] Traceback")[0].splitlines()
     assert [each for each in lines if each != "[launch] heard"] == [
         "[first] one",
         "[launch] first has ended",
+        "[second] two",
         "[launch] the launch file ends the system: enough",
         "[launch] over: enough",
     ]

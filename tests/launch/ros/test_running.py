@@ -18,7 +18,7 @@ from tests.support.ros_launch import write
 SYSTEM = """
 DeclareLaunchArgument("word", default_value=["hel", "lo"], description="The word."),
 DeclareLaunchArgument("more", choices=["a", "b"], default_value="a"),
-Node(package="rviz2", executable="rviz2"),
+Node(package="controller_manager", executable="ros2_control_node"),
 Node(package="bot", executable="talker", namespace="r", parameters=[{"word": LaunchConfiguration("word")}]),
 """
 
@@ -37,7 +37,7 @@ def test_a_file_is_validated(package: Path, capsys: pytest.CaptureFixture[str]) 
     code, out, err = said(capsys, str(path), "--validate")
     line = path.read_text().partition("wrd")[0].count("\n") + 1
     assert (code, out) == (1, f"{path}:{line}: 'r/talker' declares no parameter 'wrd' (did you mean 'word'?)\n")
-    assert "left out: rviz2 rviz2" in err
+    assert "left out: controller_manager ros2_control_node" in err
     assert err.count("\n") == 1
 
 
@@ -46,7 +46,7 @@ def test_a_system_in_virtual_time(package: Path, capsys: pytest.CaptureFixture[s
     assert main(["simulate", "bot", "bot.launch.py", "word:=ho", "--duration", "10", "--json"]) == 0
     out, err = capsys.readouterr()
     assert [(each["name"], each["state"]) for each in json.loads(out)["programs"]] == [("r/talker", "running")]
-    assert "left out: rviz2 rviz2" in err
+    assert "left out: controller_manager ros2_control_node" in err
 
 
 def test_a_system_under_test(package: Path, system: System) -> None:
@@ -60,7 +60,7 @@ def test_a_system_of_processes(package: Path) -> None:
     command = [sys.executable, "-m", "robolink", "launch", "bot", "bot.launch.py"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 3
-    assert "left out: rviz2 rviz2" in done.stdout
+    assert "left out: controller_manager ros2_control_node" in done.stdout
     assert "[launch] once ended with exit code 3" in done.stdout
 
 

@@ -26,6 +26,8 @@ class ChangeState(Event):
 
     def __init__(self, *, lifecycle_node_matcher: Callable[[Any], bool], transition_id: int) -> None:
         self.lifecycle_node_matcher, self.transition_id = lifecycle_node_matcher, transition_id
+        self.node_name = ""
+        """Full name of the node, where no action of this launch started it."""
 
 
 class StateTransition(Event):
@@ -46,5 +48,10 @@ class StateTransition(Event):
 
 def matches_node_name(node_name: str) -> Callable[[Any], bool]:
     """Return a function that is true for the action whose node has the full name `node_name`."""
-    full_name = node_name if node_name.startswith("/") else f"/{node_name}"
-    return lambda action: getattr(action, "expanded_name", None) == full_name
+    wanted = full_name(node_name)
+    return lambda action: getattr(action, "expanded_name", None) == wanted
+
+
+def full_name(node_name: str) -> str:
+    """Return `node_name` with a slash in front."""
+    return node_name if node_name.startswith("/") else f"/{node_name}"
