@@ -15,7 +15,7 @@ from robolink.interfaces.sensor_msgs.msg import JointState
 from robolink.interfaces.std_msgs.msg import String
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.testing import System
-from tests.support.urdfs import ARM
+from tests.support.urdfs import ARM, joint, robot
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 NAMES = ["shoulder", "extend", "left", "right"]
@@ -120,7 +120,30 @@ def test_rules_that_are_none_are_one_line(given: dict[str, Any], said: str) -> N
 def test_the_one_with_a_window_says_what_serves_as_sliders(system: System) -> None:
     system.start("joint_state_publisher_gui joint_state_publisher_gui", name="sliders")
     system.publish("/robot_description", String(data=ARM), LATCHED)
-    system.expect_log("robolink param set sliders zeros.JOINT 0.5")
+    system.expect_log("robolink param set sliders zeros.JOINT 0.5'")
     system.expect("/joint_states")
     system.set_parameter("sliders", "zeros.left", 1.0)
     assert positions(system.expect("/joint_states"))["right"] == -1.5
+
+
+def test_each_free_joint_has_a_parameter_with_its_range(system: System) -> None:
+    node = system.start(JointStatePublisher, parameters={"zeros.shoulder": 0.4})
+    system.publish("/robot_description", String(data=ARM), LATCHED)
+    system.run(0.5)
+    names = node.list_parameters(["zeros"], 0).names
+    assert sorted(names) == ["zeros.extend", "zeros.left", "zeros.shoulder"]
+    (found,) = node.describe_parameter("zeros.extend").floating_point_range
+    assert (found.from_value, found.to_value) == (0.2, 0.4)
+    with pytest.raises(RobolinkError, match=r"zeros.extend"):
+        system.set_parameter("joint_state_publisher", "zeros.extend", 0.9)
+    system.set_parameter("joint_state_publisher", "zeros.extend", 0.2)
+    assert positions(system.expect("/joint_states")) == {"shoulder": 0.4, "extend": 0.2, "left": 0, "right": 0.5}
+
+
+def test_joints_may_have_any_name(system: System) -> None:
+    system.start(JointStatePublisher)
+    names = ["a b", "1", "a..b", "a.", "é/" * 50]
+    links = " ".join(f"l{each}" for each in range(len(names) + 1))
+    joints = [joint(name, f"l{each}", f"l{each + 1}", kind="continuous") for each, name in enumerate(names)]
+    system.publish("/robot_description", String(data=robot(*joints, links=links)), LATCHED)
+    assert system.expect("/joint_states").name == names

@@ -11,6 +11,7 @@ from typing import Any
 from robolink.counterparts.joint_state_publisher.joints import (
     QUANTITIES,
     DependentJointError,
+    FreeJoint,
     Joints,
     Settings,
     dependent_of,
@@ -32,7 +33,7 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 class JointStatePublisher(Node):
     """A node that publishes the states of all joints that can move.
 
-    The parameters ``zeros.JOINT`` set free joints, also while it runs.
+    The parameters ``zeros.JOINT`` set free joints, also while it runs: each is declared once the robot is known.
 
     Args:
         description: URDF text; '' waits for it on the topic robot_description.
@@ -99,6 +100,16 @@ class JointStatePublisher(Node):
         joints = Joints(parse_urdf(description), self._settings)
         joints.state()
         self._joints = joints
+        for name, joint in joints.free.items():
+            self._offer(f"zeros.{name}", joint)
+
+    def _offer(self, parameter: str, joint: FreeJoint) -> None:
+        """Declare a joint's parameter with its range, which is a slider on the page of `robolink view`."""
+        if not self._settings.positions or self.has_parameter(parameter):
+            return
+        words = f"position in rad or m, from {joint.low:g} to {joint.high:g}"
+        ranges = described(words, joint.low, joint.high) if joint.low < joint.high else described(words)
+        self.declare_parameter(parameter, joint.values["position"], ranges)
 
     def _on_description(self, message: String) -> None:
         try:

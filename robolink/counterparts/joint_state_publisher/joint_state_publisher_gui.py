@@ -9,16 +9,16 @@ from robolink.counterparts.program import spin_program
 from robolink.counterparts.urdf.parser import read_text
 from robolink.node import Node
 
-WITHOUT_SLIDERS = (
-    "there are no sliders here: set a joint by the parameter zeros.JOINT, such as 'robolink param set"
-    " joint_state_publisher zeros.JOINT 0.5', or from the page of 'robolink view'"
+SLIDERS = (
+    "the sliders are on the page of 'robolink view', among the parameters of {node}; in a terminal: 'robolink param set"
+    " {node} zeros.JOINT 0.5'"
 )
 
 
 def make(words: list[str]) -> Node:
     """Make the node, whose name is joint_state_publisher in ROS too, and say what serves as sliders."""
     node = JointStatePublisher(read_text(Path(words[0])) if words else "")
-    node.get_logger().info(WITHOUT_SLIDERS.replace(" joint_state_publisher ", f" {node.get_name()} "))
+    node.get_logger().info(SLIDERS.format(node=node.get_name()))
     return node
 
 
