@@ -39,11 +39,15 @@ def _forms(noun: str) -> list[str]:
 
 COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
     "demo_nodes_cpp": {
+        "add_two_ints_client_async": Counterpart(f"{_CPP}.add_two_ints_client_async:main", "Asks for a sum."),
         "add_two_ints_client": Counterpart(f"{_CPP}.add_two_ints_client:main", "Asks for a sum."),
         "add_two_ints_server": Counterpart(
             f"{_CPP}.add_two_ints_server:AddTwoIntsServer", "Adds two numbers on request."
         ),
         "listener": Counterpart(f"{_CPP}.listener:Listener", "Logs what it hears."),
+        "listener_best_effort": Counterpart(
+            f"{_CPP}.listener_best_effort:ListenerBestEffort", "Logs what it hears, and may miss some."
+        ),
         "parameter_blackboard": Counterpart(f"{_CPP}.parameter_blackboard:ParameterBlackboard", "Keeps parameters."),
         "talker": Counterpart(f"{_CPP}.talker:Talker", "Publishes a count each second."),
     },
@@ -124,6 +128,17 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
     "joy_linux": {
         "joy_linux_node": Counterpart("robolink.counterparts.joy.joy_linux_node:main", "Publishes a gamepad's state."),
     },
+    "lifecycle": {
+        "lifecycle_listener": Counterpart(
+            "robolink.counterparts.lifecycle.lifecycle_listener:LifecycleListener", "Logs a managed node's doings."
+        ),
+        "lifecycle_service_client": Counterpart(
+            "robolink.counterparts.lifecycle.lifecycle_service_client:main", "Leads a managed node through its states."
+        ),
+        "lifecycle_talker": Counterpart(
+            "robolink.counterparts.lifecycle.lifecycle_talker:main", "Publishes a count while it is active."
+        ),
+    },
     "nav2_lifecycle_manager": {
         "lifecycle_manager": Counterpart(
             "robolink.counterparts.nav2_lifecycle_manager.lifecycle_manager:main", "Starts managed nodes in order."
@@ -188,7 +203,9 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
         "drop": Counterpart(f"{_TOOLS}.drop:main", "Passes on messages, but for some of them."),
         "mux": Counterpart(f"{_TOOLS}.mux:main", "Passes on messages of one of several topics."),
         "relay": Counterpart(f"{_TOOLS}.relay:main", "Passes on messages to another topic."),
+        "relay_field": Counterpart(f"{_TOOLS}.relay_field:main", "Publishes fields as messages of another type."),
         "throttle": Counterpart(f"{_TOOLS}.throttle:main", "Passes on so many messages or bytes per second."),
+        "transform": Counterpart(f"{_TOOLS}.transform:main", "Publishes what an expression makes of messages."),
     },
     "turtlesim": {
         "draw_square": Counterpart(

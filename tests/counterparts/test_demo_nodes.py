@@ -61,6 +61,15 @@ def test_clients_wait_for_their_service(system: System, capsys: pytest.CaptureFi
     system.expect_log("Result of add_two_ints: 5")
 
 
+def test_the_other_forms_of_cpp(system: System) -> None:
+    system.start("demo_nodes_cpp listener_best_effort")
+    system.start("demo_nodes_cpp talker")
+    system.start("demo_nodes_cpp add_two_ints_client_async")
+    system.start("demo_nodes_cpp add_two_ints_server")
+    system.expect_log("Result of add_two_ints: 5")
+    system.expect_log("I heard: [Hello World: 1]")
+
+
 def test_calls_are_observed_as_parameters_say(system: System) -> None:
     system.start("demo_nodes_py introspection")
     system.expect_log("Result of add_two_ints: 5")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import pytest
@@ -9,7 +10,8 @@ import pytest
 from robolink.counterparts.topic_tools import demux, mux, throttle
 from robolink.counterparts.topic_tools.topic_tool import numbered
 from robolink.exceptions import RobolinkError
-from robolink.interfaces.sensor_msgs.msg import LaserScan
+from robolink.interfaces.geometry_msgs.msg import Quaternion
+from robolink.interfaces.sensor_msgs.msg import Imu, LaserScan
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.interfaces.topic_tools_interfaces.srv import (
     DemuxSelect,
@@ -153,6 +155,34 @@ def test_a_demux_passes_on_to_the_selected_topic(system: System) -> None:
     assert {name: numbers(each) for name, each in heard.items()} == {"one": [0, 1], "two": [0]}
 
 
+def test_an_expression_makes_other_messages(system: System) -> None:
+    expression = "std_msgs.msg.Float64(data=numpy.rad2deg(m))"
+    args = ["/imu", "/degrees", "std_msgs/Float64", expression, "--field", "orientation.x", "-i", "std_msgs", "numpy"]
+    system.start("topic_tools transform", args=args)
+    system.publish("/imu", Imu(orientation=Quaternion(x=0.0)))
+    system.run(0.5)
+    system.publish("/imu", Imu(orientation=Quaternion(x=math.pi)))
+    assert system.expect("/degrees").data == 180
+    system.publish("/imu", Imu())
+    assert system.expect("/degrees").data == 0
+
+
+def test_an_expression_that_fails_is_told(system: System) -> None:
+    system.start("topic_tools transform", args=["/count", "/half", "std_msgs/Int32", "m.value"])
+    counted(system, 2)
+    system.expect_log("a message cannot be converted: AttributeError: ")
+
+
+def test_fields_are_relayed_into_another_type(system: System) -> None:
+    fields = "{stamp: now, frame_id: 'm.data + \"!\"'}"
+    system.start("topic_tools relay_field", args=["/chatter", "/header", "std_msgs/Header", fields])
+    system.publish("/chatter", String(data="a"))
+    system.run(1.0)
+    system.publish("/chatter", String(data="map"))
+    header = system.expect("/header")
+    assert (header.frame_id, header.stamp.sec > 0) == ("map!", True)
+
+
 @pytest.mark.parametrize(
     ("tool", "args", "said"),
     [
@@ -165,6 +195,11 @@ def test_a_demux_passes_on_to_the_selected_topic(system: System) -> None:
         ("drop", ["a", "3", "2"], "expected 0 <= X <= Y and Y at least 1, got 3 and 2"),
         ("drop", ["a", "0", "0"], "expected 0 <= X <= Y and Y at least 1, got 0 and 0"),
         ("delay", ["a", "inf"], "delay: expected seconds from 0 on, got inf"),
+        ("transform", ["/a", "/b", "std_msgs/Int3", "m"], "did you mean 'Int32'"),
+        ("transform", ["/a", "/b", "std_msgs/Int32", "m +"], "no expression of Python: invalid syntax"),
+        ("transform", ["/a", "/b", "std_msgs/Int32", "m", "-i", "nowhere"], "--import nowhere: "),
+        ("relay_field", ["/a", "/b", "std_msgs/Int32", "m"], "expected fields such as"),
+        ("relay_field", ["/a", "/b", "std_msgs/Int32", "{data: m"], "EXPRESSION:1:"),
         ("mux", [], "the parameter input_topics is needed"),
     ],
 )

@@ -11,10 +11,10 @@ from robolink.interfaces.example_interfaces.srv import AddTwoInts
 from robolink.node import Node
 
 
-def main(args: list[str] | None = None) -> None:
-    """Ask for a sum, and log it."""
+def ask(name: str, args: list[str] | None) -> None:
+    """Ask by a node `name` once the service is there, and log its answer."""
     with robolink.init(args=args), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
-        node = Node("add_two_ints_client")
+        node = Node(name)
         client: Client = node.create_client(AddTwoInts, "add_two_ints")
         while not client.wait_for_service(timeout_sec=1.0):
             node.get_logger().info("service not available, waiting again...")
@@ -23,6 +23,11 @@ def main(args: list[str] | None = None) -> None:
         result = future.result()
         if result is not None:
             node.get_logger().info(f"Result of add_two_ints: {result.sum}")
+
+
+def main(args: list[str] | None = None) -> None:
+    """Ask for a sum."""
+    ask("add_two_ints_client", args)
 
 
 if __name__ == "__main__":

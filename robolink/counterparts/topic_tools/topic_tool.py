@@ -95,6 +95,10 @@ class TopicTool(Node):
         if self.sink is not None:
             self.sink.publish(payload)
 
+    def output_class(self, source: Source) -> type[Any]:
+        """Return the class of the output, that of the input by default."""
+        return source.message_class
+
     def look(self) -> None:
         """Publish as the source does, and listen, if there is a source."""
         try:
@@ -110,7 +114,7 @@ class TopicTool(Node):
         if self.sink is not None and self.sink.topic != self.resolve_topic_name(self.output_topic):
             self.end()
         if self.sink is None:
-            self.sink = self.create_publisher(found.message_class, self.output_topic, found.qos)
+            self.sink = self.create_publisher(self.output_class(found), self.output_topic, found.qos)
         self._listen(found, wanted=not self.lazy or self.sink.get_subscription_count() > 0)
 
     def end(self) -> None:

@@ -1,0 +1,1 @@
+"""Counterparts of the package lifecycle: the demo of managed nodes."""
