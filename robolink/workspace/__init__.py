@@ -4,6 +4,7 @@ from robolink.workspace.built_in import built_in_workspace
 from robolink.workspace.counterparts import (
     COUNTERPARTS,
     counterpart,
+    counterpart_folder,
     counterparts_of,
     executable_of,
     lacking_executable,
@@ -43,6 +44,7 @@ __all__ = [
     "built_in_workspace",
     "canonical",
     "counterpart",
+    "counterpart_folder",
     "counterparts_of",
     "executable",
     "executable_of",

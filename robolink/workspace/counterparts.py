@@ -231,6 +231,15 @@ def counterparts_of(package: str) -> Mapping[str, Counterpart]:
     return COUNTERPARTS.get(canonical(package), {})
 
 
+def counterpart_folder(package: str) -> Path | None:
+    """Return the folder of the counterparts of `package`, which may have launch files; None if it has none here."""
+    if not counterparts_of(package):
+        return None
+    folder = PACKAGE / "counterparts"
+    own = folder / canonical(package)
+    return own if own.is_dir() else folder
+
+
 def counterpart(package: str, name: str) -> NodeSource | None:
     """Return the source of the counterpart of the executable `name` of `package`; None if there is none."""
     row = counterparts_of(package).get(canonical(name).removesuffix(".py"))

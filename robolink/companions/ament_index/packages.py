@@ -15,8 +15,7 @@ from robolink.companions.ament_index.search_paths import get_search_paths
 from robolink.exceptions import MessageError, NotFoundError
 from robolink.interfaces import KINDS
 from robolink.interfaces._standard import STANDARD
-from robolink.workspace.built_in import PACKAGE
-from robolink.workspace.counterparts import COUNTERPARTS
+from robolink.workspace.counterparts import COUNTERPARTS, counterpart_folder
 from robolink.workspace.find import find_package, list_packages
 from robolink.workspace.installed import installed_packages
 from robolink.workspace.ros_programs import instead_of
@@ -134,5 +133,4 @@ def _standard() -> dict[str, Path]:
 
 def _counterparts() -> dict[str, Path]:
     """Return the ROS packages that have counterparts here, each with the folder of these."""
-    folder = PACKAGE / "counterparts"
-    return {package: folder / package if (folder / package).is_dir() else folder for package in COUNTERPARTS}
+    return {package: folder for package in COUNTERPARTS if (folder := counterpart_folder(package)) is not None}

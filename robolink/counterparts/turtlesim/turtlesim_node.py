@@ -171,7 +171,7 @@ def main(args: list[str] | None = None) -> None:
     with robolink.init(args=args), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         node = TurtleSim()
         try:
-            with window(node):
+            with window(node, node.picture.topic_name):
                 robolink.spin(node)
         finally:
             node.destroy_node()

@@ -16,15 +16,16 @@ from robolink.system.browser import open_in_browser
 if TYPE_CHECKING:
     from robolink.node import Node
 
-PANELS = "turtlesim+services"
-"""Panels that the address asks the page for."""
-
 
 @contextlib.contextmanager
-def window(node: Node) -> Iterator[None]:
+def window(node: Node, picture: str) -> Iterator[None]:
     """Serve the page for the block, on a free port, and open it if a person and a screen are there.
 
     In virtual time there is none. Where it cannot be served, a warning says why, and the turtles swim unseen.
+
+    Args:
+        node: Node that is shown.
+        picture: Topic of its picture.
     """
     if isinstance(node.context.time, VirtualTime):
         yield
@@ -35,7 +36,7 @@ def window(node: Node) -> Iterator[None]:
         except RobolinkError as error:
             node.get_logger().warning(f"no window: {error}; 'robolink view' shows the turtles")
         else:
-            _show(address)
+            _show(f"{address}#turtlesim:{picture}+services")
         yield
 
 
@@ -55,7 +56,7 @@ def _served(node: Node, stack: contextlib.ExitStack) -> str:
     )
     stack.callback(looker.destroy_node)
     view = stack.enter_context(View(LiveSource(looker)))
-    return f"{view.address}#{PANELS}"
+    return view.address
 
 
 def _show(address: str) -> None:

@@ -16,6 +16,7 @@ from robolink.workspace import (
     Folder,
     NodeSource,
     built_in_workspace,
+    counterpart_folder,
     find_launch,
     find_node,
     find_package,
@@ -50,7 +51,7 @@ def find(names: Sequence[str], *, workspace: Folder = None) -> Path:
     if len(names) == 1:
         return _by_name(names[0], workspace)
     package, name = names
-    folder = find_package(package, workspace=workspace)
+    folder = find_package(package, workspace=workspace) or counterpart_folder(package)
     if folder is None:
         known = list_packages(workspace=workspace)
         raise NotFoundError("package", package, known, "the workspace (an argument is given as NAME:=VALUE)")

@@ -15,11 +15,18 @@ function initial() {
   return { columns: DEFAULT.columns.map(({ width, cells }) => ({ width, cells: cells.map(([id, height]) => ({ id, height, options: {} })) })) };
 }
 
-/** Layout with the panels that an address asks for by "#NAME+NAME": theirs alone if there is no other, else what lacks comes first. */
+/**
+ * Layout with the panels that an address asks for by "#NAME+NAME:TOPIC": theirs alone if there is no other, else what
+ * lacks comes first. A panel of one topic shows the one that is named.
+ */
 export function withAsked(model, hash) {
-  const asked = hash.slice(1).split("+").filter((id) => PANELS.includes(id));
-  const lacking = asked.filter((id) => !model?.columns.some(({ cells }) => cells.some((cell) => cell.id === id)));
-  const columns = lacking.map((id, i) => ({ width: i ? 50 : 100, cells: [{ id, height: 100, options: {} }] }));
+  const asked = hash.slice(1).split("+").map((each) => each.split(":")).filter(([id]) => PANELS.includes(id));
+  const cells = (model ?? { columns: [] }).columns.flatMap((column) => column.cells), columns = [];
+  for (const [id, topic] of asked) {
+    let cell = cells.find((each) => each.id === id);
+    if (!cell) columns.push({ width: columns.length ? 50 : 100, cells: [cell = { id, height: 100, options: {} }] });
+    if (topic) cell.options = { ...cell.options, topic };
+  }
   return { columns: [...columns, ...(model ?? (asked.length ? { columns: [] } : initial())).columns] };
 }
 

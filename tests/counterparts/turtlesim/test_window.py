@@ -15,7 +15,7 @@ from robolink.impl.log_output import Record
 from robolink.view.server import ViewError
 
 Captured = pytest.CaptureFixture[str]
-ADDRESS = re.compile(r"http://127\.0\.0\.1:(\d+)/\?token=[\w-]+#turtlesim\+services\n")
+ADDRESS = re.compile(r"http://127\.0\.0\.1:(\d+)/\?token=[\w-]+#turtlesim:/\w+/_picture\+services\n")
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ def node(context: Context) -> Node:
 
 
 def test_two_nodes_have_two_windows(node: Node, opened: list[str], capsys: Captured) -> None:
-    with window(node), window(Node("other", context=node.context)):
+    with window(node, "/a/_picture"), window(Node("other", context=node.context), "/b/_picture"):
         told = capsys.readouterr().out
         ports = ADDRESS.findall(told)
         assert len(set(ports)) == 2
@@ -51,7 +51,7 @@ def test_a_person_at_a_terminal_gets_the_browser(
     node: Node, opened: list[str], capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
-    with window(node):
+    with window(node, "/a/_picture"):
         told = capsys.readouterr().out
     assert told == f"the turtles are in your browser: {opened[0]}\n"
 
@@ -63,12 +63,12 @@ def test_without_a_port_the_turtles_swim_unseen(
         raise ViewError("ports 8765 to 8784 are all in use: choose one by --port")
 
     monkeypatch.setattr(windows, "_served", refuse)
-    with window(node):
+    with window(node, "/a/_picture"):
         pass
     assert log_lines[-1].message.startswith("no window: ports 8765 to 8784 are all in use")
     assert capsys.readouterr().out == ""
 
 
 def test_in_virtual_time_there_is_none(virtual: Context, capsys: Captured) -> None:
-    with window(Node("turtlesim", context=virtual)):
+    with window(Node("turtlesim", context=virtual), "/a/_picture"):
         assert capsys.readouterr().out == ""

@@ -131,6 +131,9 @@ test("an address asks for panels: alone in a new browser, beside what is there e
     [null, "", ids(restored(null))], [null, "#turtlesim+services", ["turtlesim", "services"]], [null, "#../../x+nothing", ids(restored(null))],
     [kept, "", ["log", "plot"]], [kept, "#graph", ["graph", "log", "plot"]], [kept, "#plot+log", ["log", "plot"]],
   ]) assert.deepEqual(ids(withAsked(model, hash)), expected, hash);
+  const topics = (model, hash) => withAsked(model, hash).columns.flatMap(({ cells }) => cells.map(({ options }) => options.topic));
+  assert.deepEqual(topics(null, "#images:/a/b+log"), ["/a/b", undefined]);
+  assert.deepEqual(topics(kept, "#plot:/c"), [undefined, "/c"]);
 });
 
 test("values at paths, and in one line", () => {

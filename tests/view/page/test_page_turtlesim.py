@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from robolink.counterparts.turtlesim.turtlesim_node import TurtleSim
 from robolink.image.png import png_of
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import CompressedImage
@@ -15,7 +16,9 @@ from robolink.interfaces.turtlesim.msg import Pose
 from robolink.qos import DurabilityPolicy, QoSProfile
 from tests.support.browser import Browser, needs_chromium
 from tests.support.pages import Page, opened, spun
+from tests.support.seen_by_commands import spinning
 from tests.support.spins import spin_until
+from tests.support.waits import wait_until
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 PICTURE = CompressedImage(format="png", data=png_of(np.full((500, 500, 3), (69, 86, 255), np.uint8)))
@@ -54,6 +57,26 @@ def test_the_arrow_keys_drive_the_turtle_that_is_chosen(browser: Browser) -> Non
             browser.press("ArrowUp")
             spin_until(executor, lambda: bool(heard["/turtle2"]))
         assert (heard["/turtle2"], len(heard["/turtle1"])) == ([(2.0, 0.0)], 4)
+
+
+def test_a_turtlesim_is_seen_and_driven(browser: Browser) -> None:
+    with opened(browser, "turtlesim") as page:
+        turtlesim = TurtleSim(context=page.system.new_context())
+        with spinning(turtlesim):
+            browser.wait("document.activeElement?.matches('canvas.image')")
+            browser.wait("document.querySelector('.turtle').value == '/turtle1'")
+            context = "document.querySelector('canvas.image').getContext('2d')"
+            ahead = f"Array.from({context}.getImageData(300, 249, 1, 1).data)"
+            assert browser.js(ahead) == [69, 86, 255, 255]
+            turtle = turtlesim.turtles["turtle1"].turtle
+
+            def has_passed() -> bool:
+                browser.press("ArrowUp")
+                return turtle.x > 7.3
+
+            wait_until(has_passed)
+            browser.wait(f"{ahead}.join() == '179,184,255,255'")
+            page.picture("turtlesim")
 
 
 def test_letters_turn_it_to_a_heading(browser: Browser) -> None:
