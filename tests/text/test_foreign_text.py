@@ -360,6 +360,6 @@ def test_a_motor_of_any_name_is_one_short_line() -> None:
     command = JointState(name=[EVIL * 100_000], velocity=[math.nan])
     assert len(joint_refusal(command)) < 1000
     assert ALLOWED.fullmatch(joint_refusal(command))
-    begin = time.monotonic()
+    begin = time.process_time()
     assert nearest(EVIL * 100_000, ["left", "right"]) == ""
-    assert time.monotonic() - begin < 0.1
+    assert time.process_time() - begin < 0.1
