@@ -33,8 +33,8 @@ def race(
     """Race programs in a simulated world, each alone, in virtual time; print a table with a hash of each run.
 
     line: one lap along a painted line. maze: to the far corner of a maze, another one for each seed. follow: along the
-    walls of a room. The same program and seed have the same score and hash on every computer. A broken program gets a
-    line that says why.
+    walls of a room. The same program and seed have the same score and hash each time. A broken program gets a line that
+    says why.
     """
     if name not in RACES:
         from robolink.exceptions import nearest
