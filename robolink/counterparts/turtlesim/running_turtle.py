@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from robolink.counterparts.turtlesim.picture import Drawn
@@ -71,7 +72,7 @@ class RunningTurtle:
         if step.hit is not None:
             x, y = step.hit[0], SIZE - step.hit[1]  # from the top, as turtlesim tells it
             self._node.get_logger().warning(f"Oh no! I hit the wall! (Clamping from [x={x:f}, y={y:f}])")
-        speed = (turtle.linear**2 + turtle.sideways**2) ** 0.5
+        speed = math.hypot(turtle.linear, turtle.sideways)
         self._pose.publish(
             Pose(x=turtle.x, y=turtle.y, theta=turtle.theta, linear_velocity=speed, angular_velocity=turtle.angular)
         )

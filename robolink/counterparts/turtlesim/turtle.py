@@ -23,6 +23,8 @@ TURN_SPEED = 1.0
 """Speed of a turn to a heading, in rad/s."""
 TURN_REACHED = 0.02
 """Radians from the heading at which a turn ends."""
+MOST = 1e6
+"""Largest number that a turtle obeys, in any unit: with larger ones it would compute no poses, and no messages."""
 
 Point = tuple[float, float]
 """Coordinates in metres, from the lower left corner of the window."""
@@ -75,7 +77,7 @@ class Step(NamedTuple):
 class Turtle:
     """A turtle: pose in metres and radians, speeds in m/s and rad/s, times in seconds of any steady clock.
 
-    Numbers that are not finite count as 0.
+    Numbers that are not finite count as 0, larger ones than a million as a million.
     """
 
     x: float = CENTRE
@@ -92,14 +94,17 @@ class Turtle:
     jumps: list[tuple[float, float, float, bool]] = field(default_factory=list)
     """Jumps that the next step begins with: (x, y, theta, False), or (linear, 0, angular, True)."""
 
+    def __post_init__(self) -> None:
+        self.x, self.y, self.theta = _sane(self.x), _sane(self.y), _sane(self.theta)
+
     def drive(self, linear: float, angular: float, now: float, sideways: float = 0.0) -> None:
         """Obey a command for a second; a turn to a heading ends."""
-        self.linear, self.angular, self.sideways = _finite(linear), _finite(angular), _finite(sideways)
+        self.linear, self.angular, self.sideways = _sane(linear), _sane(angular), _sane(sideways)
         self.commanded_at, self.heading = now, None
 
     def turn_to(self, heading: float) -> None:
         """Begin to turn to a heading, in radians, by the shorter way."""
-        self.heading, self.turned_from = normalized(_finite(heading)), self.theta
+        self.heading, self.turned_from = normalized(_sane(heading)), self.theta
 
     def stop(self) -> None:
         """Stand still at once."""
@@ -108,11 +113,11 @@ class Turtle:
 
     def jump_to(self, x: float, y: float, theta: float) -> None:
         """Jump to another place, from the next step on."""
-        self.jumps.append((_finite(x), _finite(y), _finite(theta), False))
+        self.jumps.append((_sane(x), _sane(y), _sane(theta), False))
 
     def jump_ahead(self, linear: float, angular: float) -> None:
         """Turn by `angular` and then jump `linear` metres ahead, from the next step on."""
-        self.jumps.append((_finite(linear), 0.0, _finite(angular), True))
+        self.jumps.append((_sane(linear), 0.0, _sane(angular), True))
 
     def step(self, now: float) -> Step:
         """Move for the time of one step."""
@@ -165,5 +170,5 @@ def normalized(angle: float) -> float:
     return angle - math.tau * math.floor((angle + math.pi) / math.tau)
 
 
-def _finite(value: float) -> float:
-    return value if math.isfinite(value) else 0.0
+def _sane(value: float) -> float:
+    return min(max(value, -MOST), MOST) if math.isfinite(value) else 0.0

@@ -61,6 +61,8 @@ def _served(node: Node, stack: contextlib.ExitStack) -> str:
 
 def _show(address: str) -> None:
     """Print the address on the terminal, not into the log, since it has the token."""
+    if sys.stdout is None:  # a program without any terminal
+        return
     opened = sys.stdout.isatty() and open_in_browser(address)
     words = "the turtles are in your browser" if opened else "see the turtles in a browser"
     sys.stdout.write(f"{words}: {address}\n")

@@ -95,6 +95,15 @@ def test_a_pen_that_is_off_draws_nothing() -> None:
     assert turtle.step(0.0) == Step([], None, None, None)
 
 
+@given(numbers, numbers, numbers)
+def test_it_can_be_spawned_anywhere(x: float, y: float, theta: float) -> None:
+    turtle = Turtle(x, y, theta)
+    turtle.step(0.0)
+    assert 0.0 <= turtle.x <= SIZE
+    assert 0.0 <= turtle.y <= SIZE
+    assert math.isfinite(turtle.theta)
+
+
 @given(st.lists(st.tuples(st.sampled_from(["drive", "jump_to", "jump_ahead", "turn_to"]), numbers, numbers, numbers)))
 def test_whatever_comes_it_stays_in_the_window(acts: list[tuple[str, float, float, float]]) -> None:
     turtle = Turtle()

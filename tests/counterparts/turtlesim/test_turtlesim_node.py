@@ -144,6 +144,25 @@ def test_who_cannot_be_spawned_is_told_in_the_log(system: System, turtlesim: Any
     assert list(turtlesim.turtles) == ["turtle1"]
 
 
+def test_nonsense_moves_nobody_out_of_the_window(system: System, turtlesim: Any) -> None:
+    nan, most = math.nan, 3.4e38
+    assert spawn(system, "", nan, -most, math.inf) == "turtle2"
+    for turtle in ("turtle1", "turtle2"):
+        drive(system, nan, math.inf, turtle=turtle)
+        ahead, there = TeleportRelative.Request(linear=most, angular=nan), TeleportAbsolute.Request(x=-most, y=nan)
+        system.call(TeleportRelative, f"{turtle}/teleport_relative", ahead)
+        system.call(SetPen, f"{turtle}/set_pen", SetPen.Request(width=255))
+        system.call(TeleportAbsolute, f"{turtle}/teleport_absolute", there)
+        drive(system, 1e308, -1e308, turtle=turtle)
+    rotate(system, nan)
+    system.run(1.0)
+    for turtle in ("turtle1", "turtle2"):
+        x, y, theta = place(system, turtle)
+        assert 0.0 <= x <= 11.09
+        assert 0.0 <= y <= 11.09
+        assert math.isfinite(theta)
+
+
 def test_there_is_a_limit(system: System, turtlesim: Any) -> None:
     turtlesim.turtles.update({f"x{count}": turtlesim.turtles["turtle1"] for count in range(MOST_TURTLES - 1)})
     assert spawn(system) == ""
