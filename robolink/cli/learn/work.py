@@ -11,7 +11,7 @@ from pathlib import Path
 import typer
 
 from robolink.cli.shared.output import say
-from robolink.exceptions import nearest
+from robolink.exceptions import RobolinkError, nearest
 from robolink.learn.exercise import Exercise, read_course
 from robolink.learn.folder import StudentFolder, find_folder, start_folder, the_folder
 from robolink.learn.isolated import check_apart
@@ -20,6 +20,10 @@ from robolink.learn.lines import course_listed, listed, next_step, reported, tas
 
 _PLAIN = {"✓": "+", "✗": "x", "→": ">"}
 """Marks for a terminal that lacks the others."""
+
+
+class NoFileError(RobolinkError, FileNotFoundError):
+    """A student's file is not there."""
 
 
 def language_of(asked: str | None) -> Language | None:
@@ -58,7 +62,10 @@ def start(path: str, source: str, language: Language | None) -> None:
 def check(name: str, language: Language | None) -> bool:
     """Check one exercise; return whether it is done."""
     folder = _here(language)
-    return _check(folder, folder.chosen(name))
+    exercise = folder.chosen(name)
+    if not folder.file_of(exercise).exists():
+        raise NoFileError(f"there is no {exercise.file} here: `robolink learn reset {exercise.name}` writes it again")
+    return _check(folder, exercise)
 
 
 def check_all(language: Language | None) -> bool:

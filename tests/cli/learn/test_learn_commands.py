@@ -133,6 +133,16 @@ def test_mistakes_are_one_line(here: Path, student: Path, monkeypatch: pytest.Mo
     assert capsys.readouterr().err.startswith("robolink: no exercises in this folder or above it")
 
 
+def test_a_file_that_is_gone_is_told(student: Path, capsys: Captured) -> None:
+    (student / "02_hello.py").unlink()
+    assert main(["learn", "check", "hello"]) == 1
+    told = "robolink: there is no 02_hello.py here: `robolink learn reset hello` writes it again\n"
+    assert capsys.readouterr().err == told
+    assert main(["learn", "reset", "hello"]) == 0
+    assert capsys.readouterr().out == "02_hello.py is there again\n"
+    assert (student / "02_hello.py").is_file()
+
+
 def test_marks_fit_the_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     class Old:
         encoding = "cp1252"
