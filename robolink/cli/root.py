@@ -11,6 +11,7 @@ import typer
 import typer.core
 import typer.main
 
+from robolink.cli.shared.noun import Noun
 from robolink.cli.shared.output import say
 from robolink.exceptions import nearest
 
@@ -61,19 +62,35 @@ COMMANDS = {
     "world": Entry("robolink.cli.world", "Check, draw and list the worlds that are simulated."),
     "interface": Entry("robolink.cli.interface", "See the types of messages, services and actions."),
     "security": Entry("robolink.cli.security", "Make keys for nodes, and say what each may do."),
+    "component": Entry("robolink.cli.component", "See what containers hold, and load nodes into them."),
+    "multicast": Entry("robolink.cli.multicast", "Try whether multicast passes between machines."),
     "network": Entry("robolink.cli.doctor.network", "See whom nodes may meet here, whom they have found, and how."),
     "router": Entry("robolink.cli.router", "Run a router, for machines that cannot reach each other directly."),
     "doctor": Entry("robolink.cli.doctor", "Find out what is wrong here or on the network."),
+    "shim": Entry("robolink.cli.shim", "Write a second command, ros2 or colcon, that leads to robolink."),
+    "daemon": Entry("robolink.cli.daemon", ""),
     "wtf": Entry("robolink.cli.doctor", ""),
 }
 
 
 OF_ROS2 = {
-    "component": "nodes of a launch file share a process where it says 'process: NAME' (docs/launch.md)",
-    "daemon": "there is none to start or stop: each command looks by itself",
-    "multicast": "nothing is sent by multicast but with --network lan; 'robolink doctor' looks at the network",
+    "control": "it speaks to ros2_control, which is C++; 'robolink run world' simulates a robot's drive and sensors",
+    "extension_points": "commands are no plugins here; 'robolink --help' lists them",
+    "extensions": "commands are no plugins here; 'robolink --help' lists them",
+    "plugin": "plugins of pluginlib are C++; 'robolink pkg executables' lists what can be run",
+    "test": "tests are pytest's, in virtual time (docs/testing.md)",
+    "trace": "it records traces of C++ with LTTng; 'robolink top' shows what nodes use and what topics carry",
 }
 """Commands of ros2 that robolink lacks, each with what to do instead."""
+VERBS_OF_ROS2 = {
+    ("action", "echo"): "'robolink topic echo ACTION/_action/feedback' shows the feedback",
+    ("bag", "burst"): "'robolink bag play --rate 1000' plays as fast as it can",
+    ("doctor", "hello"): "'robolink doctor' looks whom the nodes meet here, 'robolink network' shows them",
+    ("security", "create_key"): "it is 'robolink security create_enclave'",
+    ("security", "list_keys"): "it is 'robolink security list_enclaves'",
+    ("wtf", "hello"): "'robolink doctor' looks whom the nodes meet here, 'robolink network' shows them",
+}
+"""Verbs of ros2 that robolink lacks, each with what to do instead."""
 
 
 class Root(typer.core.TyperGroup):
@@ -95,6 +112,9 @@ class Root(typer.core.TyperGroup):
         """Return the command of the first word; end with a usage error that has the nearest name if it is unknown."""
         if args[0] in OF_ROS2:
             ctx.fail(f"ros2's '{args[0]}' is not here: {OF_ROS2[args[0]]}")
+        verb = next((each for each in args[1:] if not each.startswith("-")), "")
+        if (args[0], verb) in VERBS_OF_ROS2:
+            ctx.fail(f"ros2's '{args[0]} {verb}' is not here: {VERBS_OF_ROS2[args[0], verb]}")
         if args[0] not in COMMANDS:
             ctx.fail(f"no command named '{args[0]}'{nearest(args[0], COMMANDS)}")
         return super().resolve_command(ctx, args)
@@ -119,6 +139,7 @@ class Root(typer.core.TyperGroup):
 def _command_of(module: str) -> Any:
     """Import the module of a noun, and return its command; made once, for programs that call `main` again and again."""
     app: typer.Typer = importlib.import_module(module).app
+    app.info.cls = Noun
     app.rich_markup_mode = None  # plain help: rich takes longer to import than most commands to run
     app._add_completion = False
     return typer.main.get_command(app)

@@ -155,6 +155,14 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
             "robolink.counterparts.nav2_map_server.map_server:main", "Publishes a map of a file."
         ),
     },
+    "rclcpp_components": {
+        "component_container": Counterpart(
+            "robolink.cli.running_nodes.component_container:main", "Runs nodes that services load."
+        ),
+        "component_container_mt": Counterpart(
+            "robolink.cli.running_nodes.component_container:main_mt", "Runs nodes that services load, in threads."
+        ),
+    },
     "robot_state_publisher": {
         "robot_state_publisher": Counterpart(
             "robolink.counterparts.robot_state_publisher.robot_state_publisher:main", "Publishes a robot's transforms."

@@ -103,7 +103,6 @@ PACKAGES = {
     "apriltag_ros": f"finds AprilTags, in C++; {_THERE}",
     "aruco_ros": f"finds ArUco tags, in C++; cv2.aruco does the same in a node, else {_THERE}",
     "twist_mux": f"chooses among velocity commands, in C++; {_THERE}",
-    "rclcpp_components": "runs components in C++; a launch file's 'process: NAME' shares a process (docs/launch.md)",
     "rosbag2_*": "'robolink bag record' and 'robolink bag play' do the same",
 }
 """Advice by package, for any program of it; ``*`` stands for any letters, and a name without it goes first."""

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.main import main
-from robolink.cli.root import COMMANDS, OF_ROS2
+from robolink.cli.root import COMMANDS
 from robolink.launch.reading.entries import read_launch_file
 from robolink.workspace.ros_programs import PACKAGES, PROGRAMS, instead_of
 
 Captured = pytest.CaptureFixture[str]
-ADVICE = [*OF_ROS2.values(), *PROGRAMS.values(), *PACKAGES.values()]
+ADVICE = [*PROGRAMS.values(), *PACKAGES.values()]
 DOCS = Path(__file__).parents[2] / "docs"
 
 
@@ -28,13 +28,6 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.delenv("ROBOLINK_WORKSPACE", raising=False)
     monkeypatch.chdir(tmp_path)
     return package
-
-
-@pytest.mark.parametrize("command", ["component", "daemon", "multicast"])
-def test_a_command_that_only_ros2_has_says_what_to_do_instead(command: str, capsys: Captured) -> None:
-    assert main([command, "list"]) == 2
-    err = capsys.readouterr().err
-    assert err == f"robolink: ros2's '{command}' is not here: {OF_ROS2[command]} (see 'robolink --help')\n"
 
 
 @pytest.mark.parametrize(

@@ -169,6 +169,7 @@ TRIED: dict[str, list[Tried]] = {
     "interface show": [tried("interface show robolink_test/msg/Whisper")],
     "interface proto": [tried("interface proto robolink_test/msg/Whisper")],
     "interface package": [Tried(["interface", "package", EVIL])],
+    "component load": [Tried(["component", "load", EVIL, "a", "b"])],
     "pkg create": [Tried(["pkg", "create", EVIL]), Tried(["pkg", "create", "a", "--description", EVIL])],
     "pkg xml": [Tried(["pkg", "xml", EVIL])],
     "security create_enclave": [Tried(["security", "create_enclave", EVIL, "/a"])],

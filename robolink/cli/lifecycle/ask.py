@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from robolink.cli.shared.announced import absolute, is_hidden
+from robolink.cli.shared.calls import call_all
 from robolink.cli.shared.other_domains import no_such_node
-from robolink.cli.shared.session import node_of
-from robolink.exceptions import RobolinkError, ServiceError
-from robolink.executors import SingleThreadedExecutor
+from robolink.exceptions import RobolinkError
 from robolink.interfaces.lifecycle_msgs.srv import ChangeState, GetAvailableTransitions, GetState
 from robolink.system.terminal import shown
 from robolink.wire import EndpointKind
@@ -108,24 +106,8 @@ def _ask(
     context: Context, srv_type: type[Any], requests: dict[str, Any], within: float = ANSWER_WITHIN
 ) -> dict[str, Any]:
     """Call services, all at once, and return the response of each, or its error."""
-    deadline = time.monotonic() + within
-    with SingleThreadedExecutor(context=context) as executor:
-        asker = node_of(context)
-        executor.add_node(asker)
-        futures = {name: asker.create_client(srv_type, name).try_call_async(each) for name, each in requests.items()}
-        for future in futures.values():
-            executor.spin_until_future_complete(future, timeout_sec=max(0.0, deadline - time.monotonic()))
-            if not context.ok():
-                raise KeyboardInterrupt
-        answers = {name: _answer(name, future, within) for name, future in futures.items()}
-        asker.destroy_node()
-    return answers
 
-
-def _answer(service: str, future: Any, within: float) -> Any:
-    if not future.done():
+    def no_answer(service: str) -> RobolinkError:
         return LifecycleCommandError(f"no answer within {within:g} s from {service}: does the node spin?")
-    try:
-        return future.result()
-    except ServiceError as error:
-        return error
+
+    return call_all(context, srv_type, requests, within, no_answer)

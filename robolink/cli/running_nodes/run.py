@@ -115,6 +115,9 @@ def run(
         list[str] | None, typer.Option("--params-file", metavar="FILE", help="Parameters in a YAML file.")
     ] = None,
     workspace: Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Where to look first.")] = "",
+    prefix: Annotated[
+        str | None, typer.Option("--prefix", metavar="COMMAND", help="What runs it, such as 'gdb -ex run --args'.")
+    ] = None,
     show_list: Annotated[bool, typer.Option("--list", help="List the nodes that there are.")] = False,
 ) -> None:
     """Run a node: by name, from a file, or an executable of a package. All from --ros-args on is the node's."""
@@ -127,6 +130,13 @@ def run(
         ctx.fail("which node? --list shows them")
     flags = ros_flags(name, namespace, parameters or [], remappings or [], params_files or [])
     given = args or []
+    if prefix is not None:
+        from robolink.cli.running_nodes import prefix as prefixed
+
+        before = len(given) - ctx.meta[FIXED]
+        place = ["--workspace", workspace] if workspace else []
+        words = [*place, node, *given[:before], "--", *given[before:], *flags, *ctx.meta[META]]
+        raise typer.Exit(prefixed.run(prefix, ["run", *words]))
     command = runner.NodeCommand(node, given, len(given) - ctx.meta[FIXED])
     raise typer.Exit(runner.run(command, flags + ctx.meta[META], workspace or None))
 

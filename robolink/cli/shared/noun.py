@@ -1,0 +1,52 @@
+"""Command group of a noun, which takes ros2's flags for the graph on either side of the verb."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from typing import Any
+
+import typer.core
+
+HIDDEN = ("--include-hidden-topics", "--include-hidden-services", "--include-hidden-nodes", "--include-hidden-actions")
+"""Flags that ros2 takes before the verb, too."""
+WITHOUT_EFFECT = {"--no-daemon": False, "--use-sim-time": False, "--spin-time": True, **dict.fromkeys(HIDDEN, False)}
+"""Flags that ros2's verbs take, by whether a value follows: a verb that knows none of them goes without."""
+
+
+class Noun(typer.core.TyperGroup):
+    """Command group whose verbs take ros2's flags as ros2 does."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse the arguments."""
+        verb = next((each for each in args if not each.startswith("-")), None)
+        command = None if verb is None else self.get_command(ctx, verb)
+        if verb is not None and command is not None:
+            known = {flag for each in command.params for flag in each.opts}
+            args = arranged(args, args.index(verb), known)
+        left: list[str] = super().parse_args(ctx, args)
+        return left
+
+
+def arranged(args: Sequence[str], verb: int, known: Collection[str]) -> list[str]:
+    """Return the arguments with ros2's flags behind the verb, and without those that it does not know.
+
+    >>> arranged(["--include-hidden-topics", "list", "--no-daemon"], 1, {"--include-hidden-topics"})
+    ['list', '--include-hidden-topics']
+
+    Args:
+        args: Words after the noun.
+        verb: Index of the verb.
+        known: Flags of the verb.
+    """
+    moved = [each for each in args[:verb] if each in HIDDEN]
+    rest = [*(each for each in args[:verb] if each not in HIDDEN), args[verb]]
+    words = iter([*moved, *args[verb + 1 :]])
+    for each in words:
+        flag, equals, _ = each.partition("=")
+        if each == "--":
+            return [*rest, each, *words]
+        if flag not in WITHOUT_EFFECT or flag in known:
+            rest.append(each)
+        elif WITHOUT_EFFECT[flag] and not equals:
+            next(words, None)
+    return rest

@@ -1,0 +1,43 @@
+"""robolink shim: second names of the command, so that a course's own lines with ros2 and colcon work."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from robolink.cli.shared.output import say, tell
+
+app = typer.Typer(help="Write a second command, ros2 or colcon, that leads to robolink.")
+
+TARGETS = {"ros2": "robolink.cli.main", "colcon": "robolink.cli.shim.colcon"}
+"""Modules whose `main` the commands call."""
+
+
+def _checked(name: str) -> str:
+    if name not in TARGETS:
+        raise typer.BadParameter(f"'{name[:50]}' is none of {', '.join(TARGETS)}")
+    return name
+
+
+@app.command("shim")
+def shim(
+    name: Annotated[str, typer.Argument(metavar="ros2|colcon", help="The command's name.", callback=_checked)],
+    remove: Annotated[bool, typer.Option("--remove", help="Take it away again.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Also where a real one would be hidden.")] = False,
+    folder: Annotated[
+        Path | None, typer.Option("--folder", metavar="FOLDER", help="Where; by default where robolink's command is.")
+    ] = None,
+) -> None:
+    """Write a command ros2, which is robolink by another name, or colcon, whose build has nothing to build."""
+    from robolink.cli.shim import writing
+
+    place = folder or writing.scripts_folder()
+    if remove:
+        say(f"removed {writing.remove(place, name)}")
+        return
+    path = writing.write(place, name, TARGETS[name], force=force)
+    say(f"made {path}; 'robolink shim {name} --remove' takes it away")
+    if not writing.is_on_path(place):
+        tell(f"{place} is not on the PATH of this shell: activate its environment, or add it")

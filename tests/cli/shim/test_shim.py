@@ -1,0 +1,117 @@
+"""robolink shim: commands ros2 and colcon lead to robolink, and no command of others is touched."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from robolink.cli.main import main
+from robolink.cli.shim import colcon
+from tests.support.ros_tree import write_package
+
+Captured = pytest.CaptureFixture[str]
+SUFFIX = ".cmd" if sys.platform == "win32" else ""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder of commands, which alone is on the PATH."""
+    (tmp_path / "it's bin").mkdir()
+    monkeypatch.setenv("PATH", str(tmp_path / "it's bin"))
+    return tmp_path / "it's bin"
+
+
+def shim(*words: str, folder: Path) -> int:
+    return main(["shim", *words, "--folder", str(folder)])
+
+
+@pytest.mark.processes
+def test_the_command_is_robolink_by_another_name(folder: Path, capsys: Captured) -> None:
+    assert shim("ros2", folder=folder) == 0
+    path = folder / f"ros2{SUFFIX}"
+    assert capsys.readouterr().out == f"made {path}; 'robolink shim ros2 --remove' takes it away\n"
+    environ = {**os.environ, "PATH": f"/bin:/usr/bin:{folder}"}
+    asked = subprocess.run([path, "daemon", "status"], capture_output=True, text=True, env=environ, check=False)
+    assert (asked.returncode, asked.stdout[:29]) == (0, "The daemon is not running: ro")
+    wrong = subprocess.run([path, "tpic"], capture_output=True, text=True, env=environ, check=False)
+    assert (wrong.returncode, "did you mean 'topic'?" in wrong.stderr) == (2, True)
+
+
+def test_it_is_written_again_and_taken_away(folder: Path, capsys: Captured) -> None:
+    assert [shim("ros2", folder=folder), shim("ros2", folder=folder), shim("ros2", "--remove", folder=folder)] == [
+        0
+    ] * 3
+    assert list(folder.iterdir()) == []
+    capsys.readouterr()
+    assert shim("ros2", "--remove", folder=folder) == 1
+    assert capsys.readouterr().err == f"robolink: {folder / f'ros2{SUFFIX}'} is not there\n"
+
+
+@pytest.mark.parametrize("place", ["there", "elsewhere"])
+def test_a_real_one_is_left_alone_unless_that_is_asked_for(
+    place: str, folder: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = (folder if place == "there" else tmp_path) / f"ros2{SUFFIX}"
+    real.write_text("#!/bin/sh\n")
+    real.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{folder}{os.pathsep}{tmp_path}")
+    assert shim("ros2", folder=folder) == 1
+    verb = "replace" if place == "there" else "hide"
+    assert f"{real} is a real ros2, which this one would {verb}; --force" in capsys.readouterr().err
+    if place == "there":
+        assert shim("ros2", "--remove", folder=folder) == 1
+        assert "was not made by 'robolink shim': it stays" in capsys.readouterr().err
+    assert real.read_text() == "#!/bin/sh\n"
+    assert shim("ros2", "--force", folder=folder) == 0
+    assert "robolink" in (folder / f"ros2{SUFFIX}").read_text()
+
+
+def test_what_cannot_be_written_is_one_line(tmp_path: Path, capsys: Captured) -> None:
+    assert shim("colcon", folder=tmp_path / "gone") == 1
+    assert shim("rosdep", folder=tmp_path) == 2
+    first, second = capsys.readouterr().err.splitlines()
+    assert "cannot be written: No such file" in first
+    assert "'rosdep' is none of ros2, colcon" in second
+
+
+# --- colcon -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def ws(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    write_package(tmp_path / "src", "pkg_one", {"a.py": ""})
+    (tmp_path / "src/pkg_two").mkdir()
+    (tmp_path / "src/pkg_two/package.xml").write_text("<package><name>pkg_two</name></package>")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_build_finds_what_there_is_and_can_be_sourced(ws: Path, capsys: Captured) -> None:
+    for words in ([], ["--symlink-install", "--packages-select", "pkg_one", "pkg_two", "--event-handlers", "x"]):
+        assert colcon.main(["build", *words]) == 0
+        assert capsys.readouterr().out.startswith("2 packages found, nothing has to be built")
+    assert (ws / "install/COLCON_IGNORE").is_file()
+    assert (ws / "install/setup.bash").read_text().startswith("# Made by")
+    assert colcon.main(["build", "--packages-select", "pkg_oen"]) == 1
+    assert "no package named 'pkg_oen'" in capsys.readouterr().err
+
+
+def test_what_was_really_built_stays(ws: Path) -> None:
+    (ws / "install").mkdir()
+    (ws / "install/pkg_one").touch()
+    assert colcon.main(["build"]) == 0
+    assert [each.name for each in (ws / "install").iterdir()] == ["pkg_one"]
+
+
+@pytest.mark.usefixtures("ws")
+def test_the_other_verbs(capsys: Captured) -> None:
+    assert [colcon.main([each]) for each in ("list", "test", "--help")] == [0, 0, 0]
+    assert colcon.main([]) == 0
+    out = capsys.readouterr().out
+    assert f"pkg_one\t{Path('src/pkg_one')}\t(ros.ament_python)\npkg_two\t" in out
+    assert colcon.main(["graph"]) == 2
+    assert capsys.readouterr().err == "robolink: colcon graph is not here: colcon build | colcon list | colcon test\n"
