@@ -94,6 +94,10 @@ ROOMS = {
     "launch.invalid_launch_file_error": "robolink.companions.launch.launch_description_sources",
     "launch.launch_service": "robolink.companions.launch",
     "launch_ros": "robolink.companions.launch_ros",
+    "launch_xml": "robolink.companions.launch_frontend",
+    "launch_xml.launch_description_sources": "robolink.companions.launch_frontend.sources",
+    "launch_yaml": "robolink.companions.launch_frontend",
+    "launch_yaml.launch_description_sources": "robolink.companions.launch_frontend.sources",
 }
 """Modules by name; '' is a package with nothing in it. A name below another is below its module."""
 

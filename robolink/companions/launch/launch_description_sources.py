@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import sys
 from collections.abc import Callable
 from importlib.machinery import SourceFileLoader
@@ -31,8 +32,9 @@ __all__ = [
 MAKER = "generate_launch_description"
 """Name of the function in a Python launch file."""
 
-PARSERS: dict[str, Callable[[Path], LaunchDescription]] = {}
-"""Parsers of launch files by suffix, besides Python's; `frontend` adds its own."""
+_FRONTEND = "robolink.companions.launch_frontend.build"
+"""Module of the parser of XML and YAML, which is imported for such a file only: it needs all of the actions."""
+_FRONTEND_SUFFIXES = (".xml", ".launch", ".yaml", ".yml")
 
 
 class InvalidLaunchFileError(LaunchError):
@@ -141,16 +143,14 @@ class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
 
 def read_launch_file(path: Path) -> LaunchDescription:
     """Read a launch file at `path` of any kind; raises LaunchError, and whatever a Python file raises."""
-    parser = PARSERS.get(path.suffix)
     if path.suffix == ".py":
         return read_python_file(path)
     if not path.is_file():
         raise LaunchFileNotFoundError(path)
-    if parser is None:
-        raise InvalidLaunchFileError(
-            f"{path} is no launch file: expected .py{''.join(f', {each}' for each in PARSERS)}"
-        )
-    return parser(path)
+    if path.suffix not in _FRONTEND_SUFFIXES:
+        raise InvalidLaunchFileError(f"{path} is no launch file: expected .py, {', '.join(_FRONTEND_SUFFIXES)}")
+    parse: Callable[[Path], LaunchDescription] = importlib.import_module(_FRONTEND).parse
+    return parse(path)
 
 
 def read_python_file(path: Path) -> LaunchDescription:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 from pathlib import Path
 
@@ -10,7 +11,9 @@ from robolink.system.plainfile import read_plain
 YAML = (".yaml", ".yml")
 PROGRAMS = (".py", ".xml", ".launch")
 """Suffixes of the launch files that only ROS 2 has."""
-_LAUNCH_KEY = re.compile(rb"^(?:%YAML.*|---)?\s*(?:#.*\s*)*^[\"']?launch[\"']?\s*:", re.MULTILINE)
+_LAUNCH_KEY = re.compile(rb"[\"']?launch[\"']?\s*:")
+_NO_KEY = re.compile(rb"\s*(?:#.*|---.*|%.*)?")
+"""Lines that may stand before the first key."""
 _LONGEST = 10_000_000
 
 
@@ -19,6 +22,8 @@ def is_of_ros(path: Path) -> bool:
     if path.suffix in PROGRAMS:
         return True
     try:
-        return _LAUNCH_KEY.match(read_plain(path, _LONGEST)) is not None
+        lines = read_plain(path, _LONGEST).removeprefix(codecs.BOM_UTF8).splitlines()
     except (OSError, ValueError):  # whoever reads it says what is wrong
         return False
+    first = next((each for each in lines if not _NO_KEY.fullmatch(each)), b"")
+    return _LAUNCH_KEY.match(first) is not None

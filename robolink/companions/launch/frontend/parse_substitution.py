@@ -99,6 +99,8 @@ def _made(arguments: Sequence[Argument], written: str) -> Substitution:
         raise SubstitutionSyntaxError(f"'{shown(written, 60)}' names no substitution")
     name, given = arguments[0][0].text, arguments[1:]
     makers = _makers()
+    if name in _OF_ROS_1:
+        raise SubstitutionSyntaxError(f"$({name} ...) is ROS 1: $({_OF_ROS_1[name]} ...) is what ROS 2 has")
     if name not in makers:
         raise SubstitutionSyntaxError(f"no substitution is called '{shown(name)}'{nearest(name, makers)}")
     least, most, maker = makers[name]
@@ -109,6 +111,7 @@ def _made(arguments: Sequence[Argument], written: str) -> Substitution:
     return made
 
 
+_OF_ROS_1 = {"arg": "var", "find": "find-pkg-share", "optenv": "env"}
 MANY = 1000
 """Upper bound of the arguments of those substitutions that take any number."""
 
