@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import sys
 from typing import Any
 
 import robolink
@@ -11,6 +12,7 @@ from robolink.clock import Clock
 from robolink.clock_type import ClockType
 from robolink.counterparts.turtlesim.picture import BACKGROUND, Canvas, Colour
 from robolink.counterparts.turtlesim.running_turtle import RunningTurtle
+from robolink.counterparts.turtlesim.terminal import draw_in_terminal, terminal_room
 from robolink.counterparts.turtlesim.turtle import CENTRE, PERIOD, Turtle
 from robolink.counterparts.turtlesim.window import window
 from robolink.exceptions import ExternalShutdownException
@@ -167,14 +169,17 @@ class TurtleSim(Node):
 
 
 def main(args: list[str] | None = None) -> None:
-    """Run turtlesim until Ctrl-C, with its window in the browser."""
-    with robolink.init(args=args), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+    """Run turtlesim until Ctrl-C, with its window in the browser; with `--terminal` in the terminal instead."""
+    ends = contextlib.suppress(KeyboardInterrupt, ExternalShutdownException)
+    with robolink.init(args=args), ends, contextlib.ExitStack() as stack:
+        size = stack.enter_context(terminal_room()) if "--terminal" in (sys.argv if args is None else args) else 0
         node = TurtleSim()
-        try:
-            with window(node, node.picture.topic_name):
-                robolink.spin(node)
-        finally:
-            node.destroy_node()
+        stack.callback(node.destroy_node)
+        if size:
+            draw_in_terminal(node, size)
+        else:
+            stack.enter_context(window(node, node.picture.topic_name))
+        robolink.spin(node)
 
 
 if __name__ == "__main__":
