@@ -120,7 +120,7 @@ STOLEN = '<!DOCTYPE r [<!ENTITY a SYSTEM "file:///etc/passwd">]><robot name="r">
         (BOMB, "r:1: a DOCTYPE or entities, which are not read here"),
         (STOLEN, "r:1: a DOCTYPE or entities, which are not read here"),
         ("<robot>" + "<a>" * 10_000, "r:1: deeper than 32 elements"),
-        ("<robot>" + "<a/>" * 200_000, "r:1: more than 100000 elements"),
+        ("<robot>" + "<a/>" * 100_001, "r:1: more than 100000 elements"),
         ("<robot>" + "x" * 5_000_001, "r: it is longer than 5 MB"),
         (f"<robot>{chr(0xD800)}", "r: it has characters that are none"),
         ("<robot>\0</robot>", "r:1:8: no XML: not well-formed (invalid token)"),
@@ -138,11 +138,11 @@ def test_what_is_hostile_is_one_line(text: str, said: str) -> None:
 
 
 def test_a_long_chain_is_read() -> None:
-    count = 20_000
+    count = 5_000
     links = " ".join(f"l{each}" for each in range(count + 1))
     chain = [joint(f"j{each}", f"l{each}", f"l{each + 1}") for each in range(count)]
     assert parse_urdf(robot(*chain, links=links)).root == "l0"
-    with pytest.raises(DocumentError, match=r"below each other in a circle: l1 -> l0 -> l20000 -> .* -> l1"):
+    with pytest.raises(DocumentError, match=r"below each other in a circle: l1 -> l0 -> l5000 -> .* -> l1"):
         parse_urdf(robot(*chain, joint("back", f"l{count}", "l0"), links=links))
 
 

@@ -242,7 +242,7 @@ def _circle(above: dict[str, str]) -> list[str]:
         if name is not None and name in way:
             names = list(way)
             return names[names.index(name) :]
-        done |= way.keys()
+        done.update(way)
     return []
 
 

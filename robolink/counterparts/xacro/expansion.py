@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import importlib
 import re
+import warnings
 from pathlib import Path
 from typing import Any
 from xml.parsers.expat import ErrorString, ExpatError
@@ -59,8 +60,10 @@ def _package() -> Any:
 
     compat.activate()
     try:
-        xacro = importlib.import_module("xacro")
-        importlib.import_module("xacro.cli")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.10 warns of a part of the package
+            xacro = importlib.import_module("xacro")
+            importlib.import_module("xacro.cli")
     except ImportError as error:
         if (error.name or "").partition(".")[0] == "xacro":
             raise XacroMissingError(INSTALL) from None
