@@ -12,7 +12,7 @@ PARALLEL ?= -n 3 --dist loadfile --no-loadscope-reorder
 # Compiled modules are kept, whatever the environment says: tests start robolink a few hundred times.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: help demo test docs fast check lint types floors coverage format pages bench hooks node clean
+.PHONY: help demo test docs fast lowest check lint types floors coverage format pages bench hooks node clean
 
 help:  ## This list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/\1\t\2/p' $(MAKEFILE_LIST) | awk -F'\t' '{printf "make %-9s %s\n", $$1, $$2}'
@@ -61,6 +61,13 @@ pages: $(READY)  ## Write the generated pages of docs/development
 
 docs: $(SITE)  ## The documentation site, in English and Portuguese, into build/docs/site
 	$(BIN)/python -m tools.docs_site
+
+# Python 3.10, since later ones have no wheels of some of the lowest versions.
+lowest:  ## The fast tests with the lowest versions that pyproject.toml allows
+	$(PYTHON) -m venv $(VENV)-lowest
+	$(PYTHON) tools/lowest.py > $(VENV)-lowest/lowest.txt
+	$(VENV)-lowest/bin/python -m pip install --quiet --constraint $(VENV)-lowest/lowest.txt --editable .[dev]
+	$(VENV)-lowest/bin/python -m pytest -n 4 --dist worksteal -m "not processes and not slow" --hypothesis-profile quick $(ARGS)
 
 bench: $(READY)  ## Speed beside peers, in one run each
 	$(BIN)/python benchmarks/messaging.py --all --rounds 3 --seconds 0.3

@@ -5,18 +5,15 @@ Draft 7, which the editors' YAML servers know; msgspec writes a later draft, who
 
 from __future__ import annotations
 
-import inspect
-import json
 from typing import Any, TypeAlias
 
 import msgspec
 
+from robolink.documents.json_schema import DRAFT, draft_7, text_of
 from robolink.sim.description import WorldDescription
 from robolink.sim.sensors import SENSORS, Sensor
 
 Schema: TypeAlias = "dict[str, Any]"
-
-DRAFT = "http://json-schema.org/draft-07/schema#"
 
 MEANINGS = {
     "WorldDescription.world": "The world as a whole.",
@@ -110,7 +107,7 @@ def world_schema() -> Schema:
     """Return the schema of world files as plain data."""
     types = [WorldDescription, *SENSORS.values()]
     _, parts = msgspec.json.schema_components(types, schema_hook=_any_sensor, ref_template="#/definitions/{name}")
-    definitions = {name: _described(name, _draft_7(part)) for name, part in sorted(parts.items())}
+    definitions = {name: _described(name, draft_7(part)) for name, part in sorted(parts.items())}
     for shape in ("Shape", "Obstacle"):
         definitions[shape]["oneOf"] = _OUTLINES
     definitions["Paint"]["oneOf"] = [{"required": ["line"]}, *_OUTLINES]
@@ -121,7 +118,7 @@ def world_schema() -> Schema:
 
 def schema_text() -> str:
     """Return the schema as the text of a file."""
-    return json.dumps(world_schema(), indent=2, ensure_ascii=False) + "\n"
+    return text_of(world_schema())
 
 
 def _any_sensor(kind: type) -> Schema:
@@ -129,28 +126,6 @@ def _any_sensor(kind: type) -> Schema:
     if kind is not Sensor:
         raise NotImplementedError(kind)
     return {"oneOf": [{"$ref": f"#/definitions/{each.__name__}"} for each in SENSORS.values()]}
-
-
-def _draft_7(part: Any) -> Any:
-    """Convert a part of a schema to draft 7: pairs, and keys beside a reference."""
-    if isinstance(part, list):
-        return [_draft_7(each) for each in part]
-    if not isinstance(part, dict):
-        return part
-    told = {key: value for key, value in part.items() if key != "default" or _is_telling(value)}
-    made = {key: _draft_7(value) for key, value in told.items()}
-    if "description" in made:
-        made["description"] = inspect.cleandoc(made["description"]).partition("\n\nArgs:")[0]  # keys say their own
-    if "prefixItems" in made:
-        made["items"], made["additionalItems"] = made.pop("prefixItems"), False
-    if "$ref" in made and len(made) > 1:
-        made["allOf"] = [{"$ref": made.pop("$ref")}]
-    return made
-
-
-def _is_telling(default: Any) -> bool:
-    """True if a default helps a writer: those of whole parts only say that they may be left out."""
-    return default is not None and default != [] and not isinstance(default, dict)
 
 
 def _described(name: str, part: Schema) -> Schema:

@@ -10,6 +10,7 @@ import typer.core
 
 from robolink.cli.launching.completion import launch_words
 from robolink.cli.launching.launch_arguments import ASSIGN, LaunchFile, launch_file
+from robolink.cli.launching.schemas import show_launch_schema
 from robolink.cli.shared.layout import aligned
 from robolink.cli.shared.options import GRAPH_FORMATS, choice, seconds
 from robolink.cli.shared.options import enclave as enclave_option
@@ -115,6 +116,12 @@ def launch(
     record: Annotated[
         str | None, typer.Option("--record", metavar="[FOLDER]", help="Record all that is published into a bag.")
     ] = None,
+    schema: Annotated[
+        bool,
+        typer.Option(
+            "--schema", callback=show_launch_schema, is_eager=True, help="Print the JSON schema of the files."
+        ),
+    ] = False,
     enclave: Annotated[str, enclave_option("Whose keys --record, --view and the launcher have; / by default.")] = "",
 ) -> None:
     """Run a system of nodes until the first of them ends, Ctrl-C, or for a while: `launch follow --duration 60`.

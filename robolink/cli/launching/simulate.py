@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from robolink.cli.launching.completion import launch_words
+from robolink.cli.launching.schemas import show_faults_schema
 from robolink.cli.shared import complete
 from robolink.cli.shared.options import seconds
 from robolink.cli.shared.output import say, tell
@@ -112,6 +113,12 @@ def simulate(
         bool, typer.Option("--verbose", "-v", help="Show all that nodes log, not only warnings.")
     ] = False,
     workspace: Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Where to look first.")] = "",
+    schema: Annotated[
+        bool,
+        typer.Option(
+            "--schema", callback=show_faults_schema, is_eager=True, help="Print the JSON schema of faults files."
+        ),
+    ] = False,
 ) -> None:
     """Run a system of nodes in virtual time, as fast as it goes; end with a summary and a hash of all it published.
 

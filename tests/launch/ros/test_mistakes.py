@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,11 @@ from tests.support.ros_launch import FIRST, read, write
 BODIES = [
     ("raise KeyError('x')", 1, "KeyError: 'x'"),
     ("import foo_bar", 1, "ModuleNotFoundError: No module named 'foo_bar'"),
-    ("from launch_ros.actions import Nod", 1, "robolink 0.1.0 has no launch_ros.actions.Nod (did you mean 'Node'?)"),
+    (
+        "from launch_ros.actions import Nod",
+        1,
+        f"robolink {version('robolink')} has no launch_ros.actions.Nod (did you mean 'Node'?)",
+    ),
     ("import sys; sys.exit(3)", 1, "it ends the program: sys.exit(3)"),
     ("open(get_package_share_directory('nobody') + '/x')", 1, "package nobody is not here, and its x is needed"),
     ("return [1]", None, "generate_launch_description() returned list, and a LaunchDescription was expected"),

@@ -1,0 +1,86 @@
+"""What is published: one version everywhere, a long description without relative links, extras, lowest versions."""
+
+from __future__ import annotations
+
+import re
+import runpy
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robolink.documents.yamlfile import parse
+
+ROOT = Path(__file__).parents[2]
+PYPROJECT = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+RELEASE = runpy.run_path(str(ROOT / "tools" / "release.py"))
+LOWEST = runpy.run_path(str(ROOT / "tools" / "lowest.py"))
+
+
+def described() -> str:
+    """The README as hatch-fancy-pypi-readme changes it by pyproject.toml."""
+    text = README
+    pairs = re.findall(r"^pattern = '(.*)'\nreplacement = '(.*)'$", PYPROJECT, re.MULTILINE)
+    assert len(pairs) == 2
+    for pattern, replacement in pairs:
+        text = re.sub(pattern, replacement, text)
+    return text
+
+
+def test_the_long_description_has_no_relative_links() -> None:
+    assert re.search(r"\]\((?!https?://)", README)  # or this test proves nothing
+    text = described()
+    assert re.findall(r"\]\((?!https?://)[^)]*\)", text) == []
+    assert "docs/testing.md has the rest" in text
+    assert re.findall(r"\]\(https://[^)]+\)", text) == re.findall(r"\]\(https://[^)]+\)", README)
+
+
+def test_version_citation_and_changelog_are_checked_against_the_tag(tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").write_text('[project]\nversion = "1.2.0"\n')
+    (tmp_path / "CITATION.cff").write_text("version: 1.2.0\n")
+    changelog = tmp_path / "CHANGELOG.md"
+    changelog.write_text("# Changelog\n\n## Unreleased\n\n- x\n\n## 1.2.0 - 2030-01-01\n\n- y\n\n## 1.1.0\n\n- z\n")
+    assert RELEASE["notes"]("v1.2.0", tmp_path) == "- y\n"
+    with pytest.raises(ValueError, match=r"pyproject.toml: the version is 1.2.0, the tag is v1.3.0"):
+        RELEASE["notes"]("v1.3.0", tmp_path)
+    changelog.write_text("# Changelog\n\n## Unreleased\n")
+    with pytest.raises(ValueError, match=r"CHANGELOG.md: no section '## 1.2.0'"):
+        RELEASE["notes"]("v1.2.0", tmp_path)
+    (tmp_path / "CITATION.cff").write_text("version: 1.1.0\n")
+    with pytest.raises(ValueError, match=r"CITATION.cff: the version is 1.1.0"):
+        RELEASE["notes"]("v1.2.0", tmp_path)
+
+
+def test_the_citation_has_the_version_of_the_project() -> None:
+    version = RELEASE["VERSION"].search(PYPROJECT)
+    cited: Any = parse((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert version is not None
+    assert str(cited["version"]) == version[1]
+    assert {"cff-version", "message", "title", "authors"} <= set(cited)
+
+
+def test_all_is_every_extra_that_users_install() -> None:
+    extras = re.findall(
+        r"^(\w+) = \[", PYPROJECT.partition("[project.optional-dependencies]")[2].partition("\n[")[0], re.MULTILINE
+    )
+    assert sorted(extras) == sorted([*LOWEST["USERS"], "all", "docs", "dev"])
+    assert f'all = ["robolink[{",".join(sorted(LOWEST["USERS"]))}]"]' in PYPROJECT
+
+
+def test_every_dependency_has_a_lowest_version() -> None:
+    block = PYPROJECT.partition("\ndependencies = [")[2].partition("\n]")[0]
+    names = re.findall(r'^    "([\w.-]+)', block, re.MULTILINE)
+    assert len(names) > 8
+    constraints = list(LOWEST["lowest"](PYPROJECT))
+    assert [each.partition("==")[0] for each in constraints[: len(names)]] == names
+    assert all(re.fullmatch(r"[\w.-]+==\d[\w.]*", each) for each in constraints)
+
+
+def test_workflows_pin_actions_of_others_and_name_no_branch_of_them() -> None:
+    for file in (ROOT / ".github" / "workflows").glob("*.yml"):
+        used = re.findall(r"uses: (\S+)", file.read_text(encoding="utf-8"))
+        assert used
+        assert [each for each in used if not re.search(r"@(v\d[\w.]*|[0-9a-f]{40})$", each)] == []
+        foreign = [each for each in used if not each.startswith(("actions/", "./"))]
+        assert [each for each in foreign if not re.search(r"@[0-9a-f]{40}$", each)] == []
