@@ -62,12 +62,12 @@ pages: $(READY)  ## Write the generated pages of docs/development
 docs: $(SITE)  ## The documentation site, in English and Portuguese, into build/docs/site
 	$(BIN)/python -m tools.docs_site
 
-# Python 3.10, since later ones have no wheels of some of the lowest versions.
+# Python 3.10, since later ones have no wheels of some of the lowest versions. What those take of newer ones warns.
 lowest:  ## The fast tests with the lowest versions that pyproject.toml allows
 	$(PYTHON) -m venv $(VENV)-lowest
 	$(PYTHON) tools/lowest.py > $(VENV)-lowest/lowest.txt
 	$(VENV)-lowest/bin/python -m pip install --quiet --constraint $(VENV)-lowest/lowest.txt --editable .[dev]
-	$(VENV)-lowest/bin/python -m pytest -n 4 --dist worksteal -m "not processes and not slow" --hypothesis-profile quick $(ARGS)
+	$(VENV)-lowest/bin/python -m pytest -W ignore::DeprecationWarning -n 4 --dist worksteal -m "not processes and not slow" --hypothesis-profile quick $(ARGS)
 
 bench: $(READY)  ## Speed beside peers, in one run each
 	$(BIN)/python benchmarks/messaging.py --all --rounds 3 --seconds 0.3

@@ -329,6 +329,7 @@ def _place(text: str, position: int) -> tuple[int, int]:
 
 
 _CLEARER = {
+    "exceeded maximum nesting depth": f"nested more than {MAX_DEPTH} levels deep",  # libyaml's own limit
     "'\\t'": "a tab where only spaces may stand",
     "mapping values are not allowed here": "a second ': ' in one value, or a key that is indented wrongly",
     "expected <block end>": "this does not go on with the block above it: check its indentation and its '-'",
