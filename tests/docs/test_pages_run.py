@@ -13,7 +13,18 @@ from tools.docs_site.pages import DOCS, Page, pages
 
 WRITTEN = [each for each in pages("en") if each.source is not None and DOCS / "en" in each.source.parents]
 RUN = [each for each in WRITTEN if blocks(each.text())]
-REASONS = {"installs packages", "needs a robot", "needs ROS 2"}
+REASONS = {
+    "installs packages",
+    "is for Windows",
+    "is for a Raspberry Pi",
+    "is for a shell's settings",
+    "makes keys for a class",
+    "needs Docker",
+    "needs ROS 2",
+    "needs a robot",
+    "needs a world of Webots",
+    "needs running nodes",
+}
 """Why blocks are not run, over all pages."""
 
 

@@ -90,7 +90,8 @@ def gather(language: str) -> None:
 
 def finished(page: Page, known: dict[Path, str]) -> str:
     """Return a page's text as it is on the site: links between pages, and the English anchors in both languages."""
-    assert page.source is not None
+    if page.source is None:
+        return page.text()
     text = with_site_links(page.text(), page.source, page.address, known)
     english = next(each for each in pages("en") if each.address == page.address)
     text = with_anchors(text, slugs(english.text()))

@@ -12,6 +12,8 @@ ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 LIST = DOCS / "site.yaml"
 LANGUAGES = ("en", "pt")
+GENERATED = "generated"
+"""Source of the pages that `tools/docs_site/reference.py` makes."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,10 @@ class Page:
 
     def text(self) -> str:
         """Return the text as it is written."""
-        assert self.source is not None, f"{self.address} is generated"
+        if self.source is None:
+            from tools.docs_site.reference import text  # imports robolink, which few need
+
+            return text(Path(self.address).stem, self.language)
         return self.source.read_text(encoding="utf-8")
 
 
@@ -49,6 +54,8 @@ def pages(language: str) -> list[Page]:
 
 def _page(language: str, address: str, source: str | None) -> Page:
     own = DOCS / language / address
+    if source == GENERATED:
+        return Page(language, address, None)
     if source is None or own.exists():
         return Page(language, address, own)
     return Page(language, address, ROOT / source, is_translated=language == "en")

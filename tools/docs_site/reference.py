@@ -1,0 +1,239 @@
+"""Generated pages of the reference, in both languages: commands, Python API, message types, keys of files."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+from collections.abc import Iterator
+from typing import Any
+
+API = (
+    "robolink.node",
+    "robolink.publisher",
+    "robolink.subscription",
+    "robolink.client",
+    "robolink.service",
+    "robolink.timer",
+    "robolink.parameter",
+    "robolink.qos",
+    "robolink.executors",
+    "robolink.callback_groups",
+    "robolink.task",
+    "robolink.clock",
+    "robolink.time",
+    "robolink.duration",
+    "robolink.action",
+    "robolink.lifecycle",
+    "robolink.image",
+    "robolink.testing",
+    "robolink.control.pid",
+    "robolink.control.scan_controller",
+)
+"""Modules whose public classes and functions are described."""
+
+WORDS: dict[str, dict[str, str]] = {
+    "cli": {"en": "Commands", "pt": "Comandos"},
+    "cli.about": {
+        "en": "Every command and option. `robolink COMMAND --help` says the same.",
+        "pt": "Todos os comandos e opções. `robolink COMMAND --help` diz o mesmo, em inglês, como esta página.",
+    },
+    "option": {"en": "option", "pt": "opção"},
+    "meaning": {"en": "meaning", "pt": "significado"},
+    "api": {"en": "Python API", "pt": "API de Python"},
+    "api.about": {
+        "en": "What programs use most, from its docstrings. The modules have rclpy's names.",
+        "pt": "O que os programas mais usam, das docstrings, que são em inglês. Os módulos têm os nomes de rclpy.",
+    },
+    "messages": {"en": "Messages, services, actions", "pt": "Mensagens, serviços, ações"},
+    "messages.about": {
+        "en": "The types that are included. `robolink interface show TYPE` shows one with all that is in it.",
+        "pt": "Os tipos incluídos. `robolink interface show TYPE` mostra um com tudo o que há nele.",
+    },
+    "type": {"en": "type", "pt": "tipo"},
+    "fields": {"en": "fields", "pt": "campos"},
+    "files": {"en": "Keys of files", "pt": "Chaves de arquivos"},
+    "files.about": {
+        "en": "Launch files, faults files and world files. Editors complete and check them: the first line of a file"
+        " says where its schema is, `# yaml-language-server: $schema=launch.schema.json`; `robolink launch --schema`,"
+        " `robolink simulate --schema` and `robolink world schema` print them.",
+        "pt": "Launch files, arquivos de falhas e de mundos. Editores os completam e conferem: a primeira linha de um"
+        " arquivo diz onde está o schema, `# yaml-language-server: $schema=launch.schema.json`; `robolink launch"
+        " --schema`, `robolink simulate --schema` e `robolink world schema` os mostram.",
+    },
+    "key": {"en": "key", "pt": "chave"},
+    "default": {"en": "default", "pt": "padrão"},
+}
+
+
+def text(name: str, language: str) -> str:
+    """Return a generated page.
+
+    Args:
+        name: cli, api, messages or files.
+        language: en or pt: that of headings; docstrings and helps are in English.
+    """
+    made: dict[str, Any] = {"cli": _cli, "api": _api, "messages": _messages, "files": _files}
+    head = [f"# {WORDS[name][language]}", "", WORDS[f"{name}.about"][language], ""]
+    return "\n".join([*head, *made[name](language)]) + "\n"
+
+
+def cell(words: str) -> str:
+    """Return a text as it stands in a cell of a table."""
+    return " ".join(words.split()).replace("|", "\\|").replace("<", "&lt;")
+
+
+def table(*heads: str) -> list[str]:
+    """Return the first lines of a table."""
+    return [f"| {' | '.join(heads)} |", f"|{'---|' * len(heads)}"]
+
+
+# Commands
+
+
+def _cli(language: str) -> Iterator[str]:
+    from robolink.cli.root import command
+
+    root = command()
+    for path, each in _leaves(root, []):
+        yield f"## robolink {' '.join(path)}\n"
+        yield f"{inspect.cleandoc(each.help or '')}\n"
+        options = [param for param in each.params if not getattr(param, "hidden", False) and param.name != "help"]
+        if options:
+            yield from table(WORDS["option"][language], WORDS["meaning"][language])
+            yield from (f"| `{_spelling(param)}` | {cell(getattr(param, 'help', None) or '')} |" for param in options)
+            yield ""
+
+
+def _leaves(command: Any, path: list[str]) -> Iterator[tuple[list[str], Any]]:
+    verbs = getattr(command, "commands", None)
+    if not hasattr(command, "list_commands"):
+        yield path, command
+        return
+    from typer.main import get_command  # noqa: F401 - the root imports its nouns by it
+
+    context = command.make_context("robolink", [], resilient_parsing=True)
+    for name in command.list_commands(context):
+        each = verbs.get(name) if verbs and name in verbs else command.get_command(context, name)
+        if each is not None and not getattr(each, "hidden", False):
+            yield from _leaves(each, [*path, name])
+
+
+def _spelling(param: Any) -> str:
+    names = ", ".join(param.opts) if param.param_type_name == "option" else ""
+    metavar = param.metavar or ("" if getattr(param, "is_flag", False) else (param.name or "").upper())
+    return cell(f"{names} {metavar}".strip())
+
+
+# Python
+
+
+def _api(language: str) -> Iterator[str]:
+    for name in API:
+        module = importlib.import_module(name)
+        yield f"## {name}\n"
+        yield f"{_first_paragraph(module)}\n"
+        public = getattr(module, "__all__", None) or [each for each in vars(module) if not each.startswith("_")]
+        for each in sorted(public):
+            thing = getattr(module, each)
+            if inspect.isclass(thing) and thing.__module__.startswith("robolink"):
+                yield from _class(each, thing)
+            elif inspect.isfunction(thing) and thing.__module__.startswith("robolink"):
+                yield from _function(each, thing, "###")
+
+
+def _class(name: str, kind: type) -> Iterator[str]:
+    yield f"### {name}\n"
+    yield f"{_block(inspect.getdoc(kind) or '')}\n"
+    for each, member in sorted(vars(kind).items()):
+        if not each.startswith("_") and inspect.isfunction(member) and member.__doc__:
+            yield from _function(f"{name}.{each}", member, "####")
+
+
+def _function(name: str, function: Any, level: str) -> Iterator[str]:
+    try:
+        signature = str(inspect.signature(function)).replace("robolink.", "")
+    except (TypeError, ValueError):
+        signature = "(...)"
+    yield f"{level} {name}\n"
+    yield f"```text\n{name.rpartition('.')[2]}{signature}\n```\n"
+    yield f"{_block(inspect.getdoc(function) or '')}\n"
+
+
+def _first_paragraph(thing: Any) -> str:
+    return " ".join((inspect.getdoc(thing) or "").partition("\n\n")[0].split()).replace("<", "&lt;")
+
+
+def _block(docstring: str) -> str:
+    """Return a docstring as Markdown: its first paragraph, and the rest as it stands."""
+    first, _, rest = docstring.partition("\n\n")
+    words = " ".join(first.split()).replace("<", "&lt;")
+    return f"{words}\n\n```text\n{rest}\n```" if rest.strip() else words
+
+
+# Types
+
+
+def _messages(language: str) -> Iterator[str]:
+    from robolink.interfaces import names
+
+    found: dict[str, list[str]] = {}
+    for kind in ("msg", "srv", "action"):
+        for name in names(kind):
+            found.setdefault(name.partition("/")[0], []).append(name)
+    for package in sorted(found):
+        yield f"## {package}\n"
+        yield from table(WORDS["type"][language], WORDS["fields"][language])
+        yield from (f"| `{each.partition('/')[2]}` | {cell(_fields(each))} |" for each in sorted(found[package]))
+        yield ""
+
+
+def _fields(name: str) -> str:
+    from robolink.cli.interface.show import prototype, type_named
+
+    return " ".join(f"`{each}`" for each in _keys(prototype(type_named(name))))
+
+
+def _keys(shown: Any) -> list[str]:
+    lines = shown if isinstance(shown, list) else str(shown).splitlines()
+    return [each.split(":")[0].strip() for each in lines if each and not each.startswith((" ", "-"))]
+
+
+# Files
+
+
+def _files(language: str) -> Iterator[str]:
+    from robolink.faults.schema import faults_schema
+    from robolink.launch.schema import launch_schema
+    from robolink.sim.schema import world_schema
+
+    for schema in (launch_schema(), faults_schema(), world_schema()):
+        yield f"## {schema['title']}\n"
+        for name, part in ({"": schema} | schema["definitions"]).items():
+            if "properties" not in part:
+                continue
+            if name:
+                yield f"### {name}\n"
+            yield f"{_block(part.get('description', ''))}\n"
+            yield from table(
+                WORDS["key"][language], WORDS["type"][language], WORDS["default"][language], WORDS["meaning"][language]
+            )
+            yield from (_row(key, value) for key, value in part["properties"].items())
+            yield ""
+
+
+def _row(key: str, value: dict[str, Any]) -> str:
+    default = f"`{value['default']}`" if value.get("default") not in (None, "") else ""
+    return f"| `{key}` | {cell(_kind(value))} | {default} | {cell(value.get('description', ''))} |"
+
+
+def _kind(value: dict[str, Any]) -> str:
+    if "enum" in value:
+        return ", ".join(f"`{each}`" for each in value["enum"])
+    if "anyOf" in value:
+        kinds = dict.fromkeys(_kind(each) for each in value["anyOf"] if "pattern" not in each)
+        return ", ".join(kinds)
+    if "allOf" in value:
+        return _kind(value["allOf"][0])
+    if "$ref" in value:
+        return str(value["$ref"].rpartition("/")[2])
+    return str(value.get("type", ""))
