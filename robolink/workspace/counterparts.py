@@ -145,6 +145,9 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
         ),
     },
     "nav2_map_server": {
+        "costmap_filter_info_server": Counterpart(
+            "robolink.counterparts.nav2_map_server.costmap_filter_info_server:main", "Publishes what a mask means."
+        ),
         "map_saver_cli": Counterpart(
             "robolink.counterparts.nav2_map_server.map_saver_cli:main", "Saves a map, and ends."
         ),

@@ -147,3 +147,16 @@ def test_joints_may_have_any_name(system: System) -> None:
     joints = [joint(name, f"l{each}", f"l{each + 1}", kind="continuous") for each, name in enumerate(names)]
     system.publish("/robot_description", String(data=robot(*joints, links=links)), LATCHED)
     assert system.expect("/joint_states").name == names
+
+
+@pytest.mark.parametrize("rate", [0, -1, 1_000_000, "fast"])
+def test_a_rate_that_cannot_be_is_one_line(system: System, rate: Any) -> None:
+    with pytest.raises(RobolinkError, match=r"rate: expected a number of Hz from above 0 to 1000, got "):
+        system.start(JointStatePublisher, parameters={"rate": rate})
+
+
+def test_a_lone_source_needs_no_list(system: System) -> None:
+    started(system, source_list="arm_states")
+    system.publish("/arm_states", JointState(name=["shoulder"], position=[0.7]))
+    system.run(0.2)
+    assert positions(system.expect("/joint_states"))["shoulder"] == 0.7

@@ -171,3 +171,13 @@ def test_the_command_fails_where_there_is_no_map(monkeypatch: pytest.MonkeyPatch
     command = ["x", "-f", str(tmp_path / "mine"), "--ros-args", "-p", "save_map_timeout:=0.1"]
     assert map_saver_cli(command) == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_what_a_mask_means_is_published(system: System) -> None:
+    activated(system, "costmap_filter_info_server", type=1, mask_topic="speeds", base=100.0, multiplier=-1.0)
+    system.run(1.0)
+    found = system.expect("/costmap_filter_info")
+    assert (found.type, found.filter_mask_topic, found.base, found.multiplier) == (1, "speeds", 100, -1)
+    assert change(system, "costmap_filter_info_server", Transition.TRANSITION_DEACTIVATE)
+    assert change(system, "costmap_filter_info_server", Transition.TRANSITION_CLEANUP)
+    assert system.node.get_publishers_info_by_topic("/costmap_filter_info") == []

@@ -16,7 +16,7 @@ from robolink.counterparts.joint_state_publisher.joints import (
     Settings,
     dependent_of,
 )
-from robolink.counterparts.program import spin_program
+from robolink.counterparts.program import UsageError, spin_program
 from robolink.counterparts.urdf import parse_urdf
 from robolink.counterparts.urdf.parser import read_text
 from robolink.exceptions import DocumentError, RobolinkError
@@ -27,6 +27,8 @@ from robolink.parameter import Parameter
 from robolink.parameters.descriptors import described
 from robolink.qos import DurabilityPolicy, QoSProfile
 
+FASTEST = 1000.0
+"""Largest rate, in Hz."""
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
@@ -69,18 +71,19 @@ class JointStatePublisher(Node):
         else:
             self.get_logger().info("Waiting for robot_description to be published on the robot_description topic...")
             self.create_subscription(String, "robot_description", self._on_description, LATCHED)
-        for each in sources:
+        for each in [sources] if isinstance(sources, str) else sources:
             self.create_subscription(JointState, each, self.on_source, 10)
         self._states = self.create_publisher(JointState, "joint_states", 10)
-        if rate <= 0:
-            raise DependentJointError(f"rate: expected a number above 0, got {rate}")
+        if not isinstance(rate, (int, float)) or not 0 < rate <= FASTEST:
+            raise UsageError(f"rate: expected a number of Hz from above 0 to {FASTEST:g}, got {rate!r}")
         self.create_timer(1.0 / rate, self.on_timer)
         self.add_post_set_parameters_callback(self._on_parameters)
 
     def _declare(self, name: str, default: Any, description: str) -> Any:
         if not self.has_parameter(name):
             self.declare_parameter(name, default, described(description))
-        return self.get_parameter(name).value or default
+        value = self.get_parameter(name).value
+        return default if value is None else value
 
     def _read_settings(self) -> Settings:
         dependent = self.get_parameters_by_prefix("dependent_joints")

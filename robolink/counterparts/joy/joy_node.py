@@ -54,8 +54,8 @@ class JoyNode(Node):
         self._sticky = self._declare("sticky_buttons", False, "a press toggles a button, a release does nothing")
         self._joy = self.create_publisher(Joy, "joy", 10)
         self._told, self._published = "", 0
+        self._looks = self.create_timer(LOOK, self.on_timer, autostart=False)
         self.create_timer(RETRY, self.find)
-        self.create_timer(LOOK, self.on_timer)
         self.find()
 
     def _declare(self, name: str, default: Any, words: str, low: float | None = None, high: float | None = None) -> Any:
@@ -94,6 +94,7 @@ class JoyNode(Node):
             return
         self.state = self.made_state(self.gamepad, self._deadzone, self._sticky)
         self._told = ""
+        self._looks.reset()
         self.get_logger().info(f"Opened joystick: {self.gamepad.name}.  deadzone: {self._deadzone:f}")
 
     def on_timer(self) -> None:
@@ -118,6 +119,7 @@ class JoyNode(Node):
             self._tell(f"{self.gamepad.name} is gone: waiting for it")
             self.gamepad.close()
         self.gamepad = self.state = None
+        self._looks.cancel()
 
     def _tell(self, text: str) -> None:
         """Warn of something, once."""

@@ -62,7 +62,8 @@ class LifecycleManager(Node):
         self.get_logger().info("Creating")
         words = "managed nodes, in the order in which they are started"
         any_list = ParameterDescriptor(description=words, dynamic_typing=True)  # an empty list has no type
-        self.names: list[str] = list(self.declare_parameter("node_names", list[str](), any_list).value or ())
+        names: Any = self.declare_parameter("node_names", list[str](), any_list).value or []
+        self.names: list[str] = [names] if isinstance(names, str) else list(map(str, names))
         autostart = self.declare_parameter("autostart", False, described("start them at once")).value
         words = "seconds after which a node that is gone counts as lost; 0 for never"
         self._timeout = self.declare_parameter("bond_timeout", 4.0, described(words, 0.0, 1e6)).value
