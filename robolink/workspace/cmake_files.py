@@ -10,7 +10,7 @@ import contextlib
 import itertools
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from robolink.system.plainfile import read_plain
@@ -18,6 +18,8 @@ from robolink.workspace.literals import MOST_FILES
 
 LONGEST = 200_000
 """Largest file that is read, in bytes."""
+MOST_FILES_READ = 50
+"""Upper bound of the CMakeLists.txt of a package that are read: its own, and those of `add_subdirectory`."""
 MOST = 2000
 """Upper bound of the commands and of the words of a command that are read."""
 
@@ -34,7 +36,7 @@ _FOLDERS = ("CMAKE_CURRENT_SOURCE_DIR", "CMAKE_SOURCE_DIR", "PROJECT_SOURCE_DIR"
 
 @dataclass(frozen=True)
 class Install:
-    """An `install(...)`: its `kind` (PROGRAMS, FILES, DIRECTORY, TARGETS), `sources`, `destination` and new name."""
+    """An `install(...)`: its `kind` (PROGRAMS, FILES or DIRECTORY), `sources`, `destination` and new name."""
 
     kind: str
     sources: list[str]
@@ -47,13 +49,13 @@ class CMakeFile:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self._at = ""
         self._variables = {name: ["."] for name in _FOLDERS}
+        self._files_left = MOST_FILES_READ
         self.installs: list[Install] = []
         self.compiled: list[str] = []
         """Names of the executables that are compiled."""
-        text = _COMMENT.sub(lambda match: match[1] or "", _read(folder / "CMakeLists.txt"))
-        for command in itertools.islice(_COMMAND.finditer(text), MOST):
-            self._run(command[1].lower(), self._words(command[2]))
+        self._read_folder("")
 
     def scripts(self) -> dict[str, Path]:
         """Return the Python programs that are installed: name to file."""
@@ -64,6 +66,15 @@ class CMakeFile:
                     if is_python(path):
                         found.setdefault(each.rename or path.name, path)
         return dict(itertools.islice(found.items(), MOST))
+
+    def _read_folder(self, at: str) -> None:
+        """Read the file in a folder of the package, `at`, whose paths are relative to that."""
+        above, self._at = self._at, at
+        self._files_left -= 1
+        text = _COMMENT.sub(lambda match: match[1] or "", _read(self._folder / at / "CMakeLists.txt"))
+        for command in itertools.islice(_COMMAND.finditer(text), MOST if self._files_left >= 0 else 0):
+            self._run(command[1].lower(), self._words(command[2]))
+        self._at = above
 
     def _files(self, install: Install) -> Iterator[Path]:
         for each in install.sources:
@@ -84,19 +95,28 @@ class CMakeFile:
             case "file", ["GLOB" | "GLOB_RECURSE" as kind, name, *patterns]:
                 self._variables[name] = list(self._globbed(patterns, kind == "GLOB_RECURSE"))
             case "install", [kind, *rest]:
-                self.installs.append(_install(kind, rest))
-            case "add_executable", [name, *_]:
+                self._note(_install(kind, rest))
+            case "add_subdirectory", [name, *_] if ".." not in name.split("/") and not name.startswith("/"):
+                self._read_folder(f"{self._at}{name.rstrip('/')}/")
+            case _, [name, *_] if command.endswith("add_executable"):
                 self.compiled.append(name)
             case "rclcpp_components_register_node", _ if "EXECUTABLE" in words[:-1]:
                 self.compiled.append(words[words.index("EXECUTABLE") + 1])
 
+    def _note(self, install: Install) -> None:
+        if install.kind == "TARGETS":
+            self.compiled += install.sources if install.destination.startswith("lib/") else []
+        else:
+            sources = [each if each.startswith("/") else self._at + each for each in install.sources]
+            self.installs.append(replace(install, sources=sources))
+
     def _globbed(self, patterns: list[str], recursive: bool) -> Iterator[str]:
         for each in patterns:
             if not each.startswith("/") and ".." not in each.split("/"):
+                here = self._folder / self._at
                 with contextlib.suppress(ValueError, NotImplementedError):  # no pattern at all
-                    found = self._folder.rglob(each) if recursive else self._folder.glob(each)
-                    listed = itertools.islice(found, MOST_FILES)
-                    yield from sorted(path.relative_to(self._folder).as_posix() for path in listed)
+                    listed = itertools.islice(here.rglob(each) if recursive else here.glob(each), MOST_FILES)
+                    yield from sorted(path.relative_to(here).as_posix() for path in listed)
 
     def _words(self, text: str) -> list[str]:
         """Return the words of a command, with the values of variables; unknown ones are left out."""

@@ -10,11 +10,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from robolink.exceptions import NotFoundError
+from robolink.exceptions import NotFoundError, nearest
 from robolink.workspace.built_in import PACKAGE, built_in_workspace
 from robolink.workspace.installed import installed_executables
-from robolink.workspace.packages import compiled_executables, executable, executables, named
-from robolink.workspace.ros_programs import COMPILED, RosProgramError, ros_program_error
+from robolink.workspace.packages import compiled_executables, executable, executables, named, named_executables
+from robolink.workspace.ros_programs import CompiledProgramError, ros_program_error
 from robolink.workspace.source import NodeSource, canonical
 
 
@@ -27,6 +27,8 @@ class Counterpart(NamedTuple):
     """Purpose, as one sentence that begins with a verb."""
 
 
+MOST_NAMED = 10
+"""Most executables that an error lists."""
 _CPP, _PY = "robolink.counterparts.demo_nodes_cpp", "robolink.counterparts.demo_nodes_py"
 _EXAMPLES, _TOOLS = "robolink.counterparts.examples_rclpy", "robolink.counterparts.topic_tools"
 
@@ -162,6 +164,9 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
         "component_container": Counterpart(
             "robolink.cli.running_nodes.component_container:main", "Runs nodes that services load."
         ),
+        "component_container_isolated": Counterpart(
+            "robolink.cli.running_nodes.component_container:main", "Runs nodes that services load."
+        ),
         "component_container_mt": Counterpart(
             "robolink.cli.running_nodes.component_container:main_mt", "Runs nodes that services load, in threads."
         ),
@@ -291,8 +296,15 @@ def lacking_executable(package: str, name: str, folder: Path | None) -> NotFound
         if of_ros is not None:
             return of_ros
     elif canonical(name) in map(canonical, compiled_executables(folder)):
-        return RosProgramError(package, name, COMPILED)
-    return NotFoundError("executable", name, known, f"package {package}") if known else None
+        return CompiledProgramError(package, name)
+    if not known:
+        return None
+    error = NotFoundError("executable", name, known, f"package {package}")
+    if not nearest(name, known):
+        first = [each.name for each in named_executables(folder)] if folder is not None else []
+        shown = [*(first or own), *counterparts_of(package)]
+        error.args = (f"{error}, which has {', '.join(shown[:MOST_NAMED])}{' ...' if len(shown) > MOST_NAMED else ''}",)
+    return error
 
 
 def _file_of(module: str) -> Path:

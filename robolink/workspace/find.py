@@ -21,6 +21,7 @@ from robolink.workspace.counterparts import COUNTERPARTS, executable_of, lacking
 from robolink.workspace.packages import (
     BUILT_IN,
     PARTS,
+    has_packages,
     is_repository,
     is_ros_workspace,
     named_executables,
@@ -227,7 +228,7 @@ def _is_workspace(folder: Path) -> bool:
 
 
 def _repository(above: Sequence[Path]) -> Path | None:
-    """Return the clone of a repository with packages at or above a path; else the package there, or the folder of some.
+    """Return the clone of a repository with packages at or above a path; else the package there, with those beside it.
 
     `above` are the path and its parents.
     """
@@ -236,7 +237,8 @@ def _repository(above: Sequence[Path]) -> Path | None:
     if clone is not None and (package is None or clone in package.parents) and is_repository(clone):
         return clone
     if package is not None:
-        return package
+        beside = package.parent
+        return beside if has_packages(beside, but=package) and not why_not(beside) else package
     return above[0] if is_repository(above[0]) and not why_not(above[0]) else None
 
 

@@ -88,6 +88,13 @@ def is_repository(folder: Path) -> bool:
     return any((each / "package.xml").is_file() for each in (*inside, *below))
 
 
+def has_packages(folder: Path, but: Path) -> bool:
+    """True if a `folder` that is no package has packages directly in it, beside `but`, and none is a copy of that."""
+    inside = [each for each in _folders_in(folder)[:MOST_BESIDE] if each != but and (each / "package.xml").is_file()]
+    names = [package_name_of(each) for each in inside if _is_package(each)]
+    return bool(names) and package_name_of(but) not in names and not _is_package(folder)
+
+
 def unmarked_package(name: str, top: Path) -> Path | None:
     """Return the folder that would be the package `name` but for its package.xml: `top`, or in it or its `src/`."""
     with contextlib.suppress(OSError):  # the working directory has been deleted, or may not be read

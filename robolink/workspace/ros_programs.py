@@ -20,8 +20,6 @@ _DRIVER = f"driver of a device, in C++; {_THERE}"
 _CAMERA = f"driver of a camera, in C++; some lines with cv2.VideoCapture and cv_bridge do the same, else {_THERE}"
 _MAPS = f"makes maps, in C++; {_THERE}"
 
-COMPILED = f"its package's CMakeLists.txt compiles it, and robolink runs Python; {_THERE}"
-"""Advice for a program in C++ of a user's own package."""
 PROGRAMS = {
     ("rmw_zenoh_cpp", "rmw_zenohd"): "robolink needs no router, and meets one that runs (docs/ros2.md)",
     ("gazebo_ros", "spawn_entity"): f"puts a robot into Gazebo; {_WORLD}",
@@ -41,6 +39,10 @@ PACKAGES = {
     "rqt*": "a window; 'robolink view' has panels for topics, plots, images, logs, services and parameters",
     "gazebo_ros": f"Gazebo, a simulator in C++; {_WORLD}",
     "gazebo": f"Gazebo, a simulator in C++; {_WORLD}",
+    "gzserver": f"Gazebo, a simulator in C++; {_WORLD}",
+    "gzclient": "Gazebo's window; 'robolink view' shows the world in the browser instead",
+    "gz": f"Gazebo, a simulator in C++; {_WORLD}",
+    "ign": f"Gazebo, a simulator in C++; {_WORLD}",
     "gazebo_plugins": f"parts of Gazebo, in C++; {_WORLD}",
     "gazebo_ros2_control": f"ros2_control in Gazebo, in C++; {_WORLD}",
     "gz_ros2_control": f"ros2_control in Gazebo, in C++; {_WORLD}",
@@ -114,6 +116,14 @@ class RosProgramError(NotFoundError):
     def __init__(self, package: str, program: str, advice: str) -> None:
         self.kind, self.name = "package", package
         RobolinkError.__init__(self, f"{package} {program}".rstrip() + f" is not here: {advice}")
+
+
+class CompiledProgramError(RosProgramError):
+    """The `program` of a user's own `package` is C++."""
+
+    def __init__(self, package: str, program: str) -> None:
+        self.kind, self.name = "executable", program
+        RobolinkError.__init__(self, f"{package} {program} is a C++ program, and robolink builds none")
 
 
 def instead_of(package: str, program: str = "") -> str | None:

@@ -67,12 +67,24 @@ def test_what_is_compiled_is_named(package: Path, monkeypatch: pytest.MonkeyPatc
     (package / "CMakeLists.txt").write_text(
         "project(mixed)\nadd_executable(talker src/talker.cpp)\nadd_library(a src/a.cpp)\n"
         'rclcpp_components_register_node(a PLUGIN "m::A" EXECUTABLE listener)\n'
+        "ament_auto_add_executable(hearer src/hearer.cpp)\ninstall(TARGETS ${x} built a DESTINATION lib/mixed)\n"
     )
-    assert CMakeFile(package).compiled == ["talker", "listener"]
-    with pytest.raises(RosProgramError, match=r"mixed talker is not here: its package's CMakeLists\.txt compiles it"):
+    assert CMakeFile(package).compiled == ["talker", "listener", "hearer", "built", "a"]
+    with pytest.raises(RosProgramError, match=r"mixed talker is a C\+\+ program"):
         find_executable("mixed", "talker")
     with pytest.raises(NotFoundError, match="no executable named 'speaker' in package mixed"):
         find_executable("mixed", "speaker")
+
+
+def test_files_of_subdirectories_count_from_their_own_place(package: Path) -> None:
+    (package / "CMakeLists.txt").write_text(
+        "project(m)\nadd_subdirectory(scripts)\nadd_subdirectory(../x)\nadd_subdirectory(.)"
+    )
+    (package / "scripts/CMakeLists.txt").write_text(
+        "file(GLOB found *.py)\ninstall(PROGRAMS ${found} DESTINATION lib/${PROJECT_NAME})\nadd_executable(deep a.cpp)"
+    )
+    read = CMakeFile(package)
+    assert (sorted(read.scripts()), set(read.compiled)) == (["drive.py", "turn.py"], {"deep"})
 
 
 PIECES = [

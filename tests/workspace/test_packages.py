@@ -138,6 +138,7 @@ def test_two_words_are_a_package_and_its_executable_only_if_both_are_there(top: 
         (["pkg_a", "frist"], "no executable named 'frist' in package pkg_a (did you mean 'first'?)"),
         (["pkg_a"], "pkg_a is a package: say which of its executables, first"),
         (["robolink", "wrold"], "no executable named 'wrold' in package robolink (did you mean 'world'?)"),
+        (["pkg_a", "x"], "no executable named 'x' in package pkg_a, which has first"),
         (["pkg_b", "--", "run"], "pkg_b is a package: say which of its executables, run"),
         (["pkg_interfaces", "x"], "no node named 'pkg_interfaces' in {top} or robolink itself"),
         (["pkg_c", "first"], "no node or package named 'pkg_c' in {top} (did you mean 'pkg_b'?)"),
@@ -306,6 +307,15 @@ def test_a_folder_of_packages_is_a_workspace_where_one_stands_in_it(tmp_path: Pa
     assert packages_of(folder / "a") == (folder / "a", ["robot_two"])
     (folder / "other/project").mkdir(parents=True)
     assert packages_of(folder / "other/project") == (None, [])
+
+
+def test_packages_beside_a_package_are_found_without_a_clone(tmp_path: Path) -> None:
+    folder = tmp_path.resolve()
+    for name in ("robot_a", "robot_b"):
+        write_package(folder / "unpacked", name, {"a.py": ""})
+    assert packages_of(folder / "unpacked/robot_a/robot_a") == (folder / "unpacked", ["robot_a", "robot_b"])
+    write_package(folder / "unpacked/copy", "robot_a", {"a.py": ""}).rename(folder / "unpacked/robot_a_old")
+    assert packages_of(folder / "unpacked/robot_a") == (folder / "unpacked/robot_a", ["robot_a"])
 
 
 def test_a_clone_of_any_python_project_is_no_workspace(tmp_path: Path) -> None:

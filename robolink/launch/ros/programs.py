@@ -22,8 +22,6 @@ from robolink.workspace import (
 
 _ALIKE = 0.85
 """Similarity from 0 to 1 above which the name of a package is taken for a misspelt one of the workspace's."""
-_LONGEST = 200_000
-_COMPILED = re.compile(r"\b(?:add_executable|rclcpp_components_register_nodes?)\s*\(([^()]*)", re.IGNORECASE)
 
 
 class Program(NamedTuple):
@@ -53,11 +51,11 @@ def program_of(package: str, executable: str, home: Path | None) -> Program:
         compiled = _installed(package, executable)
         if compiled is not None:
             return Program(path=str(compiled))
+        if isinstance(error, RosProgramError):
+            return Program(absent=str(error))
         folder = find_package(package, workspace=home)
         if folder is None:
             return Program(absent=_why_no_package(package, executable, home, error))
-        if _is_compiled(folder, executable):
-            return Program(absent=f"{package} {executable} is a C++ program, and robolink builds none")
         raise
 
 
@@ -94,7 +92,7 @@ def include_absent(package: str) -> str:
 
 
 def _why_no_package(package: str, executable: str, home: Path | None, error: NotFoundError) -> str:
-    if isinstance(error, RosProgramError) or error.kind == "executable":
+    if error.kind == "executable":
         return str(error)
     if closest(package, list_packages(workspace=home), _ALIKE):
         raise error
@@ -108,13 +106,3 @@ def _installed(package: str, executable: str) -> Path | None:
         if path.is_file():
             return path
     return None
-
-
-def _is_compiled(folder: Path, executable: str) -> bool:
-    """True if a package's CMakeLists.txt makes this executable of C++ code."""
-    try:
-        text = read_plain(folder / "CMakeLists.txt", _LONGEST).decode(errors="replace")
-    except OSError:
-        return False
-    bodies = _COMPILED.findall(re.sub(r"#.*", "", text).replace("${PROJECT_NAME}", folder.name))
-    return any(executable in re.split(r"[\s\"]+", body) for body in bodies)
