@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 from tools.docs_site.markdown import LINK, blocks, headings, outside_blocks, slugs
-from tools.docs_site.pages import DOCS, LANGUAGES, Page, listing, pages
+from tools.docs_site.pages import DOCS, LANGUAGES, Page, addresses, listing, pages
 from tools.docs_site.same_code import pairs
 
 PORTUGUESE = [other for _, other in pairs()]
@@ -49,8 +49,19 @@ def test_both_languages_have_the_same_code_and_parts(page: Page) -> None:
     assert found == wanted, "run: python -m tools.docs_site same-code"
     levels = [level for level, _ in headings(english.text())]
     assert [level for level, _ in headings(page.text())] == levels
-    links = [[each[2] for each in LINK.findall(text)] for text in (english.text(), page.text())]
-    assert links[0] == links[1]
+    assert targets(page) == targets(english)
+
+
+def targets(page: Page) -> list[str]:
+    """Where the links of a page lead: addresses, files, and the pages that a link within the site means."""
+    assert page.source is not None
+    found = []
+    for _, _, target in LINK.findall(prose(page)):
+        name, _, anchor = target.partition("#")
+        file = (page.source.parent / name).resolve()
+        place = target if "://" in name else addresses().get(file, file.name) if name else ""
+        found.append(f"{place}#{anchor}")
+    return found
 
 
 @pytest.mark.parametrize("page", WRITTEN, ids=name_of)

@@ -48,6 +48,9 @@ PICTURES: dict[str, Drive | Boxes] = {
     "testing": Boxes(("test", "careful"), ((0, 1, "/scan"), (1, 0, "/cmd_vel"))),
     "real_robot": Boxes(("laptop", "robot"), ((0, 1, "/cmd_vel"), (1, 0, "/scan"))),
     "ros2_course": Boxes(("rclpy", "world"), ((0, 1, "/cmd_vel"), (1, 0, "/scan"))),
+    "why_topic": Boxes(("Publisher", "Subscription"), ((0, 1, "/cmd_vel"),)),
+    "why_executor": Boxes(("Zenoh", "queue", "executor", "callback"), ((0, 1, "bytes"), (1, 2, "10"), (2, 3, "Twist"))),
+    "why_transports": Boxes(("nodes", "transport", "Zenoh | memory"), ((0, 1, "bytes"), (1, 2, "url"))),
     "services_parameters": Boxes(("you", "careful"), ((0, 1, "/go"), (1, 0, "ok"))),
 }
 WIDE, HIGH, GAP, TOP = 170, 80, 190, 60
