@@ -24,6 +24,8 @@ def draft_7(part: Any) -> Any:
     made = {key: draft_7(value) for key, value in told.items()}
     if isinstance(made.get("description"), str):
         made["description"] = inspect.cleandoc(made["description"]).partition("\n\nArgs:")[0]  # keys say their own
+    if isinstance(made.get("anyOf"), list):  # the order is that of no version of msgspec
+        made["anyOf"].sort(key=lambda each: each == {"type": "null"})
     if "prefixItems" in made:
         made["items"], made["additionalItems"] = made.pop("prefixItems"), False
     if "$ref" in made and len(made) > 1:

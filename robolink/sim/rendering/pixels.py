@@ -22,7 +22,9 @@ def write_colours(colours: Packed, encoding: str, image: Bytes) -> None:
     """Write packed colours (rows, columns) in an encoding to `image`, an array (rows, columns, channels)."""
     parts = colours.view(np.uint8).reshape(*colours.shape, 4)
     if encoding == "mono8":
-        red, green, blue = (parts[..., channel] * np.uint32(weight) for channel, weight in enumerate(_GREY))
+        red, green, blue = (
+            parts[..., channel].astype(np.uint32) * np.uint32(weight) for channel, weight in enumerate(_GREY)
+        )
         image[..., 0] = (red + green + blue + np.uint32(1 << 14)) >> np.uint32(15)
         return
     for channel, part in enumerate(CHANNELS[encoding]):
