@@ -27,11 +27,19 @@ def read(file: str | PathLike[str], arguments: Mapping[str, Any], values: Mappin
     from robolink.launch.system import read_system
 
     given = {name: value if isinstance(value, str) else spell(value) for name, value in arguments.items()}
-    path = find_launch(fspath(file))
+    path = _found(fspath(file))
     system = read_system(path, given)
     for note in system.notes:
         get_logger("robolink.testing").warning(note)
     return with_settings(system, values, lambda: read_system(path, given, foresee=True).entries)
+
+
+def _found(file: str) -> Path:
+    """Find a launch file by its path or name, or by a package and a name in it, as in ``my_robot bot.launch.py``."""
+    from robolink.launch.reading.lookup import find
+
+    words = file.split()
+    return find(words) if len(words) == 2 and not Path(file).exists() else find_launch(file)
 
 
 def entry_of(spec: str, wanted: Wanted) -> list[Entry]:

@@ -89,7 +89,7 @@ class System(SystemWithBags):
         Commands of the file are left out in virtual time, with a warning.
 
         Args:
-            file: Path, or a name as `robolink launch` finds it.
+            file: Path, or a name as `robolink launch` finds it, or a package and a name: ``my_robot bot.launch.py``.
             arguments: Values of the launch file's own arguments, by name.
             set: Parameter values that go before the file's, as ``{"wall_follower.speed": 0.2}``.
             faults: Path of a file of faults, which hold from the very start of the nodes.
