@@ -12,13 +12,14 @@ CODE = ("robolink", "nodes", "tools", "benchmarks")
 LONGEST_FILE, LONGEST_BODY = 400, 40
 """Most lines of a file, and of a function without its signature and its docstring."""
 
+PROGRAMS = ROOT / "tests" / "tutorials"
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def files(*folders: str) -> Iterator[Path]:
     """Return each source file of these folders, but for the programs that users of ROS 2 wrote."""
     for folder in folders:
-        yield from (each for each in sorted((ROOT / folder).rglob("*.py")) if "tutorials" not in each.parts)
+        yield from (each for each in sorted((ROOT / folder).rglob("*.py")) if PROGRAMS not in each.parents)
 
 
 def body_lines(function: Function) -> int:
