@@ -24,6 +24,7 @@ from robolink import signals
 from robolink.cli.main import main
 from robolink.cli.root import COMMANDS
 from robolink.cli.tf import tree
+from robolink.control.keyboard import WindowsKeyboard
 from robolink.impl import log_output
 from robolink.launch.reading import lookup
 from robolink.running import timebase
@@ -178,7 +179,7 @@ class WindowsConsole(ModuleType):
 @pytest.mark.usefixtures("windows")
 def test_an_arrow_of_windows_is_read_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "msvcrt", WindowsConsole([b"\xe0H", b"w", b"\x85", b"\x00K"]))
-    keyboard = teleop.WindowsKeyboard()
+    keyboard = WindowsKeyboard()
     assert [each for each in teleop.keys(keyboard.read()) if each in teleop.DIRECTIONS] == ["up", "w", "left"]
     assert keyboard.read() == ""
 
