@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from robolink.compat.launch_names import LAUNCH_ROOMS
+
 ROOMS = {
     "rclpy": "robolink",
     "tf2_ros": "robolink.tf2",
@@ -31,73 +33,7 @@ ROOMS = {
     "rosbag2_py": "robolink.companions.rosbag2_py",
     "nav2_common": "robolink.companions.nav2_common",
     "nav2_simple_commander": "robolink.companions.nav2_simple_commander",
-    "launch": "robolink.companions.launch",
-    **dict.fromkeys(
-        [
-            "launch.action",
-            "launch.condition",
-            "launch.event",
-            "launch.event_handler",
-            "launch.launch_context",
-            "launch.launch_description_entity",
-            "launch.some_actions_type",
-            "launch.some_entities_type",
-            "launch.some_substitutions_type",
-            "launch.substitution",
-        ],
-        "robolink.companions.launch.bases",
-    ),
-    **{
-        f"launch.{kind}.{name}": f"robolink.companions.launch.{kind}.{home}"
-        for kind, homes in {
-            "actions": {
-                "declare": "declare_launch_argument",
-                "environment": "append_environment_variable set_environment_variable unset_environment_variable "
-                "push_environment pop_environment reset_environment",
-                "configurations": "set_launch_configuration unset_launch_configuration push_launch_configurations "
-                "pop_launch_configurations reset_launch_configurations",
-                "functions": "log_info opaque_function opaque_coroutine",
-                "group": "group_action",
-                "include": "include_launch_description",
-                "processes": "execute_local execute_process",
-                "reactions": "emit_event register_event_handler unregister_event_handler shutdown_action timer_action",
-            },
-            "substitutions": {
-                "values": "anon_name environment_variable launch_configuration launch_log_dir local_substitution "
-                "path_join_substitution string_join_substitution this_launch_file this_launch_file_dir",
-                "commands": "command file_content find_executable python_expression",
-                "logic": "boolean_substitution equals_substitution if_else_substitution not_equals_substitution",
-                "failure": "substitution_failure",
-            },
-        }.items()
-        for home, names in homes.items()
-        for name in names.split()
-    },
-    "launch.substitutions.text_substitution": "robolink.companions.launch.utilities",
-    "launch.launch_description_sources.python_launch_description_source": (
-        "robolink.companions.launch.launch_description_sources"
-    ),
-    "launch.event_handlers.on_process_exit": "robolink.companions.launch.event_handlers",
-    "launch.event_handlers.on_process_start": "robolink.companions.launch.event_handlers",
-    "launch.event_handlers.on_process_io": "robolink.companions.launch.event_handlers",
-    "launch.event_handlers.on_shutdown": "robolink.companions.launch.event_handlers",
-    "launch_ros.actions.lifecycle_node": "robolink.companions.launch_ros.actions.lifecycle",
-    "launch_ros.actions.composable_node_container": "robolink.companions.launch_ros.actions.containers",
-    "launch_ros.actions.load_composable_nodes": "robolink.companions.launch_ros.actions.containers",
-    "launch_ros.actions.push_ros_namespace": "robolink.companions.launch_ros.actions.scope",
-    "launch_ros.actions.set_parameter": "robolink.companions.launch_ros.actions.scope",
-    "launch_ros.actions.set_remap": "robolink.companions.launch_ros.actions.scope",
-    "launch_ros.substitutions.find_package": "robolink.companions.launch_ros.substitutions",
-    "launch_ros.descriptions.composable_node": "robolink.companions.launch_ros.descriptions",
-    "launch.descriptions": "robolink.companions.launch.actions.processes",
-    "launch.launch_description_source": "robolink.companions.launch.launch_description_sources",
-    "launch.invalid_launch_file_error": "robolink.companions.launch.launch_description_sources",
-    "launch.launch_service": "robolink.companions.launch",
-    "launch_ros": "robolink.companions.launch_ros",
-    "launch_xml": "robolink.companions.launch_frontend",
-    "launch_xml.launch_description_sources": "robolink.companions.launch_frontend.sources",
-    "launch_yaml": "robolink.companions.launch_frontend",
-    "launch_yaml.launch_description_sources": "robolink.companions.launch_frontend.sources",
+    **LAUNCH_ROOMS,
 }
 """Modules by name; '' is a package with nothing in it. A name below another is below its module."""
 

@@ -32,7 +32,7 @@ from robolink.companions.launch.bases import (
     SomeSubstitutionsType_types_tuple,
     Substitution,
 )
-from robolink.companions.launch.launch_description import LaunchDescription
+from robolink.companions.launch.launch_description import LaunchDescription, LaunchIntrospector
 from robolink.companions.launch.launch_description_sources import InvalidLaunchFileError, LaunchDescriptionSource
 
 __all__ = [
@@ -45,6 +45,7 @@ __all__ = [
     "LaunchDescription",
     "LaunchDescriptionEntity",
     "LaunchDescriptionSource",
+    "LaunchIntrospector",
     "LaunchService",
     "SomeActionsType",
     "SomeEntitiesType",

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-from robolink.companions.launch.bases import Condition, LaunchContext, SomeSubstitutionsType
+from robolink.companions.launch.bases import Condition, LaunchContext, LaunchError, SomeSubstitutionsType
 from robolink.companions.launch.utilities import is_true, normalize_to_list_of_substitutions, perform_substitutions
 
 __all__ = [
+    "InvalidConditionExpressionError",
     "IfCondition",
     "LaunchConfigurationEquals",
     "LaunchConfigurationNotEquals",
     "UnlessCondition",
+    "evaluate_condition_expression",
 ]
+
+
+class InvalidConditionExpressionError(LaunchError):
+    """A condition is neither true nor false; robolink's conditions raise LaunchError."""
+
+
+def evaluate_condition_expression(context: LaunchContext, expression: SomeSubstitutionsType) -> bool:
+    """Return the decision of a text, `expression`, with the values of `context`. Raises LaunchError."""
+    return is_true(context, expression)
 
 
 class IfCondition(Condition):

@@ -63,6 +63,14 @@ class LaunchDescription(LaunchDescriptionEntity):
         return list(found.values())
 
 
+class LaunchIntrospector:
+    """Printer of launch descriptions."""
+
+    def format_launch_description(self, launch_description: LaunchDescription) -> str:
+        """Return the actions in `launch_description`, and in what it holds and includes, one a line."""
+        return "\n".join(each.describe() for each in _described(launch_description))
+
+
 def _described(top: LaunchDescriptionEntity) -> Iterator[LaunchDescriptionEntity]:
     """Yield what a description holds, in its order, as far as that is known before it runs."""
     left, waiting = MOST_DESCRIBED, [top]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import site
 import sys
@@ -49,12 +50,21 @@ def reason_of(error: BaseException) -> str:
     lacking = _LACKING.search(str(error)) if isinstance(error, TypeError) else None
     if lacking is not None:
         return f"{lacking[1]} needs {lacking[2]}"
+    if isinstance(error, KeyError) and _is_of_environment(error):
+        name = shown(str(error.args[0]))
+        return f"the environment has no '{name}', which this file needs: set it, as by export {name}=VALUE"
     if isinstance(error, RecursionError):
         return "it never ends: a function or a substitution calls itself"
     if isinstance(error, MemoryError):
         return "there is not enough memory for it"
     text = shown(str(error), _LONGEST)
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
+
+
+def _is_of_environment(error: KeyError) -> bool:
+    """True if `os.environ[NAME]` has raised an error."""
+    last = [frame for frame, _ in traceback.walk_tb(error.__traceback__)][-1:]
+    return any(each.f_code is os.environ.__class__.__getitem__.__code__ for each in last)
 
 
 def absent_package(error: BaseException) -> str:

@@ -21,7 +21,7 @@ from robolink.workspace import (
 )
 
 _ALIKE = 0.85
-"""Similarity from 0 to 1 above which the name of a package is taken for a misspelt one of the workspace's."""
+"""Similarity from 0 to 1 above which a name is taken for a misspelt one of the workspace's."""
 
 
 class Program(NamedTuple):
@@ -56,6 +56,10 @@ def program_of(package: str, executable: str, home: Path | None) -> Program:
         folder = find_package(package, workspace=home)
         if folder is None:
             return Program(absent=_why_no_package(package, executable, home, error))
+        if (folder / "CMakeLists.txt").is_file() and not closest(executable, executables(folder), _ALIKE):
+            return Program(
+                absent=f"{package} {executable} is no Python program here, and robolink builds nothing with CMake"
+            )
         raise
 
 

@@ -9,7 +9,15 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from robolink.companions.ament_index.packages import package_not_here
-from robolink.companions.launch.actions import EmitEvent, ExecuteLocal, IncludeLaunchDescription, LogInfo, TimerAction
+from robolink.companions.launch.actions import (
+    EmitEvent,
+    ExecuteLocal,
+    IncludeLaunchDescription,
+    LogInfo,
+    OpaqueCoroutine,
+    OpaqueFunction,
+    TimerAction,
+)
 from robolink.companions.launch.bases import (
     SCOPED,
     Action,
@@ -18,7 +26,7 @@ from robolink.companions.launch.bases import (
     Place,
     entities_in,
 )
-from robolink.companions.launch.event_handlers import OnProcessExit
+from robolink.companions.launch.event_handlers import OnProcessExit, OnShutdown
 from robolink.companions.launch.launch_description_sources import LaunchFileNotFoundError
 from robolink.companions.launch_ros.actions import ComposableNodeContainer, LifecycleNode, LoadComposableNodes
 from robolink.companions.launch_ros.descriptions import ComposableNode
@@ -35,6 +43,8 @@ MOST_VISITED = 100_000
 
 
 T = TypeVar("T")
+_ACTING = (EmitEvent, LogInfo, OpaqueCoroutine, OpaqueFunction)
+"""Actions that are for the moment itself: these are not foreseen."""
 
 
 @dataclass
@@ -100,13 +110,14 @@ class Visit:
         while True:
             timers, self.timers = self.timers, []
             waiting = [(timer.actions, around) for timer, around in timers]
-            handlers = [each for each in self.context.handlers if id(each) not in seen]
+            found = [each for each in self.context.handlers if not isinstance(each, OnShutdown)]
+            handlers = [each for each in found if id(each) not in seen]
             seen.update(map(id, handlers))
             waiting += [(each.describe()[1], each.around) for each in handlers]
             if not waiting:
                 return
             for entities, around in waiting:
-                new = [each for each in entities if id(each) not in seen and not isinstance(each, (LogInfo, EmitEvent))]
+                new = [each for each in entities if id(each) not in seen and not isinstance(each, _ACTING)]
                 seen.update(map(id, new))
                 self.run_within(new, around)
 

@@ -194,6 +194,23 @@ def test_a_file_includes_others(package: Path) -> None:
     assert system.entries[0].files == {package / "launch" / name for name in ("bot.launch.py", "part.launch.py")}
 
 
+def test_loops_repeat_a_function(package: Path) -> None:
+    system = read(
+        package,
+        """
+        def made(name, x=0):
+            return [Node(package="bot", executable="talker", name=name, parameters=[{"period": float(x)}])]
+
+        def generate_launch_description():
+            return LaunchDescription([
+                ForEach(LaunchConfiguration("robots", default="{name: ada, x: 1}; {name: bob}"), function=made),
+                ForLoop("2", function=lambda i: made(f"n{i}"))])
+        """,
+    )
+    assert [each.name for each in system.entries] == ["ada", "bob", "n0", "n1"]
+    assert system.entries[0].node.parameters == {"period": 1.0}
+
+
 @pytest.mark.processes
 def test_functions_and_expressions_are_evaluated(package: Path) -> None:
     system = read(

@@ -15,7 +15,10 @@ LEFT_OUT = [
         "left out: controller_manager ros2_control_node is not here: ",
     ),
     ('Node(package="slam_all", executable="go")', "left out: slam_all go is not here: no package of this name is in"),
-    ('Node(package="bot", executable="fast")', "left out: bot fast is a C++ program, and robolink builds none"),
+    (
+        'Node(package="bot", executable="fast")',
+        "left out: bot fast is a C++ program, and robolink builds none",
+    ),
     ('ExecuteProcess(cmd=["gzserver", "x.world"])', "left out: no program 'gzserver' is on the PATH"),
     (
         'IncludeLaunchDescription(PythonLaunchDescriptionSource([FindPackageShare("gazebo_ros"), "/g.launch.py"]))',

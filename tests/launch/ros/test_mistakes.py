@@ -19,6 +19,11 @@ from tests.support.ros_launch import FIRST, read, write
 
 BODIES = [
     ("raise KeyError('x')", 1, "KeyError: 'x'"),
+    (
+        "import os; os.environ['NOT_SET_AT_ALL']",
+        1,
+        "the environment has no 'NOT_SET_AT_ALL', which this file needs: set it, as by export NOT_SET_AT_ALL=VALUE",
+    ),
     ("import foo_bar", 1, "ModuleNotFoundError: No module named 'foo_bar'"),
     (
         "from launch_ros.actions import Nod",
@@ -47,6 +52,10 @@ ACTIONS = [
     ("IncludeLaunchDescription([ThisLaunchFileDir(), '/b.launch.py'])", "there is no launch file {launch}/b.launch.py"),
     ("OpaqueFunction(function=lambda context: ['x'])", "an action is expected, got str"),
     ("OpaqueFunction(function=lambda context: 1 / 0)", "ZeroDivisionError: division by zero"),
+    ("ForLoop('x', function=lambda i: [])", "the length of a loop is a number from 0 on, got 'x'"),
+    ("ForLoop(20000, function=lambda i: [])", "more than 10,000 repetitions"),
+    ("ForEach('{a: 1', function=print)", "'{{a: 1' is no YAML: "),
+    ("ForEach('a', function=print)", "a mapping such as {{name: ada}} is expected, got 'a'"),
     ("ExecuteProcess(cmd='ls -l')", "cmd is a list of words, such as ['ls', '-l'], got the text 'ls -l'"),
     ("Node(package='bot', executable='talker', name='a b')", "'a b' must not contain characters other than a-z"),
     ("Node(package='bot', executable='talker', namespace='a b')", "'/a b' must not contain characters other than"),

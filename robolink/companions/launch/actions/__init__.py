@@ -19,6 +19,7 @@ from robolink.companions.launch.actions.environment import (
 from robolink.companions.launch.actions.functions import LogInfo, OpaqueCoroutine, OpaqueFunction
 from robolink.companions.launch.actions.group import GroupAction
 from robolink.companions.launch.actions.include import IncludeLaunchDescription
+from robolink.companions.launch.actions.loops import ForEach, ForLoop
 from robolink.companions.launch.actions.processes import ExecuteLocal, ExecuteProcess
 from robolink.companions.launch.actions.reactions import (
     EmitEvent,
@@ -34,6 +35,8 @@ __all__ = [
     "EmitEvent",
     "ExecuteLocal",
     "ExecuteProcess",
+    "ForEach",
+    "ForLoop",
     "GroupAction",
     "IncludeLaunchDescription",
     "LogInfo",

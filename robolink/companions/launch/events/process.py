@@ -12,6 +12,9 @@ __all__ = [
     "ProcessExited",
     "ProcessIO",
     "ProcessStarted",
+    "ProcessStderr",
+    "ProcessStdin",
+    "ProcessStdout",
     "ProcessTargetedEvent",
     "RunningProcessEvent",
     "ShutdownProcess",
@@ -86,6 +89,9 @@ class ProcessIO(RunningProcessEvent):
         super().__init__(**kwargs)
         self.text, self.fd = text, fd
         self.from_stdin, self.from_stdout, self.from_stderr = (fd == each for each in (0, 1, 2))
+
+
+ProcessStdin = ProcessStdout = ProcessStderr = ProcessIO
 
 
 class ProcessTargetedEvent(Event):
