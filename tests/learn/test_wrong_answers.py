@@ -41,6 +41,8 @@ WRONG = [
     ("talk", TWICE, "    rclpy.spin(Talker())\n    rclpy.spin(Listener())", "there is no node called listener"),
     ("service", "        response.success = True\n", "", "success of the answer is False"),
     ("client", "request.b = 3", "request.b = 4", "it asked for 2 + 4, and not for 2 + 3"),
+    ("parameter", "    rclpy.spin(Driver())", "    Driver()", "it has come to its end: is there an rclpy.spin?"),
+    ("limits", "        return SetParametersResult(successful=True)\n", "", "on_set returned something else"),
     ("launch", "- node: world\n    parameters: {world: obstacles}\n  ", "", "there is no robot"),
     ("two_robots", "namespace: bob", "namespace: bib", "bob stands"),
     ("pid", "ki = 1.5", "ki = 20.0", "less ki or more kp keeps it below 1.3"),

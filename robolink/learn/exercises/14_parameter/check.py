@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from robolink import Node
 from robolink.learn.trial import Trial
 
 
@@ -9,7 +10,7 @@ def check(trial: Trial) -> None:
     """Set the parameter, and compare the speeds."""
     node = trial.start()
     trial.run(1.0)
-    trial.tell("there", node.has_parameter("speed"))
+    trial.tell("there", isinstance(node, Node) and node.has_parameter("speed"))
     trial.tell("first", abs(speed(trial) - 0.3) < 1e-6, speed=speed(trial))
     trial.system.set_parameter(node, "speed", 0.5)
     trial.run(0.3)

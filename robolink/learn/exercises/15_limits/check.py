@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from robolink import Node
 from robolink.learn.trial import Trial
 from robolink.parameter import Parameter
 
@@ -10,12 +11,18 @@ def check(trial: Trial) -> None:
     """Set good and bad values."""
     node = trial.start()
     trial.run(0.5)
+    trial.tell("there", isinstance(node, Node) and node.has_parameter("speed"))
 
     def reason(value: float) -> str | None:
-        result = node.set_parameters([Parameter("speed", value=value)])[0]
+        try:
+            result = node.set_parameters([Parameter("speed", value=value)])[0]
+        except TypeError:  # what robolink says if a callback returns something else
+            trial.tell("returns", False)
+            raise
         return None if result.successful else str(result.reason)
 
     refused = reason(0.5)
+    trial.tell("returns", True)
     trial.tell("accepts", refused is None, reason=refused)
     fast = reason(3.0)
     trial.tell("fast", fast is not None)
