@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from robolink.documents.yamlfile import spell
-from robolink.launch.reading.entry import Entry
+from robolink.launch.reading.entry import Entry, NodeToStart
 from robolink.workspace import VARIABLE
 
 
 def arguments(entry: Entry) -> Iterator[str]:
-    """Yield the arguments of a node's program: its own, then those behind `--ros-args`."""
-    node = entry.node
-    yield from node.args
-    yield "--ros-args"
+    """Yield the arguments of a node's program: its own, then those behind `--ros-args`, if there are any."""
+    yield from entry.node.args
+    for_ros = [*_for_ros(entry.node)]
+    if for_ros:  # a program that counts its words gets no more than it is given
+        yield from ("--ros-args", *for_ros)
+
+
+def _for_ros(node: NodeToStart) -> Iterator[str]:
     if node.name:
         yield from ("-r", f"__node:={node.name}")
     if node.namespace:

@@ -105,7 +105,7 @@ nodes:
 """,
     )
     assert [each.name for each in found] == ["r0/n0", "r1/n1", "r2/n2", "mine"]
-    assert words(found[3])[2:] == ["--", "{i}", "{linear: {x: 1}}", "--ros-args"]
+    assert words(found[3])[2:] == ["--", "{i}", "{linear: {x: 1}}"]
     second = found[1]
     assert words(second)[2:6] == ["--", "1", "--name=a1", "2.5"]
     arguments = parse_arguments(list(second.argv))
@@ -180,7 +180,7 @@ nodes:
         shared_process.Member("r1/mine", file, ["a", "--ros-args", "-r", "__ns:=/r1", *level]),
         shared_process.Member("last", f"{file}:Mine", ["--ros-args", "-r", "__node:=last", "-p", "x:=1", "-r", "a:=b"]),
     ]
-    assert shared_process.read(other.input) == [shared_process.Member("mine", file, ["--ros-args"])]
+    assert shared_process.read(other.input) == [shared_process.Member("mine", file, [])]
     assert other.rules.respawn.when == "always"
     assert world.input == single.input == b""
 
