@@ -20,6 +20,7 @@ from robolink.companions.rosbag2_py._storage import (
     get_default_storage_id,
     topic_of,
 )
+from robolink.utilities import get_default_context
 
 TICK_EVERY = 16
 """Messages between two looks at what is due."""
@@ -55,7 +56,7 @@ class SequentialWriter:
         mode = "" if packing.compression_mode == CompressionMode.NONE else packing.compression_mode.name.lower()
         profile, config = storage_options.storage_preset_profile, storage_options.storage_config_uri
         self._writer = BagWriter(
-            Path(storage_options.uri),
+            Path(storage_options.uri).absolute(),  # the working directory may be another one when it is closed
             storage=storage_options.storage_id or get_default_storage_id(),
             compression=packing.compression_format if mode else chunk_compression(profile, config),
             compression_mode=mode,
@@ -66,6 +67,7 @@ class SequentialWriter:
         self._snapshot = deque() if storage_options.snapshot_mode else None
         self._cache_size = storage_options.max_cache_size or CACHE_SIZE
         self._numbers = {}
+        get_default_context().on_shutdown(self._show)
         weakref.finalize(self, self._writer.close)  # most programs never close it: rosbag2's does so by itself, too
 
     def create_topic(self, topic_with_type: TopicMetadata, message_definition: MessageDefinition | None = None) -> None:
@@ -130,6 +132,11 @@ class SequentialWriter:
         writer, self._writer = self._writer, None
         if writer is not None:
             writer.close()
+
+    def _show(self) -> None:
+        """Show readers all that was written: of a program in virtual time little more ends than its context."""
+        if self._writer is not None:
+            self._writer.flush()
 
     def _opened(self) -> BagWriter:
         if self._writer is None:
