@@ -1,6 +1,7 @@
 """The workspace: a folder of nodes, systems and types, which are found (`find`) and loaded (`load`) by name."""
 
 from robolink.workspace.built_in import built_in_workspace
+from robolink.workspace.components import COMPONENTS, component
 from robolink.workspace.counterparts import (
     COUNTERPARTS,
     counterpart,
@@ -34,6 +35,7 @@ from robolink.workspace.ros_programs import RosProgramError, instead_of
 from robolink.workspace.source import Folder, NodeSource, canonical
 
 __all__ = [
+    "COMPONENTS",
     "COUNTERPARTS",
     "VARIABLE",
     "Folder",
@@ -43,6 +45,7 @@ __all__ = [
     "RosProgramError",
     "built_in_workspace",
     "canonical",
+    "component",
     "counterpart",
     "counterpart_folder",
     "counterparts_of",

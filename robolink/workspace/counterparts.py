@@ -7,6 +7,7 @@ user's own package, which goes first. The code is in `robolink/counterparts/PACK
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -261,10 +262,16 @@ def counterpart(package: str, name: str) -> NodeSource | None:
     row = counterparts_of(package).get(canonical(name).removesuffix(".py"))
     if row is None:
         return None
-    module, _, attribute = row.target.partition(":")
-    if not attribute:
-        return NodeSource(module.removeprefix("nodes/"), built_in_workspace() / f"{module}.py")
-    return NodeSource(canonical(name).removesuffix(".py"), _file_of(module), attribute)
+    found = source_at(row.target)
+    return replace(found, name=canonical(name).removesuffix(".py")) if found.attribute else found
+
+
+def source_at(target: str) -> NodeSource:
+    """Return the source of a `target` as rows of the table have it, or `nodes/NAME:CLASS` for a built-in one."""
+    module, _, attribute = target.partition(":")
+    if module.startswith("nodes/"):
+        return NodeSource(module.removeprefix("nodes/"), built_in_workspace() / f"{module}.py", attribute)
+    return NodeSource(module.rpartition(".")[2], _file_of(module), attribute)
 
 
 def executable_of(package: str, name: str, folder: Path | None) -> NodeSource | None:

@@ -13,6 +13,7 @@ from robolink.system.plainfile import LONGEST_SOURCE, read_plain
 from robolink.workspace import (
     NodeSource,
     RosProgramError,
+    component,
     executables,
     find_executable,
     find_package,
@@ -64,16 +65,16 @@ def program_of(package: str, executable: str, home: Path | None) -> Program:
 
 
 def component_of(package: str, plugin: str, home: Path | None) -> Program:
-    """Return the Python class of a component, or the reason why it is left out.
+    """Return the Python class of a component, its counterpart, or the reason why it is left out.
 
     Args:
         package: Name of the package.
         plugin: Name of its class, with or without the package and the module: `bot::Talker`, `bot.talker.Talker`.
         home: Workspace in which packages are looked for; None looks for the nearest.
     """
-    folder = find_package(package, workspace=home)
+    folder, known = find_package(package, workspace=home), component(plugin)
     if folder is None:
-        return Program(absent=include_absent(package))
+        return Program(absent=include_absent(package)) if known is None else Program(known)
     name = re.split(r"::|[./]", plugin)[-1]
     defined = re.compile(rf"^class\s+{re.escape(name)}\b".encode(), re.MULTILINE)
     for source in executables(folder).values():

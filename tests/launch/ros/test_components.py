@@ -86,3 +86,37 @@ def test_components_that_come_later_have_a_process_of_their_own(package: Path, s
     assert said == []
     system.run(6.0)
     assert [each.data for each in said][:1] == ["hi"]
+
+
+def test_components_of_ros_have_counterparts(package: Path, system: System) -> None:
+    (package / "map.yaml").write_text(
+        "image: map.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    (package / "map.pgm").write_text("P2 1 1 255 0")
+    write(
+        package,
+        f"""
+        ComposableNodeContainer(
+            name="localization", namespace="", package="rclcpp_components", executable="component_container",
+            composable_node_descriptions=[
+                ComposableNode(
+                    package="nav2_map_server", plugin="nav2_map_server::MapServer", name="map_server",
+                    parameters=[{{"yaml_filename": {str(package / "map.yaml")!r}}}], remappings=[("map", "/floor")],
+                ),
+                ComposableNode(
+                    package="nav2_lifecycle_manager", plugin="nav2_lifecycle_manager::LifecycleManager",
+                    name="manager", parameters=[{{"autostart": True, "node_names": ["map_server"]}}],
+                ),
+                ComposableNode(package="composition", plugin="composition::Talker"),
+                ComposableNode(
+                    package="tf2_ros", plugin="tf2_ros::StaticTransformBroadcasterNode", name="fixed",
+                    parameters=[{{"frame_id": "map", "child_frame_id": "odom", "translation.x": 2.0}}],
+                ),
+            ]),
+        """,
+    )
+    system.launch(package / "launch/bot.launch.py")
+    system.run(2.0)
+    assert list(system.expect("/floor").data) == [100]
+    assert system.expect("/tf_static").transforms[0].transform.translation.x == 2
+    system.expect("/chatter", type=String)
