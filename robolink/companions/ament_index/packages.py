@@ -101,9 +101,23 @@ def packages_may_lack() -> Iterator[None]:
 
 
 def package_not_here(path: str) -> str:
-    """Return the package of a folder or file below `NOT_HERE`; '' for any other `path`."""
-    parts, root = Path(path).parts, NOT_HERE.parts
-    return parts[len(root)] if parts[: len(root)] == root and len(parts) > len(root) else ""
+    """Return the package of a folder or file, `path`, that is not here; '' for any other.
+
+    That is one below `NOT_HERE`, or a file that a package lacks of which robolink has the types alone.
+    """
+    for root in (NOT_HERE, types_folder()):
+        parts = Path(path).parts
+        is_inside = parts[: len(root.parts)] == root.parts and len(parts) > len(root.parts)
+        if is_inside and not Path(path).exists():
+            return parts[len(root.parts)]
+    return ""
+
+
+def types_folder() -> Path:
+    """Return the folder of the packages of types that come with robolink."""
+    spec = importlib.util.find_spec("robolink.interfaces")
+    assert spec is not None
+    return Path(str(spec.origin)).parent
 
 
 def _folder(name: str) -> Path | None:
@@ -125,9 +139,7 @@ def _folder(name: str) -> Path | None:
 
 def _standard() -> dict[str, Path]:
     """Return the packages of types that come with robolink, each with the folder of its module."""
-    spec = importlib.util.find_spec("robolink.interfaces")
-    assert spec is not None
-    folder = Path(str(spec.origin)).parent
+    folder = types_folder()
     return {package: folder / package for kind in KINDS for package in STANDARD[kind]}
 
 

@@ -10,7 +10,7 @@ import sysconfig
 import traceback
 from pathlib import Path
 
-from robolink.companions.ament_index.packages import NOT_HERE, package_not_here
+from robolink.companions.ament_index.packages import NOT_HERE, package_not_here, types_folder
 from robolink.companions.launch.bases import LaunchError, Place, no_argument
 from robolink.exceptions import DocumentError, RobolinkError
 from robolink.system.terminal import shown
@@ -19,7 +19,7 @@ _OWN = str(Path(__file__).resolve().parents[2])
 _LONGEST = 400
 _UNEXPECTED = re.compile(r"(?:(\w+)\.)?(\w+)\(\) got an unexpected keyword argument '(\w+)'")
 _LACKING = re.compile(r"(\w+)\.__init__\(\) missing \d+ required (?:[a-z-]+ )*arguments?: (.+)")
-_PATH = re.compile(re.escape(str(NOT_HERE)) + r"[^\s'\",;:]*")
+_PATH = re.compile("(?:" + "|".join(re.escape(str(each)) for each in (NOT_HERE, types_folder())) + r")[^\s'\",;:]*")
 
 
 def as_document_error(error: BaseException, place: Place) -> DocumentError:
@@ -75,7 +75,10 @@ def absent_package(error: BaseException) -> str:
 
 def _within(text: str) -> str:
     found = _PATH.search(text)
-    return shown("/".join(Path(found[0]).parts[len(NOT_HERE.parts) + 1 :]) if found else "") or "folder"
+    path = found[0] if found else ""
+    parts = Path(path).parts
+    package = package_not_here(path)
+    return shown("/".join(parts[parts.index(package) + 1 :]) if package in parts else "") or "folder"
 
 
 def _no_argument(error: BaseException, name: str, argument: str) -> str:
