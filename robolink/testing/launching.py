@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from robolink.documents.yamlfile import spell
 from robolink.logging import get_logger
 from robolink.simulate.settings import with_settings
-from robolink.workspace import find_launch, find_node
+from robolink.workspace import find_launch, find_node, two_words
 
 if TYPE_CHECKING:
     from robolink.launch import Entry
@@ -48,5 +48,8 @@ def entry_of(spec: str, wanted: Wanted) -> list[Entry]:
 
     source = find_node(spec)
     words = {key: value for key, value in wanted._asdict().items() if key != "what" and value}
-    text = json.dumps({"nodes": [{"node": source.spec, **words}]})
+    node = (
+        spec if two_words(spec)[1] and not source.spec.endswith(spec) else source.spec
+    )  # it has its executable's name
+    text = json.dumps({"nodes": [{"node": node, **words}]})
     return read_launch_file(Path("test"), {}, text=text)

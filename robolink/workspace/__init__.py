@@ -24,6 +24,7 @@ from robolink.workspace.find import (
     list_nodes,
     list_packages,
     list_worlds,
+    two_words,
     user_workspace,
     workspace_of,
 )
@@ -71,6 +72,7 @@ __all__ = [
     "named_executables",
     "own_process_needed",
     "purpose_of",
+    "two_words",
     "unmarked_package",
     "use_interfaces",
     "user_workspace",

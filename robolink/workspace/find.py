@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from robolink.exceptions import NotFoundError
-from robolink.system.paths import expanded
+from robolink.system.paths import expanded, is_file
 from robolink.workspace.built_in import built_in_workspace
 from robolink.workspace.counterparts import COUNTERPARTS, executable_of, lacking_executable
 from robolink.workspace.packages import (
@@ -50,10 +50,10 @@ def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
     Raises:
         NotFoundError: with the nearest name.
     """
-    package, space, executable = name.partition(" ")
-    if space and canonical(package).isidentifier():
-        return find_executable(package, executable.strip(), workspace=workspace)
     file, attribute = _split(name)
+    package, executable = two_words(name)
+    if executable and not is_file(expanded(file)):
+        return find_executable(package, executable, workspace=workspace)
     path = _as_path(file, workspace, (".py",))
     if path is not None:
         return NodeSource(path.stem, path, attribute)
@@ -62,6 +62,17 @@ def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
         if canonical(source.name) == asked:
             return NodeSource(source.name, source.path, attribute, source.entry_point)
     raise _no_node(file, workspace)
+
+
+def two_words(name: str) -> tuple[str, str]:
+    """Split the `name` of a node that is a package and an executable; ('', '') for any other, as for a path.
+
+    >>> two_words("turtlesim turtlesim_node"), two_words("my files/node.py")
+    (('turtlesim', 'turtlesim_node'), ('', ''))
+    """
+    package, _, executable = name.partition(" ")
+    is_path = any(each in name for each in "/\\")
+    return ("", "") if is_path or not canonical(package).isidentifier() else (package, executable.strip())
 
 
 def find_executable(package: str, name: str, *, workspace: Folder = None) -> NodeSource:

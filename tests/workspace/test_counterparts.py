@@ -63,3 +63,12 @@ def test_what_the_table_lacks_is_one_line(
     if len(words) == 2:
         with pytest.raises(NotFoundError):
             find_node(" ".join(words))
+
+
+def test_a_file_with_a_space_in_its_path_is_no_executable(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my files").mkdir()
+    for name in ("my files/node.py", "my node.py"):
+        (tmp_path / name).write_text("def main(): pass\n")
+        for spec in (name, f"{name}:main"):
+            assert find_node(spec).path == tmp_path.resolve() / name

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 
+import robolink
 from robolink.cli.shared.output import tell
-from robolink.context import Context
+from robolink.exceptions import ExternalShutdownException
 from robolink.running.timebase import VirtualTime
-from robolink.utilities import remove_ros_args
+from robolink.utilities import get_default_context, remove_ros_args
 
 
 def rviz2() -> None:
@@ -61,11 +63,13 @@ def rqt_robot_steering() -> None:
 
 
 def _show(program: str, panels: str) -> None:
-    """Serve the page until Ctrl-C, and open it; in virtual time there is nobody to look at it."""
+    """Serve the page until Ctrl-C, and open it; in virtual time nobody looks, and it only waits for its end."""
     from robolink.cli.view import show_system
     from robolink.view.server import Settings
 
-    if isinstance(Context().time, VirtualTime):
+    if isinstance(get_default_context().time, VirtualTime):
+        with robolink.init(), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+            robolink.get_global_executor().spin()
         return
     words = remove_ros_args(sys.argv)[1:]
     if words:

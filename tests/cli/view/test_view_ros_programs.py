@@ -45,10 +45,10 @@ def system() -> Iterator[System]:
         yield made
 
 
-def test_in_virtual_time_nothing_is_opened(system: System) -> None:
+def test_in_virtual_time_it_runs_and_nothing_is_opened(system: System) -> None:
     system.start("rviz2 rviz2")
     system.run(1.0)
-    assert system.nodes == []
+    assert (system.nodes, system.programs) == ([], ["rviz2"])
 
 
 @pytest.mark.processes
