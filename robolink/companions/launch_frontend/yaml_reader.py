@@ -23,7 +23,12 @@ def read_yaml(path: Path) -> Entity:
     """Return the `launch` element of a YAML file, `path`. Raises DocumentError with line and column."""
     file = str(path)
     root = yamltext.compose(read_text(path), file)
-    if not isinstance(root, yaml.MappingNode) or [key.value for key, _ in root.value] != ["launch"]:
+    keys = [key.value for key, _ in root.value] if isinstance(root, yaml.MappingNode) else []
+    if {"nodes", "include", "groups"} & set(keys):
+        raise DocumentError(
+            "it is one of robolink's own launch files, and those of ROS 2 include none of these", file, 1
+        )
+    if not isinstance(root, yaml.MappingNode) or keys != ["launch"]:
         raise DocumentError("a launch file of ROS 2 has one key, `launch`, with a list of actions", file, 1)
     return _element("launch", root.value[0][1], file)
 

@@ -25,6 +25,7 @@ from robolink.launch.reading.entry import Entry
 from robolink.launch.reading.file import LaunchFile
 from robolink.launch.reading.inherited import Inherited
 from robolink.launch.reading.keys import unknown_keys
+from robolink.launch.reading.kinds import is_of_ros
 from robolink.launch.reading.parameters import given_in
 from robolink.launch.reading.record import recorded
 from robolink.launch.reading.section import Place, Section, copies
@@ -35,6 +36,7 @@ from robolink.workspace import Folder, NodeSource
 
 __all__ = ["Entry", "read_launch_file", "read_with_mistakes"]
 
+_BY_ITSELF = "and robolink's own include none of these: launch it by itself, or name its nodes here"
 _HELD = ("nodes", "include", "groups")
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 
@@ -258,6 +260,8 @@ class _Reading:
             path = lookup.included_file(said.file, scope.home, scope.file.folder)
         except lookup.NOT_FOUND as error:
             raise section.error(["file"], lookup.reason_of(error)) from None
+        if is_of_ros(path):
+            raise section.error(["file"], f"{path.name} is a launch file of ROS 2, {_BY_ITSELF}")
         if path.resolve() in scope.chain:
             names = [each.name for each in scope.chain[scope.chain.index(path.resolve()) :]]
             raise section.error(["file"], f"a file cannot include itself: {' -> '.join([*names, path.name])}")

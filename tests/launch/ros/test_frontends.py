@@ -191,7 +191,8 @@ WRONG_YAML = [
     ("launch:\n- node: talker\n", 2, "node: a mapping of its attributes is expected"),
     ("launch:\n- node\n", 2, "each action is a mapping with one key, such as `- node: {...}`"),
     ("launch:\n- log: {message: {a: b}}\n", 2, "a value is a text, a number or a list, got a mapping"),
-    ("launch: []\nnodes: []\n", 1, "a launch file of ROS 2 has one key, `launch`, with a list of actions"),
+    ("launch: []\nother: []\n", 1, "a launch file of ROS 2 has one key, `launch`, with a list of actions"),
+    ("launch: []\nnodes: []\n", 1, "it is one of robolink's own launch files, and those of ROS 2 include none of"),
 ]
 
 
@@ -205,6 +206,16 @@ def test_mistakes_have_their_line(package: Path, name: str, text: str, line: int
     assert (caught.value.file, caught.value.line) == (str(package / "launch" / name), line)
     assert caught.value.message.startswith(message)
     assert "\n" not in str(caught.value)
+
+
+def test_the_two_kinds_do_not_include_each_other(package: Path) -> None:
+    put(package, XML, "bot.launch.xml")
+    own = put(package, "include: [{file: bot.launch.xml}]\n", "own.yaml")
+    with pytest.raises(DocumentError, match=r"own.yaml:1:18: .*bot.launch.xml is a launch file of ROS 2"):
+        read_system(own)
+    path = put(package, '<launch><include file="$(dirname)/own.yaml"/></launch>', "other.launch.xml")
+    with pytest.raises(DocumentError, match=r"own.yaml:1: it is one of robolink's own launch files"):
+        read_system(path)
 
 
 def test_commands_take_them(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
