@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 import shutil
+import subprocess
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -157,7 +158,7 @@ class EntryMaker:
         if not words or not words[0].strip():
             raise LaunchError("cmd has no program")
         if action.shell:
-            run = ["cmd", "/c", " ".join(words)] if sys.platform == "win32" else ["/bin/sh", "-c", " ".join(words)]
+            run, words = _in_shell(" ".join(words)), " ".join(words).split()
         else:
             words = [*shlex.split(words[0], posix=sys.platform != "win32"), *words[1:]] if len(words) == 1 else words
             found = _command_line(words, context)
@@ -275,6 +276,14 @@ def _command_line(words: list[str], context: LaunchContext) -> list[str] | None:
     if name in ("ros2", "robolink"):
         return [*own_command(), *words[1:]]
     return command_of(words, context.environment.get("PATH"))
+
+
+def _in_shell(line: str) -> list[str]:
+    """Return the words by which a shell runs a line; a command `ros2` in it is robolink's own."""
+    if sys.platform == "win32":
+        own = subprocess.list2cmdline(own_command())
+        return ["cmd", "/c", re.sub(r"^\s*ros2(?=\s|$)", lambda _: own, line)]
+    return ["/bin/sh", "-c", f'ros2() {{ {shlex.join(own_command())} "$@"; }}\n{line}']
 
 
 def _remappings(given: Iterable[Any], context: LaunchContext) -> dict[str, str]:
