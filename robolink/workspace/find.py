@@ -22,6 +22,7 @@ from robolink.workspace.packages import (
     BUILT_IN,
     PARTS,
     has_packages,
+    hides,
     is_repository,
     is_ros_workspace,
     named_executables,
@@ -241,16 +242,18 @@ def _is_workspace(folder: Path) -> bool:
 def _repository(above: Sequence[Path]) -> Path | None:
     """Return the clone of a repository with packages at or above a path; else the package there, with those beside it.
 
-    `above` are the path and its parents.
+    `above` are the path and its parents. A clone in which another package has the name of one here is not taken:
+    courses have a copy of a package for each lesson.
     """
     package = next((each for each in above if (each / "package.xml").is_file()), None)
     clone = next((each for each in above if (each / ".git").exists()), None)
-    if clone is not None and (package is None or clone in package.parents) and is_repository(clone):
+    here = package or above[0]
+    if clone is not None and is_repository(clone) and (here == clone or not hides(clone, here)):
         return clone
     if package is not None:
         beside = package.parent
         return beside if has_packages(beside, but=package) and not why_not(beside) else package
-    return above[0] if is_repository(above[0]) and not why_not(above[0]) else None
+    return here if is_repository(here) and not why_not(here) else None
 
 
 def _workspaces(workspace: Folder) -> list[Path]:

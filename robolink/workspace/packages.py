@@ -88,6 +88,12 @@ def is_repository(folder: Path) -> bool:
     return any((each / "package.xml").is_file() for each in (*inside, *below))
 
 
+def hides(top: Path, folder: Path) -> bool:
+    """True if a package at or below `folder` is not the one of its name in the workspace `top`, which is above it."""
+    known = source_packages(top)
+    return any(known.get(name) != each for name, each in source_packages(folder).items())
+
+
 def has_packages(folder: Path, but: Path) -> bool:
     """True if a `folder` that is no package has packages directly in it, beside `but`, and none is a copy of that."""
     inside = [each for each in _folders_in(folder)[:MOST_BESIDE] if each != but and (each / "package.xml").is_file()]

@@ -294,6 +294,20 @@ def test_a_clone_of_packages_without_src_works_from_its_own_folder(tmp_path: Pat
         assert packages_of(clone / here) == (clone, names)
 
 
+def test_a_copy_for_each_lesson_is_the_one_where_one_stands(tmp_path: Path) -> None:
+    clone = tmp_path.resolve()
+    (clone / ".git").mkdir()
+    for lesson in ("01-first", "02-second"):
+        write_package(clone / lesson, "robot_lesson", {"a.py": ""})
+    write_package(clone, "robot_other", {"a.py": ""})
+    assert packages_of(clone) == (clone, ["robot_other", "robot_lesson"])
+    assert packages_of(clone / "01-first") == packages_of(clone)
+    for here in ("02-second", "02-second/robot_lesson/robot_lesson"):
+        top, names = packages_of(clone / here)
+        assert top is not None
+        assert (names, source_packages(top)["robot_lesson"]) == (["robot_lesson"], clone / "02-second/robot_lesson")
+
+
 def test_a_clone_that_is_one_package_works_from_its_own_folder(tmp_path: Path) -> None:
     clone = write_package(tmp_path.resolve(), "robot_one", {"a.py": ""})
     (clone / ".git").mkdir()
