@@ -95,10 +95,20 @@ def finished(page: Page, known: dict[Path, str]) -> str:
     text = with_site_links(page.text(), page.source, page.address, known)
     english = next(each for each in pages("en") if each.address == page.address)
     text = with_anchors(text, slugs(english.text()))
+    if page.address.endswith("/index.md"):
+        text += contents(page)
     if page.is_translated:
         return text
     first, _, rest = text.partition("\n")
     return f"{first}\n\n{NOTES[page.language]}{rest}"
+
+
+def contents(index: Page) -> str:
+    """Return a list of the pages of a part, for the page on which it begins."""
+    part = Path(index.address).parent.as_posix() + "/"
+    listed = [each for each in pages(index.language) if each.address.startswith(part) and each != index]
+    lines = [f"- [{headings(each.text())[0][1]}]({Path(each.address).name})" for each in listed]
+    return "\n" + "\n".join(lines) + "\n"
 
 
 def pictures() -> dict[Path, str]:
