@@ -37,6 +37,8 @@ ENDS = {
 """Verbs that go on, and what ends them; others end by themselves."""
 GO_ON = ("run", "launch", "view", "router", "top", "pub")
 GO_ON_OF_A_NOUN = ("echo", "hz", "record", "pub", "monitor")
+LOOKS = {"list", "info", "--status", "doctor"}
+"""Words of commands that look and change nothing: a reader types them again when what they look at is not there yet."""
 INTERRUPTED = (0, 130, -2, 0xC000013A)
 
 
@@ -134,6 +136,11 @@ class Shells:
             lines = [each for each in said(command).splitlines() if waits or not each.lower().startswith("waiting")]
             return fits(shown, lines, exact=exact, whole=not goes)
 
+        if not goes and self.running and LOOKS & set(shlex.split(line)):
+            end = time.monotonic() + PATIENCE
+            while not is_there() and time.monotonic() < end:  # what is looked at is still starting: look again
+                command = self.command(program_of(shlex.split(line)))
+                command.end(PATIENCE)
         assert wait(is_there, PATIENCE if goes else 0.0), f"'{line}' says\n{said(command)}\nand not\n{block.text}"
 
     def stop(self, name: str) -> None:
