@@ -173,6 +173,7 @@ def no_argument(cls: type, name: str) -> LaunchArgumentError:
         for each in inspect.signature(base.__init__).parameters.values()  # type: ignore[misc]
         if each.kind is each.KEYWORD_ONLY or each.kind is each.POSITIONAL_OR_KEYWORD
     ]
+    known += getattr(cls, "accepted", ())
     return LaunchArgumentError(f"{cls.__name__} has no argument '{name}'{nearest(name, known)}")
 
 

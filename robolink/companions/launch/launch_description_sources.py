@@ -159,7 +159,7 @@ def read_python_file(path: Path) -> LaunchDescription:
         raise LaunchFileNotFoundError(path)
     maker = getattr(_loaded(path), MAKER, None)
     if maker is None:
-        raise InvalidPythonLaunchFileError(f"{path}: it has no function {MAKER}(), as a launch file has")
+        raise InvalidPythonLaunchFileError(f"{path}: it has no function {MAKER}(); a node is run by 'robolink run'")
     made = maker()
     if not isinstance(made, LaunchDescription):
         kind = type(made).__name__

@@ -33,12 +33,14 @@ BODIES = [
     ("import sys; sys.exit(3)", 1, "it ends the program: sys.exit(3)"),
     ("open(get_package_share_directory('nobody') + '/x')", 1, "package nobody is not here, and its x is needed"),
     ("return [1]", None, "generate_launch_description() returned list, and a LaunchDescription was expected"),
+    ("pass", None, "generate_launch_description() returned NoneType, and a LaunchDescription was expected"),
     ("return LaunchDescription(]", 1, "closing parenthesis ']' does not match opening parenthesis '('"),
 ]
 ACTIONS = [
     ("Node(package='bot', executable='talkr')", "no executable named 'talkr' in package bot (did you mean 'talker'?)"),
     ("Node(package='bott', executable='x')", "no package named 'bott' (did you mean 'bot'?)"),
     ("Node(executable='talker', paramters=[])", "Node has no argument 'paramters' (did you mean 'parameters'?)"),
+    ("Node(executable='talker', outptu='screen')", "Node has no argument 'outptu' (did you mean 'output'?)"),
     ("GroupAction([], scopd=1)", "GroupAction has no argument 'scopd' (did you mean 'scoped'?)"),
     ("LogInfo()", "LogInfo needs 'msg'"),
     ("LogInfo(msg=LaunchConfiguration('a', defualt=1))", "LaunchConfiguration has no argument 'defualt' (did you mean"),

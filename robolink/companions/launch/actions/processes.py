@@ -58,6 +58,7 @@ class ExecuteLocal(Action):
     """
 
     lasts = True
+    accepted = IGNORED
 
     def __init__(
         self,
