@@ -24,6 +24,9 @@ TOPS = frozenset({*MESSAGES, *(name for name in ROOMS if "." not in name)})
 ALIKE = 0.85
 """Similarity from 0 to 1, as `closest` computes it, above which an unknown name is a misspelt one of ROS 2's."""
 PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
+NEVER_A_CHECKOUT = frozenset({"rclpy", "launch", "launch_ros"})
+"""Names that a folder of the user's own does not take: a clone of their repositories in a workspace cannot run here,
+and many a package has a folder `launch/`."""
 
 
 def hidden(fullname: str) -> bool:
@@ -33,7 +36,7 @@ def hidden(fullname: str) -> bool:
         return False
     if dot:
         return _is_ours(sys.modules.get(top))
-    return top == "rclpy" or not _is_the_users_own(top)
+    return top in NEVER_A_CHECKOUT or not _is_the_users_own(top)
 
 
 def maker(fullname: str) -> Fill | None:

@@ -61,6 +61,17 @@ def test_a_checkout_of_rclpy_beside_the_script_is_none_that_is_installed(inner: 
 
 
 @pytest.mark.usefixtures("before")
+@pytest.mark.parametrize("name", ["launch", "launch_ros"])
+def test_a_checkout_of_launch_is_none_that_is_installed(name: str, tmp_path: Path) -> None:
+    (tmp_path / name).mkdir()
+    (tmp_path / name / "__init__.py").write_text("raise ImportError('it is not built')")
+    sys.path.insert(0, str(tmp_path))
+    importlib.invalidate_caches()
+    importlib.import_module("robolink.compat")
+    assert importlib.import_module(name).__name__ == f"robolink.companions.{name}"
+
+
+@pytest.mark.usefixtures("before")
 def test_a_real_rclpy_that_is_built_elsewhere_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "rclpy").mkdir()
     (tmp_path / "rclpy/__init__.py").write_text("REAL = True\n")
