@@ -14,8 +14,8 @@ real rclpy is installed, the import above leaves all of them alone. `robolink ru
 run a program wants it on robolink's network, and has `ros2 run` and `python` for the other; a real rclpy is hidden
 from that one process. The variable ROBOLINK_COMPAT, or `activate`, decides otherwise: `always` takes robolink's in
 any case, `never` none, `auto` is the rule of the import. A file of the user's own that has one of these names
-(a `tf_transformations.py` beside the script) is found before robolink's; rclpy, launch and launch_ros are never taken from
-there: a checkout of their repositories in a folder is none that is installed.
+(a `tf_transformations.py` beside the script) is found before robolink's; rclpy, launch and launch_ros are never taken
+from there: a checkout of their repositories in a folder is none that is installed.
 """
 
 from __future__ import annotations
