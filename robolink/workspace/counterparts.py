@@ -224,6 +224,14 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
         "throttle": Counterpart(f"{_TOOLS}.throttle:main", "Passes on so many messages or bytes per second."),
         "transform": Counterpart(f"{_TOOLS}.transform:main", "Publishes what an expression makes of messages."),
     },
+    "turtle_tf2_py": {
+        "turtle_tf2_broadcaster": Counterpart(
+            "robolink.counterparts.turtle_tf2_py.turtle_tf2_broadcaster:FramePublisher", "Makes a frame of a turtle."
+        ),
+        "turtle_tf2_listener": Counterpart(
+            "robolink.counterparts.turtle_tf2_py.turtle_tf2_listener:FrameListener", "Has a turtle follow a frame."
+        ),
+    },
     "turtlesim": {
         "draw_square": Counterpart(
             "robolink.counterparts.turtlesim.draw_square:DrawSquare", "Has a turtle draw squares."
