@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import shutil
 import subprocess
@@ -30,7 +31,8 @@ def tf2_echo() -> None:
     if len(words) not in (2, 3):
         raise UsageError(f"expected two frames and perhaps a rate, got {len(words)} words: {ECHO_USAGE}")
     rate = _number("RATE", words[2]) if len(words) == 3 else 1.0
-    echo.run(words[0], words[1], echo.Wish(rate))
+    with contextlib.suppress(BrokenPipeError):  # `| head` has enough: no error of this program
+        echo.run(words[0], words[1], echo.Wish(rate))
 
 
 def tf2_monitor() -> None:
@@ -41,7 +43,8 @@ def tf2_monitor() -> None:
             f"expected two frames or none, got {len(words)} words: tf2_monitor [SOURCE_FRAME TARGET_FRAME]"
         )
     source, target = words or ("", "")
-    monitor.run(source, target, 10.0, json=False)
+    with contextlib.suppress(BrokenPipeError):
+        monitor.run(source, target, 10.0, json=False)
 
 
 def view_frames() -> None:

@@ -46,6 +46,16 @@ def test_tf2_monitor_shows_a_chain(words: list[str], monkeypatch: pytest.MonkeyP
     assert capsys.readouterr().out == "Gathering data on map -> base for 10 seconds...\n"
 
 
+def test_a_reader_that_has_enough_ends_them_quietly(words: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    def break_pipe(text: str) -> None:
+        raise BrokenPipeError
+
+    words += ["map", "base"]
+    for module, program in ((echo, ros_programs.tf2_echo), (monitor, ros_programs.tf2_monitor)):
+        when_said(monkeypatch, module, "say", break_pipe)
+        program()
+
+
 def test_view_frames_writes_a_graph(
     words: list[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: Captured
 ) -> None:
