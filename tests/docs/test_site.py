@@ -28,6 +28,7 @@ def name_of(page: Page) -> str:
 def test_each_page_is_there_in_both_languages() -> None:
     missing = [each.address.removesuffix(".md") for each in pages("pt") if not each.is_translated]
     assert sorted(missing) == sorted(listing()["untranslated"])
+    assert len({name_of(each) for each in pages("en")}) == len(pages("en")), "a page stands twice in docs/site.yaml"
     assert [name_of(each) for each in WRITTEN if each.source and not each.source.is_file()] == []
 
 
