@@ -28,6 +28,10 @@ ROOMS = {
     "rosidl_parser.definition": "robolink.message.slot_types",
     "rosidl_runtime_py": "robolink.companions.rosidl_runtime",
     "webots_ros2_driver": "robolink.webots_controller",
+    **{
+        f"webots_ros2_driver.{name}": f"robolink.companions.webots_ros2_driver.{name}"
+        for name in ("urdf_spawner", "utils", "wait_for_controller_connection", "webots_launcher")
+    },
     "turtlesim_msgs": "robolink.interfaces.turtlesim",
     "ament_index_python": "robolink.companions.ament_index",
     "rosbag2_py": "robolink.companions.rosbag2_py",

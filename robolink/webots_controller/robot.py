@@ -11,12 +11,13 @@ from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.executors import Executor
 from robolink.interfaces.sensor_msgs.msg import JointState
 from robolink.node import Node
+from robolink.publisher import Publisher
 from robolink.spinning import spin_once
 from robolink.text.names import spelled
 from robolink.webots_controller.any_device import SENSORS, AnyDevice
 from robolink.webots_controller.cameras import Camera, RangeFinder
 from robolink.webots_controller.motors import Motor, PositionSensor
-from robolink.webots_controller.robot_topics import RobotTopics, plain, quoted
+from robolink.webots_controller.robot_topics import RobotTopics, quoted, words_of
 from robolink.webots_controller.sensors import Accelerometer, DistanceSensor, Gyro, InertialUnit, Lidar, TouchSensor
 
 AGAIN = 100_000_000
@@ -39,12 +40,15 @@ class StepError(RobolinkError, RuntimeError):
 class Robot:
     """The robot of a `WebotsController`, as Webots' Python API has it; `name` is its own where there are several.
 
-    Devices may be asked for before the world is there. Times are the world's own, as its messages are stamped.
+    Devices may be asked for before the world is there. Times are the world's own, as its messages are stamped. `prefix`
+    is what the names of its topics begin with; None follows from `name`.
     """
 
-    def __init__(self, node: Node, name: str) -> None:
+    def __init__(self, node: Node, name: str, prefix: str | None = None) -> None:
         self._node, self._name = node, name
-        prefix = f"{spelled(name, 'robot')}/" if name else ""
+        if prefix is None:
+            prefix = f"{spelled(name, 'robot')}/" if name else ""
+        self._prefix = prefix
         self.topics = RobotTopics(node, prefix)
         self._motors: dict[str, Motor] = {}
         self.positions: dict[str, float] = {}
@@ -52,7 +56,7 @@ class Robot:
         self._step_ns, self._sent = 0, dict[str, float]()
         self._told: set[str] = set()
         group = ReentrantCallbackGroup()
-        self._command = node.create_publisher(JointState, f"{prefix}joint_command", 10)
+        self._command: Publisher[JointState] | None = None
         for topic in ("joint_states", "encoders"):
             node.create_subscription(JointState, f"{prefix}{topic}", self._on_joint_states, 10, callback_group=group)
         steady = Clock(clock_type=ClockType.STEADY_TIME, time_base=node.context.time)
@@ -73,6 +77,8 @@ class Robot:
         """Return the motor called `name`. Raises `NotFoundError` if the world is there and has none of that name."""
         if self._stamp and name not in self.positions:
             raise NotFoundError("motor", name, self.positions, "this robot")
+        if self._command is None:  # from now on the world ignores cmd_vel
+            self._command = self._node.create_publisher(JointState, f"{self._prefix}joint_command", 10)
         return self._motors.setdefault(name, Motor(self, name))
 
     def getPositionSensor(self, name: str) -> PositionSensor:
@@ -122,8 +128,8 @@ class Robot:
         """Return the joint of a position sensor: by its name, else by most words in common; '' for none."""
         if sensor in self.positions:
             return sensor
-        words = set(map(plain, sensor.replace("_", " ").split()))
-        common = {joint: len(words & set(map(plain, joint.replace("_", " ").split()))) for joint in self.positions}
+        words = words_of(sensor)
+        common = {joint: len(words & words_of(joint)) for joint in self.positions}
         best = [joint for joint, count in common.items() if count and count == max(common.values())]
         return best[0] if len(best) == 1 else ""
 
@@ -188,13 +194,13 @@ class Robot:
         speeds = {name: motor.speed() for name, motor in list(self._motors.items()) if motor.is_told}
         speeds = {name: speed for name, speed in speeds.items() if name in self.positions}
         passed = self._stamp - self._sent_at
-        if speeds and (speeds != self._sent or not 0 <= passed < AGAIN):
+        if self._command and speeds and (speeds != self._sent or not 0 <= passed < AGAIN):
             self._sent, self._sent_at = speeds, self._stamp
             self._command.publish(JointState(name=list(speeds), velocity=list(speeds.values())))
 
     def halt(self) -> None:
         """Stop all motors that have had a command."""
-        if self._sent:
+        if self._command and self._sent:
             self._command.publish(JointState(name=list(self._sent), velocity=[0.0] * len(self._sent)))
 
     def _look_for_motors(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
 from robolink.interfaces.sensor_msgs.msg import JointState
@@ -18,8 +19,17 @@ def plain(name: str) -> str:
     return "".join(filter(str.isalnum, name.lower()))
 
 
+def words_of(name: str) -> set[str]:
+    """Return the words and numbers of a device's name, to compare.
+
+    >>> words_of("left_wheel sensor") == {"left", "wheel", "sensor"}, words_of("encoder1") == {"encoder", "1"}
+    (True, True)
+    """
+    return set(re.findall(r"[^\W\d_]+|\d+", name.lower()))
+
+
 class RobotTopics:
-    """The topics of one robot: `prefix` is its name and a slash where there are several, else ''."""
+    """The topics of one robot: `prefix` is its name and a slash where there are several, else ''; or it is absolute."""
 
     def __init__(self, node: Node, prefix: str) -> None:
         self.node, self.prefix = node, prefix
@@ -27,10 +37,19 @@ class RobotTopics:
         self._base = self.joint_states.rpartition("/")[0]
 
     def of_type(self, message: type[Message]) -> list[str]:
-        """Return the names of the robot's topics of this type, without their common prefix."""
+        """Return the names of the robot's topics of this type, without their common prefix.
+
+        Topics that only have subscriptions, or publishers of this node alone, are no sensors.
+        """
         wanted, base = type_name(message), self._base + "/"
         found = self.node.get_topic_names_and_types()
-        return [name.removeprefix(base) for name, types in found if wanted in types and name.startswith(base)]
+        names = [name for name, types in found if wanted in types and name.startswith(base)]
+        return [name.removeprefix(base) for name in names if self._is_of_others(name)]
+
+    def _is_of_others(self, topic: str) -> bool:
+        own = (self.node.get_name(), self.node.get_namespace())
+        publishers = self.node.get_publishers_info_by_topic(topic)
+        return any((each.node_name, each.node_namespace) != own for each in publishers)
 
     def elsewhere(self) -> list[str]:
         """Return the joint_states topics of all robots."""

@@ -29,7 +29,7 @@ from robolink.workspace.find import (
     workspace_of,
 )
 from robolink.workspace.interfaces import InterfaceImportError, use_interfaces
-from robolink.workspace.load import NodeLoadError, load_module, load_node, own_process_needed
+from robolink.workspace.load import NodeLoadError, load_module, load_node, own_process_needed, reach_module
 from robolink.workspace.packages import executable, executables, named_executables, unmarked_package
 from robolink.workspace.purpose import purpose_of
 from robolink.workspace.ros_programs import RosProgramError, instead_of
@@ -72,6 +72,7 @@ __all__ = [
     "named_executables",
     "own_process_needed",
     "purpose_of",
+    "reach_module",
     "two_words",
     "unmarked_package",
     "use_interfaces",

@@ -244,6 +244,12 @@ COUNTERPARTS: dict[str, dict[str, Counterpart]] = {
             "robolink.counterparts.turtlesim.turtlesim_node:main", "Simulates turtles that draw, shown in the browser."
         ),
     },
+    "webots_ros2_driver": {
+        "driver": Counterpart(
+            "robolink.counterparts.webots_ros2_driver.driver:main", "Runs the plugins of a robot of Webots."
+        ),
+        "webots": Counterpart("nodes/world", "Simulates a world of Webots."),
+    },
     "xacro": {
         "xacro": Counterpart("robolink.counterparts.xacro.xacro:main", "Prints the XML of a file with macros."),
     },

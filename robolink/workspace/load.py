@@ -254,6 +254,18 @@ def _reach(folder: Path, root: Path | None = None) -> None:
             sys.path.append(str(each))
 
 
+def reach_module(top: str, folder: Path) -> None:
+    """Make the imports of a package's modules possible, whoever asks for them.
+
+    Args:
+        top: First part of the modules' names.
+        folder: Folder of the package.
+    """
+    root = next((each for each in import_roots(folder) if (each / top).is_dir()), folder)
+    _forget_others(top, root)
+    _reach(root / top, root)
+
+
 def _above_package(folder: Path) -> Path:
     """Return the folder from which the modules in `folder` are imported with the names of their packages."""
     while (folder / "__init__.py").is_file() and folder != folder.parent:

@@ -14,6 +14,9 @@ _WORLD = (
     "/cmd_vel, /scan, /odom, /tf, /imu (docs/simulator.md)"
 )
 _WEBOTS = "Webots' driver; 'robolink run world' reads Webots' worlds and robots instead (docs/webots.md)"
+_URDF_ROBOT = (
+    "a world takes its robots from its own file; give its .wbt file a Robot node of that shape (docs/webots.md)"
+)
 _NAVIGATION = "a server of Nav2, in C++; 'robolink launch goto' drives to the goals of Nav2's action instead"
 _FILTER = f"a Kalman filter in C++; the world's /odom needs none, for a real robot {_THERE}"
 _DRIVER = f"driver of a device, in C++; {_THERE}"
@@ -31,6 +34,11 @@ PROGRAMS = {
     ): "translates Gazebo's topics; 'robolink run world' needs no bridge",
     ("controller_manager", "spawner"): f"loads controllers of ros2_control, which are C++; {_WORLD}",
     ("controller_manager", "ros2_control_node"): f"runs controllers of ros2_control, which are C++; {_WORLD}",
+    (
+        "webots_ros2_driver",
+        "ros2_supervisor",
+    ): "Webots' supervisor; the world itself publishes /clock and spawns robots",
+    ("webots_ros2_driver", "urdf_spawner"): f"it adds a robot of a URDF file to Webots; {_URDF_ROBOT}",
     ("robot_localization", "ekf_node"): _FILTER,
     ("robot_localization", "ukf_node"): _FILTER,
 }

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from robolink import compat
 from robolink.companions.ament_index.packages import packages_may_lack
+from robolink.compat.launch_files import names_of_launch_files
 from robolink.workspace import VARIABLE
 from robolink.workspace.packages import import_roots, source_packages
 
@@ -28,7 +29,7 @@ def surroundings(home: Path | None) -> Iterator[None]:
         sys.path.extend(str(each) for each in roots if str(each) not in sys.path)
         os.environ[VARIABLE] = str(home)
     try:
-        with packages_may_lack():
+        with packages_may_lack(), names_of_launch_files():
             yield
     finally:
         sys.path[:] = before
