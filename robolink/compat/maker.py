@@ -11,6 +11,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from robolink.compat.launch_names import LAUNCH_ROOMS
 from robolink.compat.names import ROOMS, instead_of, snake_case
 from robolink.exceptions import closest
 from robolink.interfaces import ACTION_PARTS, KINDS
@@ -177,6 +178,8 @@ def _asked(fullname: str, module: ModuleType, own: Callable[[str], Any] | None, 
             return own(name)
     except AttributeError:
         pass
+    if f"{fullname}.{name}" in LAUNCH_ROOMS:  # ROS 2's launch imports all of its modules itself
+        return importlib.import_module(f"{fullname}.{name}")
     known = functools.partial(names_in, module)
     raise lacking(fullname, name, known, sys._getframe(1), _home_of(fullname, name)) from None
 

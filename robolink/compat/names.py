@@ -35,6 +35,7 @@ ROOMS = {
     "turtlesim_msgs": "robolink.interfaces.turtlesim",
     "ament_index_python": "robolink.companions.ament_index",
     "rosbag2_py": "robolink.companions.rosbag2_py",
+    "launch_testing": "robolink.companions.launch_testing",
     "nav2_common": "robolink.companions.nav2_common",
     "nav2_simple_commander": "robolink.companions.nav2_simple_commander",
     **LAUNCH_ROOMS,
@@ -42,7 +43,7 @@ ROOMS = {
 """Modules by name; '' is a package with nothing in it. A name below another is below its module."""
 
 INSTEAD = {
-    "launch_testing": "a test makes its nodes itself, in memory and in virtual time",
+    "launch_testing_ros": "a test makes its nodes itself, in memory and in virtual time",
     "launch_pytest": "a test makes its nodes itself, in memory and in virtual time",
     "tf2_kdl": "tf2_geometry_msgs transforms the types of geometry_msgs, tf_transformations has the matrices",
     "tf2_eigen": "tf2_geometry_msgs transforms the types of geometry_msgs, tf_transformations has the matrices",

@@ -13,7 +13,7 @@ from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
 from robolink.companions.launch.actions import ExecuteLocal, Shutdown
-from robolink.companions.launch.bases import LaunchContext, LaunchError, Place
+from robolink.companions.launch.bases import LaunchContext, LaunchError, Place, Substitution
 from robolink.companions.launch.utilities import is_true, performed
 from robolink.companions.launch_ros.actions import Node
 from robolink.companions.launch_ros.actions.scope import NAMESPACE, REMAPS, joined
@@ -290,6 +290,8 @@ def _remappings(given: Iterable[Any], context: LaunchContext) -> dict[str, str]:
     """Return the remappings of a node: those of SetRemap count more, and the first of a name."""
     pairs = list(context.launch_configurations.get(REMAPS, []))
     for each in given:
+        if isinstance(each, Substitution):
+            performed(context, each)  # one of a module that is not here says so
         if not isinstance(each, (tuple, list)) or len(each) != 2:
             raise LaunchError(f"a remapping is a pair of two names, got {shown(repr(each))}")
         pairs.append((performed(context, each[0]), performed(context, each[1])))

@@ -93,10 +93,11 @@ def _no_argument(error: BaseException, name: str, argument: str) -> str:
 def users_place(error: BaseException) -> Place | None:
     """Return the last line of the user's own code that an error came through."""
     lines = [Place(frame.f_code.co_filename, line) for frame, line in traceback.walk_tb(error.__traceback__)]
-    return next((each for each in reversed(lines) if _is_users(each.file)), None)
+    return next((each for each in reversed(lines) if is_users(each.file)), None)
 
 
-def _is_users(file: str) -> bool:
+def is_users(file: str) -> bool:
+    """Return whether a file of Python code is the user's: neither robolink's nor of a library."""
     if file.startswith("<"):
         return False
     library = [sysconfig.get_paths()["stdlib"], *site.getsitepackages(), sys.prefix]

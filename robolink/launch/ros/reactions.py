@@ -134,7 +134,8 @@ class Reactions(Generic[T]):
     def _following(self, now: float, act: Callable[[], None]) -> list[Request[T]]:
         """Carry out `act`, and all that follows from it at once; return the requests."""
         try:
-            with surroundings(self._visit.maker.home):
+            with surroundings(self._visit.maker.home) as absences:
+                absences.say = self._visit.context.said.append
                 act()
                 self._settle(now)
         except DocumentError as error:

@@ -37,8 +37,9 @@ def visited(path: Path, given: Mapping[str, str], workspace: Folder) -> Visit:
     """
     path = path.absolute()
     home = home_of(path, workspace)
-    with surroundings(home):
+    with surroundings(home) as absences:
         context = LaunchContext(argv=[f"{name}:={value}" for name, value in given.items()])
+        absences.say = context.said.append
         context.launch_configurations.update(given)
         visit = Visit(context, EntryMaker(home, context.said.append), path)
         visit.first = _included(path)
@@ -49,7 +50,8 @@ def visited(path: Path, given: Mapping[str, str], workspace: Folder) -> Visit:
 
 def foresee_all(visit: Visit) -> None:
     """Add to a visit what timers and event handlers will start, as far as that is known. Raises DocumentError."""
-    with surroundings(visit.maker.home):
+    with surroundings(visit.maker.home) as absences:
+        absences.say = visit.context.said.append
         visit.foresee()
 
 

@@ -10,12 +10,14 @@ from typing import Any, TypeVar
 
 from robolink.companions.ament_index.packages import package_not_here
 from robolink.companions.launch.actions import (
+    DeclareLaunchArgument,
     EmitEvent,
     ExecuteLocal,
     IncludeLaunchDescription,
     LogInfo,
     OpaqueCoroutine,
     OpaqueFunction,
+    SetLaunchConfiguration,
     TimerAction,
 )
 from robolink.companions.launch.bases import (
@@ -28,11 +30,13 @@ from robolink.companions.launch.bases import (
 )
 from robolink.companions.launch.event_handlers import OnProcessExit, OnShutdown
 from robolink.companions.launch.launch_description_sources import LaunchFileNotFoundError
+from robolink.companions.launch.utilities import performed
 from robolink.companions.launch_ros.actions import ComposableNodeContainer, LifecycleNode, LoadComposableNodes
 from robolink.companions.launch_ros.descriptions import ComposableNode
 from robolink.exceptions import DocumentError
 from robolink.launch.reading import limits
 from robolink.launch.reading.entry import Entry
+from robolink.launch.ros.absent import Absent, AbsentError
 from robolink.launch.ros.components import components, container_of, target_of
 from robolink.launch.ros.entries import EntryMaker, ends_launch, placed
 from robolink.launch.ros.failures import absent_package, as_document_error, reason_of, users_place
@@ -155,6 +159,10 @@ class Visit:
             return []
         except DocumentError:
             raise
+        except AbsentError as error:
+            if entity is self.first:
+                raise
+            return self._leave_out(entity, error)
         except Exception as error:
             if not absent_package(error) or entity is self.first:
                 raise
@@ -163,6 +171,16 @@ class Visit:
         self.check(entity, inside)
         self._note_file()
         return inside
+
+    def _leave_out(self, entity: LaunchDescriptionEntity, error: AbsentError) -> list[LaunchDescriptionEntity]:
+        """Leave out, with a line, what cannot be carried out without a Python module; it brings nothing along."""
+        self.context.executed.clear()
+        self.say_at(entity, f"left out: {error}")
+        if isinstance(entity, ExecuteLocal):
+            self.absent.append(entity)
+        elif isinstance(entity, (DeclareLaunchArgument, SetLaunchConfiguration)):
+            self.context.launch_configurations[performed(self.context, entity.name)] = Absent(error.module)
+        return []
 
     def check(self, entity: object, inside: Iterable[object]) -> None:
         """Raise DocumentError, at the line of `entity`, unless all that it brings along can be visited."""

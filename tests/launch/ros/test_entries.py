@@ -23,6 +23,19 @@ def words(entry: Entry) -> list[str]:
     return list(argv[len(own) :]) if list(argv[: len(own)]) == own else list(argv)
 
 
+def test_modules_of_launch_need_no_import_of_their_own(package: Path) -> None:
+    system = read(
+        package,
+        """
+        import launch
+        assert launch.substitution.Substitution is launch.Substitution
+        def generate_launch_description():
+            return LaunchDescription([launch.actions.log_info.LogInfo(msg="x")])
+        """,
+    )
+    assert system.notes == ["x"]
+
+
 def test_a_node_has_all_that_its_action_says(package: Path) -> None:
     entry = only(
         package,

@@ -24,7 +24,8 @@ BODIES = [
         1,
         "the environment has no 'NOT_SET_AT_ALL', which this file needs: set it, as by export NOT_SET_AT_ALL=VALUE",
     ),
-    ("import foo_bar", 1, "ModuleNotFoundError: No module named 'foo_bar'"),
+    ("import numpi", 1, "ModuleNotFoundError: No module named 'numpi' (did you mean 'numpy'?)"),
+    ("import foo; foo.x + 1; open(foo.path)", 1, "it needs the Python module foo, which is not here"),
     (
         "from launch_ros.actions import Nod",
         1,
