@@ -53,6 +53,19 @@ def test_both_languages_have_the_same_code_and_parts(page: Page) -> None:
     assert targets(page) == targets(english)
 
 
+@pytest.mark.parametrize("page", PORTUGUESE, ids=name_of)
+def test_tables_have_the_same_figures_in_both_languages(page: Page) -> None:
+    """A figure that is measured again changes in both; 1,234.5 is 1.234,5 in Portuguese."""
+    english = next(each for each in pages("en") if each.address == page.address)
+    assert figures(page) == figures(english)
+
+
+def figures(page: Page) -> list[list[str]]:
+    """The digits of each number of each row of a table, sorted, since words change their order."""
+    rows = [line for line in prose(page).splitlines() if line.startswith("|")]
+    return [sorted(re.sub("[.,]", "", each) for each in re.findall(r"\d+(?:[.,]\d+)*", row)) for row in rows]
+
+
 def targets(page: Page) -> list[str]:
     """Where the links of a page lead: addresses, files, and the pages that a link within the site means."""
     assert page.source is not None
