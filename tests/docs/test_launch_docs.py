@@ -23,6 +23,7 @@ from robolink.launch.reading.description import (
     StartAfter,
 )
 from robolink.launch.reading.entries import read_launch_file
+from robolink.testing import System
 
 PAGE = (Path(__file__).parents[2] / "docs" / "launch.md").read_text(encoding="utf-8")
 FILES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
@@ -39,6 +40,14 @@ def test_the_one_with_most_in_it_has_no_mistake() -> None:
     [text] = [each for each in FILES if "arguments:\n" in each]
     report = validate(read_launch_file(Path("docs.yaml"), text=text))
     assert report == ([], [])
+
+
+def test_the_one_with_arguments_drives_as_fast_as_it_is_told(tmp_path: Path) -> None:
+    (text,) = (each for each in FILES if "arguments:\n" in each)
+    (tmp_path / "follow.yaml").write_text(text)
+    with System(seed=1) as system:
+        system.launch(tmp_path / "follow.yaml", {"speed": 0.5})
+        system.expect("cmd_vel", lambda twist: twist.linear.x > 0.45, within=30.0)
 
 
 def test_its_commands_have_these_options() -> None:

@@ -18,7 +18,7 @@ from robolink.cli.root import command
 from tools.docs_site.markdown import Block, blocks
 from tools.docs_site.pages import DOCS
 
-PAGES = [DOCS.parent / "README.md", *sorted(DOCS.glob("*.md"))]
+PAGES = [*sorted(DOCS.parent.glob("README*.md")), *sorted(DOCS.glob("*.md"))]
 BLOCKS = [(page, block) for page in PAGES for block in blocks(page.read_text(encoding="utf-8"))]
 SCREENS = {"text", "json5", "console", "sh", "", "html", "js", "json", "xml", "toml", "powershell"}
 """Languages of blocks of which only the commands are looked at."""

@@ -1,4 +1,4 @@
-"""The README's programs run as they stand there."""
+"""The README: its program runs as it stands there, its figures are those of the pages, both languages say the same."""
 
 from __future__ import annotations
 
@@ -12,17 +12,20 @@ from robolink import Context, VirtualTime
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.testing import System
+from tools.docs_site.markdown import LINK, blocks, headings
+from tools.docs_site.pages import addresses
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-PROGRAMS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-(SYSTEM,) = re.findall(r"```yaml\n(.*?)```", README, re.DOTALL)
+PORTUGUESE = (ROOT / "README.pt-BR.md").read_text(encoding="utf-8")
+PERFORMANCE = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
+BESIDE_ROS2 = (ROOT / "docs" / "ros2.md").read_text(encoding="utf-8")
 
 
-def module(word: str) -> ModuleType:
-    """Run the only program in which a word stands."""
-    (text,) = (each for each in PROGRAMS if word in each)
+def module(page: str, word: str) -> ModuleType:
+    """Run the only program of a page in which a word stands."""
+    programs = [each.text for each in blocks(page) if each.language == "python"]
+    (text,) = (each for each in programs if word in each)
     made = ModuleType("readme")
     exec(compile(text, "README.md", "exec"), made.__dict__)
     return made
@@ -32,7 +35,7 @@ def test_the_node_stops_before_what_is_near(monkeypatch: pytest.MonkeyPatch) -> 
     context = Context(transport="memory://readme", time=VirtualTime())
     context.init(args=[])
     monkeypatch.setattr("robolink.node.get_default_context", lambda: context)
-    node = module("class Careful").Careful()
+    node = module(README, "class Careful").Careful()
     sent: list[float] = []
     node.create_subscription(Twist, "cmd_vel", lambda twist: sent.append(twist.linear.x), 10)
     scans = node.create_publisher(LaserScan, "scan", 10)
@@ -47,25 +50,77 @@ def test_the_node_stops_before_what_is_near(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_type_of_ones_own_has_its_fields() -> None:
-    basket = module("class Basket").Basket(label="red", weights=[0.5])
+    basket = module(BESIDE_ROS2, "class Basket").Basket(label="red", weights=[0.5])
     assert (basket.label, list(basket.weights)) == ("red", [0.5])
 
 
-def test_the_test_passes() -> None:
-    with System(seed=1) as system:
-        module("def test_").test_follows_the_wall_though_a_fifth_of_its_scans_is_lost(system)
+def test_it_is_short_and_its_program_has_twelve_lines() -> None:
+    assert len(README.splitlines()) < 150
+    assert len(PORTUGUESE.splitlines()) < 150
+    (program,) = (each.text for each in blocks(README) if each.language == "python")
+    assert len([line for line in program.splitlines() if line.strip()]) == 12
 
 
-def test_the_system_drives_as_fast_as_it_is_told(tmp_path: Path) -> None:
-    (tmp_path / "lap.yaml").write_text(SYSTEM)
-    with System(seed=1) as system:
-        system.launch(tmp_path / "lap.yaml", {"speed": 0.5})
-        system.expect("cmd_vel", lambda twist: twist.linear.x > 0.45, within=30.0)
+def table(text: str, heading: str) -> list[list[str]]:
+    """Return the cells of the first table below a heading, without its head."""
+    (first, *_) = re.findall(r"(?:^\|.*\n)+", text.partition(heading)[2], re.MULTILINE)
+    return [[cell.strip() for cell in row.strip("|").split("|")] for row in first.splitlines()[2:]]
+
+
+def ratios(rows: list[list[str]], column: int) -> list[str]:
+    """Return the ratios of a column: what is in bold, or the whole cell."""
+    return [(re.findall(r"\*\*(.*?)\*\*", row[column]) or [row[column]])[0] for row in rows]
+
+
+def test_the_figures_of_speed_are_those_of_the_page_on_performance() -> None:
+    trips = table(PERFORMANCE, "## Messages between two processes")
+    floods = table(PERFORMANCE, "Received in a second, of as many")
+    peers = table(PERFORMANCE, "## Peers")
+    found = [row[1:] for row in table(README, "## Speed")]
+    assert found == [
+        ratios(trips, 2),
+        ratios(trips, 3),
+        ratios(peers[:4], 1),
+        ratios(floods, 2),
+        ratios(peers[4:], 1),
+    ]
+    beside = table(README, "## Beside ROS 2")[-1]
+    assert [beside[1], beside[4]] == [f"{found[0][0]}, {found[0][2]}", f"{found[2][0]}, {found[2][2]}"]
+
+
+def test_the_number_of_rclpys_tests_that_pass_is_that_of_the_page() -> None:
+    page = (ROOT / "docs" / "rclpy.md").read_text(encoding="utf-8")
+    ((passed, failed, other),) = re.findall(r"^\| all \| (\d+) \| (\d+) \| (\d+) \|$", page, re.MULTILINE)
+    assert f"{int(passed) + int(failed) + int(other)} test functions {passed} pass" in README
+    assert f"{int(passed) + int(failed) + int(other)} funções de teste do próprio rclpy {passed} passam" in PORTUGUESE
+
+
+def targets(text: str) -> list[str]:
+    """Return where the links and pictures lead; a page is the same in both languages."""
+    files = [each for _, _, each in LINK.findall(text)]
+    return [each if "://" in each else addresses().get((ROOT / each).resolve(), each) for each in files]
+
+
+def test_both_languages_have_the_same_code_parts_and_links() -> None:
+    assert [each.text for each in blocks(PORTUGUESE)] == [each.text for each in blocks(README)]
+    assert [level for level, _ in headings(PORTUGUESE)] == [level for level, _ in headings(README)]
+    assert ["README.pt-BR.md" if each == "README.md" else each for each in targets(PORTUGUESE)] == targets(README)
+    for heading, other in (("## Speed", "## Velocidade"), ("## Beside", "## Ao lado")):
+        english, portuguese = (
+            [re.findall(r"\d+\.\d+", " ".join(row)) for row in rows]
+            for rows in (table(README, heading), table(PORTUGUESE.replace(",", "."), other))
+        )
+        assert portuguese == english
+
+
+def test_each_leads_to_the_other_in_its_first_lines() -> None:
+    assert "(README.pt-BR.md)" in "".join(README.splitlines()[:6])
+    assert "(README.md)" in "".join(PORTUGUESE.splitlines()[:6])
 
 
 def test_nothing_is_asked_of_a_package_index_where_robolink_is_not() -> None:
     """A clone and a repository's address are what there is; `pip install robolink` fails, or finds somebody else's."""
-    texts = [ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *(ROOT / "robolink").rglob("*.py")]
+    texts = [*ROOT.glob("README*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "robolink").rglob("*.py")]
     found = [each for text in texts for each in re.findall(r"pip install [^`#\n]*", text.read_text(encoding="utf-8"))]
     assert len(found) > 5
     assert [each for each in found if re.search(r"(?<![/.\w])robolink\b(?! @ git\+)", each)] == []
@@ -80,7 +135,7 @@ def typed(text: str) -> list[str]:
 
 def test_what_is_typed_means_the_same_in_zsh() -> None:
     """It takes brackets and stars for patterns of file names, and gives up where no file fits."""
-    pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    pages = [*ROOT.glob("README*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "docs").glob("*/reference/index.md")]
     commands = [each for page in pages for each in typed(page.read_text(encoding="utf-8"))]
     assert len(commands) > 50
     unquoted = {each: re.sub(r"'[^']*'|\"[^\"]*\"|#.*", "", each) for each in commands}
