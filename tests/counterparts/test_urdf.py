@@ -15,6 +15,11 @@ from robolink.exceptions import DocumentError
 from tests.support.urdfs import ARM, joint, robot
 
 
+def test_a_robot_without_frames_has_one_link_without_a_name() -> None:
+    placeholder = parse_urdf('<robot name="Webots"><link name=""/></robot>')
+    assert (placeholder.root, list(placeholder.links), placeholder.joints) == ("", [""], {})
+
+
 def test_an_arm_is_a_tree_of_links() -> None:
     arm = parse_urdf(ARM)
     assert (arm.name, arm.root) == ("arm", "base_link")

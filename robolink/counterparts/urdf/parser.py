@@ -101,7 +101,8 @@ def _once(root: Element, tag: str) -> dict[str, Element]:
     """Return the elements of a tag by their names, which are there and differ."""
     found: dict[str, Element] = {}
     for each in root.all(tag):
-        name = _needed(each, "name")
+        # A link may have an empty name: Webots' launch files give such a robot to a publisher that has none to tell of.
+        name = "" if tag == "link" and each.attributes.get("name") == "" else _needed(each, "name")
         if name in found:
             raise each.mistake(f"a second {tag} '{shown(name)}'; the first is in line {found[name].line}")
         found[name] = each
