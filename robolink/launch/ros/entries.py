@@ -32,6 +32,10 @@ from robolink.workspace import NodeSource
 
 TERMINALS = ("xterm", "gnome-terminal", "konsole", "lxterminal", "xfce4-terminal", "terminator", "x-terminal-emulator")
 """Programs that launch files put before nodes that read the keyboard."""
+SHORTEST_DELAY = 0.1
+"""Shortest time before a process is started again, in s: one that fails at once would be restarted for ever at one
+moment of virtual time, and would take a core in real time."""
+_PYTHON = re.compile(r"python[\d.]*(?:\.exe)?")
 
 
 class Naming(NamedTuple):
@@ -259,7 +263,7 @@ def _stem(words: Sequence[str]) -> str:
     """Return a name for a command: that of its program, or of the script that Python runs."""
     name = PurePath(words[0]).stem or words[0]
     script = next((each for each in words[1:] if each.endswith(".py")), None)
-    return PurePath(script).stem if script and re.fullmatch(r"python[\d.]*", name) else name
+    return PurePath(script).stem if script and _PYTHON.fullmatch(name) else name
 
 
 def _compiled(entry: Entry, path: str) -> Entry:
@@ -275,7 +279,18 @@ def _command_line(words: list[str], context: LaunchContext) -> list[str] | None:
     name = PurePath(words[0]).name
     if name in ("ros2", "robolink"):
         return [*own_command(), *words[1:]]
+    at = _script_at(words)
+    if at is not None:  # under plain Python it would find no rclpy
+        return [*own_command(), "run", words[at], "--", *words[at + 1 :]]
     return command_of(words, context.environment.get("PATH"))
+
+
+def _script_at(words: Sequence[str]) -> int | None:
+    """Return which word is the Python file that a command runs, by its name or behind `python3` and its flags."""
+    at = 0
+    if _PYTHON.fullmatch(PurePath(words[0]).name):
+        at = next((n for n, each in enumerate(words) if n and each not in ("-u", "-B", "-O")), 0)
+    return at if words[at].endswith(".py") and Path(words[at]).is_file() else None
 
 
 def _in_shell(line: str) -> list[str]:
@@ -324,6 +339,7 @@ def _respawn(action: ExecuteLocal, context: LaunchContext) -> Respawn:
     most = action.respawn_max_retries
     if most == 0:
         return Respawn(when="never")
+    delay = max(delay, SHORTEST_DELAY)
     return Respawn("always", delay, delay, NO_LIMIT if most < 0 else most, float(NO_LIMIT))
 
 

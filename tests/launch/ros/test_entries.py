@@ -164,6 +164,19 @@ def test_ros2_is_robolink(package: Path) -> None:
         assert words(entry)[-1].endswith(' "$@"; }\nros2 bag record -a')
 
 
+@pytest.mark.parametrize("command", ["'python3', 'FILE'", "'python3', '-u', 'FILE'", "'FILE'"])
+def test_python_files_find_rclpy(command: str, package: Path) -> None:
+    script = package / "restamp.py"
+    script.write_text("import rclpy\n")
+    entry = only(package, f"ExecuteProcess(cmd=[{command}, '--fast'])".replace("FILE", script.as_posix()))
+    assert words(entry) == ["run", str(script), "--", "--fast"]
+    assert entry.name == "restamp"
+
+
+def test_other_commands_of_python_stay_as_they_are(package: Path) -> None:
+    assert words(only(package, 'ExecuteProcess(cmd=["python3", "-m", "http.server"])'))[1:] == ["-m", "http.server"]
+
+
 def test_respawn_is_without_limit(package: Path) -> None:
     forever, thrice, never = read(
         package,
@@ -174,7 +187,7 @@ def test_respawn_is_without_limit(package: Path) -> None:
         """,
     ).entries
     assert forever.node.respawn == Respawn("always", 2.0, 2.0, NO_LIMIT, NO_LIMIT)
-    assert thrice.node.respawn == Respawn("always", 0.0, 0.0, 3, NO_LIMIT)
+    assert thrice.node.respawn == Respawn("always", 0.1, 0.1, 3, NO_LIMIT)  # at once would be for ever at one moment
     assert never.node.respawn.when == "never"
 
 
