@@ -66,6 +66,7 @@ class Supervision:
         ends: Time of the end, in s; None has none.
         direct: Maker of the director of a launch file with timers and event handlers; None has none.
         on_added: Called with each program that the director adds.
+        on_failure: Called with the reason if the director ends the system for a mistake in the launch file.
         env: Variables of these, besides their own.
     """
 
@@ -78,6 +79,7 @@ class Supervision:
         ends: float | None = None,
         direct: Direct | None = None,
         on_added: Callable[[Launched], object] = lambda launched: None,
+        on_failure: Callable[[str], object] = lambda reason: None,
         env: Mapping[str, str] | None = None,
     ) -> None:
         self.host = host
@@ -96,7 +98,9 @@ class Supervision:
         self._spared: set[str] = set()
         self._readiness = Readiness({each.name: each.held_by for each in programs})
         self._session: MemoryTransport | None = None
-        self._on_added, self._env = on_added, env or {}
+        self._on_added, self._on_failure, self._env = on_added, on_failure, env or {}
+        self._wake_at: float | None = None
+        """Time of the next wake-up; those before it that have become needless are ignored."""
         self._own: Program | None = None
         self._waiting: list[Callable[[Node], object]] = []
         self._director: Director[Launched] | None = None if direct is None else direct(self)
@@ -203,9 +207,15 @@ class Supervision:
         deadline = self._deadline()
         if self.policy.is_over:
             self.ended_at = self.host.now if self.ended_at is None else self.ended_at
-        elif deadline is not None:
+        elif deadline is not None and (self._wake_at is None or deadline < self._wake_at):
+            self._wake_at = deadline
+            self.host.at(deadline, lambda: self._wake(deadline))
+
+    def _wake(self, deadline: float) -> None:
+        if deadline == self._wake_at:
+            self._wake_at = None
             # of 0.1 + 0.2 the host's nanoseconds are a hair earlier, and nothing would be due for ever
-            self.host.at(deadline, lambda: self._do(self._woken(max(self.host.now, deadline))))
+            self._do(self._woken(max(self.host.now, deadline)))
 
     def _deadline(self) -> float | None:
         deadlines = [self.policy.deadline, None if self._director is None else self._director.deadline]
@@ -272,6 +282,9 @@ class Supervision:
             return [] if request.name not in self.host.programs else self._signalled(request)
         if isinstance(request, Tell):
             return [Say(request.text)]
+        if request.code:
+            self.failures.append(request.reason)
+            self._on_failure(request.reason)
         return self.policy.end(request.reason, request.code, now)
 
     def _added(self, launched: Launched) -> list[Action]:
@@ -288,8 +301,8 @@ class Supervision:
         return self._asked(lambda director: director.left_out(name, self.host.now))
 
     def _signalled(self, request: Signal) -> list[Action]:
-        """Interrupt a program, or kill it, as a signal would do that it does not handle."""
-        if request.number == signal.SIGINT:
+        """Interrupt a program, which handles SIGINT and SIGTERM, or kill it as other signals would do."""
+        if request.number in (signal.SIGINT, signal.SIGTERM):
             self.host.interrupt(request.name)
         else:
             self.host.crash(request.name)
@@ -306,7 +319,8 @@ class Supervision:
 
     def _tell_end(self) -> None:
         """Inform the director once that the system is ending."""
-        if self._director is not None and self.policy.step is not None and not self._is_end_told:
+        is_ending = self.policy.step is not None or self.policy.is_over
+        if self._director is not None and is_ending and not self._is_end_told:
             self._is_end_told = True
             actions = self._asked(lambda director: director.stopping(self.host.now))
             self.policy.expects_more = False

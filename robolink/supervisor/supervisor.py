@@ -250,7 +250,8 @@ class Supervisor:
 
     def _tell_end(self) -> None:
         """Inform the director once that the system is ending."""
-        if self._director is not None and self._policy.step is not None and not self._is_end_told:
+        is_ending = self._policy.step is not None or self._policy.is_over
+        if self._director is not None and is_ending and not self._is_end_told:
             self._is_end_told = True
             with self._lock:
                 now = self._clock()

@@ -139,10 +139,15 @@ class OneProcess:
                 logging.get_logger("robolink.testing").warning(
                     f"{each.name} is left out: a command knows no virtual time"
                 )
-        supervision = Supervision(self.host, launched, direct=system.direct, on_added=self._register)
+        supervision = Supervision(
+            self.host, launched, direct=system.direct, on_added=self._register, on_failure=self._on_launch_failure
+        )
         self.supervisions.append(supervision)
         supervision.begin()
         self.run_until(lambda: False, 0.0)
+
+    def _on_launch_failure(self, reason: str) -> None:
+        self.failures.append(Failure("the launch file", self.now_ns(), reason, None))
 
     def _register(self, launched: Launched) -> None:
         self.program_faults.injector.register(launched.name, (entry.name for entry in launched.entries))

@@ -268,11 +268,14 @@ def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
 
 def _nothing(asked: LaunchFile, notes: Sequence[str]) -> int:
     """Report that a launch file starts nothing, which is a failure if something of it cannot run here."""
+    from robolink.launch.reading.kinds import is_of_ros
+
     for note in notes:
         tell(f"robolink: {note}")
-    why = "nothing of it can be started" if notes else "`if` and `unless` leave nothing to start"
-    tell(f"robolink: {asked.path}: {why}")
-    return 1 if notes else 0
+    is_lacking = any("left out: " in note for note in notes)
+    why = "it starts nothing" if is_of_ros(asked.path) else "`if` and `unless` leave nothing to start"
+    tell(f"robolink: {asked.path}: {'nothing of it can be started' if is_lacking else why}")
+    return 1 if is_lacking else 0
 
 
 def _join_network(entries: Sequence[Entry]) -> None:

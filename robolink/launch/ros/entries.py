@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
+from robolink.arguments.remapping import parse_remap_rule
 from robolink.companions.launch.actions import ExecuteLocal, Shutdown
 from robolink.companions.launch.bases import LaunchContext, LaunchError, Place, Substitution
 from robolink.companions.launch.utilities import is_true, performed
@@ -312,6 +313,10 @@ def _remappings(given: Iterable[Any], context: LaunchContext) -> dict[str, str]:
         pairs.append((performed(context, each[0]), performed(context, each[1])))
     found: dict[str, str] = {}
     for match, replacement in pairs:
+        try:
+            parse_remap_rule(f"{match}:={replacement}")
+        except ValueError as error:
+            raise LaunchError(f"remapping '{shown(match)}' to '{shown(replacement)}': {error}") from None
         found.setdefault(match, replacement)
     return found
 

@@ -20,7 +20,7 @@ from robolink.companions.launch_ros.actions.lifecycle import LifecycleNode, tran
 from robolink.companions.launch_ros.events.lifecycle import ChangeState, StateTransition
 from robolink.exceptions import DocumentError
 from robolink.launch.ros.stage import Stage
-from robolink.launch.ros.surroundings import surroundings
+from robolink.launch.ros.surroundings import roots_of, surroundings
 from robolink.launch.ros.visit import Started, Visit
 from robolink.supervisor.director import Add, End, Request, Signal, Stop, Tell
 
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 MOST_EVENTS = 10_000
 """Most events that may follow from each other at one time; two handlers that emit events might go on for ever."""
 T = TypeVar("T")
+_BY_THE_USER = events.Shutdown(reason="the system is stopped", due_to_sigint=True)
 
 
 class Reactions(Generic[T]):
@@ -48,8 +49,12 @@ class Reactions(Generic[T]):
         self._numbers = itertools.count()
         self._actions: dict[str, ExecuteLocal] = {}
         self._requests: list[Request[T]] = []
-        self._shutdown = events.Shutdown(reason="the system is stopped", due_to_sigint=True)
+        self._shutdown = _BY_THE_USER
         self._is_stopping = False
+        self._moment = 0.0
+        self._roots: list[str] | None = None
+        self._alive: set[str] = set()
+        """Names of the processes that run."""
         self._started = list(visit.started)
         visit.started.clear()
         for each in self._started:
@@ -77,6 +82,7 @@ class Reactions(Generic[T]):
         action = self._actions.get(name)
         if action is None:
             return []
+        self._alive.add(name)
         details = _details(action, name, pid)
         action.process_details = {**details, "action": action}
         return self._following(now, lambda: self._emit(process_events.ProcessStarted(action=action, **details)))
@@ -86,6 +92,7 @@ class Reactions(Generic[T]):
         action = self._actions.get(name)
         if action is None:
             return []
+        self._alive.discard(name)
         action.return_code = returncode
         details = _details(action, name, (action.process_details or {}).get("pid", 0))
 
@@ -116,6 +123,8 @@ class Reactions(Generic[T]):
     def stopping(self, now: float) -> list[Request[T]]:
         """Handle that the system ends: handlers of the shutdown run, and no timer does any more."""
         self._is_stopping = self._visit.context.is_shutdown = True
+        if not self._alive and self._shutdown is _BY_THE_USER:
+            self._shutdown = events.Shutdown(reason="idle")
         return self._following(now, lambda: self._handle(self._shutdown))
 
     def woken(self, now: float) -> list[Request[T]]:
@@ -133,8 +142,12 @@ class Reactions(Generic[T]):
 
     def _following(self, now: float, act: Callable[[], None]) -> list[Request[T]]:
         """Carry out `act`, and all that follows from it at once; return the requests."""
+        if now != self._moment:  # what happens for ever at one moment is a mistake, and a long life is none
+            self._moment, self._visit.visited = now, 0
+        if self._roots is None:
+            self._roots = roots_of(self._visit.maker.home)
         try:
-            with surroundings(self._visit.maker.home) as absences:
+            with surroundings(self._visit.maker.home, self._roots) as absences:
                 absences.say = self._visit.context.said.append
                 act()
                 self._settle(now)

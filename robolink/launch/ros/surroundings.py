@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -16,19 +16,26 @@ from robolink.workspace import VARIABLE
 from robolink.workspace.packages import import_roots, source_packages
 
 
+def roots_of(home: Path | None) -> list[str]:
+    """Return the folders from which the packages of a workspace are imported; None has none."""
+    if home is None:
+        return []
+    return list(dict.fromkeys(str(root) for each in source_packages(home).values() for root in import_roots(each)))
+
+
 @contextmanager
-def surroundings(home: Path | None) -> Iterator[Absences]:
+def surroundings(home: Path | None, roots: Sequence[str] | None = None) -> Iterator[Absences]:
     """Let the code of a launch file find what it would find in ROS 2, while the block runs.
 
     `import launch` is robolink's, modules of the workspace's packages can be imported, and the folders of packages are
     those of the workspace `home`. Modules that nobody has are placeholders, whose finder the block gets.
-    The path of imports and the environment are as before afterwards.
+    The path of imports and the environment are as before afterwards. `roots` are those of `home`, if they are known
+    already: to list the folders of a workspace at each event takes too long.
     """
     compat.activate(compat.ALWAYS)
     before, named = list(sys.path), os.environ.get(VARIABLE)
     if home is not None:
-        roots = dict.fromkeys(root for each in source_packages(home).values() for root in import_roots(each))
-        sys.path.extend(str(each) for each in roots if str(each) not in sys.path)
+        sys.path.extend(each for each in (roots_of(home) if roots is None else roots) if each not in sys.path)
         os.environ[VARIABLE] = str(home)
     try:
         with packages_may_lack(), names_of_launch_files(), Absences() as absences:

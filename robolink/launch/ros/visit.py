@@ -85,7 +85,8 @@ class Visit:
     """Processes that are left out, since the last look."""
     first: LaunchDescriptionEntity | None = None
     """The launch file itself as an entity: without it nothing is left."""
-    _visited: int = 0
+    visited: int = 0
+    """Number of the actions that were visited at this moment."""
     _containers: dict[str, ComposableNodeContainer] = field(default_factory=dict)
     _processes: dict[str, str] = field(default_factory=dict)
     _followed: set[int] = field(default_factory=set)
@@ -101,9 +102,9 @@ class Visit:
         waiting: list[LaunchDescriptionEntity] = list(entities)[::-1]
         while waiting:
             each = waiting.pop()
-            self._visited += 1
+            self.visited += 1
             with self.placing(each):
-                if self._visited > MOST_VISITED:
+                if self.visited > MOST_VISITED:
                     raise self._error(each, f"it never ends: more than {MOST_VISITED:,} actions were visited")
                 inside = self._visit(each)
             waiting.extend(inside[::-1])

@@ -43,6 +43,14 @@ ACTIONS = [
     ("Node(executable='talker', paramters=[])", "Node has no argument 'paramters' (did you mean 'parameters'?)"),
     ("Node(executable='talker', outptu='screen')", "Node has no argument 'outptu' (did you mean 'output'?)"),
     ("GroupAction([], scopd=1)", "GroupAction has no argument 'scopd' (did you mean 'scoped'?)"),
+    (
+        "Node(package='bot', executable='talker', remappings=[('a b', 'c')])",
+        "remapping 'a b' to 'c': topic name 'a b' must not contain characters other than",
+    ),
+    (
+        "GroupAction([SetRemap('', ''), Node(package='bot', executable='talker')])",
+        "remapping '' to '': topic name '' must not be empty",
+    ),
     ("LogInfo()", "LogInfo needs 'msg'"),
     ("LogInfo(msg=LaunchConfiguration('a', defualt=1))", "LaunchConfiguration has no argument 'defualt' (did you mean"),
     ("LogInfo(msg=LaunchConfiguration('a'))", "no launch argument is called 'a'"),

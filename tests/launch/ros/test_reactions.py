@@ -14,10 +14,13 @@ from robolink.cli.main import main
 from robolink.exceptions import NotFoundError
 from robolink.interfaces.std_msgs.msg import String
 from robolink.launch.reading.entry import Entry
+from robolink.launch.ros import visit
+from robolink.launch.ros.reactions import Reactions
 from robolink.launch.system import read_system
 from robolink.node import Node
 from robolink.supervisor.director import Add, Director, End, Request, Signal, Stop, Tell
 from robolink.testing import System
+from robolink.testing.expectations import NodeFailure
 from tests.support.ros_launch import FIRST, write
 from tests.support.ros_launch import TALKER as TALKER_CODE
 
@@ -290,3 +293,101 @@ def test_a_system_of_processes_goes_on(package: Path) -> None:
         "[launch] over: enough",
     ]
     assert lines.index("[first] one") < lines.index("[launch] heard")
+
+
+LATER = """
+        Node(package="bot", executable="talker"),
+        TimerAction(period=1.0, actions=[OpaqueFunction(function=lambda context: 1 / 0)]),
+"""
+
+
+def test_a_mistake_that_comes_later_is_a_failure_in_virtual_time(
+    package: Path, system: System, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = write(package, LATER)
+    assert main(["simulate", str(file), "--duration", "3"]) == 1
+    assert "ZeroDivisionError: division by zero" in capsys.readouterr().err
+    system.launch(str(file))
+    with pytest.raises(NodeFailure, match="ZeroDivisionError"):
+        system.run(3.0)
+
+
+AGAIN = """
+def again(context):
+    return [TimerAction(period=PERIOD, actions=[LogInfo(msg="x"), OpaqueFunction(function=again)])]
+
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=again)])
+"""
+
+
+def test_a_long_life_is_no_endless_one(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(visit, "MOST_VISITED", 20)
+    director = directed(package, AGAIN.replace("PERIOD", "0.1"))
+    director.begin(0.0)
+    for _ in range(40):
+        assert director.deadline is not None
+        assert director.woken(director.deadline) == [Tell("x")]
+
+
+def test_a_timer_without_a_period_does_not_stop_virtual_time(
+    package: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(visit, "MOST_VISITED", 100)
+    file = write(package, TALKER_AND_AGAIN.replace("PERIOD", "0.0"))
+    assert main(["simulate", str(file), "--duration", "3"]) == 1
+    assert "it never ends" in capsys.readouterr().err
+
+
+TALKER_AND_AGAIN = AGAIN.replace("LaunchDescription([", 'LaunchDescription([Node(package="bot", executable="talker"), ')
+
+
+def test_wake_ups_of_a_long_run_do_not_pile_up(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[float] = []
+    woken = Reactions.woken
+
+    def count(self: Reactions[Any], now: float) -> list[Request[Any]]:
+        asked.append(now)
+        return woken(self, now)
+
+    monkeypatch.setattr(Reactions, "woken", count)
+    on_io = "LaunchDescription([RegisterEventHandler(OnProcessIO(on_stdout=lambda event: None)), "
+    body = TALKER_AND_AGAIN.replace("PERIOD", "0.1").replace("LaunchDescription([", on_io)
+    file = write(package, body)
+    assert main(["simulate", str(file), "--duration", "20"]) == 0
+    assert 190 <= len(asked) <= 210
+
+
+def test_the_end_of_the_last_process_is_a_shutdown(package: Path) -> None:
+    director = directed(
+        package,
+        f"""
+        {TALKER.format("a")},
+        RegisterEventHandler(OnShutdown(on_shutdown=lambda event, context: [
+            LogInfo(msg=f"{{event.reason}} {{event.due_to_sigint}}")])),
+        """,
+    )
+    director.begin(0.0)
+    director.started("a", 7, 0.0)
+    director.exited("a", 0, 1.0)
+    assert director.stopping(1.0) == [Tell("idle False")]
+
+
+def test_sigterm_ends_a_node_in_order_in_virtual_time(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = write(
+        package,
+        """
+        from launch.events.process import SignalProcess
+
+        def generate_launch_description():
+            end = EmitEvent(event=SignalProcess(signal_number=15, process_matcher=lambda action: True))
+            return LaunchDescription([
+                Node(package="bot", executable="talker"),
+                RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg="bye")])),
+                TimerAction(period=1.0, actions=[end]),
+            ])
+        """,
+    )
+    assert main(["simulate", str(file), "--duration", "3"]) == 0
+    assert "bye" in capsys.readouterr().err
