@@ -11,7 +11,7 @@ import itertools
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 
 from robolink.system.plainfile import read_plain
 from robolink.workspace.literals import MOST_FILES
@@ -22,10 +22,17 @@ MOST_FILES_READ = 50
 """Upper bound of the CMakeLists.txt of a package that are read: its own, and those of `add_subdirectory`."""
 MOST = 2000
 """Upper bound of the commands and of the words of a command that are read."""
+LONGEST_WORD = 4096
+"""Length to which a word with variables is cut, in letters: no path is longer."""
+MOST_LETTERS = 1_000_000
+"""Upper bound of the letters that the variables of a package stand for, in all."""
 
-_COMMAND = re.compile(r"([A-Za-z_]\w*)\s*\(((?:[^()\"]|\"(?:[^\"\\]|\\.)*\")*)\)")
-_COMMENT = re.compile(r"(\"(?:[^\"\\]|\\.)*\")|#[^\n]*")
-_WORD = re.compile(r"\"((?:[^\"\\]|\\.)*)\"|([^\s\"]+)")
+# All take `\"` for a letter and an open quote for one that ends with the text: else each quote would be tried anew, in
+# quadratic time.
+_QUOTED = r'"(?:[^"\\]|\\.)*(?:"|\\?\Z)'
+_COMMENT = re.compile(rf"(?P<text>{_QUOTED}|\\.)|#\[(?P<level>=*)\[.*?(?:\](?P=level)\]|\Z)|#[^\n]*", re.DOTALL)
+_COMMAND = re.compile(rf'{_QUOTED}|\\.|(?<!\w)([A-Za-z_]\w*)\s*\(((?:[^()"\\]|\\.|{_QUOTED})*)\)', re.DOTALL)
+_WORD = re.compile(r'"((?:[^"\\]|\\.)*)"|((?:[^\s"\\]|\\.)+)', re.DOTALL)
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _KEYWORD = re.compile(
     "DESTINATION|RENAME|PERMISSIONS|USE_SOURCE_PERMISSIONS|PATTERN|REGEX|FILES_MATCHING|EXCLUDE|OPTIONAL|COMPONENT|TYPE|"
@@ -52,6 +59,7 @@ class CMakeFile:
         self._at = ""
         self._variables = {name: ["."] for name in _FOLDERS}
         self._files_left = MOST_FILES_READ
+        self._letters_left = MOST_LETTERS
         self.installs: list[Install] = []
         self.compiled: list[str] = []
         """Names of the executables that are compiled."""
@@ -71,18 +79,20 @@ class CMakeFile:
         """Read the file in a folder of the package, `at`, whose paths are relative to that."""
         above, self._at = self._at, at
         self._files_left -= 1
-        text = _COMMENT.sub(lambda match: match[1] or "", _read(self._folder / at / "CMakeLists.txt"))
-        for command in itertools.islice(_COMMAND.finditer(text), MOST if self._files_left >= 0 else 0):
+        text = _COMMENT.sub(lambda match: match["text"] or "", _read(self._folder / at / "CMakeLists.txt"))
+        commands = (match for match in _COMMAND.finditer(text) if match[1])  # none is in a text in quotes
+        for command in itertools.islice(commands, MOST if self._files_left >= 0 else 0):
             self._run(command[1].lower(), self._words(command[2]))
         self._at = above
 
     def _files(self, install: Install) -> Iterator[Path]:
         for each in install.sources:
             path = self._folder / each
-            if install.kind == "DIRECTORY":
-                yield from sorted(found for found in itertools.islice(path.rglob("*"), MOST) if found.is_file())
-            elif path.is_file():
-                yield path
+            with contextlib.suppress(OSError, ValueError):  # no name of a file: too long, say
+                if install.kind == "DIRECTORY":
+                    yield from sorted(found for found in itertools.islice(path.rglob("*"), MOST) if found.is_file())
+                elif path.is_file():
+                    yield path
 
     def _run(self, command: str, words: list[str]) -> None:
         match command, words:
@@ -96,7 +106,7 @@ class CMakeFile:
                 self._variables[name] = list(self._globbed(patterns, kind == "GLOB_RECURSE"))
             case "install", [kind, *rest]:
                 self._note(_install(kind, rest))
-            case "add_subdirectory", [name, *_] if ".." not in name.split("/") and not name.startswith("/"):
+            case "add_subdirectory", [name, *_] if _is_inside(name):
                 self._read_folder(f"{self._at}{name.rstrip('/')}/")
             case _, [name, *_] if command.endswith("add_executable"):
                 self.compiled.append(name)
@@ -107,27 +117,55 @@ class CMakeFile:
         if install.kind == "TARGETS":
             self.compiled += install.sources if install.destination.startswith("lib/") else []
         else:
-            sources = [each if each.startswith("/") else self._at + each for each in install.sources]
+            sources = [self._at + each for each in install.sources if _is_inside(each)]
             self.installs.append(replace(install, sources=sources))
 
     def _globbed(self, patterns: list[str], recursive: bool) -> Iterator[str]:
         for each in patterns:
-            if not each.startswith("/") and ".." not in each.split("/"):
+            if _is_inside(each):
                 here = self._folder / self._at
-                with contextlib.suppress(ValueError, NotImplementedError):  # no pattern at all
+                with contextlib.suppress(OSError, ValueError, NotImplementedError):  # no pattern at all
                     listed = itertools.islice(here.rglob(each) if recursive else here.glob(each), MOST_FILES)
                     yield from sorted(path.relative_to(here).as_posix() for path in listed)
 
     def _words(self, text: str) -> list[str]:
         """Return the words of a command, with the values of variables; unknown ones are left out."""
         words: list[str] = []
-        for quoted, plain in itertools.islice(_WORD.findall(text), MOST):
+        for quoted, plain in (match.groups("") for match in itertools.islice(_WORD.finditer(text), MOST)):
             whole = _VARIABLE.fullmatch(plain)
-            if whole is not None:
-                words += self._variables.get(whole[1], [])
-            else:
-                words.append(_VARIABLE.sub(lambda match: ";".join(self._variables.get(match[1], [])), quoted or plain))
+            words += self._values(whole[1]) if whole is not None else [self._expanded(quoted or plain)]
         return [each.removeprefix("./") for each in words[:MOST]]
+
+    def _expanded(self, text: str) -> str:
+        """Return a word with the values of its variables, cut to `LONGEST_WORD`."""
+        whole = ""
+        for piece in self._pieces(text):
+            whole += piece[:LONGEST_WORD]
+            if len(whole) >= LONGEST_WORD:
+                break
+        return whole[:LONGEST_WORD]
+
+    def _pieces(self, text: str) -> Iterator[str]:
+        for index, piece in enumerate(_VARIABLE.split(text)):
+            if index % 2 == 0:
+                yield piece
+            else:
+                for place, value in enumerate(self._values(piece)):
+                    yield f";{value}" if place else value
+
+    def _values(self, name: str) -> Iterator[str]:
+        """Yield the words of a variable: none if it is unknown, or if `MOST_LETTERS` were read."""
+        for each in self._variables.get(name, []):
+            self._letters_left -= len(each) + 1
+            if self._letters_left < 0:
+                return
+            yield each
+
+
+def _is_inside(path: str) -> bool:
+    """True if a path leads neither up nor to a place of its own, such as `/` or `C:`."""
+    parts = PureWindowsPath(path)  # also what is relative elsewhere: no package means it
+    return not parts.anchor and ".." not in parts.parts
 
 
 def _install(kind: str, words: list[str]) -> Install:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 
 from robolink.exceptions import NotFoundError
 from robolink.workspace import NodeSource, RosProgramError, executable, find_executable
-from robolink.workspace.cmake_files import CMakeFile
+from robolink.workspace.cmake_files import LONGEST_WORD, CMakeFile
 
 SCRIPTS = {"drive.py": "", "turn.py": "", "tool.sh": "#!/bin/sh\n", "look": "#!/usr/bin/env python3\n", "data": "x"}
 
@@ -43,6 +44,8 @@ def package(tmp_path: Path) -> Path:
         ("install(DIRECTORY scripts/ DESTINATION lib/m USE_SOURCE_PERMISSIONS)", "drive.py look turn.py"),
         ("install(PROGRAMS scripts/drive.py DESTINATION share/m)", ""),
         ("install(PROGRAMS ${unknown} DESTINATION lib/m)\ninstall(\n", ""),
+        ('#[=[ 3" of\n]] 2 ]=]install(PROGRAMS "scripts/drive.py" DESTINATION lib/m)\n#[[ open', "drive.py"),
+        ('message("install(PROGRAMS scripts/drive.py DESTINATION lib/m)")', ""),
     ],
 )
 def test_python_programs_that_are_installed(package: Path, text: str, names: str) -> None:
@@ -115,7 +118,55 @@ def test_any_text_is_read(tmp_path_factory: pytest.TempPathFactory, pieces: list
     assert all(path.is_relative_to(folder) for path in read.scripts().values())
 
 
-@pytest.mark.parametrize("text", ["a(" * 90_000, 'a("' * 60_000, '"' + "\\" * 150_000, "set(x ${x} ${x})\n" * 12_000])
-def test_a_hostile_file_takes_no_time(package: Path, text: str) -> None:
-    (package / "CMakeLists.txt").write_text(text)
+LIST = "set(x " + "a " * 1990 + ")\n"
+HOSTILE = {
+    "commands": "a(" * 90_000,
+    "quoted commands": 'a("' * 60_000,
+    "escapes": '"' + "\\" * 150_000,
+    "growing lists": "set(x ${x} ${x})\n" * 12_000,
+    "escaped quotes": '\\"' * 90_000,
+    "escaped quotes in a command": "a(" + '\\"' * 90_000 + ")",
+    "commands of escaped quotes": 'a(\\"' * 45_000,
+    "comments": "#[[" * 60_000 + "#[=[]" * 2_000,
+    "a long name": "a" * 190_000,
+    "a long name in a command": "a(" + "x" * 190_000,
+    "growing words": "set(a xx)\n" + 'set(a "${a}${a}")\n' * 60 + 'set(b "${a}' + "${b}" * 9000 + '")',
+    "long joins": LIST + ("b(" + '"${x}"' * 1990 + ")\n") * 12,
+    "long lists": LIST + ("b(" + "${x} " * 1990 + ")\n") * 12,
+}
+
+
+@pytest.mark.parametrize("what", HOSTILE)
+def test_a_hostile_file_takes_no_time(package: Path, what: str) -> None:
+    (package / "CMakeLists.txt").write_text(HOSTILE[what])
+    begin = time.process_time()
     assert CMakeFile(package).installs == []
+    assert time.process_time() - begin < 5  # each takes less than half a second, and took minutes
+
+
+def test_words_end_where_they_are_too_long(package: Path) -> None:
+    doubled = 'set(a "xx")\n' + 'set(a "${a}${a}")\n' * 14
+    (package / "CMakeLists.txt").write_text(f"{doubled}add_executable(${{a}}y a.cpp)")
+    assert CMakeFile(package).compiled == ["x" * LONGEST_WORD]
+
+
+def test_an_open_quote_ends_with_the_text_and_an_escaped_one_is_none(package: Path) -> None:
+    (package / "CMakeLists.txt").write_text(
+        'a(\\" # no comment of "x\n)\nadd_executable(x\\"y z)\nadd_executable(b)\na(" # add_executable(c)\n'
+    )
+    assert CMakeFile(package).compiled == ['x\\"y', "b"]
+
+
+@pytest.mark.parametrize("source", ["/", "/etc/", "..", "scripts/../../", "${unknown}/scripts", "C:/x", "..\\\\x"])
+@pytest.mark.parametrize("kind", ["DIRECTORY", "PROGRAMS"])
+def test_nothing_outside_the_package_is_installed(package: Path, kind: str, source: str) -> None:
+    (package / "CMakeLists.txt").write_text(f"install({kind} {source} scripts/drive.py DESTINATION lib/m)")
+    assert [each.sources for each in CMakeFile(package).installs] == [["scripts/drive.py"]]
+
+
+@pytest.mark.parametrize(
+    "line", ["install(PROGRAMS {} DESTINATION lib/m)", "file(GLOB x {}/a)", "add_subdirectory({})"]
+)
+def test_a_name_too_long_for_a_file_is_no_file(package: Path, line: str) -> None:
+    (package / "CMakeLists.txt").write_text(line.format("a" * 5000))
+    assert CMakeFile(package).scripts() == {}
