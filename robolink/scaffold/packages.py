@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+import sys
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import escape
@@ -15,6 +16,8 @@ from robolink.scaffold.writing import Made, written
 PYTHON, CMAKE = BUILD_TYPES = ("ament_python", "ament_cmake")
 """Build types of packages that can be made."""
 _DEPENDENCY = re.compile(r"[A-Za-z0-9][A-Za-z0-9_+.-]*")
+_UNFIT = re.compile("[^\\t\\n\\x20-\\x7e\\xa0-\\ud7ff\\ue000-\\ufffd\\U00010000-\\U0010ffff]")
+"""Control characters other than tab and newline, and what XML forbids."""
 _LIBRARY = """
 add_library(@LIBRARY@ src/@LIBRARY@.cpp)
 target_include_directories(@LIBRARY@ PUBLIC
@@ -47,23 +50,63 @@ def new_package(wanted: NewPackage, destination: Path) -> Made:
     A node is a Python program in both build types, since robolink runs no C++.
 
     Raises:
-        ScaffoldError: (a ValueError) if a name is not valid, or the folder is there already.
+        ScaffoldError: (a ValueError) if a name is not valid or, in Python, taken; if a text has a control character; if
+            the folder is there already.
         OSError: if the files cannot be written.
     """
-    for kind, name in (("package", wanted.name), ("node", wanted.node), ("library", wanted.library)):
-        if name and not checked(kind, name).isidentifier():
-            raise ScaffoldError(f"'{name}' is no name for a {kind}: Python imports no '-', take '_'")
-    for each in wanted.dependencies:
-        if not _DEPENDENCY.fullmatch(each):
-            raise ScaffoldError(f"'{each[:60]}' is no name of a package to depend on")
-    if wanted.node and wanted.node == wanted.library:
-        raise ScaffoldError(f"the node and the library cannot both be called '{wanted.node}'")
+    _check(wanted)
     if (destination / wanted.name).exists():
         raise ScaffoldError(
             f"{destination / wanted.name} is there already: take another name or --destination-directory"
         )
     files = _python(wanted) if wanted.build_type == PYTHON else _cmake(wanted)
     return written(destination / wanted.name, wanted.name, files)
+
+
+def _check(wanted: NewPackage) -> None:
+    """Raise ScaffoldError if a name or a text is not fit for the files of a package."""
+    taken = _come_with_robolink() if wanted.build_type == PYTHON else ()
+    _check_name("package", wanted.name, taken)
+    if wanted.node:
+        _check_name("node", wanted.node, taken)
+    if wanted.library:
+        _check_name("library", wanted.library)
+    for each in wanted.dependencies:
+        if not _DEPENDENCY.fullmatch(each):
+            raise ScaffoldError(f"'{each[:60]}' is no name of a package to depend on")
+    if wanted.node and wanted.node == wanted.library:
+        raise ScaffoldError(f"the node and the library cannot both be called '{wanted.node}'")
+    _check_texts(wanted)
+
+
+def _check_name(kind: str, name: str, taken: Collection[str] = ()) -> None:
+    if not checked(kind, name, taken).isidentifier():
+        raise ScaffoldError(f"'{name}' is no name for a {kind}: Python imports no '-', take '_'")
+    if taken and name in sys.stdlib_module_names:
+        raise ScaffoldError(f"'{name}' is a module of Python: take another name, such as my_{name}")
+
+
+def _come_with_robolink() -> set[str]:
+    """Return the names of the ROS packages that come with robolink, and its own."""
+    from robolink.compat.maker import TOPS  # late: only packages in Python need it
+    from robolink.workspace import COUNTERPARTS
+
+    return {"robolink", *TOPS, *COUNTERPARTS}
+
+
+def _check_texts(wanted: NewPackage) -> None:
+    texts = {
+        "description": wanted.description,
+        "license": wanted.license,
+        "maintainer's name": wanted.maintainer,
+        "maintainer's email": wanted.email,
+    }
+    for what, text in texts.items():
+        unfit = _UNFIT.search(text)
+        if unfit is not None:
+            raise ScaffoldError(
+                f"the {what} has the character {unfit[0]!a}, which package.xml cannot hold: leave it out"
+            )
 
 
 def _python(wanted: NewPackage) -> dict[str, str]:

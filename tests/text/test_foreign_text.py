@@ -170,7 +170,7 @@ TRIED: dict[str, list[Tried]] = {
     "interface proto": [tried("interface proto robolink_test/msg/Whisper")],
     "interface package": [Tried(["interface", "package", EVIL])],
     "component load": [Tried(["component", "load", EVIL, "a", "b"])],
-    "pkg create": [Tried(["pkg", "create", EVIL]), Tried(["pkg", "create", "a", "--description", EVIL])],
+    "pkg create": [Tried(["pkg", "create", EVIL]), Tried(["pkg", "create", "a", "--dependencies", EVIL])],
     "pkg xml": [Tried(["pkg", "xml", EVIL])],
     "security create_enclave": [Tried(["security", "create_enclave", EVIL, "/a"])],
     "security create_permission": [Tried(["security", "create_permission", "keys", "/a", EVIL])],

@@ -99,6 +99,11 @@ def test_it_is_made_elsewhere(src: Path) -> None:
         ("pkg_x --node-name 1", "'1' is no name for a node"),
         ("pkg_x --node-name a --library-name a", "cannot both be called 'a'"),
         ("pkg_x --dependencies rclpy <x>", "'<x>' is no name of a package to depend on"),
+        ("std_msgs --build-type ament_python", "a package 'std_msgs' comes with robolink"),
+        ("pkg_x --build-type ament_python --node-name turtlesim", "a node 'turtlesim' comes with robolink"),
+        ("robolink --build-type ament_python", "take another name, such as my_robolink"),
+        ("random --build-type ament_python", "'random' is a module of Python: take another name, such as my_random"),
+        ("pkg_x --build-type ament_python --node-name queue", "'queue' is a module of Python"),
     ],
 )
 @pytest.mark.usefixtures("src")
@@ -108,6 +113,31 @@ def test_what_cannot_be_made_is_one_line(words: str, report: str, capsys: Captur
     err = capsys.readouterr().err
     assert (report in err, err.count("\n")) == (True, 1)
     assert sorted(each.name for each in Path().iterdir()) == ["pkg_there"]
+
+
+@pytest.mark.parametrize("build_type", ["ament_cmake", "ament_python"])
+@pytest.mark.usefixtures("src")
+def test_a_package_without_a_name_is_not_made(build_type: str, capsys: Captured) -> None:
+    assert main(["pkg", "create", "", "--build-type", build_type]) == 1
+    err = capsys.readouterr().err
+    assert ("'' is no name for a package" in err, err.count("\n")) == (True, 1)
+    assert list(Path().iterdir()) == []
+
+
+@pytest.mark.parametrize("option", ["--description", "--license", "--maintainer-name", "--maintainer-email"])
+@pytest.mark.parametrize("character", ["\0", "\r", "\x1b", "\x7f", "\x85", "\udc80", "\ufffe"])
+@pytest.mark.usefixtures("src")
+def test_texts_have_no_control_characters(option: str, character: str, capsys: Captured) -> None:
+    assert main(["pkg", "create", "pkg_x", option, f"a{character}b"]) == 1
+    err = capsys.readouterr().err
+    assert (f"the character {character!a}" in err, err.count("\n")) == (True, 1)
+    assert list(Path().iterdir()) == []
+
+
+def test_texts_have_tabs_and_lines(src: Path) -> None:
+    text = "one\n\ttwo \u00e9 \U0001f422"
+    assert main(["pkg", "create", "pkg_x", "--description", text]) == 0
+    assert [each.text for each in xmltext.read(src / "pkg_x/package.xml").all("description")] == [text]
 
 
 def test_packages_are_listed_and_found(src: Path, capsys: Captured) -> None:
