@@ -68,7 +68,7 @@ def _check(wanted: NewPackage) -> None:
     taken = _come_with_robolink() if wanted.build_type == PYTHON else ()
     _check_name("package", wanted.name, taken)
     if wanted.node:
-        _check_name("node", wanted.node, taken)
+        _check_name("node", wanted.node)
     if wanted.library:
         _check_name("library", wanted.library)
     for each in wanted.dependencies:

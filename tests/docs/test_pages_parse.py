@@ -46,15 +46,15 @@ def problem(line: str) -> str:
     words = words[
         : next((index for index, each in enumerate(words) if each in ("|", ">", "&&", "&", "||")), len(words))
     ]
-    each, name = root(), "robolink"
+    each, name, context = root(), "robolink", None
     try:
-        while hasattr(each, "list_commands"):
-            context = each.make_context(name, list(words))
+        while hasattr(each, "list_commands"):  # with its parent: a command keeps the first names of its help option
+            context = each.make_context(name, list(words), parent=context)
             rest = [*getattr(context, "_protected_args", []), *context.args]
             if not rest:
                 return ""  # the noun alone does something
             name, each, words = each.resolve_command(context, rest)
-        each.make_context(name, list(words))
+        each.make_context(name, list(words), parent=context)
     except Exception as error:  # typer's own errors moved with its copy of click
         if type(error).__name__ in ("Exit", "NoArgsIsHelpError"):
             return ""

@@ -100,10 +100,8 @@ def test_it_is_made_elsewhere(src: Path) -> None:
         ("pkg_x --node-name a --library-name a", "cannot both be called 'a'"),
         ("pkg_x --dependencies rclpy <x>", "'<x>' is no name of a package to depend on"),
         ("std_msgs --build-type ament_python", "a package 'std_msgs' comes with robolink"),
-        ("pkg_x --build-type ament_python --node-name turtlesim", "a node 'turtlesim' comes with robolink"),
         ("robolink --build-type ament_python", "take another name, such as my_robolink"),
         ("random --build-type ament_python", "'random' is a module of Python: take another name, such as my_random"),
-        ("pkg_x --build-type ament_python --node-name queue", "'queue' is a module of Python"),
     ],
 )
 @pytest.mark.usefixtures("src")
