@@ -47,7 +47,7 @@ STEPS: tuple[tuple[str, ...], ...] = (
     ("robolink", "interface", "show", "Twist"),
     ("python", "-m", "pytest", "-q", "test_mine.py"),
 )
-"""What is done with the installed wheel; each must end with exit code 0."""
+"""Commands tried with the installed wheel; each must end with exit code 0."""
 
 
 def steps(wheel: Path, python: str, constraints: str, folder: Path) -> Iterator[list[str]]:

@@ -41,7 +41,7 @@ def root() -> Any:
 
 
 def problem(line: str) -> str:
-    """What the command line says against the words of a line; '' if nothing."""
+    """Return the command line's error about the words of a line; '' if there is none."""
     words = shlex.split(line, comments=True)[1:]
     words = words[
         : next((index for index, each in enumerate(words) if each in ("|", ">", "&&", "&", "||")), len(words))

@@ -1,4 +1,4 @@
-"""What is published: one version everywhere, a long description without relative links, extras, lowest versions."""
+"""Release: one version everywhere, a long description without relative links, extras, lowest versions."""
 
 from __future__ import annotations
 

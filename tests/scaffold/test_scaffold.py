@@ -1,4 +1,4 @@
-"""What `robolink.scaffold` makes: names that it takes, files that it leaves alone, and that all of it works."""
+"""Templates of `robolink.scaffold`: names that it takes, files that it leaves alone, and that all of it works."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ def stripped(lines: Sequence[str]) -> list[str]:
 
 
 def fits(shown: Sequence[str], lines: Sequence[str], *, exact: bool = True, whole: bool = True) -> bool:
-    """Whether an output is what a page shows; a line of `...` alone stands for any lines, even none.
+    """Return True if an output is what a page shows; a line of `...` alone stands for any lines, even none.
 
     Args:
         shown: Lines of the page.

@@ -46,7 +46,7 @@ def seconds_on_lan(*, first: int) -> float:
 
 
 def seconds_with_host() -> float:
-    """Have a laptop name a robot, and use all that it has; return its seconds."""
+    """Run a laptop that names a robot and uses all that it has; return its seconds."""
     with ExitStack() as stack:
         machines = Machines(stack)
         machines.start(machines.there, PLAY, "robot", ROBOLINK_NETWORK="lan")

@@ -184,13 +184,13 @@ def program_of(words: list[str]) -> tuple[str, ...]:
 
 
 def goes_on(words: list[str]) -> bool:
-    """Whether a command runs until Ctrl-C."""
+    """Return True if a command runs until Ctrl-C."""
     verb = next((each for each, verbs in zip(words[1:3], (GO_ON, GO_ON_OF_A_NOUN), strict=False) if each in verbs), "")
     return bool(verb) and words[0] == "robolink" and not set(ENDS.get(verb, ())) & set(words) and "--help" not in words
 
 
 def said(command: Command) -> str:
-    """What a command has printed so far."""
+    """Output of a command so far."""
     return "\n".join(each.text for each in command.lines)
 
 

@@ -16,7 +16,7 @@ WRAPPER = "#!/usr/bin/python3\nfrom importlib.metadata import distribution\nrais
 
 
 def install(prefix: Path, name: str, *, site: str = "lib/python3.12/site-packages") -> None:
-    """What colcon installs of a package: its mark, two programs, and the module of one of them."""
+    """Installed files of a package, as of colcon: its mark, two programs, and the module of one of them."""
     for folder in (installed.INDEX + "/packages", f"lib/{name}", f"share/{name}", f"{site}/{name}"):
         (prefix / folder).mkdir(parents=True, exist_ok=True)
     (prefix / installed.INDEX / "packages" / name).touch()

@@ -16,7 +16,7 @@ GATHERED = ROOT / "build" / "docs"
 SITE = GATHERED / "site"
 PICTURES = (".png", ".svg")
 NOTES = {"pt": '!!! note "Em inglês"\n\n    Esta página ainda não foi traduzida para o português.\n'}
-"""What stands on top of a page that is not translated."""
+"""Note on top of a page that is not translated."""
 SUMMARIES = {
     "en": "ROS 2 nodes from pip install: nodes, topics, services and a simulated robot, in Python.",
     "pt": "Nós de ROS 2 com pip install: nós, tópicos, serviços e um robô simulado, em Python.",

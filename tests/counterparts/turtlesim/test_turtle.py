@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from robolink.counterparts.turtlesim.turtle import CENTRE, PERIOD, SIZE, Pen, Step, Turtle, normalized
 
 numbers = st.floats(width=32)
-"""What a message can carry: also NaN and infinity."""
+"""Values of a message: also NaN and infinity."""
 
 
 def run(turtle: Turtle, seconds: float, start: float = 0.0) -> list[Step]:

@@ -1,4 +1,4 @@
-"""What cannot run here is left out with a line, and the rest runs on."""
+"""Programs that cannot run here are left out with a line, and the rest runs on."""
 
 from __future__ import annotations
 

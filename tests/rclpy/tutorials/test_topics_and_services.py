@@ -59,7 +59,7 @@ OWN_TYPES = {
         ("int(sys.argv[2]), response", "int(sys.argv[2]), int(sys.argv[3]), response"),
     ),
 }
-"""What the tutorial on types of one's own replaces in the programs of those before it."""
+"""Replacements of the tutorial on types of one's own in the programs of those before it."""
 
 
 def test_creating_a_package(ros2_ws: TutorialWorkspace) -> None:
