@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 import yaml
 
-from tools.docs_site.markdown import LINK, blocks, headings, outside_blocks, slugs
+from tools.docs_site.markdown import LINK, blocks, headings, outside_blocks, slugs, with_site_tables
 from tools.docs_site.pages import DOCS, LANGUAGES, Page, addresses, listing, pages
 from tools.docs_site.same_code import pairs
 
@@ -162,3 +162,8 @@ def test_pictures_are_made_by_the_script() -> None:
 
     assert {each.stem for each in FOLDER.glob("*.svg")} == set(PICTURES)
     assert {Path(each).suffix for each in FOLDER.iterdir()} <= {".svg", ".png"}
+
+
+def test_tables_show_a_bar_in_code_without_its_backslash() -> None:
+    page = "| `en\\|pt` | a \\| b |\n\n`a\\|b`\n\n```text\n| `a\\|b` |\n```\n"
+    assert with_site_tables(page) == page.replace("`en\\|pt`", "`en|pt`")

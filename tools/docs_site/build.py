@@ -9,7 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tools.docs_site.markdown import headings, slugs, with_anchors, with_site_links
+from tools.docs_site.markdown import headings, slugs, with_anchors, with_site_links, with_site_tables
 from tools.docs_site.pages import DOCS, LANGUAGES, ROOT, Page, addresses, listing, pages
 
 GATHERED = ROOT / "build" / "docs"
@@ -90,9 +90,10 @@ def gather(language: str) -> None:
 
 def finished(page: Page, known: dict[Path, str]) -> str:
     """Return a page's text as it is on the site: links between pages, and the English anchors in both languages."""
+    text = with_site_tables(page.text())
     if page.source is None:
-        return page.text()
-    text = with_site_links(page.text(), page.source, page.address, known)
+        return text
+    text = with_site_links(text, page.source, page.address, known)
     english = next(each for each in pages("en") if each.address == page.address)
     text = with_anchors(text, slugs(english.text()))
     if page.address.endswith("/index.md"):

@@ -11,6 +11,7 @@ from typing import NamedTuple
 FENCE = re.compile(r"^( *)(```+)(.*)$")
 HEADING = re.compile(r"^(#+) (.*?)(?: \{ *#([\w-]+) *\})?$")
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
+CODE = re.compile(r"`[^`]+`")
 TITLE = re.compile(r'title="([^"]+)"')
 DIRECTIVE = re.compile(r"^ *<!-- run: (.*?) -->$")
 
@@ -123,3 +124,12 @@ def with_site_links(text: str, source: Path, address: str, known: dict[Path, str
         return f"{match[1]}[{match[2]}]({relative}{'#' + anchor if anchor else ''})"
 
     return outside_blocks(text, lambda line: LINK.sub(replaced, line))
+
+
+def with_site_tables(text: str) -> str:
+    """Return a page whose tables have plain `|` in their code: the site needs no backslash there, and would show it."""
+
+    def plain(line: str) -> str:
+        return CODE.sub(lambda code: code[0].replace("\\|", "|"), line) if line.startswith("|") else line
+
+    return outside_blocks(text, plain)
