@@ -10,8 +10,9 @@ import sys
 import threading
 import time
 import uuid
+from collections.abc import Mapping
 from pathlib import Path
-from types import TracebackType
+from types import MappingProxyType, TracebackType
 from typing import IO, NamedTuple
 
 PATIENCE = 30.0
@@ -63,13 +64,14 @@ class Command:
         has_input: bool = False,
         merged: bool = False,
         folder: Path | None = None,
+        environ: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         self.mark = uuid.uuid4().hex
-        environ = {"ROS_DOMAIN_ID": str(domain), "PYTHONUNBUFFERED": "1", "NO_COLOR": "1", MARK: self.mark}
+        own = {"ROS_DOMAIN_ID": str(domain), "PYTHONUNBUFFERED": "1", "NO_COLOR": "1", MARK: self.mark}
         self.started = time.monotonic()
         self.process = subprocess.Popen(
             [*program, *args],
-            env={**os.environ, **environ},
+            env={**os.environ, **environ, **own},
             stdin=subprocess.PIPE if has_input else subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT if merged else subprocess.PIPE,
@@ -104,6 +106,10 @@ class Command:
                 raise AssertionError(f"no '{text}' in {self.lines}, {self.errors}")
             if text in line.text:
                 return line
+
+    def age(self) -> float:
+        """Seconds since its start."""
+        return time.monotonic() - self.started
 
     def press(self, keys: str) -> None:
         """Press these keys."""
