@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path, PureWindowsPath
 
 from robolink.system.plainfile import read_plain
-from robolink.workspace.literals import MOST_FILES
+from robolink.workspace.listing import Listing
 
 LONGEST = 200_000
 """Largest file that is read, in bytes."""
@@ -26,6 +26,8 @@ LONGEST_WORD = 4096
 """Length to which a word with variables is cut, in letters: no path is longer."""
 MOST_LETTERS = 1_000_000
 """Upper bound of the letters that the variables of a package stand for, in all."""
+MOST_SOURCES = 20_000
+"""Upper bound of the files and folders that a package installs, in all."""
 
 # All take `\"` for a letter and an open quote for one that ends with the text: else each quote would be tried anew, in
 # quadratic time.
@@ -38,6 +40,7 @@ _KEYWORD = re.compile(
     "DESTINATION|RENAME|PERMISSIONS|USE_SOURCE_PERMISSIONS|PATTERN|REGEX|FILES_MATCHING|EXCLUDE|OPTIONAL|COMPONENT|TYPE|"
     "CONFIGURATIONS|RUNTIME|LIBRARY|ARCHIVE|EXPORT|INCLUDES|FILE_PERMISSIONS|DIRECTORY_PERMISSIONS"
 )
+_COPIED = ("PROGRAMS", "FILES", "DIRECTORY")
 _FOLDERS = ("CMAKE_CURRENT_SOURCE_DIR", "CMAKE_SOURCE_DIR", "PROJECT_SOURCE_DIR", "CMAKE_CURRENT_LIST_DIR")
 
 
@@ -60,6 +63,8 @@ class CMakeFile:
         self._variables = {name: ["."] for name in _FOLDERS}
         self._files_left = MOST_FILES_READ
         self._letters_left = MOST_LETTERS
+        self._sources_left = MOST_SOURCES
+        self._listing = Listing(folder)
         self.installs: list[Install] = []
         self.compiled: list[str] = []
         """Names of the executables that are compiled."""
@@ -68,11 +73,14 @@ class CMakeFile:
     def scripts(self) -> dict[str, Path]:
         """Return the Python programs that are installed: name to file."""
         found: dict[str, Path] = {}
-        for each in self.installs:
-            if each.destination.startswith("lib/") and each.kind in ("PROGRAMS", "FILES", "DIRECTORY"):
-                for path in self._files(each):
-                    if is_python(path):
-                        found.setdefault(each.rename or path.name, path)
+        known: dict[Path, bool] = {}  # each file is opened once
+        programs = [each for each in self.installs if each.destination.startswith("lib/") and each.kind in _COPIED]
+        for install in programs:
+            for path in self._files(install):
+                if path not in known:
+                    known[path] = is_python(path)
+                if known[path]:
+                    found.setdefault(install.rename or path.name, path)
         return dict(itertools.islice(found.items(), MOST))
 
     def _read_folder(self, at: str) -> None:
@@ -86,13 +94,14 @@ class CMakeFile:
         self._at = above
 
     def _files(self, install: Install) -> Iterator[Path]:
-        for each in install.sources:
+        for each in dict.fromkeys(install.sources):
             path = self._folder / each
-            with contextlib.suppress(OSError, ValueError):  # no name of a file: too long, say
-                if install.kind == "DIRECTORY":
-                    yield from sorted(found for found in itertools.islice(path.rglob("*"), MOST) if found.is_file())
-                elif path.is_file():
-                    yield path
+            if install.kind == "DIRECTORY":
+                yield from (path / found.path for found in self._listing.below(each) if found.is_file)
+            else:
+                with contextlib.suppress(OSError, ValueError):  # no name of a file: too long, say
+                    if path.is_file():
+                        yield path
 
     def _run(self, command: str, words: list[str]) -> None:
         match command, words:
@@ -117,16 +126,13 @@ class CMakeFile:
         if install.kind == "TARGETS":
             self.compiled += install.sources if install.destination.startswith("lib/") else []
         else:
-            sources = [self._at + each for each in install.sources if _is_inside(each)]
+            sources = [self._at + each for each in install.sources if _is_inside(each)][: self._sources_left]
+            self._sources_left -= len(sources)
             self.installs.append(replace(install, sources=sources))
 
     def _globbed(self, patterns: list[str], recursive: bool) -> Iterator[str]:
-        for each in patterns:
-            if _is_inside(each):
-                here = self._folder / self._at
-                with contextlib.suppress(OSError, ValueError, NotImplementedError):  # no pattern at all
-                    listed = itertools.islice(here.rglob(each) if recursive else here.glob(each), MOST_FILES)
-                    yield from sorted(path.relative_to(here).as_posix() for path in listed)
+        for each in filter(_is_inside, patterns):
+            yield from self._listing.matching(self._at, each, is_deep=recursive)
 
     def _words(self, text: str) -> list[str]:
         """Return the words of a command, with the values of variables; unknown ones are left out."""

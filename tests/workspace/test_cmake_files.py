@@ -43,6 +43,10 @@ def package(tmp_path: Path) -> Path:
         ),
         ("install(DIRECTORY scripts/ DESTINATION lib/m USE_SOURCE_PERMISSIONS)", "drive.py look turn.py"),
         ("install(PROGRAMS scripts/drive.py DESTINATION share/m)", ""),
+        ("file(GLOB_RECURSE ALL ./*.py)\ninstall(PROGRAMS ${ALL} DESTINATION lib/m)", "drive.py turn.py"),
+        ("file(GLOB_RECURSE ALL scripts/t*.py)\ninstall(PROGRAMS ${ALL} DESTINATION lib/m)", "turn.py"),
+        ("file(GLOB ALL */[dt]*.py *.py)\ninstall(PROGRAMS ${ALL} DESTINATION lib/m)", "drive.py turn.py"),
+        ("file(GLOB ALL s*)\ninstall(DIRECTORY ${ALL} DESTINATION lib/m)", "drive.py look turn.py"),
         ("install(PROGRAMS ${unknown} DESTINATION lib/m)\ninstall(\n", ""),
         ('#[=[ 3" of\n]] 2 ]=]install(PROGRAMS "scripts/drive.py" DESTINATION lib/m)\n#[[ open', "drive.py"),
         ('message("install(PROGRAMS scripts/drive.py DESTINATION lib/m)")', ""),
@@ -142,6 +146,29 @@ def test_a_hostile_file_takes_no_time(package: Path, what: str) -> None:
     begin = time.process_time()
     assert CMakeFile(package).installs == []
     assert time.process_time() - begin < 5  # each takes less than half a second, and took minutes
+
+
+MANY_FILES = {
+    "folders": "install(DIRECTORY " + ". " * 1900 + "DESTINATION lib/m)",
+    "different folders": "install(DIRECTORY " + " ".join("./" * n + "many" for n in range(60)) + " DESTINATION lib/m)",
+    "installs": "install(DIRECTORY many DESTINATION lib/m)\n" * 1900,
+    "patterns": "".join(
+        f"file(GLOB_RECURSE x *{n}.py)\ninstall(PROGRAMS ${{x}} DESTINATION lib/m)" for n in range(900)
+    ),
+    "deep patterns": "file(GLOB x " + "".join(f"*/*{n} " for n in range(1900)) + ")\n",
+    "files": ("install(FILES " + "a " * 1900 + "DESTINATION lib/m)\n") * 45,
+}
+
+
+@pytest.mark.parametrize("what", MANY_FILES)
+def test_a_file_that_asks_for_all_files_again_and_again_takes_no_time(package: Path, what: str) -> None:
+    (package / "many").mkdir()
+    for number in range(400):
+        (package / "many" / f"f{number}").touch()
+    (package / "CMakeLists.txt").write_text(MANY_FILES[what])
+    begin = time.process_time()
+    assert "f1" not in CMakeFile(package).scripts()
+    assert time.process_time() - begin < 5  # less than half a second each, and some took a minute
 
 
 def test_words_end_where_they_are_too_long(package: Path) -> None:

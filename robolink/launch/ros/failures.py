@@ -55,6 +55,8 @@ def reason_of(error: BaseException) -> str:
         return f"the environment has no '{name}', which this file needs: set it, as by export {name}=VALUE"
     if isinstance(error, RecursionError):
         return "it never ends: a function or a substitution calls itself"
+    if isinstance(error, SystemExit):
+        return f"it ends the program: sys.exit({shown(repr(error.code), _LONGEST)})"
     if isinstance(error, MemoryError):
         return "there is not enough memory for it"
     text = shown(str(error), _LONGEST)

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import heapq
 import itertools
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robolink.companions.launch import events
-from robolink.companions.launch.actions import ExecuteLocal, TimerAction
-from robolink.companions.launch.bases import BaseEventHandler, Event, entities_in
+from robolink.companions.launch.actions import EmitEvent, ExecuteLocal, TimerAction
+from robolink.companions.launch.bases import BaseEventHandler, Event, LaunchDescriptionEntity, entities_in
 from robolink.companions.launch.event_handlers import OnProcessIO, OnShutdown
 from robolink.companions.launch.events import process as process_events
 from robolink.companions.launch.utilities import is_true
@@ -196,7 +196,9 @@ class Reactions(Generic[T]):
         self._emit(process_events.ProcessStarted(action=action, **details))
         event = process_events.ProcessExited(action=action, returncode=0, **details)
         for handler in list(self._visit.context.handlers):
-            if handler.matches(event) and _starts_only(handler):
+            with self._visit.placing(handler):
+                is_meant = handler.matches(event)
+            if is_meant and _starts_only(self._visit.following(handler)):
                 self._react(handler, event)
 
     def _emit(self, event: Event) -> None:
@@ -280,10 +282,6 @@ def _details(action: ExecuteLocal, name: str, pid: int) -> dict[str, Any]:
     return {"name": name, "cmd": cmd, "cwd": None, "env": None, "pid": pid}
 
 
-def _starts_only(handler: BaseEventHandler) -> bool:
+def _starts_only(found: Sequence[LaunchDescriptionEntity]) -> bool:
     """True if what follows is known, and ends nothing."""
-    from robolink.companions.launch.actions import EmitEvent
-
-    known: Iterable[Any] = handler.describe()[1]
-    found = list(known)
     return bool(found) and not any(isinstance(each, EmitEvent) for each in found)

@@ -23,6 +23,7 @@ from robolink.companions.launch.actions import (
 from robolink.companions.launch.bases import (
     SCOPED,
     Action,
+    BaseEventHandler,
     LaunchContext,
     LaunchDescriptionEntity,
     Place,
@@ -39,7 +40,7 @@ from robolink.launch.reading.entry import Entry
 from robolink.launch.ros.absent import Absent, AbsentError
 from robolink.launch.ros.components import components, container_of, target_of
 from robolink.launch.ros.entries import EntryMaker, ends_launch, placed
-from robolink.launch.ros.failures import absent_package, as_document_error, reason_of, users_place
+from robolink.launch.ros.failures import absent_package, as_document_error, reason_of
 from robolink.launch.ros.programs import include_absent
 
 MOST_VISITED = 100_000
@@ -118,13 +119,18 @@ class Visit:
             found = [each for each in self.context.handlers if not isinstance(each, OnShutdown)]
             handlers = [each for each in found if id(each) not in seen]
             seen.update(map(id, handlers))
-            waiting += [(each.describe()[1], each.around) for each in handlers]
+            waiting += [(self.following(each), each.around) for each in handlers]
             if not waiting:
                 return
             for entities, around in waiting:
                 new = [each for each in entities if id(each) not in seen and not isinstance(each, _ACTING)]
                 seen.update(map(id, new))
                 self.run_within(new, around)
+
+    def following(self, handler: BaseEventHandler) -> list[LaunchDescriptionEntity]:
+        """Return what follows an event, as far as its handler knows it before."""
+        with self.placing(handler):
+            return list(handler.describe()[1])
 
     def run_within(self, entities: Iterable[LaunchDescriptionEntity], around: Mapping[str, Mapping[str, Any]]) -> None:
         """Visit entities with the values around them at an earlier time, where these are not set now."""
@@ -243,14 +249,16 @@ class Visit:
 
     @contextmanager
     def placing(self, entity: object) -> Iterator[None]:
-        """Turn any error of the block into a DocumentError at the line of the user's file that made `entity`."""
+        """Turn any error of the block into a DocumentError at the line of the user's file that made `entity`.
+
+        A KeyboardInterrupt passes, since a Ctrl-C raises it; one of its subclasses is the file's own.
+        """
         try:
             yield
-        except Exception as error:  # noqa: BLE001 - the file is a program
+        except BaseException as error:
+            if type(error) is KeyboardInterrupt:
+                raise
             raise as_document_error(error, self.place_of(entity)) from None
-        except SystemExit as error:
-            at = users_place(error) or self.place_of(entity)
-            raise DocumentError(f"it ends the program: sys.exit({error.code!r})", at.file, at.line) from None
 
     def place_of(self, entity: object) -> Place:
         """Return the place of the user's file at which an entity was made; the file as a whole if it is unknown."""

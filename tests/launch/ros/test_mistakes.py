@@ -32,6 +32,9 @@ BODIES = [
         f"robolink {version('robolink')} has no launch_ros.actions.Nod (did you mean 'Node'?)",
     ),
     ("import sys; sys.exit(3)", 1, "it ends the program: sys.exit(3)"),
+    ("raise type('Stop', (KeyboardInterrupt,), {})('now')", 1, "Stop: now"),
+    ("raise type('Stop', (BaseException,), {})", 1, "Stop"),
+    ("raise GeneratorExit", 1, "GeneratorExit"),
     ("open(get_package_share_directory('nobody') + '/x')", 1, "package nobody is not here, and its x is needed"),
     ("return [1]", None, "generate_launch_description() returned list, and a LaunchDescription was expected"),
     ("pass", None, "generate_launch_description() returned NoneType, and a LaunchDescription was expected"),
@@ -63,8 +66,27 @@ ACTIONS = [
     ("IncludeLaunchDescription([ThisLaunchFileDir(), '/b.launch.py'])", "there is no launch file {launch}/b.launch.py"),
     ("OpaqueFunction(function=lambda context: ['x'])", "an action is expected, got str"),
     ("OpaqueFunction(function=lambda context: 1 / 0)", "ZeroDivisionError: division by zero"),
+    ("OpaqueFunction(function=lambda context: (_ for _ in ()).throw(GeneratorExit('x')))", "GeneratorExit: x"),
     ("ForLoop('x', function=lambda i: [])", "the length of a loop is a number from 0 on, got 'x'"),
     ("ForLoop(20000, function=lambda i: [])", "more than 10,000 repetitions"),
+    ("ForLoop('0000000020000', function=lambda i: [])", "more than 10,000 repetitions"),
+    ("ForLoop('2_0_000', function=lambda i: [])", "more than 10,000 repetitions"),
+    ("ForLoop('٢٠٠٠٠', function=lambda i: [])", "more than 10,000 repetitions"),
+    ("ForLoop('²', function=lambda i: [])", "the length of a loop is a number from 0 on, got '²'"),
+    ("ForLoop('-5', function=lambda i: [])", "the length of a loop is a number from 0 on, got one below"),
+    ("ForLoop('9' * 999999, function=lambda i: [])", "the length of a loop is a number from 0 on, got '999"),
+    (
+        "EmitEvent(event=events.process.SignalProcess(signal_number='SIGINNT', process_matcher=print))",
+        "no signal here is 'SIGINNT' (did you mean 'SIGINT'?)",
+    ),
+    (
+        "EmitEvent(event=events.process.SignalProcess(signal_number='nope', process_matcher=print))",
+        "no signal here is 'nope': signals are such as SIGINT or SIGTERM",
+    ),
+    (
+        "EmitEvent(event=events.process.SignalProcess(signal_number=999, process_matcher=print))",
+        "no signal here is 999: signals are such as SIGINT or SIGTERM",
+    ),
     ("ForEach('{a: 1', function=print)", "'{{a: 1' is no YAML: "),
     ("ForEach('a', function=print)", "a mapping such as {{name: ada}} is expected, got 'a'"),
     ("ExecuteProcess(cmd='ls -l')", "cmd is a list of words, such as ['ls', '-l'], got the text 'ls -l'"),
@@ -94,6 +116,11 @@ def test_of_an_action(package: Path, action: str, text: str) -> None:
     assert (caught.value.file, caught.value.line) == (str(package / "launch" / "bot.launch.py"), FIRST + 3)
     assert caught.value.message.startswith(text.format(launch=package / "launch"))
     assert "\n" not in str(caught.value)
+
+
+def test_an_interrupt_of_the_user_passes(package: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        read(package, "OpaqueFunction(function=lambda context: (_ for _ in ()).throw(KeyboardInterrupt)),")
 
 
 def test_what_never_ends(package: Path) -> None:
