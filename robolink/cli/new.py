@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import shlex
+import subprocess
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -27,7 +30,8 @@ def new_project(
 
     made = new_project(name)
     _tell(made)
-    say(f"\nnext:\n  cd {_shown(made.folder)}\n  robolink simulate {made.name}    # or: launch {made.name}\n  pytest")
+    there = "" if made.folder.samefile(Path.cwd()) else f"  cd {_typed(made.folder)}\n"
+    say(f"\nnext:\n{there}  robolink simulate {made.name}    # or: launch {made.name}\n  pytest")
 
 
 @app.command("node")
@@ -41,7 +45,7 @@ def new_node(
     made = new_node(name, workspace=workspace or None)
     _tell(made)
     in_workspace = len(made.files) > 1
-    test = f"\n  pytest {_shown(made.folder / made.files[1])}" if in_workspace else ""
+    test = f"\n  pytest {_typed(made.folder / made.files[1])}" if in_workspace else ""
     say(f"\nnext:\n  robolink run {made.name if in_workspace else made.files[0]}{test}")
 
 
@@ -63,7 +67,14 @@ def _tell(made: Made) -> None:
         say(f"made {_shown(made.folder / each)}")
 
 
+def _typed(path: Path) -> str:
+    """Return a path as one types it into a shell here: in quotes if need be, and never like an option."""
+    shown = _shown(path)
+    shown = f"./{shown}" if shown.startswith("-") else shown
+    return subprocess.list2cmdline([shown]) if sys.platform == "win32" else shlex.quote(shown)
+
+
 def _shown(path: Path) -> str:
-    """Return a path as one types it here."""
+    """Return a path relative to this folder if it is within."""
     here = Path.cwd()
     return os.path.relpath(path, here) if path.is_relative_to(here) else str(path)

@@ -35,7 +35,7 @@ def new_project(path: str) -> Made:
         OSError: if the files cannot be written.
     """
     folder = expanded(path).absolute()
-    name = checked("project", folder.name)
+    name = checked("project", folder.name if path else "")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ScaffoldError(f"{path} is there already and not empty: take another name, or an empty folder")
     return written(folder, name, rendered("project", {"NAME": name}))

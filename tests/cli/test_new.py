@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -33,6 +34,36 @@ def test_it_lists_what_it_made_and_what_is_next(here: Path, capsys: Captured) ->
     out = capsys.readouterr().out
     assert f"made {Path('demo/nodes/explorer.py')}\n" in out
     assert out.endswith("next:\n  cd demo\n  robolink simulate demo    # or: launch demo\n  pytest\n")
+
+
+@pytest.mark.parametrize("path", [".", "./", "../here", "inside/.."])
+def test_who_is_there_already_is_not_sent_there(
+    here: Path, path: str, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (here / "here").mkdir()
+    monkeypatch.chdir(here / "here")
+    assert main(["new", "project", path]) == (0 if path != "inside/.." else 1)
+    out, err = capsys.readouterr()
+    assert "next:\n  robolink simulate here    # or: launch here\n" in out if not err else "'..' is no name" in err
+    assert "cd " not in out
+
+
+@pytest.mark.parametrize(
+    ("path", "typed"), [("./demo/", "demo"), ("my work/demo", "'my work/demo'"), ("-a/demo", "./-a/demo")]
+)
+@pytest.mark.skipif(sys.platform == "win32", reason="the quotes of a POSIX shell")
+def test_a_path_is_shown_as_a_shell_takes_it(here: Path, path: str, typed: str, capsys: Captured) -> None:
+    assert main(["new", "project", "--", path]) == 0
+    assert f"next:\n  cd {typed}\n" in capsys.readouterr().out
+    assert main(["new", "node", "talker", "--workspace", path]) == 0
+    (folder,) = shlex.split(typed)
+    assert shlex.split(capsys.readouterr().out.splitlines()[-1]) == ["pytest", f"{folder}/tests/test_talker.py"]
+
+
+def test_a_project_needs_a_name(here: Path, capsys: Captured) -> None:
+    assert main(["new", "project", ""]) == 1
+    assert capsys.readouterr().err.startswith("robolink: '' is no name for a project: ")
+    assert list(here.iterdir()) == []
 
 
 def test_a_node_and_a_world_in_a_project(here: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
