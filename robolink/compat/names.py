@@ -45,6 +45,8 @@ ROOMS = {
 INSTEAD = {
     "launch_testing_ros": "a test makes its nodes itself, in memory and in virtual time",
     "launch_pytest": "a test makes its nodes itself, in memory and in virtual time",
+    "launch.exit_handler": "that is ROS 2 before Bouncy (2018): Node(respawn=True, on_exit=...) is what it has now",
+    "launch.legacy": "that is ROS 2 before Bouncy (2018): launch.actions and launch_ros.actions are what it has now",
     "tf2_kdl": "tf2_geometry_msgs transforms the types of geometry_msgs, tf_transformations has the matrices",
     "tf2_eigen": "tf2_geometry_msgs transforms the types of geometry_msgs, tf_transformations has the matrices",
     "tf": "that is ROS 1: tf2_ros has the listener and the broadcaster, tf_transformations the angles",

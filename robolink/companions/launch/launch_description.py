@@ -7,9 +7,7 @@ from typing import Any
 
 from robolink.companions.launch.actions.declare import DeclareLaunchArgument
 from robolink.companions.launch.bases import LaunchContext, LaunchDescriptionEntity
-
-MOST_DESCRIBED = 10_000
-"""Upper bound of the entities that are looked through for arguments."""
+from robolink.companions.launch.described import Described, described
 
 
 class LaunchDescription(LaunchDescriptionEntity):
@@ -71,14 +69,5 @@ class LaunchIntrospector:
         return "\n".join(each.describe() for each in _described(launch_description))
 
 
-def _described(top: LaunchDescriptionEntity) -> Iterator[LaunchDescriptionEntity]:
-    """Yield what a description holds, in its order, as far as that is known before it runs."""
-    left, waiting = MOST_DESCRIBED, [top]
-    while waiting and left:
-        each = waiting.pop(0)
-        left -= 1
-        yield each
-        inside = list(each.describe_sub_entities())
-        for _, entities in each.describe_conditional_sub_entities():
-            inside += entities
-        waiting[:0] = [one for one in inside if isinstance(one, LaunchDescriptionEntity)]
+def _described(top: LaunchDescription) -> Iterator[LaunchDescriptionEntity]:
+    return (each.entity for each in described(Described(top), LaunchContext()))

@@ -157,14 +157,21 @@ def read_python_file(path: Path) -> LaunchDescription:
     """Run a Python launch file at `path` and return its description; raises LaunchError and whatever it raises."""
     if not path.is_file():
         raise LaunchFileNotFoundError(path)
-    maker = getattr(_loaded(path), MAKER, None)
+    module = _loaded(path)
+    maker = getattr(module, MAKER, None)
     if maker is None:
-        raise InvalidPythonLaunchFileError(f"{path}: it has no function {MAKER}(); a node is run by 'robolink run'")
+        raise InvalidPythonLaunchFileError(f"{path}: it has no function {MAKER}(){_instead_of_maker(module)}")
     made = maker()
     if not isinstance(made, LaunchDescription):
         kind = type(made).__name__
         raise InvalidPythonLaunchFileError(f"{path}: {MAKER}() returned {kind}, and a LaunchDescription was expected")
     return made
+
+
+def _instead_of_maker(module: ModuleType) -> str:
+    if callable(getattr(module, "launch", None)):
+        return ": launch(launch_descriptor, argv) is of ROS 2 before Bouncy (2018), and nodes are Node(...) actions now"
+    return "; a node is run by 'robolink run'"
 
 
 def _loaded(path: Path) -> ModuleType:

@@ -7,6 +7,7 @@ from xml.parsers import expat
 
 from robolink.companions.launch.bases import Place
 from robolink.companions.launch_frontend.entity import Entity, Text
+from robolink.companions.launch_frontend.ros1 import refuse_ros1
 from robolink.exceptions import DocumentError
 from robolink.system.plainfile import read_plain
 
@@ -30,6 +31,9 @@ def read_xml(path: Path) -> Entity:
     top = reader.top
     if top is None or top.name != "launch":
         raise DocumentError("a launch file begins with <launch>", file, 1)
+    refuse_ros1(top)
+    if reader.stray is not None:
+        raise reader.stray
     return top
 
 
@@ -39,6 +43,8 @@ class _Reader:
     def __init__(self, file: str) -> None:
         self._file, self._open, self._count = file, list[Entity](), 0
         self.top: Entity | None = None
+        self.stray: DocumentError | None = None
+        """Error about the first text between elements; ROS 1 has some there."""
         self.parser = expat.ParserCreate()
         self.parser.StartElementHandler = self._begin
         self.parser.EndElementHandler = self._end
@@ -61,8 +67,8 @@ class _Reader:
         self._open.pop()
 
     def _text(self, text: str) -> None:
-        if text.strip():
-            raise self._open[-1].error(f"text stands in attributes, got '{text.strip()[:40]}'")
+        if text.strip() and self.stray is None:
+            self.stray = self._open[-1].error(f"text stands in attributes, got '{text.strip()[:40]}'")
 
     def _refuse(self, name: str, *_: object) -> None:
         raise DocumentError(

@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from robolink.companions.launch.bases import Condition, SomeSubstitutionsType, calling_place
+from robolink.companions.launch.bases import (
+    Condition,
+    LaunchArgumentError,
+    SomeSubstitutionsType,
+    calling_place,
+    no_argument,
+)
+from robolink.companions.launch_ros.old_names import take_old_names
 from robolink.companions.launch_ros.parameter_descriptions import Parameter, ParameterFile, ParameterValue
 
 __all__ = ["ComposableNode", "Parameter", "ParameterFile", "ParameterValue"]
@@ -16,25 +23,34 @@ class ComposableNode:
 
     Args:
         package: Its package.
-        plugin: Its class.
+        plugin: Its class; it must be given.
         name: Its name.
         namespace: Its namespace.
         parameters, remappings, extra_arguments: As those of `Node`.
         condition: Condition without which it is left out.
+        **kwargs: Arguments with their old names (`old_names.OLD_NAMES`).
     """
 
     def __init__(
         self,
         *,
         package: SomeSubstitutionsType,
-        plugin: SomeSubstitutionsType,
+        plugin: SomeSubstitutionsType | None = None,
         name: SomeSubstitutionsType | None = None,
         namespace: SomeSubstitutionsType | None = None,
         parameters: Iterable[Any] | None = None,
         remappings: Iterable[tuple[SomeSubstitutionsType, SomeSubstitutionsType]] | None = None,
         extra_arguments: Iterable[Any] | None = None,
         condition: Condition | None = None,
+        **kwargs: Any,
     ) -> None:
-        self.package, self.node_plugin, self.node_name, self.node_namespace = package, plugin, name, namespace
+        named: dict[str, Any] = {"plugin": plugin, "name": name, "namespace": namespace}
+        self.old_names = take_old_names("ComposableNode", named, kwargs)
+        for each in kwargs:
+            raise no_argument(ComposableNode, each)
+        if named["plugin"] is None:
+            raise LaunchArgumentError("ComposableNode needs plugin=...")
+        self.package, self.node_plugin = package, named["plugin"]
+        self.node_name, self.node_namespace = named["name"], named["namespace"]
         self.parameters, self.remappings, self.extra_arguments = parameters, remappings, extra_arguments
         self.condition, self.place = condition, calling_place()

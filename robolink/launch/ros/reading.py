@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robolink.companions.launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
 from robolink.companions.launch.bases import LaunchContext, LaunchError
+from robolink.companions.launch.described import FILES, Described, described
 from robolink.companions.launch.launch_description_sources import AnyLaunchDescriptionSource
 from robolink.companions.launch.utilities import perform_substitutions
 from robolink.exceptions import DocumentError, nearest
@@ -21,6 +22,7 @@ from robolink.workspace import Folder
 
 if TYPE_CHECKING:
     from robolink.companions.launch.bases import LaunchDescriptionEntity
+    from robolink.companions.launch.launch_description import LaunchDescription
 
 
 def visited(path: Path, given: Mapping[str, str], workspace: Folder) -> Visit:
@@ -71,9 +73,25 @@ def arguments_of(path: Path, workspace: Folder = None) -> list[ArgumentHelp]:
         visit = Visit(context, EntryMaker(None, context.said.append), path)
         with visit.placing(None):
             description = AnyLaunchDescriptionSource(str(path)).get_launch_description(context)
-            context.extend_locals({"current_launch_file_path": str(path)})
-            context.extend_locals({"current_launch_file_directory": str(path.parent)})
-            return [_help(each, context) for each in description.get_launch_arguments()]
+            return [_help(each, context) for each in _declared(description, path, context)]
+
+
+def _declared(description: LaunchDescription, path: Path, context: LaunchContext) -> list[DeclareLaunchArgument]:
+    """Return the arguments that the description in the file at `path` declares, each name once.
+
+    Raises DocumentError where files include each other in a circle, and none of them declares any.
+    """
+    found: dict[str, DeclareLaunchArgument] = {}
+    circles = []
+    for each in described(Described(description, (str(path),)), context):
+        if isinstance(each.entity, DeclareLaunchArgument):
+            found.setdefault(each.entity.name, each.entity)
+        elif each.circle and each.is_certain:
+            circles.append(DocumentError(each.circle, each.place.file, each.place.line))
+    if circles and not found:
+        raise circles[0]
+    context.extend_locals({FILES[0]: str(path), FILES[1]: str(path.parent)})
+    return list(found.values())
 
 
 def _included(path: Path) -> LaunchDescriptionEntity:

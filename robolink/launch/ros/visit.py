@@ -34,6 +34,7 @@ from robolink.companions.launch.launch_description_sources import LaunchFileNotF
 from robolink.companions.launch.utilities import performed
 from robolink.companions.launch_ros.actions import ComposableNodeContainer, LifecycleNode, LoadComposableNodes
 from robolink.companions.launch_ros.descriptions import ComposableNode
+from robolink.companions.launch_ros.old_names import old_names_note
 from robolink.exceptions import DocumentError
 from robolink.launch.reading import limits
 from robolink.launch.reading.entry import Entry
@@ -91,6 +92,7 @@ class Visit:
     _containers: dict[str, ComposableNodeContainer] = field(default_factory=dict)
     _processes: dict[str, str] = field(default_factory=dict)
     _followed: set[int] = field(default_factory=set)
+    _old_names: set[tuple[str, tuple[str, ...]]] = field(default_factory=set)
 
     @property
     def goes_on(self) -> bool:
@@ -197,6 +199,7 @@ class Visit:
 
     def _take(self, action: Action) -> None:
         """Take over an action whose effect is beyond the context."""
+        self._note_old_names(action)
         if isinstance(action, ComposableNodeContainer):
             name = container_of(action, self.context)
             self._containers[name] = action
@@ -216,6 +219,8 @@ class Visit:
                 name=container, package="rclcpp_components", executable="component_container"
             )
             of_container.place = action.place
+        for each in described:
+            self._note_old_names(each)
         process = self._processes.get(container, "")
         if not any(each.process == process for each in self.started):  # it runs already, or was not there yet
             process = self._processes[container] = self.maker.free(container)
@@ -224,6 +229,14 @@ class Visit:
         self.started += [Started(of_container, each) for each in entries]
         if not entries and isinstance(action, ComposableNodeContainer):
             self.absent.append(action)
+
+    def _note_old_names(self, entity: object) -> None:
+        """Note for people, once for each file, that an entity was given arguments by old names."""
+        names: tuple[str, ...] = getattr(entity, "old_names", ())
+        key = (self.place_of(entity).file, names)
+        if names and key not in self._old_names:
+            self._old_names.add(key)
+            self.say_at(entity, old_names_note(names))
 
     def _start(self, action: ExecuteLocal) -> None:
         entry = self.maker.make(action, self.context)

@@ -232,10 +232,10 @@ def test_loops_repeat_a_function(package: Path) -> None:
         def generate_launch_description():
             return LaunchDescription([
                 ForEach(LaunchConfiguration("robots", default="{name: ada, x: 1}; {name: bob}"), function=made),
-                ForLoop("2", function=lambda i: made(f"n{i}"))])
+                ForLoop("2", function=lambda i: made(f"n{i}")), ForLoop(" +0_1 ", function=lambda i: made("one"))])
         """,
     )
-    assert [each.name for each in system.entries] == ["ada", "bob", "n0", "n1"]
+    assert [each.name for each in system.entries] == ["ada", "bob", "n0", "n1", "one"]
     assert system.entries[0].node.parameters == {"period": 1.0}
 
 
@@ -309,3 +309,25 @@ def test_a_rewritten_file_gives_the_parameters_of_a_node(package: Path) -> None:
         period="0.5",
     )
     assert entry.node.parameters == {"word": "one", "period": 0.5}
+
+
+def test_old_names_of_arguments_are_taken_and_told_once(package: Path) -> None:
+    system = read(
+        package,
+        """
+        Node(package="bot", node_executable="talker", node_name="a", node_namespace="old"),
+        Node(package="bot", node_executable="talker", node_name="b", node_namespace="old"),
+        ComposableNodeContainer(node_name="c", node_namespace="", package="rclcpp_components",
+            node_executable="component_container", composable_node_descriptions=[
+                ComposableNode(package="bot", node_plugin="bot::Talker", node_name="d")]),
+        """,
+    )
+    assert [each.name for each in system.entries] == ["old/a", "old/b", "d"]
+    line = (
+        "old names, which ROS 2 refuses since Galactic: node_executable, node_name, node_namespace; write executable, "
+    )
+    assert [each.partition(": ")[2] for each in system.notes] == [
+        f"{line}name, namespace",
+        "old names, which ROS 2 refuses since Galactic: node_name, node_plugin; write name, plugin",
+    ]
+    assert system.notes[0].startswith(f"bot.launch.py:{FIRST + 2}: ")

@@ -180,6 +180,13 @@ WRONG_XML = [
     ("<launch>\n<log message='x' if='true' unless='true'/></launch>", 2, "log: it has 'if' and 'unless': one of them"),
     ("<launch>\nhello</launch>", 1, "launch: text stands in attributes, got 'hello'"),
     ("<launch>\n<node></launch>", 2, "no XML: mismatched tag"),
+    (
+        "<launch>\n<arg name='a' default='$(find p)'/>\n<node name='x' pkg='p' type='x.py' required='true'/></launch>",
+        3,
+        'a launch file of ROS 1; in ROS 2 $(find x) is $(find-pkg-share x); type= is exec=; required="true" is on_exit',
+    ),
+    ("<launch>\n<rosparam>a: 1</rosparam></launch>", 2, "a launch file of ROS 1; in ROS 2 <rosparam> is <param from"),
+    ("<launch>\n<node pkg='p' exec='x' type='y'/></launch>", 2, "node: no attribute is called 'type'"),
     ("<robot/>", 1, "a launch file begins with <launch>"),
     ("<!DOCTYPE x [\n<!ENTITY a 'b'>]>\n<launch/>", 2, "no entities are declared here, such as 'a'"),
     ("<launch>" * 70, 1, "nested over 64 deep, or more than 100,000 elements"),

@@ -10,13 +10,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.companions.launch import LaunchContext
+from robolink.companions.launch import LaunchContext, LaunchIntrospector
 from robolink.companions.launch.bases import LaunchError
 from robolink.companions.launch.frontend import parse_substitution
+from robolink.companions.launch.launch_description_sources import PythonLaunchDescriptionSource
 from robolink.companions.launch.utilities import perform_substitutions
 from robolink.exceptions import DocumentError
+from robolink.launch.ros.surroundings import surroundings
+from robolink.launch.system import arguments_of, read_system
 from tests.support.ros_launch import FIRST, read, write
 
+BOUNCY = "that is ROS 2 before Bouncy (2018): Node(respawn=True, on_exit=...) is what it has now"
 BODIES = [
     ("raise KeyError('x')", 1, "KeyError: 'x'"),
     (
@@ -36,6 +40,11 @@ BODIES = [
     ("raise type('Stop', (BaseException,), {})", 1, "Stop"),
     ("raise GeneratorExit", 1, "GeneratorExit"),
     ("open(get_package_share_directory('nobody') + '/x')", 1, "package nobody is not here, and its x is needed"),
+    (
+        "from launch.exit_handler import restart_exit_handler",
+        1,
+        f"robolink {version('robolink')} has no launch.exit_handler; {BOUNCY}",
+    ),
     ("return [1]", None, "generate_launch_description() returned list, and a LaunchDescription was expected"),
     ("pass", None, "generate_launch_description() returned NoneType, and a LaunchDescription was expected"),
     ("return LaunchDescription(]", 1, "closing parenthesis ']' does not match opening parenthesis '('"),
@@ -45,6 +54,12 @@ ACTIONS = [
     ("Node(package='bott', executable='x')", "no package named 'bott' (did you mean 'bot'?)"),
     ("Node(executable='talker', paramters=[])", "Node has no argument 'paramters' (did you mean 'parameters'?)"),
     ("Node(executable='talker', outptu='screen')", "Node has no argument 'outptu' (did you mean 'output'?)"),
+    ("Node(executable='x', node_executable='y')", "Node has executable and node_executable, which is its old"),
+    ("LifecycleNode(executable='talker', node_name='x')", "LifecycleNode needs namespace=..."),
+    ("ComposableNodeContainer(executable='x')", "ComposableNodeContainer needs name=..."),
+    ("ComposableNode(package='x')", "ComposableNode needs plugin=..."),
+    ("ComposableNode(plugin='x')", "ComposableNode needs 'package'"),
+    ("ComposableNode(package='x', plugn='x')", "ComposableNode has no argument 'plugn' (did you mean 'plugin'?)"),
     ("GroupAction([], scopd=1)", "GroupAction has no argument 'scopd' (did you mean 'scoped'?)"),
     (
         "Node(package='bot', executable='talker', remappings=[('a b', 'c')])",
@@ -123,6 +138,13 @@ def test_an_interrupt_of_the_user_passes(package: Path) -> None:
         read(package, "OpaqueFunction(function=lambda context: (_ for _ in ()).throw(KeyboardInterrupt)),")
 
 
+def test_a_file_of_before_2018_is_told_what_replaces_it(package: Path) -> None:
+    path = package / "launch" / "old.launch.py"
+    path.write_text("def launch(launch_descriptor, argv):\n    return launch_descriptor\n")
+    with pytest.raises(DocumentError, match=r"launch\(launch_descriptor, argv\) is of ROS 2 before Bouncy \(2018\)"):
+        read_system(path, {})
+
+
 def test_what_never_ends(package: Path) -> None:
     endless = """
     def again(context):
@@ -140,6 +162,36 @@ def test_what_never_ends(package: Path) -> None:
         read(package, "IncludeLaunchDescription([ThisLaunchFileDir(), '/other.launch.py'])")
     with pytest.raises(DocumentError, match="with each substitution performed this has more than 1,000,000"):
         read(package, "LogInfo(msg=PythonExpression(\"'x' * 1000001\"))")
+
+
+CIRCLES = {
+    "own folder": "IncludeLaunchDescription([ThisLaunchFileDir(), '/bot.launch.py']),",
+    "own path": "IncludeLaunchDescription(__file__),",
+    "another": "GroupAction([IncludeLaunchDescription([ThisLaunchFileDir(), '/other.launch.py'])]),",
+}
+
+
+@pytest.mark.parametrize("way", CIRCLES)
+def test_a_circle_has_no_arguments_that_anybody_could_list(package: Path, way: str) -> None:
+    names = (
+        "bot.launch.py -> other.launch.py -> bot.launch.py" if way == "another" else "bot.launch.py -> bot.launch.py"
+    )
+    write(package, CIRCLES["own folder"], "other.launch.py")
+    path = write(package, CIRCLES[way])
+    with pytest.raises(DocumentError, match=rf"launch.py:\d+: a launch file cannot include itself: {names}"):
+        arguments_of(path)
+    write(package, f"{CIRCLES[way]} DeclareLaunchArgument('speed'),")
+    assert [each.name for each in arguments_of(path)] == ["speed"]
+    write(package, "IncludeLaunchDescription(__file__, condition=IfCondition(LaunchConfiguration('again'))),")
+    assert arguments_of(path) == []
+
+
+def test_a_description_in_a_circle_can_be_asked_and_shown(package: Path) -> None:
+    path = write(package, f"{CIRCLES['own path']} DeclareLaunchArgument('speed'),")
+    with surroundings(None):
+        description = PythonLaunchDescriptionSource(str(path)).get_launch_description(LaunchContext())
+        assert [each.name for each in description.get_launch_arguments()] == ["speed"]
+        assert LaunchIntrospector().format_launch_description(description).count("IncludeLaunchDescription") == 2
 
 
 TEXTS = [

@@ -15,12 +15,8 @@ from robolink.companions.launch.bases import (
     LaunchError,
     SomeSubstitutionsType,
 )
+from robolink.companions.launch.described import DEEPEST, FILES, circle
 from robolink.companions.launch.launch_description_sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
-
-DEEPEST = 50
-"""Deepest nesting of included files."""
-FILES = ("current_launch_file_path", "current_launch_file_directory")
-"""Locals of a launch file; those of the file around count again behind the included one."""
 
 
 class IncludeLaunchDescription(Action):
@@ -60,9 +56,8 @@ class IncludeLaunchDescription(Action):
         if not Path(source.location).is_file():
             return [*(SetLaunchConfiguration(*each) for each in self.launch_arguments), description]
         path = os.path.abspath(source.location)  # noqa: PTH100 - a link stays a link
-        if path in chain:
-            names = [Path(each).name for each in (*chain[chain.index(path) :], path)]
-            raise LaunchError(f"a launch file cannot include itself: {' -> '.join(names)}")
+        if circle(chain, path):
+            raise LaunchError(circle(chain, path))
         if len(chain) > DEEPEST:
             raise LaunchError(f"launch files are included over {DEEPEST} deep")
         arguments = [SetLaunchConfiguration(*each) for each in self.launch_arguments]

@@ -19,6 +19,9 @@ from robolink.system.terminal import shown
 
 MOST = 10_000
 """Most repetitions."""
+LONGEST_NUMBER = 100
+"""Longest text of a number of repetitions, in characters."""
+_LENGTH = "the length of a loop is a number from 0 on"
 Function = Callable[..., Iterable[LaunchDescriptionEntity] | None]
 
 
@@ -65,17 +68,28 @@ class ForLoop(Action):
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         """Return the entities for the length in `context`. Raises LaunchError for a length that is no number."""
-        text = str(self.length) if isinstance(self.length, int) else performed(context, self.length).strip()
-        if not text.isdigit():
-            raise LaunchError(f"the length of a loop is a number from 0 on, got '{shown(text)}'")
-        _check_count(int(text[:9]))
-        return [each for number in range(int(text)) for each in self.function(number) or ()]
+        length = self.length if isinstance(self.length, int) else _length(performed(context, self.length))
+        if length < 0:
+            raise LaunchError(f"{_LENGTH}, got one below")
+        _check_count(length)
+        return [each for number in range(length) for each in self.function(number) or ()]
 
 
 def _checked(function: Function) -> Function:
     if not callable(function):
         raise LaunchArgumentError(f"function takes a function, got {type(function).__name__}")
     return function
+
+
+def _length(text: str) -> int:
+    """Return the number that a text spells as Python does, as in ROS 2: ` 5 `, `+5`, `1_000` and `05` are numbers."""
+    text = text.strip()
+    try:
+        if len(text) <= LONGEST_NUMBER:  # a million digits would take their time
+            return int(text)
+    except ValueError:
+        pass
+    raise LaunchError(f"{_LENGTH}, got '{shown(text, 60)}'")
 
 
 def _check_count(count: int) -> None:

@@ -6,7 +6,9 @@ import signal
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from robolink.companions.launch.bases import Action, Event
+from robolink.companions.launch.bases import Action, Event, LaunchArgumentError
+from robolink.exceptions import nearest
+from robolink.system.terminal import shown
 
 __all__ = [
     "ProcessExited",
@@ -117,7 +119,7 @@ class SignalProcess(ProcessTargetedEvent):
     """Processes are to be sent a signal.
 
     Args:
-        signal_number: The signal, by number or name.
+        signal_number: The signal, by number or name. LaunchArgumentError is raised for one that is not there.
         process_matcher: Function that decides whether the process of an action is meant.
     """
 
@@ -125,8 +127,19 @@ class SignalProcess(ProcessTargetedEvent):
 
     def __init__(self, *, signal_number: str | signal.Signals, process_matcher: Callable[[Any], bool]) -> None:
         super().__init__(process_matcher=process_matcher)
-        self.signal = signal.Signals[signal_number] if isinstance(signal_number, str) else signal.Signals(signal_number)
+        self.signal = _signal(signal_number)
         self.signal_name = self.signal.name
+
+
+def _signal(given: str | int) -> signal.Signals:
+    names = signal.Signals.__members__
+    if isinstance(given, str) and given in names:
+        return names[given]
+    if not isinstance(given, str) and given in {int(each) for each in names.values()}:
+        return signal.Signals(given)
+    hint = nearest(given.upper(), names) if isinstance(given, str) else ""
+    hint = hint or ": signals are such as SIGINT or SIGTERM"
+    raise LaunchArgumentError(f"no signal here is {shown(repr(given), 60)}{hint}")
 
 
 def matches_pid(pid: int) -> Callable[[Any], bool]:

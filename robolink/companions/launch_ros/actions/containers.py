@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from robolink.companions.launch.bases import Action, SomeSubstitutionsType
+from robolink.companions.launch.utilities import LaunchArgumentError
 from robolink.companions.launch_ros.actions.node import Node
 from robolink.companions.launch_ros.descriptions import ComposableNode
 
@@ -14,7 +15,7 @@ class ComposableNodeContainer(Node):
     """Process of C++ that loads nodes as plugins.
 
     Args:
-        name: Name of the container.
+        name: Name of the container; it must be given.
         namespace: Its namespace.
         composable_node_descriptions: The nodes in it.
         **kwargs: Those of Node.
@@ -23,12 +24,14 @@ class ComposableNodeContainer(Node):
     def __init__(
         self,
         *,
-        name: SomeSubstitutionsType,
+        name: SomeSubstitutionsType | None = None,
         namespace: SomeSubstitutionsType | None = None,
         composable_node_descriptions: Iterable[ComposableNode] | None = None,
         **kwargs: Any,
     ) -> None:
         super().__init__(name=name, namespace=namespace, **kwargs)
+        if self.requested_name is None:
+            raise LaunchArgumentError("ComposableNodeContainer needs name=...")
         self.composable_node_descriptions = list(composable_node_descriptions or ())
 
 

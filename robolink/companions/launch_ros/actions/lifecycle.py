@@ -30,8 +30,8 @@ class LifecycleNode(Node):
     """Start a node with a lifecycle.
 
     Args:
-        name: Name of the node.
-        namespace: Namespace of the node.
+        name: Name of the node; it must be given.
+        namespace: Namespace of the node; it must be given.
         autostart: True configures and activates it once it is there.
         **kwargs: Those of Node.
     """
@@ -39,12 +39,15 @@ class LifecycleNode(Node):
     def __init__(
         self,
         *,
-        name: SomeSubstitutionsType,
-        namespace: SomeSubstitutionsType,
+        name: SomeSubstitutionsType | None = None,
+        namespace: SomeSubstitutionsType | None = None,
         autostart: bool | SomeSubstitutionsType = False,
         **kwargs: Any,
     ) -> None:
         super().__init__(name=name, namespace=namespace, **kwargs)
+        for needed, value in (("name", self.requested_name), ("namespace", self.requested_namespace)):
+            if value is None:
+                raise LaunchArgumentError(f"LifecycleNode needs {needed}=...")
         self.autostart = autostart
 
 

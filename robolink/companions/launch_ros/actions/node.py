@@ -8,6 +8,7 @@ from typing import Any
 from robolink.companions.launch.actions.processes import ExecuteProcess
 from robolink.companions.launch.bases import LaunchError, SomeSubstitutionsType
 from robolink.companions.launch.utilities import LaunchArgumentError
+from robolink.companions.launch_ros.old_names import take_old_names
 
 
 class Node(ExecuteProcess):
@@ -23,7 +24,7 @@ class Node(ExecuteProcess):
         remappings: Pairs of a name and what stands for it.
         ros_arguments: Further words behind `--ros-args`.
         arguments: Words for its program.
-        **kwargs: Those of ExecuteProcess; `node_name`, `node_namespace` and `node_executable` are the old names.
+        **kwargs: Those of ExecuteProcess, and arguments with their old names (`old_names.OLD_NAMES`).
     """
 
     def __init__(
@@ -40,12 +41,13 @@ class Node(ExecuteProcess):
         arguments: Iterable[SomeSubstitutionsType] | None = None,
         **kwargs: Any,
     ) -> None:
-        self.node_executable = executable or kwargs.pop("node_executable", None)
+        named: dict[str, Any] = {"executable": executable, "name": name, "namespace": namespace}
+        self.old_names = take_old_names(type(self).__name__, named, kwargs)
+        self.node_executable = named["executable"]
         if self.node_executable is None:
-            raise LaunchArgumentError("Node needs an executable=...")
+            raise LaunchArgumentError(f"{type(self).__name__} needs an executable=...")
         self.node_package, self.exec_name = package, exec_name
-        self.requested_name = name if name is not None else kwargs.pop("node_name", None)
-        self.requested_namespace = namespace if namespace is not None else kwargs.pop("node_namespace", None)
+        self.requested_name, self.requested_namespace = named["name"], named["namespace"]
         if isinstance(parameters, (str, dict)):
             raise LaunchArgumentError(f"Node's parameters are a list, as in [{parameters!r:.60}]")
         self.parameters, self.remappings = list(parameters or ()), list(remappings or ())
