@@ -318,6 +318,8 @@ def _handshake(context: ssl.SSLContext, connection: Any, host: str, tls: dict[st
             secured.recv(1)
     except ssl.SSLCertVerificationError as error:
         return _why_not_trusted(error, host, tls)
+    except ssl.SSLEOFError:  # it has gone, and did not say why
+        return ""
     except ssl.SSLError as error:
         refused = tls["connect_certificate"] or "this side"
         meant = next((said for part, said in _SAID.items() if part in (error.reason or "")), "")

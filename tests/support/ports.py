@@ -15,13 +15,15 @@ PATIENCE = 30.0
 
 
 @contextmanager
-def stranger(port: int = 0, says: bytes | None = None) -> Iterator[int]:
-    """Something that listens and is silent, or says this to the first that comes and hangs up."""
+def stranger(port: int = 0, says: bytes | None = None, *, hears: bool = False) -> Iterator[int]:
+    """Something that listens and is silent, or (having read, if `hears`) says this to the first and hangs up."""
     with socket.create_server(("127.0.0.1", port)) as server:
         server.settimeout(PATIENCE)
 
         def answer() -> None:
             with server.accept()[0] as connection:
+                if hears:
+                    connection.recv(65536)
                 connection.sendall(says or b"")
 
         thread = threading.Thread(target=answer)

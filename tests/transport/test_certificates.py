@@ -155,6 +155,10 @@ def test_who_speaks_no_tls_says_so_or_nothing(lab: Lab) -> None:
     with stranger(lab.port, b"HTTP/1.1 400 Bad Request\r\n\r\n"):
         (said,) = certificates.refusals(lab.config("client"))
     assert said == f"tls/127.0.0.1:{lab.port}: it does not speak TLS"
+    with stranger(
+        lab.port, b"", hears=True
+    ):  # as a session without TLS: it hangs up, and says nothing of our certificate
+        assert certificates.refusals(lab.config("client")) == []
     assert certificates.refusals(lab.config("client"), ["tls/127.0.0.1:9", "tls/no.such.host.invalid:9", "tls/x"]) == []
 
 

@@ -110,7 +110,7 @@ def test_names_that_the_expression_binds_are_known() -> None:
 @pytest.mark.parametrize(
     ("message", "text", "report"),
     [
-        (TWIST, "1 / m.angular.x > 0", "ZeroDivisionError: float division by zero"),
+        (TWIST, "1 / m.angular.x > 0", "ZeroDivisionError: "),
         (SCAN, "m.ranges[9] > 0", "IndexError: array index out of range"),
         (SCAN, "m.header.frame_id + 3", "TypeError: "),
         (TWIST, "m.linear < m.angular", "TypeError: '<' not supported between"),
