@@ -40,7 +40,7 @@ def test_version_citation_and_changelog_are_checked_against_the_tag(tmp_path: Pa
     (tmp_path / "pyproject.toml").write_text('[project]\nversion = "1.2.0"\n')
     (tmp_path / "CITATION.cff").write_text("version: 1.2.0\n")
     changelog = tmp_path / "CHANGELOG.md"
-    changelog.write_text("# Changelog\n\n## Unreleased\n\n- x\n\n## 1.2.0 - 2030-01-01\n\n- y\n\n## 1.1.0\n\n- z\n")
+    changelog.write_text("# Changelog\n\n## Unreleased\n\n- x\n\n## 1.2.0 (2030-01-01)\n\n- y\n\n## 1.1.0\n\n- z\n")
     assert RELEASE["notes"]("v1.2.0", tmp_path) == "- y\n"
     with pytest.raises(ValueError, match=r"pyproject.toml: the version is 1.2.0, the tag is v1.3.0"):
         RELEASE["notes"]("v1.3.0", tmp_path)
@@ -50,6 +50,28 @@ def test_version_citation_and_changelog_are_checked_against_the_tag(tmp_path: Pa
     (tmp_path / "CITATION.cff").write_text("version: 1.1.0\n")
     with pytest.raises(ValueError, match=r"CITATION.cff: the version is 1.1.0"):
         RELEASE["notes"]("v1.2.0", tmp_path)
+
+
+def test_a_tag_of_todays_version_would_pass_and_new_entries_have_a_place() -> None:
+    version = RELEASE["VERSION"].search(PYPROJECT)
+    assert version is not None
+    notes = RELEASE["notes"](f"v{version[1]}")
+    first = notes.partition("\n### ")[0]
+    assert 5 <= first.count("\n- ") <= 12  # what a release is about, in short
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert re.findall(r"^## (.*)$", text, re.MULTILINE)[0] == "Unreleased"
+    titles = re.findall(r"^### (.*)$", notes, re.MULTILINE)
+    assert len(titles) == len(set(titles)) > 1
+    assert not [each for each in titles if "issue" in each]
+
+
+def test_the_changelog_says_nothing_twice() -> None:
+    entries = re.findall(r"^ *- (.*)$", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert len(entries) > 100
+    assert sorted(entries) == sorted(set(entries))
+    groups = [each.partition(":")[0] for each in entries if re.match(r"`[\w_]+`(,.*)?: \w", each)]
+    assert groups
+    assert sorted(groups) == sorted(set(groups))
 
 
 def test_the_citation_has_the_version_of_the_project() -> None:
