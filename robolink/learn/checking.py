@@ -39,8 +39,9 @@ def check(
     if mistake is None:
         mistake = _ran(trial)
         is_over = trial.is_over
+    track = trial.track()
     trial.close()
-    return Report(trial.lines, mistake, is_over, seconds=time.perf_counter() - begin)
+    return Report(trial.lines, mistake, is_over, seconds=time.perf_counter() - begin, track=track)
 
 
 def _ran(trial: Trial) -> Mistake | None:

@@ -96,6 +96,10 @@ class StudentFolder:
             self.progress.language = language
             self.save()
 
+    def reload(self) -> None:
+        """Read the progress again, which another command may have changed. Raises DocumentError if it cannot be."""
+        self.progress = load_progress(self.path)
+
     def save(self) -> None:
         """Write the progress."""
         save_progress(self.path, self.progress)

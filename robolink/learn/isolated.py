@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import tempfile
+import threading
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,11 +23,21 @@ if TYPE_CHECKING:
 LONGEST = 60.0
 """Seconds of real time after which a check is ended from outside, whatever it does."""
 
+LARGEST = 8 * 2**20
+"""Most bytes of a report: it comes from a process in which a student's program runs."""
+
 COMMAND = "learn-check"
 """Hidden command of the process that checks."""
 
 
-def check_apart(exercise: Exercise, file: Path, language: Language, *, longest: float = LONGEST) -> Report:
+def check_apart(
+    exercise: Exercise,
+    file: Path,
+    language: Language,
+    *,
+    longest: float = LONGEST,
+    stop: threading.Event | None = None,
+) -> Report:
     """Check a student's file in a process of its own, whose working directory is a temporary folder.
 
     Args:
@@ -34,6 +45,7 @@ def check_apart(exercise: Exercise, file: Path, language: Language, *, longest: 
         file: The student's file.
         language: Language of the sentences.
         longest: Seconds after which the process is killed.
+        stop: Event that ends the check, whose report nobody wants any more; None for none.
 
     Returns:
         The report; nothing that the file does raises.
@@ -43,14 +55,15 @@ def check_apart(exercise: Exercise, file: Path, language: Language, *, longest: 
         out, work = Path(scratch, "report.json"), Path(scratch, "work")
         work.mkdir()
         words = [*own_command(), COMMAND, str(exercise.folder), str(file.resolve()), str(out), "--language", language]
-        printed = run_apart(words, work, longest)
+        printed = run_apart(words, work, longest, stop)
         report = _read(out)
     return msgspec.structs.replace(report, printed=printed, seconds=time.perf_counter() - begin)
 
 
 def _read(out: Path) -> Report:
     try:
-        return msgspec.json.decode(out.read_bytes(), type=Report)
+        with out.open("rb") as file:
+            return msgspec.json.decode(file.read(LARGEST), type=Report)
     except (OSError, msgspec.DecodeError):
         return Report(mistake=Mistake("ended all"))
 
@@ -76,7 +89,7 @@ def serve(folder: Path, file: Path, out: Path, language: Language) -> None:
     trials: list[Trial] = []
 
     def stuck(mistake: Mistake) -> None:
-        _write(out, Report(trials[0].lines, mistake))
+        _write(out, Report(trials[0].lines, mistake, track=trials[0].track()))
         end_process()
 
     watchdogs: list[Watchdog] = []

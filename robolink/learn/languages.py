@@ -39,12 +39,14 @@ _HOW_EN = """\
   read it:   robolink learn show
   try it:    robolink learn check
   a hint:    robolink learn hint
-  or check at each save: robolink learn watch"""
+  or check at each save: robolink learn watch
+  all of it in the browser: robolink learn view"""
 _HOW_PT = """\
   leia:      robolink learn show
   teste:     robolink learn check
   uma dica:  robolink learn hint
-  ou teste a cada vez que salvar: robolink learn watch"""
+  ou teste a cada vez que salvar: robolink learn watch
+  tudo isso no navegador: robolink learn view"""
 
 _WORDS: dict[str, tuple[str, str]] = {
     "heading": ("{done} of {all} exercises done", "{done} de {all} exercícios feitos"),

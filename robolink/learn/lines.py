@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from robolink.learn.exercise import Exercise
 from robolink.learn.folder import StudentFolder
@@ -55,37 +56,54 @@ def task(exercise: Exercise, language: Language) -> Iterator[str]:
     yield from exercise.text(language).splitlines()
 
 
+class Finding(NamedTuple):
+    """Sentence of a report with its mark, and lines of code or of an error below it."""
+
+    mark: str
+    text: str
+    below: tuple[str, ...] = ()
+
+
+def findings(exercise: Exercise, report: Report, language: Language) -> Iterator[Finding]:
+    """Yield the sentences of a report, as the terminal and the page show them."""
+    for each in report.lines:
+        yield Finding("✓" if each.good else "✗", each.text)
+    if report.mistake is not None:
+        yield _mistake(exercise, report.mistake, language)
+    elif report.is_over and not report.passed:
+        yield Finding(" ", words(language, "is over"))
+
+
 def reported(exercise: Exercise, report: Report, language: Language) -> Iterator[str]:
     """Yield the report of a check in lines."""
     yield from _printed(report.printed, language)
-    for each in report.lines:
-        yield from _item("✓" if each.good else "✗", each.text)
-    if report.mistake is not None:
-        yield from _mistake(exercise, report.mistake, language)
-    elif report.is_over and not report.passed:
-        yield from _item(" ", words(language, "is over"))
+    for each in findings(exercise, report, language):
+        yield from _item(each.mark, each.text)
+        yield from (f"    {line}" for line in each.below)
     key = "done" if report.passed else "not yet"
     yield words(language, key, file=exercise.file, seconds=report.seconds)
 
 
 def _printed(text: str, language: Language) -> Iterator[str]:
+    lines = printed_lines(text, language)
+    if lines:
+        yield words(language, "printed")
+        yield from (f"    {each}" for each in lines)
+
+
+def printed_lines(text: str, language: Language) -> list[str]:
+    """Return the first lines of what a program printed, and how many more there are."""
     lines = text.splitlines()
-    if not lines:
-        return
-    yield words(language, "printed")
-    for each in lines[:MOST_LINES]:
-        yield f"    {each[:200]}"
-    if len(lines) > MOST_LINES:
-        yield f"    {words(language, 'more', count=len(lines) - MOST_LINES)}"
+    more = [words(language, "more", count=len(lines) - MOST_LINES)] if len(lines) > MOST_LINES else []
+    return [each[:200] for each in lines[:MOST_LINES]] + more
 
 
-def _mistake(exercise: Exercise, mistake: Mistake, language: Language) -> Iterator[str]:
+def _mistake(exercise: Exercise, mistake: Mistake, language: Language) -> Finding:
     head = words(language, mistake.kind, file=exercise.file, line=mistake.line, text=mistake.text)
-    yield from _item("✗", head)
-    if mistake.line:
-        yield f"    {mistake.line:4} | {mistake.code}"
+    below = [f"{mistake.line:4} | {mistake.code}"] if mistake.line else []
     if mistake.kind in ("syntax", "exception", "elsewhere"):
-        yield from (f"    {each}" for each in mistake.text.splitlines())
+        below += mistake.text.splitlines()
+    return Finding("✗", head, tuple(below))
 
 
 def _item(mark: str, text: str) -> Iterator[str]:

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import IO
@@ -18,17 +19,21 @@ MOST_PRINTED = 20_000
 MOST_MEMORY = 4 * 2**30
 """Most bytes of address space that a program may have."""
 
+STOP_WITHIN = 0.2
+"""Period in seconds of the looks whether a process shall stop."""
+
 _OURS = ("world", "test", "robolink")
 """Loggers whose lines a student does not need."""
 
 
-def run_apart(words: Sequence[str], work: Path, longest: float) -> str:
+def run_apart(words: Sequence[str], work: Path, longest: float, stop: threading.Event | None = None) -> str:
     """Run a process to its end, or kill it and all that it has started; return what it printed.
 
     Args:
         words: Its command line.
         work: Its working directory.
         longest: Seconds after which it is killed.
+        stop: Event that has it killed before; None for none.
     """
     environ = {**os.environ, "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8", "OPENBLAS_NUM_THREADS": "1"}
     kept: list[bytes] = []
@@ -45,13 +50,20 @@ def run_apart(words: Sequence[str], work: Path, longest: float) -> str:
         reader = threading.Thread(target=_keep, args=(process.stdout, kept), daemon=True)
         reader.start()
         try:
-            process.wait(longest)
-        except subprocess.TimeoutExpired:
-            pass
+            _wait(process, longest, stop)
         finally:
             _kill(process)
             reader.join(1.0)
     return b"".join(kept)[:MOST_PRINTED].decode("utf-8", errors="replace")
+
+
+def _wait(process: subprocess.Popen[bytes], longest: float, stop: threading.Event | None) -> None:
+    """Wait for the end of a process, for so many seconds, or until it shall stop."""
+    end = time.monotonic() + longest
+    while (left := end - time.monotonic()) > 0 and not (stop is not None and stop.is_set()):
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(left if stop is None else min(left, STOP_WITHIN))
+            return
 
 
 def _keep(stream: IO[bytes], kept: list[bytes]) -> None:

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 from robolink.exceptions import nearest
 from robolink.learn.exercise import Exercise, ExerciseError
 from robolink.learn.languages import Language
-from robolink.learn.report import Line
+from robolink.learn.report import Line, Track
 
 if TYPE_CHECKING:
+    from robolink.learn.track import Tracker
     from robolink.testing import System
     from robolink.testing.robots import SimulatedRobot
 
@@ -33,6 +34,7 @@ class Trial:
         self.lines: list[Line] = []
         """Sentences so far."""
         self._system: System | None = None
+        self._tracker: Tracker | None = None
         self._started: list[Any] = []
         self.has_imported = False
         """True once the check has imported the file as a module."""
@@ -49,6 +51,7 @@ class Trial:
             from robolink.testing import System
 
             self._system = System(seed=SEED)
+            self._tracker = _tracker_of(self._system)
         return self._system
 
     def world(self, name: str = "empty_room", **parameters: Any) -> SimulatedRobot | None:
@@ -149,10 +152,22 @@ class Trial:
         """True if a program of the student's has come to its end."""
         return any(_is_over(each) for each in self._started)
 
+    def track(self) -> Track | None:
+        """Return the path of the robots so far, and follow them no longer; None if there were none."""
+        return None if self._tracker is None else self._tracker.track()
+
     def close(self) -> None:
         """End all programs."""
         if self._system is not None:
             self._system.close()
+
+
+def _tracker_of(system: System) -> Tracker | None:
+    from robolink.host.host_time import HostTime
+    from robolink.learn.track import Tracker
+
+    time = system.node.context.time
+    return Tracker(time, system.simulations) if isinstance(time, HostTime) else None
 
 
 def _is_over(started: Any) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeVar
 
 from robolink.constants import MOST_SEED
-from robolink.simulate.robots import robots_of
+from robolink.simulate.robots import robots_of, worlds_of
 from robolink.testing.clock import SystemClock
 from robolink.testing.conversation import Conversation
 from robolink.testing.expectations import ClosedError, ExpectationError, NodeFailure
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from robolink.logging import Record
     from robolink.node import Node
     from robolink.testing.faults import Faults
+    from robolink.world_node import Simulation
 
 SystemT = TypeVar("SystemT", bound="SystemBase")
 
@@ -135,6 +136,10 @@ class SystemBase:
         __tracebackhide__ = True
         elsewhere = ((each.name, each) for each in self._elsewhere)
         return chosen([*robots_of(self._stage.nodes()), *elsewhere], name)
+
+    def simulations(self) -> list[Simulation]:
+        """Return the simulated worlds of this process with their shapes, for pictures; none with ``zenoh``."""
+        return [each for _, each in worlds_of(self._stage.nodes())]
 
     # Time
 

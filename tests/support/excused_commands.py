@@ -18,6 +18,7 @@ EXCUSED = {
     "learn start": "shows texts of robolink's own, and the path that it was given",
     "learn check": "shows what a program prints by `say`, which escapes it: tests/learn/test_isolated.py",
     "learn watch": "is learn check, again and again",
+    "learn view": "is learn watch, and prints an address of its own",
     "learn hint": "shows texts of exercises",
     "learn show": "shows texts of exercises",
     "learn reset": "shows names of exercises",

@@ -16,6 +16,7 @@ from websockets.sync.client import ClientConnection, connect
 from robolink import Context, Node
 from robolink.executors import SingleThreadedExecutor
 from robolink.transport.memory import Bus, MemoryTransport
+from robolink.view.exercises import Exercises
 from robolink.view.server import Settings, View
 from robolink.view.sources.live import LiveSource
 
@@ -147,12 +148,12 @@ def until(condition: Callable[[], bool], within: float = WITHIN) -> float:
 class Shown:
     """A system in memory with a view of it."""
 
-    def __init__(self, **settings: Any) -> None:
+    def __init__(self, exercises: Exercises | None = None, **settings: Any) -> None:
         self.bus = Bus()
         self.context = self.new_context()
         self.node = Node("robot", context=self.context)
         self.source = LiveSource(Node("_view", context=self.new_context(), start_parameter_services=False))
-        self.view = View(self.source, Settings(port=0, **settings))
+        self.view = View(self.source, Settings(port=0, **settings), exercises)
 
     def new_context(self) -> Context:
         context = Context(transport=MemoryTransport(bus=self.bus))
@@ -193,9 +194,9 @@ class Shown:
 
 
 @contextmanager
-def shown(**settings: Any) -> Iterator[Shown]:
-    """Show a new system in memory for the block."""
-    made = Shown(**settings)
+def shown(exercises: Exercises | None = None, **settings: Any) -> Iterator[Shown]:
+    """Show a new system in memory for the block, with exercises for the page if there are some."""
+    made = Shown(exercises, **settings)
     try:
         with made.view:
             yield made

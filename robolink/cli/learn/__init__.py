@@ -24,11 +24,17 @@ MaybeName = Annotated[
 
 
 @app.callback()
-def list_exercises(context: typer.Context, language: Language = "") -> None:
+def list_exercises(
+    context: typer.Context,
+    in_page: Annotated[bool, typer.Option("--view", help="Show them in the browser: learn view.")] = False,
+    language: Language = "",
+) -> None:
     """Learn by exercises that are checked in a simulated world; without a verb, list them with your progress."""
     from robolink.cli.learn import work
 
-    if context.invoked_subcommand is None:
+    if context.invoked_subcommand is None and in_page:
+        view(context, language=language)
+    elif context.invoked_subcommand is None:
         work.list_exercises(work.language_of(language))
     else:
         context.obj = language
@@ -72,6 +78,24 @@ def watch(context: typer.Context, language: Language = "") -> None:
     from robolink.cli.learn import work
 
     work.watch(work.language_of(language or context.obj))
+
+
+@app.command("view")
+def view(
+    context: typer.Context,
+    port: Annotated[
+        int | None, typer.Option("--port", metavar="PORT", min=0, max=65535, help="Default 8765, or the next free one.")
+    ] = None,
+    browser: Annotated[bool, typer.Option(help="Open the page in the browser.")] = True,
+    language: Language = "",
+) -> None:
+    """Show the exercises in the browser, and check them each time their files are saved, until Ctrl-C.
+
+    The page has the tasks, hints, reports, and the path that the robot took in the check.
+    """
+    from robolink.cli.learn import page, work
+
+    page.show(port, browser, work.language_of(language or context.obj))
 
 
 @app.command("hint")

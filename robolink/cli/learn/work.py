@@ -61,7 +61,7 @@ def start(path: str, source: str, language: Language | None) -> None:
 
 def check(name: str, language: Language | None) -> bool:
     """Check one exercise; return whether it is done."""
-    folder = _here(language)
+    folder = folder_here(language)
     exercise = folder.chosen(name)
     if not folder.file_of(exercise).exists():
         raise NoFileError(f"there is no {exercise.file} here: `robolink learn reset {exercise.name}` writes it again")
@@ -70,7 +70,7 @@ def check(name: str, language: Language | None) -> bool:
 
 def check_all(language: Language | None) -> bool:
     """Check all exercises, a line for each; return whether all are done."""
-    folder = _here(language)
+    folder = folder_here(language)
     passed = 0
     for each in folder.course:
         report = check_apart(each, folder.file_of(each), folder.language)
@@ -88,7 +88,7 @@ def watch(language: Language | None) -> None:
     """Check the exercises whose files are saved, and the next one at once."""
     from robolink.learn.watching import EVERY, Watch
 
-    folder = _here(language)
+    folder = folder_here(language)
     say(words(folder.language, "watching"))
     watching = Watch(folder, lambda exercise: _check(folder, exercise))
     if folder.next is not None:
@@ -100,7 +100,7 @@ def watch(language: Language | None) -> None:
 
 def hint(name: str, language: Language | None) -> None:
     """Show the next hint."""
-    folder = _here(language)
+    folder = folder_here(language)
     exercise = folder.chosen(name)
     hints = exercise.settings.hints
     was = folder.progress.hints.get(exercise.name, 0)
@@ -116,20 +116,21 @@ def hint(name: str, language: Language | None) -> None:
 
 def show(name: str, language: Language | None) -> None:
     """Show what an exercise asks for."""
-    folder = _here(language)
+    folder = folder_here(language)
     say_all(task(folder.chosen(name), folder.language))
 
 
 def reset(name: str, language: Language | None) -> None:
     """Write the given file of an exercise again."""
-    folder = _here(language)
+    folder = folder_here(language)
     exercise = folder.chosen(name)
     kept = folder.reset(exercise)
     key = "reset new" if kept is None else "reset"
     say(words(folder.language, key, file=exercise.file, kept="" if kept is None else kept.name))
 
 
-def _here(language: Language | None) -> StudentFolder:
+def folder_here(language: Language | None) -> StudentFolder:
+    """Return the student's folder, which speaks a language from now on. Raises NoFolderError if there is none."""
     folder = the_folder()
     _speak(folder, language)
     return folder

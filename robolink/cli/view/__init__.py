@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robolink.cli.shared.options import Enclave
-from robolink.cli.shared.output import say, tell
+from robolink.cli.shared.page import announce, end_with_the_terminal
 
 if TYPE_CHECKING:
-    from robolink.view.server import Settings, View
+    from robolink.view.server import Settings
 
 app = typer.Typer(help="Show a running system, or a bag, in the browser.")
 
 PANELS = (
-    "world", "topics", "plot", "log", "teleop", "services", "parameters", "images", "graph", "actions", "turtlesim",
+    "world", "topics", "plot", "log", "teleop", "services", "parameters", "images", "graph", "actions",
+    "turtlesim", "learn",
 )  # fmt: skip
 """Names of the page's panels, as `page/layout.js` has them."""
 
@@ -57,7 +58,7 @@ def view(
     """
     from robolink.view.server import Settings
 
-    _end_with_the_terminal()
+    end_with_the_terminal()
     settings = Settings(host, port, token, read_only)
     if bag is not None:
         _show_bag(bag, settings, browser, panels)
@@ -79,7 +80,7 @@ def show_system(settings: Settings, browser: bool, enclave: str = "", panels: st
     from robolink.view.sources.live import LiveSource
 
     with opened(enclave) as context, View(LiveSource(node_of(context)), settings) as server:
-        _announce(server, browser, panels)
+        announce(server, browser, panels)
         context.graph.wait_for(lambda: not context.ok(), None)
 
 
@@ -90,30 +91,5 @@ def _show_bag(path: Path, settings: Settings, browser: bool, panels: str) -> Non
     from robolink.view.sources.bag import BagSource
 
     with open_bag(path) as bag, opened() as context, View(BagSource(bag), settings) as server:
-        _announce(server, browser, panels)
+        announce(server, browser, panels)
         context.graph.wait_for(lambda: not context.ok(), None)
-
-
-def _end_with_the_terminal() -> None:
-    """Take the terminal's end for Ctrl-C's sibling SIGTERM: a server that is just gone stops no robot."""
-    import signal
-    import sys
-
-    if sys.platform != "win32" and signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:
-        signal.signal(signal.SIGHUP, lambda number, frame: signal.raise_signal(signal.SIGTERM))
-
-
-def _announce(server: View, browser: bool, panels: str) -> None:
-    address = f"{server.address}#{panels}" if panels else server.address
-    say(f"robolink view: {address}")
-    if server.exposed:
-        import socket
-
-        others = f"http://{socket.gethostname()}:{server.port}/?{address.partition('?')[2]}"
-        tell(f"others on the network open {others}: whoever has the token can drive the robots")
-        tell("the connection is not encrypted: who listens on the network can read the token (docs/view.md)")
-    if browser:
-        from robolink.system.browser import open_in_browser
-
-        if not open_in_browser(address):
-            tell("no browser here: open the address above")

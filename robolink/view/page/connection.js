@@ -264,6 +264,8 @@ const TEXT = {
   statistics(connection, operation) { connection.emit("statistics", operation); },
   parameterValues(connection, operation) { connection.emit("parameters", operation); },
   recording(connection, operation) { connection.emit("recording", operation); },
+  learn(connection, operation) { connection.learn = operation; connection.emit("learn", operation); },
+  exercise(connection, operation) { connection.emit("exercise", operation); },
   status(connection, operation) { connection.emit("status", operation); },
   serviceCallFailure(connection, { callId, message }) { connection._settle(callId)?.reject(new Error(message)); },
   connectionGraphUpdate(connection, operation) { updateGraph(connection, operation); },

@@ -6,7 +6,7 @@ import { button, h } from "./dom.js";
 import { words } from "./words.js";
 
 /** Panels by name, in the order of the menu: the file is panels/NAME.js, its title the word "panel.NAME". */
-export const PANELS = ["world", "topics", "plot", "log", "teleop", "services", "parameters", "images", "graph", "actions", "turtlesim"];
+export const PANELS = ["world", "topics", "plot", "log", "teleop", "services", "parameters", "images", "graph", "actions", "turtlesim", "learn"];
 
 const DEFAULT = { columns: [{ width: 65, cells: [["world", 100]] }, { width: 35, cells: [["topics", 100]] }] };
 const KEY = "robolink.layout";

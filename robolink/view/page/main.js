@@ -108,7 +108,12 @@ function turnTheme() {
 }
 
 function turnLanguage() {
-  settings.language = choose(settings.language) === "en" ? "pt" : "en";
+  const name = settings.language = choose(settings.language) === "en" ? "pt" : "en";
+  showLanguage();
+  if (app.connection.learn && !app.connection.isReadOnly) app.connection.send({ op: "learn", command: "language", name });
+}
+
+function showLanguage() {
   choose(settings.language);
   app.remember();
   buildHeader();
@@ -193,6 +198,14 @@ function begin() {
     app.listen(name, { every: (view, time, topic) => { const message = topic.decode(view); if (message?.transforms) app.tf.add(message, stays ? Infinity : time); } });
   }
   connection.on("info", showState);
+  let told = ""; // language of the exercises, which the page speaks, too
+  connection.on("learn", ({ language }) => {
+    if (language === told) return;
+    told = language;
+    if (choose(settings.language) === language) return;
+    settings.language = language;
+    showLanguage();
+  });
   connection.on("close", (before) => { app.lost ||= Boolean(before); showState(); });
   connection.on("open", () => {
     if (app.lost) app.forget();

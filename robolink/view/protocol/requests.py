@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Callable
-from typing import Annotated, Any, NamedTuple, get_args
+from typing import Annotated, Any, Literal, NamedTuple, get_args
 
 import msgspec
 
@@ -14,6 +14,8 @@ from robolink.view.protocol.subprotocols import ENCODINGS
 
 U32 = Annotated[int, msgspec.Meta(ge=0, le=0xFFFF_FFFF)]
 Name = Annotated[str, msgspec.Meta(max_length=1000)]
+LearnCommand = Literal["show", "check", "hint", "reset", "language"]
+"""Request about an exercise: `show` only looks, the others change something."""
 Rate = Annotated[float, msgspec.Meta(ge=0, le=1e6)]
 LONGEST_LIST = 5_000
 """Upper bound of the entries of one operation."""
@@ -141,6 +143,13 @@ class Record(_Op, tag="record"):
     path: Name | None = None
 
 
+class Learn(_Op, tag="learn"):
+    """Request of the panel of exercises: to show, check or reset one, for a hint, or for a language (robolink.v1)."""
+
+    command: LearnCommand
+    name: Name = ""
+
+
 JsonOp = (
     Subscribe
     | Unsubscribe
@@ -156,6 +165,7 @@ JsonOp = (
     | SubscribeStatistics
     | UnsubscribeStatistics
     | Record
+    | Learn
 )
 
 

@@ -224,6 +224,13 @@ class Client:
         self._check_trust("recording")
         self._later(_there(self.hub.recorder, "recording").obey(request))
 
+    def _learn(self, request: requests.Learn) -> None:
+        if request.command != "show":
+            self._check_trust(f"learn {request.command}")
+        if self.hub.learning is None:
+            raise ProtocolError("learn: there are no exercises here; `robolink learn view` shows a folder of them")
+        self._later(self.hub.learning.obey(request, self.say))
+
     def _control(self, request: requests.PlaybackControl) -> None:
         self.hub.control(self, request)
 
@@ -231,7 +238,7 @@ class Client:
         """Answer when nodes have answered."""
         if len(self._tasks) >= MOST_TASKS:
             coroutine.close()
-            raise ProtocolError(f"more than {MOST_TASKS} requests for parameters are under way")
+            raise ProtocolError(f"more than {MOST_TASKS} requests are under way")
         task = asyncio.get_running_loop().create_task(self._answered(coroutine))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
@@ -292,6 +299,7 @@ _HANDLERS: dict[type[Any], Callable[[Client, Any], None]] = {
     requests.UnsubscribeConnectionGraph: Client._unfollow_graph,
     requests.PlaybackControl: Client._control,
     requests.Record: Client._record,
+    requests.Learn: Client._learn,
     requests.SubscribeStatistics: Client._follow_statistics,
     requests.UnsubscribeStatistics: Client._unfollow_statistics,
 }

@@ -11,11 +11,13 @@ from typing import Any
 
 from robolink.logging import get_logger
 from robolink.view.channels import LARGEST, Channel, ServiceEntry, Source
+from robolink.view.exercises import Exercises
 from robolink.view.protocol import answers
 from robolink.view.protocol.requests import PlaybackControl, ProtocolError
 from robolink.view.protocol.subprotocols import ENCODINGS, WARNING
 from robolink.view.server.client import Client
 from robolink.view.server.connections import Connections
+from robolink.view.server.learning import Learning
 from robolink.view.server.parameters import Parameters
 from robolink.view.server.recording import Recorder
 from robolink.view.server.statistics import PERIOD as STATISTICS
@@ -42,9 +44,10 @@ class Hub:
         source: Where the messages come from.
         host: Address that the server listens at, for clients to know.
         session: Id of this run of the server, by which clients see that it was started again.
+        exercises: Exercises for the page; None for none.
     """
 
-    def __init__(self, source: Source, host: str, session: str) -> None:
+    def __init__(self, source: Source, host: str, session: str, exercises: Exercises | None = None) -> None:
         self.source, self._host, self._session = source, host, session
         self.bag = source if isinstance(source, BagSource) else None
         self.system = source if isinstance(source, LiveSource) else None
@@ -52,6 +55,7 @@ class Hub:
         self.connections = Connections(self.system) if self.system is not None else None
         self.statistics = Statistics(source)
         self.recorder = Recorder(self.system, self._tell_pages) if self.system is not None else None
+        self.learning = Learning(exercises, self._tell_pages) if exercises is not None else None
         self.clients: set[Client] = set()
         self.sent = self.dropped = 0
         """Messages of clients that have gone."""
@@ -107,6 +111,8 @@ class Hub:
             client.send(self.bag.playback_state(did_seek=False))
         if client.is_page and self.recorder is not None:
             client.say(self.recorder.state())
+        if client.is_page and self.learning is not None:
+            client.say(self.learning.state())
 
     def leave_if_unused(self, channel: Channel) -> None:
         """Receive a channel no longer, if nobody wants it."""
@@ -115,6 +121,8 @@ class Hub:
 
     async def run(self) -> None:
         """Deliver what arrives, on each tick; a few times a second while there are no clients."""
+        if self.learning is not None:
+            self.learning.begin()
         while True:
             if not self.clients:
                 with contextlib.suppress(asyncio.TimeoutError):
@@ -162,11 +170,13 @@ class Hub:
                 each.say(text)
 
     def close(self) -> None:
-        """Stop what clients drive and record."""
+        """Stop what clients drive, record and check."""
         for each in list(self.clients):
             each.close()
         if self.recorder is not None:
             self.recorder.close()
+        if self.learning is not None:
+            self.learning.close()
 
     # What the source tells
 

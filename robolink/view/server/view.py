@@ -23,6 +23,7 @@ from websockets.protocol import State
 
 from robolink.exceptions import RobolinkError
 from robolink.view.channels import Source
+from robolink.view.exercises import Exercises
 from robolink.view.protocol.subprotocols import SUBPROTOCOLS
 from robolink.view.server import files
 from robolink.view.server.access import Access, Verdict, bracketed, is_any
@@ -76,13 +77,19 @@ class View:
     Args:
         source: Where the messages come from.
         settings: Where it listens, and who may do what.
+        exercises: Exercises for the page's panel `learn`; None for none.
     """
 
-    def __init__(self, source: Source, settings: Settings = Settings()) -> None:  # noqa: B008 - it cannot change
+    def __init__(
+        self,
+        source: Source,
+        settings: Settings = Settings(),  # noqa: B008 - it cannot change
+        exercises: Exercises | None = None,
+    ) -> None:
         self._source, self._host, self._port = source, settings.host, settings.port
         token = settings.token or secrets.token_urlsafe(18)
         self._access = Access(settings.host, 0, token, settings.read_only)
-        self.hub = Hub(source, settings.host, secrets.token_hex(8))
+        self.hub = Hub(source, settings.host, secrets.token_hex(8), exercises)
         """Its clients."""
         self._loop: asyncio.AbstractEventLoop | None = None
         self._ready = threading.Event()

@@ -21,6 +21,9 @@ from tests.support.spins import spin_until
 
 FILES = Path(str(robolink.view.__file__)).with_name("page")
 MOST = 80_000
+EXERCISES = ("panels/learn.js", "panels/learn_track.js", "panels/learn.css")
+"""Files of the panel of exercises, which only `robolink learn view` asks for: they are not counted into MOST."""
+MOST_OF_EXERCISES = 8_000
 
 browsing = [pytest.mark.processes, needs_chromium]
 
@@ -29,7 +32,9 @@ def test_the_page_weighs_at_most_80_kb() -> None:
     found = {path: find(f"/{path}") for path in (each.relative_to(FILES).as_posix() for each in FILES.rglob("*"))}
     sizes = {path: len(gzip.compress(file.body)) for path, file in found.items() if file is not None}
     assert len(sizes) > 30
+    exercises = {path: sizes.pop(path) for path in EXERCISES}
     assert sum(sizes.values()) <= MOST, sizes
+    assert sum(exercises.values()) <= MOST_OF_EXERCISES, exercises
 
 
 def test_scripts_are_sent_without_comments_and_with_their_lines() -> None:

@@ -1,0 +1,42 @@
+"""Announcement of the page of `robolink view`: its address, who else can open it, the browser; and its end."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robolink.cli.shared.output import say, tell
+
+if TYPE_CHECKING:
+    from robolink.view.server import View
+
+
+def announce(server: View, browser: bool, panels: str) -> None:
+    """Print the address of the page, with who else can open it, and open it.
+
+    Args:
+        server: Its server.
+        browser: True opens it in the browser.
+        panels: Names of panels to begin with, parted by ``+``; '' leaves it to the browser's memory.
+    """
+    address = f"{server.address}#{panels}" if panels else server.address
+    say(f"robolink view: {address}")
+    if server.exposed:
+        import socket
+
+        others = f"http://{socket.gethostname()}:{server.port}/?{address.partition('?')[2]}"
+        tell(f"others on the network open {others}: whoever has the token can drive the robots")
+        tell("the connection is not encrypted: who listens on the network can read the token (docs/view.md)")
+    if browser:
+        from robolink.system.browser import open_in_browser
+
+        if not open_in_browser(address):
+            tell("no browser here: open the address above")
+
+
+def end_with_the_terminal() -> None:
+    """Take the terminal's end for Ctrl-C's sibling SIGTERM: a server that is just gone stops no robot."""
+    import signal
+    import sys
+
+    if sys.platform != "win32" and signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:
+        signal.signal(signal.SIGHUP, lambda number, frame: signal.raise_signal(signal.SIGTERM))
