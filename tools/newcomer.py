@@ -25,7 +25,9 @@ from typing import NamedTuple
 
 from tests.support.commands import Command
 from tests.support.domains import free_domain
-from tests.support.page_runner import goes_on, said, shlex_lines
+from tests.support.page_runner import said
+from tests.support.page_shell import lines_of
+from tests.support.page_words import goes_on
 from tools.docs_site.markdown import Block, blocks
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "en" / "learn" / "first_robot.md"
@@ -93,8 +95,8 @@ class Newcomer:
         if block.directive == "stop":
             self.stop()
         if block.language == "sh":
-            for line in shlex_lines(block.text):
-                self.enter(shlex.split(line), fails=block.directive == "fails")
+            for line in lines_of(block.text):
+                self.enter(shlex.split(line, comments=True), fails=block.directive == "fails")
 
     def enter(self, words: list[str], *, fails: bool) -> None:
         """Type a command; those of the shell itself take no time."""

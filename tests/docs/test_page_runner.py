@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 
 import pytest
 
 from tests.support.console import fits
-from tests.support.page_runner import Shells, goes_on, shlex_lines
+from tests.support.page_kinds import imports_ros
+from tests.support.page_runner import Shells, steps
+from tests.support.page_shell import Shell, lines_of
+from tests.support.page_words import goes_on, problem
 from tools.docs_site.markdown import blocks
 from tools.docs_site.same_code import with_code_of
 
@@ -26,6 +30,8 @@ from tools.docs_site.same_code import with_code_of
         (["x is 1.50 m"], ["x is 1.25 m"], False, True),
         (["x is 1.50 m"], ["x is far m"], False, False),
         (["[INFO] [1.5] [a]: b"], ["[INFO] [17.25] [a]: b"], True, True),
+        (["600 s in 3.4 s, 180 times as fast"], ["600 s in 12.0 s, 50 times as fast"], True, True),
+        (["600 s in 3.4 s, 180 times as fast"], ["60 s in 3.4 s, 180 times as fast"], True, False),
         (["[INFO] [1.5] [a]: b"], ["[INFO] [17.25] [a]: c"], True, False),
     ],
 )
@@ -49,14 +55,62 @@ def test_while_a_command_runs_more_may_come_before_and_after() -> None:
         ("robolink param set /run near 1.5", False),
         ("robolink simulate run --duration 5", False),
         ("pytest run", False),
+        ("A=b robolink --network lan run careful.py", True),
+        ("robolink bag play walk", False),
+        ("robolink bag play walk -r 2 -l", True),
+        ("robolink image show /camera", True),
+        ("robolink interface show Twist", False),
+        ("robolink launch --schema", False),
+        ("robolink plot topic /odom --duration 5", False),
     ],
 )
 def test_what_goes_on_is_known_by_its_verb(line: str, goes: bool) -> None:
     assert goes_on(line.split()) is goes
 
 
-def test_commands_are_lines_without_comments() -> None:
-    assert shlex_lines("a 'b c'   # d\n\n# e\nf \\\n  g\n") == ["a 'b c'", "f g"]
+def test_commands_are_lines_without_comments(tmp_path: Path) -> None:
+    lines = lines_of("a 'b c'   # d\n\n# e\nf \\\n  g\n")
+    assert [Shell(tmp_path).commands(each) for each in lines] == [[["a", "b c"]], [["f", "g"]]]
+    assert Shell(tmp_path).commands("a 'b;c'; d && e # f") == [["a", "b;c"], ["d"], ["e"]]
+
+
+def test_a_shell_has_a_folder_and_variables(tmp_path: Path) -> None:
+    (tmp_path / "inside").mkdir()
+    (tmp_path / "inside" / "some.env").write_text("PLACE=$PWD\nNAME=b\n")
+    shell = Shell(tmp_path)
+    for words in shell.commands("cd inside; set -a; . ./some.env; export COLOUR=red"):
+        assert shell.obeys(words)
+    place = str(tmp_path / "inside")
+    assert shell.variables.items() >= {"PLACE": place, "NAME": "b", "COLOUR": "red"}.items()
+    [words] = shell.commands("NAME=c robolink $PLACE $PWD")
+    program, variables = shell.program(words)
+    assert (program[-2:], variables["NAME"], shell.variables["NAME"]) == ((place, place), "c", "b")
+    assert not shell.obeys(words)
+
+
+def test_what_a_page_installs_is_there(tmp_path: Path) -> None:
+    assert Shell(tmp_path).obeys(["pip", "install", "pytest"])
+    with pytest.raises(PackageNotFoundError):
+        Shell(tmp_path).obeys(["pip", "install", "no-such-package-anywhere"])
+
+
+def test_wrong_words_of_a_command_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert problem(["topic", "echo", "/scan"]) == ""
+    assert "NoSuchOption" in problem(["topic", "echo", "/scan", "--onec"])
+    assert "No such command" in problem(["topic", "ecko", "/scan"])
+
+
+def test_programs_with_names_of_ros_are_known() -> None:
+    assert imports_ros("import math\nfrom std_msgs.msg import String")
+    assert not imports_ros("import robolink.compat\nfrom std_msgs.msg import String")
+    assert not imports_ros("import json, numpy\nfrom robolink.node import Node")
+
+
+def test_comments_between_blocks_are_steps_of_their_own() -> None:
+    text = "<!-- run: type a -->\n<!-- run: each -->\n```sh\nb\n```\n<!-- run: copy c -->\n```text\nd\n```\n"
+    found = [(each.language, each.text, each.directive) for each in steps(text)]
+    assert found == [("run", "", "type a"), ("sh", "b\n", "each"), ("run", "", "copy c"), ("text", "d\n", "")]
 
 
 PAGES = {
@@ -73,6 +127,13 @@ PAGES = {
     ),
     "nothing to stop": ("<!-- run: stop a -->\n```text\n```", "nothing runs"),
     "an output of nothing": ("```console\n1\n```", "no such command"),
+    "another output on a screen": ("```console\n$ python -c 'print(1)'\n2\n```", "says\n1\nand not\n2"),
+    "a launch file with a mistake": ("```yaml\nnodes: [{node: world, parametres: {}}]\n```", "unknown key"),
+    "a world with a mistake": ("```yaml\nrobots: [{name: r1, sensors: [{lidra: scan}]}]\n```", "did you mean 'lidar'"),
+    "a test that fails": ("```python\ndef test_it():\n    assert 1 == 2\n```", "assert 1 == 2"),
+    "an example that fails": ("<!-- run: each -->\n```sh\nrobolink run no_such_node\n```", "ended with 1"),
+    "a wrong command that is not run": ("<!-- run: not, no -->\n```sh\nrobolink topic ecko\n```", "No such command"),
+    "a comment that nobody knows": ("<!-- run: tpye a -->", "nobody knows what"),
 }
 
 

@@ -1,4 +1,4 @@
-"""Every block of every English page of the site is run; the reasons why a few are not are listed here."""
+"""Every block of every English page is run; the reasons why a few are not are listed here."""
 
 from __future__ import annotations
 
@@ -9,10 +9,17 @@ import pytest
 from tests.support.domains import free_domain
 from tests.support.page_runner import Shells
 from tools.docs_site.markdown import blocks
-from tools.docs_site.pages import DOCS, Page, pages
+from tools.docs_site.pages import DOCS, ROOT, Page, pages
 
-WRITTEN = [each for each in pages("en") if each.source is not None and DOCS / "en" in each.source.parents]
-RUN = [each for each in WRITTEN if blocks(each.text())]
+SITE = [each for each in pages("en") if each.source is not None]
+WRITTEN = [*SITE, Page("en", "README.md", ROOT / "README.md"), Page("en", "course.md", DOCS / "course.md")]
+NOT_YET = {
+    *("howto/behaviour_trees.md", "howto/ros2.md", "reference/ros_launch.md", "reference/exercises.md"),
+    *("reference/simulator.md", "reference/testing.md", "reference/camera.md", "reference/course_camera.md"),
+    *("reference/networks.md", "why/performance.md", "why/security.md"),
+}
+"""Pages whose blocks are parsed only, by test_pages_parse.py."""
+RUN = [each for each in WRITTEN if blocks(each.text()) and each.address not in NOT_YET]
 REASONS = {
     "installs packages",
     "is for Windows",
@@ -35,7 +42,7 @@ def files_before(page: Page, shells: Shells) -> None:
     for each in WRITTEN[: WRITTEN.index(page)]:
         for block in blocks(each.text()):
             if block.title and each.address.startswith("learn/") and not block.directive.startswith("not"):
-                shells.write(block)
+                shells.write(block, block.title)
 
 
 @pytest.mark.processes

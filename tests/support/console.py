@@ -7,6 +7,8 @@ from collections.abc import Sequence
 
 STAMP = re.compile(r"\\\[\d+\\\.\d+\\\]")
 """A log line's time stamp, in a pattern whose characters are escaped."""
+PACE = re.compile(r"in\\ [\d\\.]+\\ s,\\ \d+\\ times")
+"""How fast a simulation was."""
 DECIMAL = re.compile(r"(?<![\w.])\d+\\\.\d+")
 
 
@@ -18,6 +20,7 @@ def pattern_of(line: str, exact: bool) -> str:
         exact: False if any number with a point may stand where the page has one: a robot in real time is elsewhere.
     """
     escaped = re.escape(line.rstrip()).replace(r"\.\.\.", ".*")
+    escaped = PACE.sub(r"in \\d+\\.\\d+ s, \\d+ times", escaped)
     escaped = STAMP.sub(r"\\[\\d+\\.\\d+\\]", escaped)
     return escaped if exact else DECIMAL.sub(r"\\d+\\.\\d+(?:e-?\\d+)?", escaped)
 

@@ -1,45 +1,58 @@
 """Runner of a page: writes the files that it shows, types its commands, and compares what they say.
 
 A block with a title is a file. A block `sh` is typed line by line; what goes on, as nodes do, runs beside the rest
-until the page stops it or ends. A block `console` is what the last command says. A comment before a block tells more:
+until the page stops it or ends. A block `console` is what the last command says; lines of it that begin with `$ ` are
+typed. Other blocks are run or read as what they are: a program, a test, a launch file, a world. A comment before a
+block tells more:
 
     <!-- run: fails -->                the command ends with an error
+    <!-- run: each -->                 examples: what goes on is stopped when it has said something
+    <!-- run: terminal -->             each command has a terminal of its own, where the system has such (not Windows)
     <!-- run: of careful.py -->        what an earlier command says, which still runs
     <!-- run: stop --> (or stop X)     Ctrl-C in the other shells (in that of X) first
     <!-- run: part of careful.py -->   these lines stand in that file
-    <!-- run: not, REASON -->          nothing is run
+    <!-- run: is careful.py -->        a file, whose name the page does not show as a title
+    <!-- run: after NAME -->           lines that go on after those of tests/data/pages/NAME
+    <!-- run: not, REASON -->          nothing is run; its commands have to be right, all the same
+
+A comment that stands alone is done at its place, and the reader does not see it:
+
+    <!-- run: type COMMAND -->         a command, such as a world beside the page
+    <!-- run: try COMMAND -->          the same, whether it ends with an error or not
+    <!-- run: copy NAME -->            the file or folder tests/data/pages/NAME, in the reader's folder
+    <!-- run: with A as B -->          in commands from here on, B is typed for A; `{port}` in B is a free port
+    <!-- run: new shell -->            the folder and the variables of the beginning
+    <!-- run: stop -->                 as above
 """
 
 from __future__ import annotations
 
-import json
 import shlex
+import shutil
 import subprocess
 import sys
 import time
 from contextlib import ExitStack
 from pathlib import Path
 
-import yaml
-
-from tests.support.commands import ROBOLINK, Command
+from tests.support import page_words
+from tests.support.commands import TERMINAL, Command
 from tests.support.console import fits
-from tools.docs_site.markdown import Block, blocks
+from tests.support.page_kinds import program_for, read
+from tests.support.page_shell import Shell, lines_of
+from tests.support.ports import free_port
+from tools.docs_site.markdown import DIRECTIVE, Block, blocks
 
 PATIENCE = 60.0
 FIRST_WORDS = 1.5
 """Seconds that a command which goes on has for its first line, before the next command is typed."""
-ENDS = {
-    "launch": ("--duration", "--validate", "--status", "--list", "--stop", "stop", "restart"),
-    "echo": ("--once", "--timeout"),
-    "pub": ("-1", "--once", "--times", "-t"),
-}
-"""Verbs that go on, and what ends them; others end by themselves."""
-GO_ON = ("run", "launch", "view", "router", "top", "pub")
-GO_ON_OF_A_NOUN = ("echo", "hz", "record", "pub", "monitor")
 LOOKS = {"list", "info", "--status", "doctor"}
 """Words of commands that look and change nothing: a reader types them again when what they look at is not there yet."""
 INTERRUPTED = (0, 130, -2, 0xC000013A)
+ALONE = ("type", "try", "copy", "with", "new")
+"""Orders that are no block's own, even where one follows."""
+GIVEN = Path(__file__).parents[1] / "data" / "pages"
+"""Files and folders that a page speaks of and does not show."""
 
 
 class Shells:
@@ -47,55 +60,71 @@ class Shells:
 
     def __init__(self, folder: Path, domain: int) -> None:
         self.folder, self.domain = folder, domain
+        self.shell = Shell(folder)
+        self.instead: dict[str, str] = {}
         self.all: list[Command] = []
         self.running: list[tuple[str, Command]] = []
         self.last: tuple[str, Command] | None = None
 
     def run(self, text: str) -> None:
         """Run the blocks of a page, then stop what still runs."""
-        for block in blocks(text):
+        for step in steps(text):
             try:
-                self.take(block)
+                self.take(step)
             except Exception as error:
-                raise AssertionError(f"line {block.line}: {error}") from error
+                raise AssertionError(f"line {step.line}: {error}") from error
         self.stop("")
 
     def take(self, block: Block) -> None:
-        """Do what a block asks for."""
+        """Do what a block asks for, or a comment that stands alone."""
         order, _, rest = block.directive.partition(" ")
         if order == "stop":
             self.stop(rest)
-        if order == "not,":
-            return
-        if block.language == "sh":
-            for line in shlex_lines(block.text):
-                self.type(line, fails=order == "fails")
+        if block.language == "run":
+            self.obey(order, rest)
+        elif order == "not," or (order == "terminal" and sys.platform == "win32"):
+            page_words.check(block)
+        elif block.language == "sh":
+            self.type_all(block.text, order)
         elif block.language == "console":
-            self.compare(block, rest if order == "of" else "")
+            self.screen(block, rest if order == "of" else "")
         elif order == "part":
             self.find(block, rest.removeprefix("of "))
-        elif block.title:
-            self.write(block)
+        elif block.title or order == "is":
+            self.write(block, block.title or rest)
         else:
-            self.check(block)
+            self.check(block, (GIVEN / rest).read_text(encoding="utf-8") if order == "after" else "")
 
-    def write(self, block: Block) -> None:
+    def obey(self, order: str, rest: str) -> None:
+        """Do what a comment that stands alone asks for."""
+        if order in ("type", "try"):
+            self.type_all(rest, "either" if order == "try" else "")
+        elif order == "copy":
+            source, target = GIVEN / rest, self.folder / rest
+            target.parent.mkdir(parents=True, exist_ok=True)
+            (shutil.copytree if source.is_dir() else shutil.copyfile)(source, target)
+        elif order == "with":
+            shown, _, typed = rest.partition(" as ")
+            self.instead[shown] = typed.replace("{port}", str(free_port()))
+        elif (order, rest) == ("new", "shell"):
+            self.shell = Shell(self.folder)
+        else:
+            assert order == "stop", f"nobody knows what '{order} {rest}' asks for"
+
+    def write(self, block: Block, name: str) -> None:
         """Write a file that the page shows."""
-        path = self.folder / block.title
+        path = self.folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(block.text, encoding="utf-8")
 
-    def check(self, block: Block) -> None:
+    def check(self, block: Block, before: str) -> None:
         """Run or read a block that is no file."""
-        if block.language == "python":
-            self.last = ("python", self.command((sys.executable, "-c", block.text)))
+        block = block._replace(text=before + block.text)
+        if program := program_for(block, self.shell.folder):
+            self.last = (block.language, self.command(program, {}))
             assert self.last[1].end(PATIENCE) == 0, said(self.last[1])
-        elif block.language == "yaml":
-            yaml.safe_load(block.text)
-        elif block.language == "json":
-            json.loads(block.text)
         else:
-            assert block.language == "text", f"nobody knows how to run '{block.language}'"
+            read(block)
 
     def find(self, block: Block, name: str) -> None:
         """Find lines in a file, wherever they are indented."""
@@ -104,32 +133,66 @@ class Shells:
         starts = range(len(lines) - len(wanted) + 1)
         assert any(lines[at : at + len(wanted)] == wanted for at in starts), f"not in {name}: {wanted}"
 
-    def type(self, line: str, *, fails: bool) -> None:
+    def type_all(self, text: str, order: str) -> None:
+        """Type the commands of lines: `fails` and `each` are as above; `either` if their exit code says nothing."""
+        for line in lines_of(text):
+            for shown, typed in self.instead.items():
+                line = line.replace(shown, typed)
+            for words in self.shell.commands(line):
+                running = list(self.running)
+                if not self.shell.obeys(words):
+                    self.type(words, order)
+                if order == "each" and self.running != running:
+                    self.stop_talking(*self.running.pop())
+
+    def type(self, words: list[str], order: str) -> None:
         """Type a command."""
-        words = shlex.split(line)
-        command = self.command(program_of(words))
+        line = shlex.join(words)
+        program, variables = self.shell.program(words)
+        command = self.command(program, variables, on_terminal=order == "terminal")
         self.last = (line, command)
-        if goes_on(words) and not fails:
+        if page_words.goes_on(words) and order != "fails":
             self.running.append(self.last)
-            wait(lambda: bool(command.lines), FIRST_WORDS)
+            wait(lambda: has_said(command), FIRST_WORDS)
             return
         code = command.end(PATIENCE)
-        assert (code != 0) is fails, f"'{line}' ended with {code}: {said(command)}"
+        assert order == "either" or (code != 0) is (order == "fails"), f"'{line}' ended with {code}: {said(command)}"
 
-    def command(self, program: tuple[str, ...]) -> Command:
+    def command(self, program: tuple[str, ...], variables: dict[str, str], *, on_terminal: bool = False) -> Command:
         """Start a program in the reader's folder."""
-        self.all.append(Command(self.domain, program=program, merged=True, folder=self.folder))
+        words = (sys.executable, "-c", TERMINAL, *program) if on_terminal else program
+        self.all.append(
+            Command(
+                self.domain,
+                program=words,
+                has_input=on_terminal,
+                merged=True,
+                folder=self.shell.folder,
+                environ=variables,
+            )
+        )
         return self.all[-1]
 
-    def compare(self, block: Block, name: str) -> None:
+    def screen(self, block: Block, name: str) -> None:
+        """Type the commands of a screen, if it has any, and compare what it shows."""
+        if not block.text.startswith("$ "):
+            self.compare(block.text, name)
+            return
+        for each in block.text.removeprefix("$ ").split("\n$ "):
+            line, _, shown = each.partition("\n")
+            self.type_all(line, "either" if shown.strip() else "")
+            if shown.strip():
+                self.compare(shown, "")
+
+    def compare(self, text: str, name: str) -> None:
         """Compare what a command has said, or says within the patience, with what is shown."""
         found = [each for each in self.running if name in each[0]] if name else [self.last]
         if not found or (last := found[-1]) is None:
             raise AssertionError("no such command was typed before this output")
         line, command = last
-        shown = block.text.splitlines()
+        shown = text.splitlines()
         goes = (line, command) in self.running
-        waits = block.text.lower().startswith("waiting")
+        waits = text.lower().startswith("waiting")
         exact = "simulate" in line or "pytest" in line
 
         def is_there() -> bool:
@@ -139,22 +202,37 @@ class Shells:
         if not goes and self.running and LOOKS & set(shlex.split(line)):
             end = time.monotonic() + PATIENCE
             while not is_there() and time.monotonic() < end:  # what is looked at is still starting: look again
-                command = self.command(program_of(shlex.split(line)))
+                command = self.command(*self.shell.program(shlex.split(line)))
                 command.end(PATIENCE)
-        assert wait(is_there, PATIENCE if goes else 0.0), f"'{line}' says\n{said(command)}\nand not\n{block.text}"
+        assert wait(is_there, PATIENCE if goes else 0.0), f"'{line}' says\n{said(command)}\nand not\n{text}"
 
     def stop(self, name: str) -> None:
         """Press Ctrl-C where commands run whose lines have this in them, the youngest first."""
         stopped = [each for each in self.running if name in each[0]]
         assert stopped or not name, f"nothing runs that has '{name}' in it"
-        for line, command in reversed(stopped):
-            self.running.remove((line, command))
+        for each in reversed(stopped):
+            self.running.remove(each)
+            self.interrupt(*each)
+
+    def stop_talking(self, line: str, command: Command) -> None:
+        """Press Ctrl-C in a command as soon as it has said something, which shows that it runs."""
+        wait(lambda: has_said(command) or command.process.poll() is not None, PATIENCE)
+        assert has_said(command), f"'{line}' says nothing"
+        if command.lines[0].text.startswith("robolink: "):  # as errors do, after which it ends by itself
+            wait(lambda: command.process.poll() is not None, FIRST_WORDS)
+        self.interrupt(line, command)
+
+    def interrupt(self, line: str, command: Command) -> None:
+        """Press Ctrl-C in a command, which has to end by it."""
+        if command.process.stdin is not None and command.process.poll() is None:
+            command.press("\x03")
+        else:
             command.interrupt()
-            try:
-                code = command.end(PATIENCE)
-            except subprocess.TimeoutExpired:
-                raise AssertionError(f"Ctrl-C does not end '{line}': {said(command)}") from None
-            assert code in INTERRUPTED, f"'{line}' ended with {code}: {said(command)}"
+        try:
+            code = command.end(PATIENCE)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"Ctrl-C does not end '{line}': {said(command)}") from None
+        assert code in INTERRUPTED, f"'{line}' ended with {code}: {said(command)}"
 
     def __enter__(self) -> Shells:
         return self
@@ -166,32 +244,32 @@ class Shells:
                 stack.push(command)
 
 
-def shlex_lines(text: str) -> list[str]:
-    """List the commands of a block: lines that a backslash continues are one, comments are left out."""
-    joined = text.replace("\\\n", " ").splitlines()
-    return [each for line in joined if (each := shlex.join(shlex.split(line, comments=True)))]
+def steps(text: str) -> list[Block]:
+    """List what is done with a page: its blocks, and the comments between them as blocks in the language `run`."""
+    fenced = [each._replace(directive="") if is_alone(each.directive) else each for each in blocks(text)]
+    taken = {number for each in fenced for number in range(each.line, each.line + each.text.count("\n") + 2)}
+    taken |= {each.line - 1 for each in fenced if each.directive}
+    alone = [
+        Block("run", "", "", number, match[1])
+        for number, line in enumerate(text.splitlines(), 1)
+        if number not in taken and (match := DIRECTIVE.match(line))
+    ]
+    return sorted(fenced + alone, key=lambda each: each.line)
 
 
-def program_of(words: list[str]) -> tuple[str, ...]:
-    """Return what runs a command: robolink, Python and pytest are those of the test."""
-    known = {
-        "robolink": ROBOLINK,
-        "python": (sys.executable,),
-        "pytest": (sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-p", "no:xdist"),
-    }
-    assert words[0] in known, f"'{words[0]}' is not run by the tests: say <!-- run: not, REASON -->"
-    return (*known[words[0]], *words[1:])
-
-
-def goes_on(words: list[str]) -> bool:
-    """Return True if a command runs until Ctrl-C."""
-    verb = next((each for each, verbs in zip(words[1:3], (GO_ON, GO_ON_OF_A_NOUN), strict=False) if each in verbs), "")
-    return bool(verb) and words[0] == "robolink" and not set(ENDS.get(verb, ())) & set(words) and "--help" not in words
+def is_alone(directive: str) -> bool:
+    """Return True if a comment is done by itself, and says nothing about the block below."""
+    return directive.partition(" ")[0] in ALONE
 
 
 def said(command: Command) -> str:
     """Output of a command so far."""
     return "\n".join(each.text for each in command.lines)
+
+
+def has_said(command: Command) -> bool:
+    """Return True if a command has said something but that it waits."""
+    return any(not each.text.startswith("waiting") for each in command.lines)
 
 
 def wait(condition: object, seconds: float) -> bool:
