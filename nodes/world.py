@@ -89,7 +89,13 @@ class SimulatedWorld(Node):
         self.diagnostics.publish(diagnostics(self.get_name(), self.simulation, self.runner.measured()))
 
     def report(self) -> None:
-        """Log the poses and motions of robots, unless the world is paused."""
+        """Log the poses and motions of robots, unless the world is paused, and warn of a second world."""
+        if self.get_fully_qualified_node_names().count(self.get_fully_qualified_name()) > 1:
+            self.get_logger().warning(
+                f"another {self.get_name()} runs in domain {self.context.get_domain_id()}: "
+                "both get each command, and both publish; end one with Ctrl-C",
+                once=True,
+            )
         if self.runner.running:
             for line in report(self.simulation.world):
                 self.get_logger().info(line)

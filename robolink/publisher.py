@@ -75,7 +75,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         elif isinstance(msg, (bytes, bytearray)):
             payload = bytes(msg)
         else:
-            raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
+            raise TypeError(_no_message(self.msg_type, msg))
         if self._destroyed:
             raise self._gone_(f"the publisher of {self.topic}")
         if self._put_numbered is not None:
@@ -195,3 +195,8 @@ class _Outlets:
         self._closed = True
         for outlet in self._all:
             outlet.close()
+
+
+def _no_message(wanted: type, given: object) -> str:
+    advice = f"; a message is made with (): {wanted.__name__}()" if given is wanted else ""
+    return f"Expected {wanted}, got {type(given)}{advice}"

@@ -6,7 +6,7 @@ import contextlib
 import functools
 import inspect
 from collections.abc import Callable, Coroutine
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from robolink.callback_groups import CallbackGroup
 from robolink.exceptions import DecodeError, OverwrittenError, WireError
@@ -17,6 +17,7 @@ from robolink.message import Message, decoder, encoder, service_type
 from robolink.qos import QoSProfile
 from robolink.service_introspection import ServiceEnd
 from robolink.service_introspection import ServiceIntrospectionState as ServiceIntrospectionState
+from robolink.text.callbacks import named
 from robolink.transport.base import Query
 from robolink.wire import EndpointKind, pack_attachment, unpack_attachment
 
@@ -51,6 +52,8 @@ class Service(ServiceEnd):
     """
 
     serves = True
+    CALLBACK_TAKES: ClassVar[tuple[str, ...]] = ("request", "response")
+    """Names of the arguments of a callback, for errors about it."""
 
     def __init__(
         self,
@@ -164,16 +167,18 @@ class Service(ServiceEnd):
             EncodeError: (a TypeError and ValueError) if a field does not fit its type; the text names it.
         """
         if not isinstance(response, self.srv_type.Response):
-            raise TypeError(
-                f"the callback of service {self.srv_name} must return a {self.srv_type.__name__}.Response,"
-                f" got {response!r:.80}"
-            )
+            raise TypeError(self._wrong_response(response))
         now = self._endpoint.context.time.now()
         header.query.reply(self._encode(response), pack_attachment(header.sequence_number, now, header.client_gid))
         header.query.close()
         if self.introspection is not None:
             asked = header.sequence_number, header.client_gid
             self.introspection.tell(ServiceEventInfo.RESPONSE_SENT, response, *asked)
+
+    def _wrong_response(self, response: object) -> str:
+        wanted = f"the callback of service {self.srv_name} must return a {self.srv_type.__name__}.Response"
+        advice = "" if response is not None else f": is `return response` missing at the end of {named(self.callback)}?"
+        return f"{wanted}, got {response!r:.80}{advice}"
 
     def _refuse(self, reason: str) -> None:
         self.malformed += 1

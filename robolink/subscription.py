@@ -26,6 +26,7 @@ from robolink.running.callback_arguments import takes_arguments
 from robolink.running.entity import ANY_TIME, Receiver
 from robolink.running.inbox import Inbox
 from robolink.system.terminal import shown
+from robolink.text.callbacks import wanted
 from robolink.transport.base import Handle, Sample
 from robolink.wire import EndpointKind, check_attachment, is_attachment, unpack_attachment
 
@@ -138,9 +139,11 @@ class Subscription(Receiver, Generic[MsgT]):
         self._callback_type = self.CallbackType.MessageOnly
         if not takes_arguments(callback, 1):
             if not takes_arguments(callback, 2):
+                how = wanted(callback, ("message",))
+                name, advice = (callback.__name__, f": {how}") if how else (str(callback), "")
                 raise RuntimeError(
                     f"{self.topic}: a callback takes the message, or the message and its MessageInfo;"
-                    f" {shown(str(callback))} takes neither one argument nor two"
+                    f" {shown(name)} takes neither one argument nor two{advice}"
                 )
             self._callback_type = self.CallbackType.WithMessageInfo
         self._callback = callback

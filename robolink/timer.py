@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from robolink.callback_groups import CallbackGroup
 from robolink.clock import Clock, ROSClock
@@ -14,6 +14,7 @@ from robolink.exceptions import ExternalShutdownException, InterruptedByUser, In
 from robolink.running.entity import NOTHING, Entity
 from robolink.system.queues import A_WHILE
 from robolink.task import Future
+from robolink.text.callbacks import Place, call_instead_of_function
 from robolink.time import Time
 
 if TYPE_CHECKING:
@@ -61,6 +62,9 @@ class Timer(Entity):
         TypeError: if the callback cannot be called.
     """
 
+    CALLBACK_TAKES: ClassVar[tuple[str, ...]] = ()
+    """Names of the arguments of a callback, for errors about it."""
+
     def __init__(
         self,
         callback: Callable[..., Any] | None,
@@ -71,9 +75,10 @@ class Timer(Entity):
         context: Context | None = None,
         autostart: bool = True,
     ) -> None:
-        super().__init__(callback_group)
         self.callback = callback
-        self._made_at = _users_line() if callback is None else ""
+        super().__init__(callback_group)
+        self.made_at = _users_line() if callback is None else None
+        """Place in the program at which it was made without a callback."""
         self.clock = clock
         self.version = 0
         """Number that changes whenever an older deadline no longer holds."""
@@ -93,7 +98,7 @@ class Timer(Entity):
     @callback.setter
     def callback(self, callback: Callable[..., Any] | None) -> None:
         if callback is not None and not callable(callback):
-            raise TypeError(f"a timer's callback must be callable, got {callback!r:.80}")
+            raise TypeError(_not_callable(callback))
         self._callback = callback
         self._info_name = None if callback is None else _info_parameter(callback)
 
@@ -150,15 +155,21 @@ class Timer(Entity):
     def execute(self, taken: Any) -> Any:
         """Call the callback."""
         if self._callback is None:
-            raise TypeError(
-                f"the timer of {self._period / 1e9:g} s{self._made_at} has None for a callback; "
-                "give it the function itself, without (): self.on_timer, not self.on_timer()"
-            )
+            raise TypeError(self._without_callback())
         if self._info_name is None:
             return self._callback()
         expected, actual = taken
         info = TimerInfo(expected_call_time=expected, actual_call_time=actual, clock_type=self.clock.clock_type)
         return self._callback(**{self._info_name: info})
+
+    def _without_callback(self) -> str:
+        called = call_instead_of_function(self.made_at) if self.made_at is not None else ""
+        called = called or "self.on_timer()"
+        where = f" that was made at {self.made_at.file}:{self.made_at.line}" if self.made_at is not None else ""
+        return (
+            f"the timer of {self._period / 1e9:g} s{where} has None for a callback; "
+            f"give it the function itself, without (): {called[:-2]}, not {called}"
+        )
 
     @property
     def timer_period_ns(self) -> int:
@@ -235,12 +246,17 @@ def _checked_period(period: int) -> int:
     return int(period)
 
 
-def _users_line() -> str:
-    """Return the place in the user's code of the call that has led here, in words."""
+def _not_callable(callback: object) -> str:
+    comma = " (a decimal number has a point: 1.0)" if type(callback) is int else ""
+    return f"a timer's callback must be callable, got {callback!r:.80}{comma}"
+
+
+def _users_line() -> Place:
+    """Return the place in the user's code of the call that has led here."""
     frame = sys._getframe(1)
     while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("robolink."):
         frame = frame.f_back
-    return f" that was made at {frame.f_code.co_filename}:{frame.f_lineno}"
+    return Place(frame.f_code.co_filename, frame.f_lineno)
 
 
 def _info_parameter(callback: Callable[..., Any]) -> str | None:

@@ -16,6 +16,7 @@ from typing import Any, Protocol
 
 from robolink.exceptions import MessageError, NotFoundError
 from robolink.interfaces._standard import STANDARD
+from robolink.text import advice
 
 __all__ = ["Source", "add_source", "find", "find_announced", "is_named", "names", "register", "remove_source"]
 
@@ -93,6 +94,16 @@ def is_named(type_name: str, given: str) -> bool:
 def names(kind: str = "msg") -> list[str]:
     """Return the full names of all known types of a kind, sorted."""
     return sorted(f"{package}/{kind}/{short}" for package, types in _types(kind).items() for short in types)
+
+
+def homes_of(short: str) -> list[str]:
+    """Return the modules that have a type of this name, as ``geometry_msgs.msg``; those that it usually means first."""
+    found = [f"{package}.{kind}" for kind in KINDS for package, types in _types(kind).items() if short in types]
+    usual = [package for group in FIRST for package in group]
+    return sorted(found, key=lambda each: each.partition(".")[0] not in usual)
+
+
+advice.type_homes = homes_of
 
 
 def register(interface: type[Any]) -> None:

@@ -11,7 +11,8 @@ from robolink.exceptions import RobolinkError
 from robolink.learn.report import Mistake
 from robolink.system.plainfile import LONGEST_SOURCE, read_plain
 from robolink.testing.expectations import NodeFailure
-from robolink.text.tracebacks import suggestion
+from robolink.text.callbacks import place_of
+from robolink.text.tracebacks import advised
 
 LONGEST = 500
 """Longest text of an exception that is shown, in letters."""
@@ -50,6 +51,9 @@ def mistake_of(error: BaseException, file: Path) -> Mistake | None:
     if isinstance(error, SyntaxError) and error.filename == str(file):
         return _of_syntax(error)
     lines = [each.lineno or 0 for each in traceback.extract_tb(error.__traceback__) if _is(each.filename, file)]
+    place = place_of(error)
+    if place is not None and _is(place.file, file):
+        lines.append(place.line)
     if lines:
         linecache.checkcache(str(file))
         return Mistake(
@@ -73,7 +77,7 @@ def _told(error: BaseException) -> str:
     text = text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
     if isinstance(error, RobolinkError):
         text = f"{type(error).__name__}: {_told_plainly(error)}"
-    return text if "Did you mean" in text else text + suggestion(error)
+    return advised(text, error)
 
 
 def _shortly(text: str, file: Path) -> str:

@@ -77,7 +77,9 @@ def _wrong_string(kind: FieldType, value: Any, path: str) -> Iterator[str]:
 
 def _expected(path: str, what: str, value: Any) -> str:
     text = repr(value)
-    return f"{path}: expected {what}, got {text if len(text) <= 60 else text[:57] + '...'}"
+    is_comma = "float" in what and type(value) is tuple and len(value) == 2 and all(type(each) is int for each in value)
+    advice = f"; a decimal number has a point: {value[0]}.{value[1]}" if is_comma else ""
+    return f"{path}: expected {what}, got {text if len(text) <= 60 else text[:57] + '...'}{advice}"
 
 
 def _is_bool(value: Any) -> bool:

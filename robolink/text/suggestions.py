@@ -9,6 +9,7 @@ from types import FrameType, ModuleType
 from typing import Any
 
 from robolink.exceptions import RobolinkError, nearest
+from robolink.text.advice import home_of
 
 
 class LackingNameError(RobolinkError):
@@ -19,8 +20,11 @@ class LackingNameError(RobolinkError):
         super().__init__(full)
 
     def __str__(self) -> str:
-        near = "" if self.hint else nearest(self.full.rpartition(".")[2], self.known())
-        return f"robolink {installed_version()} has no {self.full}{near}" + (f"; {self.hint}" if self.hint else "")
+        module, _, name = self.full.rpartition(".")
+        statement = "" if self.hint else home_of(name, module)
+        hint = self.hint or (f"write `{statement}`" if statement else "")
+        near = "" if hint else nearest(name, self.known())
+        return f"robolink {installed_version()} has no {self.full}{near}" + (f"; {hint}" if hint else "")
 
 
 class LackingAttributeError(LackingNameError, AttributeError):

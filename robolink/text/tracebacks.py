@@ -12,6 +12,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import RobolinkError, closest
+from robolink.text.advice import advice
 
 if TYPE_CHECKING:
     import ast
@@ -19,8 +20,38 @@ if TYPE_CHECKING:
 
 def formatted(error: BaseException, trace: TracebackType | None = None) -> str:
     """Return an exception and its traceback as text, from `trace` on (default: all), without a final newline."""
-    text = "".join(traceback.format_exception(type(error), error, trace or error.__traceback__)).rstrip()
-    return text if "Did you mean" in text.rpartition("\n")[2] else text + suggestion(error)
+    trace = trace or error.__traceback__
+    _leave_out_search(trace)
+    head, newline, last = "".join(traceback.format_exception(type(error), error, trace)).rstrip().rpartition("\n")
+    return head + newline + advised(last, error)
+
+
+def advised(text: str, error: BaseException) -> str:
+    """Return the last line of an exception with what is better than Python's own suggestion, or lacks one.
+
+    Args:
+        text: The line, as Python formats it; its version decides whether a suggestion is there.
+        error: The exception.
+    """
+    bare = _SUGGESTED.sub("", text)
+    if advising := advice(error):
+        return f"{bare}; {advising}"
+    return text if text != bare and not _PRIVATE.search(text) else bare + suggestion(error)
+
+
+_SUGGESTED = re.compile(r"\. Did you (mean|forget)[^?]*\?$")
+_PRIVATE = re.compile(r"attribute '[^_]\w*'\. Did you mean: '_")
+"""A suggestion of Python's that names what is no business of a program: `_timers` for `on_timer`."""
+
+
+def _leave_out_search(trace: TracebackType | None) -> None:
+    """Cut the end of a traceback where a node looks for an attribute that it lacks."""
+    while trace is not None and trace.tb_next is not None:
+        code = trace.tb_next.tb_frame
+        if code.f_code.co_name == "__getattr__" and code.f_globals.get("__name__") == "robolink.node":
+            trace.tb_next = None
+            return
+        trace = trace.tb_next
 
 
 def suggestion(error: BaseException) -> str:
@@ -42,7 +73,7 @@ def suggestion(error: BaseException) -> str:
         if fields:
             return _did_you_mean(name, fields) or f" (only {', '.join(fields)})"
         with contextlib.suppress(Exception):  # somebody's __dir__
-            known = dir(error.obj)
+            known = [each for each in dir(error.obj) if not each.startswith("_") or name.startswith("_")]
     return _did_you_mean(name, (each for each in known if isinstance(each, str) and each != name))
 
 
@@ -81,7 +112,7 @@ def misspelt_field(error: BaseException) -> str:
         for node in _statement(last):
             fields = getattr(_meant(node, found[2], last), "__ros_fields__", None)
             if fields:
-                return _did_you_mean(found[2], fields)
+                return _did_you_mean(found[2], fields) or f" (only {', '.join(fields)})"
     return ""
 
 

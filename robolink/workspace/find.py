@@ -14,7 +14,7 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from robolink.exceptions import NotFoundError
+from robolink.exceptions import NotFoundError, nearest
 from robolink.system.paths import expanded, is_file
 from robolink.workspace.built_in import built_in_workspace
 from robolink.workspace.counterparts import COUNTERPARTS, executable_of, lacking_executable
@@ -360,4 +360,7 @@ def _no_node(name: str, workspace: Folder) -> NotFoundError:
 
 def _not_found(kind: str, name: str, workspace: Folder, known: Iterable[str]) -> NotFoundError:
     *own, _ = _workspaces(workspace)
-    return NotFoundError(kind, name, known, f"{own[0]} or robolink itself" if own else "")
+    names = list(known)
+    if not own and name.endswith(".py") and not nearest(name, names):  # often one is in another folder than one thinks
+        return NotFoundError(kind, name, (), str(Path.cwd()))
+    return NotFoundError(kind, name, names, f"{own[0]} or robolink itself" if own else "")

@@ -62,6 +62,8 @@ def load_node(source: NodeSource, *, script: ScriptMaker | None = None) -> Runna
         near = nearest(source.path.name, (each.name for each in source.path.parent.glob("*.py")))
         raise NodeLoadError(f"{source.name} is {source.module}, says its package, but there is no {source.path}{near}")
     path, tree = source.path, _parse(source.path)
+    if not tree.body and not source.module:
+        raise NodeLoadError(f"{path} holds no program: is it saved?")
     source = _in_package(source, path, tree)
     if source.attribute:
         return _attribute(_loaded(source), source)
@@ -295,12 +297,21 @@ def _only_node(module: ModuleType, path: Path) -> Runnable:
     own = [each for each in vars(module).values() if _is_node(each) and each.__module__ == module.__name__]
     last = [each for each in own if not any(other is not each and issubclass(other, each) for other in own)]
     if not last:
-        raise NodeLoadError(f"{path} holds no node: no Node class, no main() and no `if __name__ == '__main__'`")
+        raise NodeLoadError(f"{path} holds no node: {_lack(module)}")
     if len(last) > 1:
         choices = " or ".join(f"{path.name}:{each.__name__}" for each in last)
         raise NodeLoadError(f"{path} holds {len(last)} nodes: say which, {choices}")
     found: type[Node] = last[0]
     return found
+
+
+def _lack(module: ModuleType) -> str:
+    """Return what a module without a node lacks; a class that is none has often only lost its `(Node)`."""
+    values = list(vars(module).items())
+    plain = [name for name, value in values if type(value) is type and value.__module__ == module.__name__]
+    if len(plain) == 1 and any(name == "Node" and isinstance(value, type) for name, value in values):
+        return f"the class {plain[0]} is none; write class {plain[0]}(Node):"
+    return "no Node class, no main() and no `if __name__ == '__main__'`"
 
 
 def _is_node(found: object) -> bool:

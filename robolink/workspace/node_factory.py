@@ -34,8 +34,17 @@ def check_needs_nothing(found: Callable[[], Any]) -> None:
         return
     if needed:
         name, listed = getattr(found, "__name__", str(found)), ", ".join(f"'{each}'" for each in needed)
+        if isinstance(found, type) and "__init__" not in vars(found):
+            raise NodeLoadError(_without_init(found))
         if isinstance(found, type):
             name, otherwise = f"{name}.__init__", ", or write a main() that makes the node"
         else:
             name, otherwise = f"{name}()", f", as in {name}({needed[0]}=None)"
         raise NodeLoadError(f"{name} needs {listed}: give a default value{otherwise}")
+
+
+def _without_init(found: type) -> str:
+    """Return what is wrong with a class that has no `__init__` of its own: perhaps a name that is nearly that."""
+    near = next((each for each in vars(found) if each.strip("_") in ("init", "int") and each != "__init__"), "")
+    meant = f": {near} is to be __init__, with two _ on each side" if near else ", which gives the node its name"
+    return f"{found.__name__} has no __init__ of its own{meant}"

@@ -276,6 +276,12 @@ def test_structs_of_a_node_file_know_their_annotations(write: Write) -> None:
         ("x = '\0'", r".* source code .*null bytes"),
         ("x = " + "(" * 1000, r":.*"),
         (NODE + "class Other(Node): pass", r" holds 2 nodes: say which, a\.py:Talker or a\.py:Other"),
+        ("", r" holds no program: is it saved\?"),
+        ("# all of it is a comment", r" holds no program: is it saved\?"),
+        (
+            NODE.partition("class ")[0] + "class A:\n pass",
+            r" holds no node: the class A is none; write class A\(Node\):",
+        ),
         ("class A: pass", r" holds no node: no Node class, no main\(\) and no `if __name__ == '__main__'`"),
     ],
 )

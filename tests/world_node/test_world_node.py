@@ -52,6 +52,18 @@ def test_a_world_publishes_scan_odom_and_tf_at_their_rates(system: System) -> No
     assert transforms[0].transforms[0].transform.translation == Vector3(x=3.0, y=0.9)
 
 
+def test_a_second_world_is_warned_of_once(system: System) -> None:
+    system.start(simulation.SimulatedWorld, parameters={"world": "empty_room"})
+    system.run(3.0)
+    assert "another" not in " ".join(each.message for each in system.logs)
+    system.start(simulation.SimulatedWorld, parameters={"world": "empty_room"})
+    system.run(6.0)
+    warnings = [each.message for each in system.logs if "another" in each.message]
+    assert len(warnings) == 2  # one of each
+    assert warnings[0].startswith("another world runs in domain ")
+    assert "end one with Ctrl-C" in warnings[0]
+
+
 def test_a_command_drives_and_half_a_second_without_one_stops(system: System) -> None:
     odometry = system.messages("/odom")
     system.start(simulation.SimulatedWorld, parameters={"world": "empty_room"})

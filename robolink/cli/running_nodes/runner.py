@@ -6,6 +6,7 @@ import ast
 import contextlib
 import gc
 import os
+import re
 import signal
 import sys
 from collections.abc import Callable
@@ -23,7 +24,7 @@ from robolink.exceptions import (
 )
 from robolink.signals import SignalHandlerOptions, get_current_signal_handlers_options
 from robolink.supervisor.processes.lifeline import watch_lifeline
-from robolink.system.plainfile import read_plain
+from robolink.system.plainfile import LONGEST_SOURCE, read_plain
 from robolink.text.suggestions import LackingNameError
 from robolink.text.tracebacks import formatted
 from robolink.workspace import (
@@ -169,12 +170,21 @@ def _other_kind(name: str, workspace: str | None) -> RobolinkError | None:
 def _meant_command(name: str, workspace: str | None) -> str:
     """Return what else a name stands for, with the command for it; an empty text if it is unknown."""
     with contextlib.suppress(NotFoundError):
-        if find_launch(name, workspace=workspace).parent.name != "worlds":
+        if not _is_world(find_launch(name, workspace=workspace)):
             return f"a launch file, and no node: robolink launch {name}"
     with contextlib.suppress(NotFoundError):
         find_world(name, workspace=workspace)
         return f"a world, and no node: robolink run world -p world:={name}"
     return ""
+
+
+def _is_world(path: Path) -> bool:
+    """True for a file of a world, by its folder or its first keys: it need not be right for this."""
+    with contextlib.suppress(OSError, ValueError):
+        text = read_plain(path, LONGEST_SOURCE).decode("utf-8", errors="replace")
+        keys = re.findall(r"^(\w+):", text, re.MULTILINE)
+        return path.parent.name == "worlds" or ("robots" in keys and "nodes" not in keys)
+    return False
 
 
 def _neither(name: str, workspace: str | None) -> NotFoundError:

@@ -127,4 +127,6 @@ def _named(key: str, value: Any, kind: _Kind) -> str:
     """Return a hint for a key that is like no other: perhaps it is a node's name, as in `- world: {...}`."""
     if kind is _NODE and (value is None or isinstance(value, dict)) and key:
         return f" in a node: write `node: {shown(key, 40)}`"
+    if kind is _TOP and key in ("world", "walls", "robots"):
+        return f" in {kind.title}: is this a world? robolink run world -p world:=FILE shows one"
     return f" in {kind.title}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from pathlib import Path
 
 import pytest
 
@@ -163,3 +164,37 @@ def test_a_signal_in_a_slow_callback_is_no_fault_of_it(write: Write) -> None:
             process.send_signal(number)
             assert process.communicate(timeout=PATIENCE) == ("", "")
             assert process.returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["run", "other.py"], "no node named 'other.py' in {here}"),
+        (["run", "carefull.py"], "no node named 'carefull.py' (did you mean 'careful.py'?)"),
+        (
+            ["run", "careful.py"],
+            "Careful has no __init__ of its own: _init_ is to be __init__, with two _ on each side",
+        ),
+        (["run", "nameless.py"], "Nameless has no __init__ of its own, which gives the node its name"),
+        (["run", "hall.yaml"], "'hall.yaml' is a world, and no node: robolink run world -p world:=hall.yaml"),
+        (["run", "lap.yaml"], "'lap.yaml' is a launch file, and no node: robolink launch lap.yaml"),
+        (
+            ["launch", "hall.yaml"],
+            (
+                "{here}/hall.yaml:1:1: world: unknown key 'world' in a launch file: is this a world? "
+                "robolink run world -p world:=FILE shows one"
+            ),
+        ),
+    ],
+)
+def test_mistakes_of_a_first_day_are_told_with_what_to_do(
+    words: list[str], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    head = "from robolink import Node\n\n\n"
+    (tmp_path / "careful.py").write_text(f"{head}class Careful(Node):\n    def _init_(self):\n        pass\n")
+    (tmp_path / "nameless.py").write_text(f"{head}class Nameless(Node):\n    pass\n")
+    (tmp_path / "hall.yaml").write_text("world: {name: hall, size: [2, 2]}\nrobots: []\n")
+    (tmp_path / "lap.yaml").write_text("nodes: []\n")
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 1
+    assert capsys.readouterr().err.splitlines()[0] == f"robolink: {told.format(here=tmp_path)}"
