@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 import time
 import traceback
 from collections.abc import Callable
@@ -11,9 +12,13 @@ from typing import Any
 
 from robolink.learn.exercise import CHECK, Exercise, ExerciseError
 from robolink.learn.languages import Language
-from robolink.learn.mistakes import mistake_in, mistake_of
+from robolink.learn.mistakes import mistake_elsewhere, mistake_in, mistake_of
 from robolink.learn.report import Mistake, Report
 from robolink.learn.trial import Told, Trial
+from robolink.learn.watchdog import where_asleep
+from robolink.testing.expectations import NodeFailure
+
+_LACKING = re.compile(r"module 'student' has no attribute '(\w+)'.*", re.DOTALL)
 
 
 def check(
@@ -55,25 +60,44 @@ def _ran(trial: Trial) -> Mistake | None:
     except ExerciseError as error:
         return Mistake("check", str(error))
     except BaseException as error:  # noqa: BLE001 - whatever a student's file raises is told
-        return mistake_of(error, trial.file) or _of_use(error, trial) or Mistake("check", _place(error, trial.exercise))
+        return (
+            mistake_of(error, trial.file)
+            or _of_use(error, trial)
+            or _elsewhere(error)
+            or Mistake("check", _place(error, trial.exercise))
+        )
     return None
 
 
 def _of_use(error: BaseException, trial: Trial) -> Mistake | None:
     """Return the mistake of a module that lacks a name, or has a function with other arguments, as a check found."""
-    if trial.has_imported and isinstance(error, (AttributeError, TypeError)):
-        return Mistake("use", str(error).replace("module 'student'", trial.file.name))
-    return None
+    if not trial.has_imported or not isinstance(error, (AttributeError, TypeError)):
+        return None
+    lacking = _LACKING.fullmatch(str(error))
+    return Mistake("lacks", lacking[1]) if lacking else Mistake("use", str(error))
 
 
 def _of_program(trial: Trial) -> Mistake | None:
-    """Return the mistake of a program that failed at the very moment at which something was told."""
+    """Return the mistake of a program that failed, or sleeps, at the very moment at which something was told."""
     try:
         if trial._system is not None:
             trial.system.check()
+    except NodeFailure as error:
+        return mistake_of(error, trial.file) or _elsewhere(error)
     except BaseException as error:  # noqa: BLE001 - as above
         return mistake_of(error, trial.file)
-    return None
+    return where_asleep(trial.file) or _of_types(trial)
+
+
+def _elsewhere(error: BaseException) -> Mistake | None:
+    """Return the mistake of a program that failed at none of its own lines, with what its callback returned for one."""
+    return mistake_elsewhere(error.__cause__ or error) if isinstance(error, NodeFailure) else None
+
+
+def _of_types(trial: Trial) -> Mistake | None:
+    """Return the mistake of a topic that has one type here and another one there."""
+    topics = {} if trial._system is None else trial.system.topics
+    return next((Mistake("types", f"{name}: {types}") for name, types in topics.items() if ", " in types), None)
 
 
 def _check_of(exercise: Exercise) -> Callable[[Trial], Any]:

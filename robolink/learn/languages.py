@@ -80,6 +80,10 @@ _WORDS: dict[str, tuple[str, str]] = {
         "Salve um arquivo e ele é testado. Ctrl-C termina.",
     ),
     "syntax": ("{file} is not valid Python at line {line}:", "{file} não é Python válido na linha {line}:"),
+    "empty": (
+        "{file} is empty, or has only comments",
+        "{file} está vazio, ou só tem comentários",
+    ),
     "exception": (
         "your program stopped with an error at line {line}:",
         "seu programa parou com um erro na linha {line}:",
@@ -93,6 +97,10 @@ _WORDS: dict[str, tuple[str, str]] = {
         "your program is stuck: is there a loop that never ends or never waits?",
         "seu programa está preso: há um laço que nunca termina ou nunca espera?",
     ),
+    "asleep": (
+        "your program sleeps at line {line} (time.sleep): while it sleeps, no callback runs",
+        "seu programa dorme na linha {line} (time.sleep): enquanto dorme, nenhum callback roda",
+    ),
     "ended": ("your program ended too early: {text}", "seu programa terminou cedo demais: {text}"),
     "ended all": (
         "your program ended the whole process at once: is there an os._exit?",
@@ -103,9 +111,17 @@ _WORDS: dict[str, tuple[str, str]] = {
         "ele chegou ao fim: há um rclpy.spin?",
     ),
     "file": ("{text}", "{text}"),
+    "lacks": (
+        "{text} is missing in {file}: the exercise asks for something by this name",
+        "falta {text} em {file}: o exercício pede algo com este nome",
+    ),
+    "types": (
+        "one topic has two types, and nothing gets from one to the other: {text}",
+        "um topic tem dois tipos, e nada passa de um para o outro: {text}",
+    ),
     "use": (
-        "your program lacks something that the exercise asks for: {text}",
-        "falta no seu programa algo que o exercício pede: {text}",
+        "your program has something in another form than the exercise asks for: {text}",
+        "seu programa tem algo de outra forma que a pedida pelo exercício: {text}",
     ),
     "check": (
         "the check of this exercise is broken, not your program: {text}",

@@ -27,14 +27,24 @@ def mistake_in(file: Path) -> Mistake | None:
     except UnicodeDecodeError:
         return Mistake("file", f"{file.name}: not UTF-8: save it with this encoding")
     if file.suffix != ".py":
-        return None
+        return Mistake("empty") if _has_only_comments(text) else None
     try:
-        ast.parse(text, str(file))
+        tree = ast.parse(text, str(file))
     except SyntaxError as error:
         return _of_syntax(error)
     except (ValueError, RecursionError, MemoryError) as error:  # null characters; brackets of a thousand levels
         return Mistake("file", f"{file.name}: {error or type(error).__name__}")
-    return None
+    return Mistake("empty") if all(map(_is_text, tree.body)) else None
+
+
+def _has_only_comments(text: str) -> bool:
+    """Return whether a YAML file has nothing else."""
+    return all(not line.strip() or line.lstrip().startswith("#") for line in text.splitlines())
+
+
+def _is_text(statement: ast.stmt) -> bool:
+    """Return whether a statement is a text alone, such as a docstring."""
+    return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
 
 
 def mistake_of(error: BaseException, file: Path) -> Mistake | None:
@@ -62,6 +72,11 @@ def mistake_of(error: BaseException, file: Path) -> Mistake | None:
     if isinstance(error, RobolinkError):
         return Mistake("file", _shortly(_told_plainly(error), file))
     return None
+
+
+def mistake_elsewhere(error: BaseException) -> Mistake:
+    """Return the mistake of a program that failed at none of its own lines."""
+    return Mistake("elsewhere", _told(error))
 
 
 def _is(filename: str, file: Path) -> bool:

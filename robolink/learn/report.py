@@ -7,7 +7,20 @@ from typing import Literal
 from msgspec import Struct
 
 Kind = Literal[
-    "syntax", "exception", "elsewhere", "stuck", "stuck somewhere", "ended", "ended all", "file", "use", "check"
+    "syntax",
+    "empty",
+    "exception",
+    "elsewhere",
+    "stuck",
+    "stuck somewhere",
+    "asleep",
+    "ended",
+    "ended all",
+    "file",
+    "lacks",
+    "types",
+    "use",
+    "check",
 ]
 
 

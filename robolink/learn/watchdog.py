@@ -11,6 +11,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Protocol
 
+from robolink.host.patches.clocks import is_sleep
 from robolink.learn.report import Mistake
 
 LOOK = 0.05
@@ -71,9 +72,32 @@ def where_stuck(file: Path) -> Mistake:
     line = next((each for each in places if each), 0)
     if not line:
         return Mistake("stuck somewhere")
+    return Mistake("stuck", "", line, _code(file, line))
+
+
+def where_asleep(file: Path) -> Mistake | None:
+    """Return at which line of a file some thread of this process is in a time.sleep; None if none is."""
+    for frame in sys._current_frames().values():
+        line = _sleeps_at(frame, str(file))
+        if line:
+            return Mistake("asleep", "", line, _code(file, line))
+    return None
+
+
+def _sleeps_at(frame: FrameType | None, file: str) -> int:
+    while frame is not None:
+        caller = frame.f_back
+        if is_sleep(frame) and caller is not None and caller.f_code.co_filename == file:
+            return caller.f_lineno
+        frame = caller
+    return 0
+
+
+def _code(file: Path, line: int) -> str:
     import linecache
 
-    return Mistake("stuck", "", line, linecache.getline(str(file), line).rstrip())
+    linecache.checkcache(str(file))
+    return linecache.getline(str(file), line).rstrip()
 
 
 def _line(frame: FrameType | None, file: str) -> int:

@@ -29,6 +29,10 @@ class ConditionReachedException(RobolinkError):  # noqa: N818 - rclpy's name
     """The condition of a wait is met."""
 
 
+ENDS_THE_SPINNING = "an exception in a callback ends the spinning"
+"""Beginning of the line that is logged for it; its traceback follows."""
+
+
 class TimeoutObject:
     """Timeout in seconds that may change while somebody waits."""
 
@@ -49,7 +53,7 @@ def log_failure(entity: Entity, error: Exception, context: ContextLike) -> None:
         return  # another thread has ended the context meanwhile
     error.__robolink_logged__ = True  # type: ignore[attr-defined]
     text = formatted(error, _of_the_user(error.__traceback__))
-    logger_of(entity).error(f"an exception in a callback ends the spinning:\n{text}")
+    logger_of(entity).error(f"{ENDS_THE_SPINNING}:\n{text}")
 
 
 def logger_of(entity: Entity) -> RcutilsLogger:

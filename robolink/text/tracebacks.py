@@ -8,9 +8,11 @@ import linecache
 import re
 import traceback
 from collections.abc import Iterable, Iterator
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+import robolink.exceptions
 from robolink.exceptions import RobolinkError, closest
 from robolink.text.advice import advice
 
@@ -52,6 +54,25 @@ def _leave_out_search(trace: TracebackType | None) -> None:
             trace.tb_next = None
             return
         trace = trace.tb_next
+
+
+_ENTRY = re.compile(r' +File "([^"]+)", line \d+')
+_OWN = str(Path(robolink.exceptions.__file__).parent)
+
+
+def without_own_frames(text: str) -> str:
+    """Return a text without the lines of its tracebacks that tell of robolink's own files, and without `^^^^`."""
+    lines = []
+    is_own = False
+    for line in text.split("\n"):
+        entry = _ENTRY.match(line)
+        if entry:
+            is_own = entry[1].startswith((_OWN, "<"))
+        elif not line.startswith("    "):
+            is_own = False
+        if not is_own and not (line.strip() and set(line.strip()) <= {"^", "~"}):
+            lines.append(line)
+    return "\n".join(lines)
 
 
 def suggestion(error: BaseException) -> str:

@@ -57,6 +57,21 @@ def test_a_file_that_ends_the_process_is_told(ending: str, tmp_path: Path) -> No
     assert report.mistake.kind == "ended all"
 
 
+def test_a_traceback_of_its_own_code_alone_is_printed_and_only_if_the_report_does_not_tell_it(tmp_path: Path) -> None:
+    service, action = chosen(read_course(), "service"), chosen(read_course(), "action")
+    solutions = Path(__file__).parent / "solutions"
+    text = (solutions / service.file).read_text(encoding="utf-8")
+    assert (
+        tried(text.replace("return response", "return None"), tmp_path, service).printed.strip()
+        == "[INFO] motor: asked for True"
+    )
+    text = (solutions / action.file).read_text(encoding="utf-8")
+    printed = tried(text.replace("feedback.sequence", "feedback.numbers"), tmp_path, action).printed
+    assert "feedback.numbers = numbers" in printed
+    assert "site-packages" not in printed
+    assert printed.count("  File ") == 1
+
+
 def test_what_does_not_even_let_others_run_is_killed(tmp_path: Path) -> None:
     hangs = "import re\nre.match(r'(a+)+$', 'a' * 60 + 'b')\n"  # in C, which keeps all other threads from running
     begin = time.monotonic()

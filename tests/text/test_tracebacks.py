@@ -9,11 +9,12 @@ from typing import Any
 
 import pytest
 
+import robolink
 from robolink.interfaces import std_msgs
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.std_srvs.srv import SetBool
 from robolink.text.suggestions import LackingAttributeError
-from robolink.text.tracebacks import formatted, suggestion
+from robolink.text.tracebacks import formatted, suggestion, without_own_frames
 
 
 def misspelt_local() -> None:
@@ -145,3 +146,28 @@ def test_a_part_of_a_traceback() -> None:
     lines = formatted(error, trace).splitlines()
     assert [line.split(", in ")[1] for line in lines if line.startswith("  File")] == ["misspelt_builtin"]
     assert "raised_by" in formatted(error)
+
+
+def test_lines_of_own_files_are_left_out_of_a_traceback() -> None:
+    text = "\n".join(
+        (
+            "it failed",
+            "Traceback (most recent call last):",
+            f'  File "{own_file()}", line 3, in execute',
+            "    result = callback(*args)",
+            "             ^^^^^^^^^^^^^^^",
+            '  File "/home/ada/mine.py", line 7, in on_scan',
+            "    twist.liner = 3",
+            "    ~~~~~^^^^^^",
+            '  File "<encode geometry_msgs/msg/Twist>", line 9, in run',
+            "AttributeError: liner",
+        )
+    )
+    left = ["it failed", "Traceback (most recent call last):", '  File "/home/ada/mine.py", line 7, in on_scan']
+    assert without_own_frames(text).splitlines() == [*left, "    twist.liner = 3", "AttributeError: liner"]
+    assert without_own_frames("no traceback at all\n    ... at all") == "no traceback at all\n    ... at all"
+
+
+def own_file() -> str:
+    """Return the path of a file of robolink's."""
+    return robolink.__file__

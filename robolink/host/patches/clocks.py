@@ -61,6 +61,11 @@ def _sleep(seconds: float, /) -> None:
     _real["sleep"](seconds)
 
 
+def is_sleep(frame: types.FrameType) -> bool:
+    """Return whether a frame is that of a time.sleep in virtual time; its caller sleeps."""
+    return frame.f_code is _sleep.__code__
+
+
 def _clock(name: str, show: Callable[[ProgramLike], Any]) -> Callable[[], Any]:
     real = _real[name]
 

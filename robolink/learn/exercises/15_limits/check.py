@@ -21,9 +21,10 @@ def check(trial: Trial) -> None:
             raise
         return None if result.successful else str(result.reason)
 
-    refused = reason(0.5)
-    trial.tell("returns", True)
-    trial.tell("accepts", refused is None, reason=refused)
+    for value, name in ((1.0, "most"), (0.0, "least"), (0.5, "accepts")):
+        refused = reason(value)
+        trial.tell("returns", True) if name == "most" else None
+        trial.tell(name, refused is None, reason=f": {refused}" if refused else "")
     fast = reason(3.0)
     trial.tell("fast", fast is not None)
     trial.tell("back", reason(-0.2) is not None)

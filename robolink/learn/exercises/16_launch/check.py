@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from robolink.exceptions import NotFoundError
 from robolink.learn.trial import Trial
 
@@ -15,6 +17,8 @@ def check(trial: Trial) -> None:
     except NotFoundError:
         robot = None
     trial.tell("world", robot is not None)
+    world = Path(str(trial.system.parameter("/world", "world"))).stem
+    trial.tell("right_world", world == "obstacles", world=world)
     nodes = trial.system.nodes
     trial.tell("node", "/reactive_controller" in nodes, nodes=", ".join(each.strip("/") for each in nodes))
     speed = trial.system.parameter("/reactive_controller", "speed")

@@ -20,7 +20,11 @@ def check(trial: Trial) -> None:
         for _ in range(15):
             moving.sendTransform(placed(trial, "base_link", x, y))
             trial.run(0.1)
-        trial.tell("says", said) if name == "right" else None
+        if name == "right":
+            trial.tell("says", said)
+            types = trial.system.topics["/distance"]
+            trial.tell("type", types == "std_msgs/msg/Float32", types=types)
+            trial.tell("pace", 2 <= len(said) <= 4, count=len(said))
         last = said[-1].data
         trial.tell(name, abs(last - distance) < 0.01, said=last)
 

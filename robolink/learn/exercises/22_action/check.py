@@ -27,6 +27,10 @@ def check(trial: Trial) -> None:
     trial.tell("accepted", handle is not None and handle.accepted)
     answer = trial.system.result(handle.get_result_async(), 10.0)
     numbers = list(answer.result.sequence)
+    trial.tell("returns", numbers)
     trial.tell("result", numbers == [0, 1, 1, 2, 3, 5], numbers=", ".join(map(str, numbers)))
     trial.tell("succeeds", answer.status == GoalStatus.STATUS_SUCCEEDED)
     trial.tell("feedback", len(told) == 4, count=len(told))
+    parts = [list(each.feedback.sequence) for each in told]
+    shown = ", ".join(map(str, parts[0])) or "-"
+    trial.tell("grows", parts == [numbers[: 3 + each] for each in range(4)], numbers=shown)

@@ -13,11 +13,11 @@ def check(trial: Trial) -> None:
     """Record a robot that drives ahead, then one that drives in a circle."""
     robot = trial.world("empty_room")
     with tempfile.TemporaryDirectory(prefix="robolink-learn-") as folder:
-        for name, turn in (("way", 0.0), ("circle", 1.0)):
+        for name, turn, steps in (("way", 0.0, 25), ("circle", 1.0, 15)):
             before = robot.driven
             bag = Path(folder, name)
             with trial.system.record(bag, ["/odom"]):
-                for _ in range(25):
+                for _ in range(steps):
                     twist = Twist()
                     twist.linear.x, twist.angular.z = 0.4, turn
                     trial.system.publish("cmd_vel", twist)

@@ -12,7 +12,8 @@ def check(trial: Trial) -> None:
     sent = trial.system.messages("cmd_vel")
     scans(trial, 20)
     speeds = [each.linear.x for each in sent]
-    trial.tell("drives", any(each > 0.2 for each in speeds), speed=speeds[-1] if speeds else 0.0)
+    trial.tell("publishes", speeds)
+    trial.tell("drives", any(each > 0.2 for each in speeds), speed=speeds[-1])
     trial.tell("steady", all(each > 0.2 for each in speeds[-15:]))
     begin = trial.system.time
     stop = trial.heard("cmd_vel", lambda twist: twist.linear.x == 0.0, 2.0)
