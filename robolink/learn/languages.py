@@ -123,6 +123,45 @@ _WORDS: dict[str, tuple[str, str]] = {
         "your program has something in another form than the exercise asks for: {text}",
         "seu programa tem algo de outra forma que a pedida pelo exercício: {text}",
     ),
+    "no program": (
+        "no {text} here, nor one other Python file alone",
+        "aqui não há {text}, nem um único outro arquivo Python",
+    ),
+    "race": ("{name}, seed {seed}: {rule}", "{name}, semente {seed}: {rule}"),
+    "rule line": (
+        "the time of one lap along the line, and 5 s for each contact",
+        "o tempo de uma volta pela linha, e mais 5 s por contato",
+    ),
+    "rule maze": (
+        "the time to the middle of the far corner, (5.5, 5.5), and 5 s for each contact",
+        "o tempo até o meio do canto oposto, (5.5, 5.5), e mais 5 s por contato",
+    ),
+    "rule follow": (
+        "metres along the wall in 120 s, 0.3 to 0.8 m away from it, less 5 m for each contact",
+        "metros ao longo da parede em 120 s, de 0.3 a 0.8 m dela, menos 5 m por contato",
+    ),
+    "contact": ("{count} contact", "{count} contato"),
+    "contacts": ("{count} contacts", "{count} contatos"),
+    "progress": ("{share:.0%} of the way", "{share:.0%} do caminho"),
+    "raced": ("{program} is done", "{program} terminou"),
+    "made": ("made {path}", "feito: {path}"),
+    "next prove": (
+        "\nnext:\n  robolink learn prove {folder}    # as given it fails, and the solution passes",
+        "\na seguir:\n  robolink learn prove {folder}    # o dado falha, e a solução passa",
+    ),
+    "next start": (
+        "  robolink learn start FOLDER --from {folder}    # what a student types",
+        "  robolink learn start PASTA --from {folder}    # o que um aluno digita",
+    ),
+    "broken check": ("the check is broken: {text}", "o teste está com defeito: {text}"),
+    "passes already": (
+        "{file} passes already: there is nothing to do",
+        "{file} já passa: não há nada a fazer",
+    ),
+    "fails": ("{file} fails: {text}", "{file} falha: {text}"),
+    "passes": ("{file} passes in {seconds:.1f} s", "{file} passa em {seconds:.1f} s"),
+    "at line": ("{text} (line {line})", "{text} (linha {line})"),
+    "told nothing": ("its check told nothing", "o teste não disse nada"),
     "check": (
         "the check of this exercise is broken, not your program: {text}",
         "o teste deste exercício está com defeito, não o seu programa: {text}",

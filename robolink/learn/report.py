@@ -21,6 +21,7 @@ Kind = Literal[
     "types",
     "use",
     "check",
+    "no program",
 ]
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from robolink.learn.exercise import LONGEST_NAME, SETTINGS, Exercise, ExerciseError
-from robolink.learn.languages import Language
+from robolink.learn.languages import Language, words
 from robolink.learn.report import Report
 from robolink.scaffold.rendering import rendered
 from robolink.system.paths import expanded
@@ -58,40 +58,47 @@ class Proof(NamedTuple):
     text: str
 
 
-def proofs(course: list[Exercise], check: Check) -> Iterator[Proof]:
-    """Yield for each exercise and language that the given file fails, and then that the solution passes.
+def proofs(course: list[Exercise], check: Check, language: Language = "en") -> Iterator[Proof]:
+    """Yield for each exercise that the given file fails, and then, in the other language, that the solution passes.
 
     Args:
         course: The exercises.
         check: Runs a check: `robolink.learn.isolated.check_apart`, for example.
+        language: Language of the sentences, and of the given file.
     """
     with tempfile.TemporaryDirectory(prefix="robolink-learn-") as scratch:
         for exercise in course:
             file = Path(scratch, exercise.file)
-            file.write_text(exercise.given_text("en"), encoding="utf-8")
-            yield _of_given(exercise, check(exercise, file, "en"))
+            file.write_text(exercise.given_text(language), encoding="utf-8")
+            yield _of_given(exercise, check(exercise, file, language), language)
             solution = exercise.given.with_name(f"solution{exercise.given.suffix}")
             if solution.is_file():
                 file.write_bytes(solution.read_bytes())
-                yield _of_solution(exercise, solution, check(exercise, file, "pt"))
+                report = check(exercise, file, "en" if language == "pt" else "pt")
+                yield _of_solution(exercise, solution, report, language)
 
 
-def _of_given(exercise: Exercise, report: Report) -> Proof:
+def _of_given(exercise: Exercise, report: Report, language: Language) -> Proof:
+    file = exercise.given.name
     if report.mistake is not None and report.mistake.kind == "check":
-        return Proof(exercise, False, f"the check is broken: {report.mistake.text}")
+        return Proof(exercise, False, words(language, "broken check", text=report.mistake.text))
     if report.passed:
-        return Proof(exercise, False, f"{exercise.given.name} passes already: there is nothing to do")
-    return Proof(exercise, True, f"{exercise.given.name} fails: {_told(report)}")
+        return Proof(exercise, False, words(language, "passes already", file=file))
+    return Proof(exercise, True, words(language, "fails", file=file, text=_told(file, report, language)))
 
 
-def _of_solution(exercise: Exercise, solution: Path, report: Report) -> Proof:
+def _of_solution(exercise: Exercise, solution: Path, report: Report, language: Language) -> Proof:
     if report.passed:
-        return Proof(exercise, True, f"{solution.name} passes in {report.seconds:.1f} s")
-    return Proof(exercise, False, f"{solution.name} fails: {_told(report)}")
+        return Proof(exercise, True, words(language, "passes", file=solution.name, seconds=report.seconds))
+    text = _told(solution.name, report, language)
+    return Proof(exercise, False, words(language, "fails", file=solution.name, text=text))
 
 
-def _told(report: Report) -> str:
-    if report.mistake is not None:
-        place = f" (line {report.mistake.line})" if report.mistake.line else ""
-        return f"{report.mistake.text or report.mistake.kind}{place}"
-    return next((each.text for each in report.lines if not each.good), "its check told nothing")
+def _told(file: str, report: Report, language: Language) -> str:
+    """Return the sentence that says most of why a check failed."""
+    mistake = report.mistake
+    if mistake is None:
+        bad = next((each.text for each in report.lines if not each.good), "")
+        return bad or words(language, "told nothing")
+    text = mistake.text or words(language, mistake.kind, file=file, line=mistake.line, text="")
+    return words(language, "at line", text=text, line=mistake.line) if mistake.line else text

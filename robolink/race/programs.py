@@ -24,6 +24,17 @@ def programs_of(race: str, words: Iterable[str]) -> list[str]:
     return [program for word in words for program in _of_word(race, word)]
 
 
+def without_program(race: str, words: Iterable[str]) -> list[str]:
+    """Return the students' folders in which there is no program for a race, or nobody knows which of several it is.
+
+    Args:
+        race: Name of the race.
+        words: Files, folders, or names of nodes, as for `programs_of`.
+    """
+    students = [student for word in words if Path(word).is_dir() for student in _students(Path(word))]
+    return sorted(str(each) for each in students if _own(race, each) is None)
+
+
 def _of_word(race: str, word: str) -> list[str]:
     path = Path(word)
     if path.is_dir():
@@ -41,10 +52,15 @@ def _of_word(race: str, word: str) -> list[str]:
 
 def _in_folder(race: str, folder: Path) -> Iterator[Path]:
     yield from (each for each in folder.glob("*.py") if each.is_file())
-    for student in (each for each in folder.iterdir() if each.is_dir() and not each.name.startswith((".", "_"))):
-        own = student / f"{race}.py"
-        files = sorted(student.glob("*.py"))
-        if own.is_file():
-            yield own
-        elif len(files) == 1:
-            yield files[0]
+    yield from (own for student in _students(folder) if (own := _own(race, student)) is not None)
+
+
+def _students(folder: Path) -> list[Path]:
+    return [each for each in folder.iterdir() if each.is_dir() and not each.name.startswith((".", "_"))]
+
+
+def _own(race: str, student: Path) -> Path | None:
+    """Return the program of a student's folder; None if there is none, or nobody knows which."""
+    own = student / f"{race}.py"
+    files = [own] if own.is_file() else list(student.glob("*.py"))
+    return files[0] if len(files) == 1 else None

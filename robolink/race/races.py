@@ -19,8 +19,6 @@ class Race(NamedTuple):
     """A race."""
 
     name: str
-    rule: str
-    """Rule of the score, in a sentence."""
     unit: str
     """Unit of the score."""
     less_is_better: bool
@@ -96,7 +94,6 @@ RACES = {
     for race in (
         Race(
             "line",
-            "the time of one lap along the line, and 5 s for each contact",
             "s",
             True,
             180.0,
@@ -105,7 +102,6 @@ RACES = {
         ),
         Race(
             "maze",
-            f"the time to the middle of the far corner, ({SIZE - 0.5}, {SIZE - 0.5}), and 5 s for each contact",
             "s",
             True,
             300.0,
@@ -114,7 +110,6 @@ RACES = {
         ),
         Race(
             "follow",
-            "metres along the wall in 120 s, 0.3 to 0.8 m away from it, less 5 m for each contact",
             "m",
             False,
             120.0,

@@ -6,7 +6,7 @@ import csv
 import io
 from collections.abc import Iterator, Sequence
 
-from robolink.learn.languages import words
+from robolink.learn.languages import Language, words
 from robolink.race.races import Race
 from robolink.race.result import Result, ranked
 
@@ -16,28 +16,29 @@ SHOWN = 16
 COLUMNS = ["place", "program", "score", "unit", "progress", "contacts", "seed", "hash", "error"]
 
 
-def table(race: Race, results: Sequence[Result], seed: int) -> Iterator[str]:
-    """Yield the lines of a table for people."""
-    yield f"{race.name}, seed {seed}: {race.rule}"
+def table(race: Race, results: Sequence[Result], seed: int, language: Language = "en") -> Iterator[str]:
+    """Yield the lines of a table for people, in a language."""
+    yield words(language, "race", name=race.name, seed=seed, rule=words(language, f"rule {race.name}"))
     longest = max((len(each.program) for each in results), default=0)
     for place, each in ranked(race, results):
-        yield f"{place or '-':>3}  {each.program:{longest}}  {_said(race, each)}"
+        yield f"{place or '-':>3}  {each.program:{longest}}  {_said(race, each, language)}"
 
 
-def _said(race: Race, result: Result) -> str:
+def _said(race: Race, result: Result, language: Language) -> str:
     if result.mistake is not None:
-        return error_of(result)
-    contacts = f"{result.contacts} contact{'' if result.contacts == 1 else 's'}"
-    score = f"{result.progress:.0%} of the way" if result.score is None else f"{result.score:.2f} {race.unit}"
+        return error_of(result, language)
+    contacts = words(language, "contact" if result.contacts == 1 else "contacts", count=result.contacts)
+    way = words(language, "progress", share=result.progress)
+    score = way if result.score is None else f"{result.score:.2f} {race.unit}"
     return f"{score:>15}  {contacts:>11}  {result.hash[:SHOWN]}"
 
 
-def error_of(result: Result) -> str:
+def error_of(result: Result, language: Language = "en") -> str:
     """Return in one line what went wrong with a program; '' if nothing did."""
     mistake = result.mistake
     if mistake is None:
         return ""
-    head = words("en", mistake.kind, file=result.program, line=mistake.line, text=mistake.text)
+    head = words(language, mistake.kind, file=result.program, line=mistake.line, text=mistake.text)
     told = mistake.text.partition("\n")[0]
     return f"{head} {told}" if mistake.kind in ("syntax", "exception", "elsewhere") else head
 

@@ -37,6 +37,16 @@ def test_a_new_exercise_fails_as_given_and_its_solution_passes(here: Path) -> No
     assert solution[1].startswith("solution.py passes in ")
 
 
+def test_a_proof_speaks_portuguese(here: Path) -> None:
+    folder = new_exercise("stop_early")
+    (folder / "solution.py").write_text("")
+    found = [each.text for each in proofs(read_course(here / "exercises"), here_checked, "pt")]
+    assert found == [
+        "given.py falha: ele andou 0.0 m em dez segundos, e não 2 m",
+        "solution.py falha: solution.py está vazio, ou só tem comentários",
+    ]
+
+
 def test_they_are_numbered_and_made_where_the_others_are(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     new_exercise("one")
     assert new_exercise("two").name == "02_two"

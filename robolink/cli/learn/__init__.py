@@ -31,11 +31,12 @@ def list_exercises(
 ) -> None:
     """Learn by exercises that are checked in a simulated world; without a verb, list them with your progress."""
     from robolink.cli.learn import work
+    from robolink.cli.shared import languages
 
     if context.invoked_subcommand is None and in_page:
         view(context, language=language)
     elif context.invoked_subcommand is None:
-        work.list_exercises(work.language_of(language))
+        work.list_exercises(languages.language_of(language))
     else:
         context.obj = language
 
@@ -49,8 +50,9 @@ def start(
 ) -> None:
     """Write the exercises' files into a folder; files that are there stay as they are."""
     from robolink.cli.learn import work
+    from robolink.cli.shared import languages
 
-    work.start(folder, source, work.language_of(language or context.obj))
+    work.start(folder, source, languages.language_of(language or context.obj))
 
 
 @app.command("check")
@@ -62,11 +64,12 @@ def check(
 ) -> None:
     """Check an exercise; the exit code is 1 if it is not done."""
     from robolink.cli.learn import work
+    from robolink.cli.shared import languages
 
     passed = (
-        work.check_all(work.language_of(language or context.obj))
+        work.check_all(languages.language_of(language or context.obj))
         if all_of_them
-        else work.check(name, work.language_of(language or context.obj))
+        else work.check(name, languages.language_of(language or context.obj))
     )
     if not passed:
         raise typer.Exit(1)
@@ -76,8 +79,9 @@ def check(
 def watch(context: typer.Context, language: Language = "") -> None:
     """Check exercises each time their files are saved, until Ctrl-C."""
     from robolink.cli.learn import work
+    from robolink.cli.shared import languages
 
-    work.watch(work.language_of(language or context.obj))
+    work.watch(languages.language_of(language or context.obj))
 
 
 @app.command("view")
@@ -93,52 +97,62 @@ def view(
 
     The page has the tasks, hints, reports, and the path that the robot took in the check.
     """
-    from robolink.cli.learn import page, work
+    from robolink.cli.learn import page
+    from robolink.cli.shared import languages
 
-    page.show(port, browser, work.language_of(language or context.obj))
+    page.show(port, browser, languages.language_of(language or context.obj))
 
 
 @app.command("hint")
 def hint(context: typer.Context, name: MaybeName = "", language: Language = "") -> None:
     """Show the next hint for an exercise."""
     from robolink.cli.learn import work
+    from robolink.cli.shared import languages
 
-    work.hint(name, work.language_of(language or context.obj))
+    work.hint(name, languages.language_of(language or context.obj))
 
 
 @app.command("show")
 def show(context: typer.Context, name: MaybeName = "", language: Language = "") -> None:
     """Show what an exercise asks for."""
     from robolink.cli.learn import work
+    from robolink.cli.shared import languages
 
-    work.show(name, work.language_of(language or context.obj))
+    work.show(name, languages.language_of(language or context.obj))
 
 
 @app.command("reset")
 def reset(context: typer.Context, name: Name, language: Language = "") -> None:
     """Write an exercise's file as it was at the beginning; yours is kept under another name."""
     from robolink.cli.learn import work
+    from robolink.cli.shared import languages
 
-    work.reset(name, work.language_of(language or context.obj))
+    work.reset(name, languages.language_of(language or context.obj))
 
 
 @app.command("new")
 def new(
+    context: typer.Context,
     name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, such as stop_early.")],
     folder: Annotated[str, typer.Option("--folder", metavar="FOLDER", help="Default: exercises.")] = "",
+    language: Language = "",
 ) -> None:
     """Make an exercise of your own, for your students: a text, a given file, a check and a solution."""
     from robolink.cli.learn import teach
+    from robolink.cli.shared import languages
 
-    teach.new(name, folder)
+    teach.new(name, folder, languages.spoken(language or context.obj))
 
 
 @app.command("prove")
 def prove(
+    context: typer.Context,
     folder: Annotated[str, typer.Argument(metavar="[FOLDER]", help="Default: exercises.")] = "",
+    language: Language = "",
 ) -> None:
     """Prove exercises: as given each has to fail, and its solution has to pass; the exit code is 1 if one does not."""
     from robolink.cli.learn import teach
+    from robolink.cli.shared import languages
 
-    if not teach.prove(folder):
+    if not teach.prove(folder, languages.spoken(language or context.obj)):
         raise typer.Exit(1)

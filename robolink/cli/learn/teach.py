@@ -8,27 +8,27 @@ from robolink.cli.learn.work import say_all, shown
 from robolink.cli.shared.output import say
 from robolink.learn.exercise import SETTINGS, read_course
 from robolink.learn.isolated import check_apart
+from robolink.learn.languages import Language, words
 from robolink.learn.teaching import FOLDER, new_exercise, proofs
 from robolink.system.paths import expanded
 
 
-def new(name: str, folder: str) -> None:
-    """Make an exercise, and say what to do with it."""
+def new(name: str, folder: str, language: Language) -> None:
+    """Make an exercise, and say what to do with it, in a language."""
     made = new_exercise(name, folder)
     for each in sorted(made.iterdir()):
-        say(f"made {shown(each)}")
-    place = shown(made.parent)
-    say(f"\nnext:\n  robolink learn prove {place}    # as given it fails, and the solution passes")
-    say(f"  robolink learn start FOLDER --from {place}    # what a student types")
+        say(words(language, "made", path=shown(each)))
+    for key in ("next prove", "next start"):
+        say(words(language, key, folder=shown(made.parent)))
 
 
-def prove(folder: str) -> bool:
-    """Prove all exercises of a folder; return whether all are as they should be."""
+def prove(folder: str, language: Language) -> bool:
+    """Prove all exercises of a folder, and say it in a language; return whether all are as they should be."""
     here = Path.cwd()
     place = expanded(folder) if folder else here if any(here.glob(f"*/{SETTINGS}")) else here / FOLDER
     good = True
     last = ""
-    for each in proofs(read_course(place), check_apart):
+    for each in proofs(read_course(place), check_apart, language):
         if each.exercise.name != last:
             last = each.exercise.name
             say(each.exercise.folder.name)

@@ -8,14 +8,12 @@ import time
 from collections.abc import Iterable
 from pathlib import Path
 
-import typer
-
 from robolink.cli.shared.output import say
-from robolink.exceptions import RobolinkError, nearest
+from robolink.exceptions import RobolinkError
 from robolink.learn.exercise import Exercise, read_course
 from robolink.learn.folder import StudentFolder, find_folder, start_folder, the_folder
 from robolink.learn.isolated import check_apart
-from robolink.learn.languages import LANGUAGES, Language, default_language, words
+from robolink.learn.languages import Language, default_language, words
 from robolink.learn.lines import course_listed, listed, next_step, reported, task
 
 _PLAIN = {"✓": "+", "✗": "x", "→": ">"}
@@ -24,16 +22,6 @@ _PLAIN = {"✓": "+", "✗": "x", "→": ">"}
 
 class NoFileError(RobolinkError, FileNotFoundError):
     """A student's file is not there."""
-
-
-def language_of(asked: str | None) -> Language | None:
-    """Return the language that was asked for; None for none. Raises a usage error for any other word."""
-    if not asked:
-        return None
-    for each in LANGUAGES:
-        if asked == each:
-            return each
-    raise typer.BadParameter(f"'{asked[:100]}' is none of {', '.join(LANGUAGES)}{nearest(asked[:100], LANGUAGES)}")
 
 
 def list_exercises(language: Language | None) -> None:

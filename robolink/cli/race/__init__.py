@@ -29,6 +29,9 @@ def race(
     ] = 1,
     as_json: Annotated[bool, typer.Option("--json", help="JSON: a list with an object for each program.")] = False,
     as_csv: Annotated[bool, typer.Option("--csv", help="CSV, for a spreadsheet.")] = False,
+    language: Annotated[
+        str, typer.Option("--language", metavar="en|pt", help="English or Portuguese; default: as robolink learn.")
+    ] = "",
 ) -> None:
     """Race programs in a simulated world, each alone, in virtual time; print a table with a hash of each run.
 
@@ -42,19 +45,29 @@ def race(
         raise typer.BadParameter(f"'{name[:100]}' is none of {', '.join(RACES)}{nearest(name[:100], RACES)}")
     if as_json and as_csv:
         raise typer.BadParameter("--json and --csv do not go together")
+    from robolink.cli.shared.languages import spoken
+    from robolink.learn.languages import words
+    from robolink.learn.report import Mistake
     from robolink.race import table
     from robolink.race.apart import race_all
-    from robolink.race.programs import programs_of
+    from robolink.race.programs import programs_of, without_program
     from robolink.race.races import RACES as RULES
+    from robolink.race.result import Result
 
-    rules = RULES[name]
+    rules, tongue = RULES[name], spoken(language)
     programs = programs_of(name, files)
+    others = without_program(name, files)
+    for each in others if as_json or as_csv else ():
+        tell(f"{each}: {words(tongue, 'no program', text=f'{name}.py')}")
     many = len(programs) > 1
-    results = race_all(rules, programs, seed, on_done=lambda each: tell(f"{each.program} is done") if many else None)
+    results = race_all(
+        rules, programs, seed, on_done=lambda each: tell(words(tongue, "raced", program=each.program)) if many else None
+    )
     if as_json:
         say_json(table.rows(rules, results, seed))
     elif as_csv:
         say(table.as_csv(rules, results, seed).removesuffix("\n"))
     else:
-        for line in table.table(rules, results, seed):
+        results += [Result(each, mistake=Mistake("no program", f"{name}.py")) for each in others]
+        for line in table.table(rules, results, seed, tongue):
             say(line)

@@ -22,6 +22,11 @@ RESULTS = {
 }
 
 
+@pytest.fixture(autouse=True)
+def _english(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LC_ALL", "C")
+
+
 @pytest.fixture
 def three(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
@@ -54,6 +59,62 @@ def test_a_table_for_people(capsys: Captured) -> None:
         "  -  c.py  your program stopped with an error at line 4: NameError: name 'x\\x1b[2J'",
     ]
     assert err == "c.py is done\nb.py is done\na.py is done\n"
+
+
+@pytest.mark.usefixtures("three")
+def test_a_table_in_portuguese(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+    told = [
+        "line, semente 7: o tempo de uma volta pela linha, e mais 5 s por contato",
+        "  1  a.py          41.50 s   0 contatos  abababababababab",
+        "  -  b.py   31% do caminho   2 contatos  cdcdcdcdcdcdcdcd",
+        "  -  c.py  seu programa parou com um erro na linha 4: NameError: name 'x\\x1b[2J'",
+    ]
+    words = ["race", "line", "c.py", "b.py", "a.py", "--seed", "7"]
+    assert main([*words, "--language", "pt"]) == 0
+    out, err = capsys.readouterr()
+    assert out.splitlines() == told
+    assert err == "c.py terminou\nb.py terminou\na.py terminou\n"
+    monkeypatch.setenv("LC_ALL", "pt_BR.UTF-8")
+    assert main(words) == 0
+    assert capsys.readouterr().out.splitlines() == told
+    monkeypatch.setenv("LC_ALL", "C")
+    assert main(["learn", "start", ".", "--language", "pt"]) == 0
+    capsys.readouterr()
+    assert main(words) == 0
+    assert capsys.readouterr().out.splitlines() == told
+
+
+@pytest.mark.usefixtures("three")
+def test_tables_for_programs_are_english_in_any_language(capsys: Captured) -> None:
+    for kind in ("--json", "--csv"):
+        words = ["race", "line", "c.py", "a.py", kind]
+        assert main(words) == 0
+        english = capsys.readouterr().out
+        assert main([*words, "--language", "pt"]) == 0
+        assert capsys.readouterr().out == english
+
+
+@pytest.mark.usefixtures("three")
+def test_a_student_without_a_program_has_a_line(
+    tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for student, files in {"ana": ["line.py"], "eva": ["x.py", "y.py"], "rui": []}.items():
+        (tmp_path / "turma" / student).mkdir(parents=True)
+        for each in files:
+            (tmp_path / "turma" / student / each).write_text("x = 1\n")
+    monkeypatch.setitem(RESULTS, str(Path("turma", "ana", "line.py")), RESULTS["a.py"])
+    assert main(["race", "line", "turma"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [each.split()[:2] for each in lines[1:]] == [
+        ["1", "a.py"],
+        ["-", str(Path("turma", "eva"))],
+        ["-", str(Path("turma", "rui"))],
+    ]
+    assert lines[-1].endswith("no line.py here, nor one other Python file alone")
+    assert main(["race", "line", "turma", "--csv"]) == 0
+    out, err = capsys.readouterr()
+    assert len(out.splitlines()) == 2
+    assert "rui: no line.py here" in err
 
 
 @pytest.mark.usefixtures("three")
