@@ -14,6 +14,9 @@ from robolink.learn.report import Mistake, Report
 WIDTH = 78
 """Widest line of a report, in letters."""
 
+WIDEST = 200
+"""Most letters that are shown of a line of a program, or of its output."""
+
 MOST_LINES = 15
 """Most lines of what a program printed that are shown."""
 
@@ -95,12 +98,12 @@ def printed_lines(text: str, language: Language) -> list[str]:
     """Return the first lines of what a program printed, and how many more there are."""
     lines = text.splitlines()
     more = [words(language, "more", count=len(lines) - MOST_LINES)] if len(lines) > MOST_LINES else []
-    return [each[:200] for each in lines[:MOST_LINES]] + more
+    return [each[:WIDEST] for each in lines[:MOST_LINES]] + more
 
 
 def _mistake(exercise: Exercise, mistake: Mistake, language: Language) -> Finding:
     head = words(language, mistake.kind, file=exercise.file, line=mistake.line, text=mistake.text)
-    below = [f"{mistake.line:4} | {mistake.code}"] if mistake.line else []
+    below = [f"{mistake.line:4} | {mistake.code[:WIDEST]}"] if mistake.line else []
     if mistake.kind in ("syntax", "exception", "elsewhere"):
         below += mistake.text.splitlines()
     return Finding("✗", head, tuple(below))

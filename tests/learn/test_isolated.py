@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -78,6 +79,22 @@ def test_what_does_not_even_let_others_run_is_killed(tmp_path: Path) -> None:
     report = tried(hangs + SOLUTION, tmp_path, longest=3.0)
     assert report.mistake is not None
     assert time.monotonic() - begin < 20.0
+
+
+def test_a_program_that_never_ends_is_ended_by_whoever_wants_its_report_no_more(tmp_path: Path) -> None:
+    file = tmp_path / HELLO.file
+    file.write_text(f"open({str(tmp_path / 'begun')!r}, 'w').close()\nwhile True:\n    pass\n", encoding="utf-8")
+    stop = threading.Event()
+    reports: list[Report] = []
+    thread = threading.Thread(target=lambda: reports.append(check_apart(HELLO, file, "en", stop=stop)))
+    thread.start()
+    while not (tmp_path / "begun").exists():
+        time.sleep(0.01)
+    stop.set()
+    begin = time.monotonic()
+    thread.join()
+    assert time.monotonic() - begin < 2.0, "the watchdog would take longer"
+    assert not reports[0].passed
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such limit")

@@ -32,7 +32,8 @@ export class Film {
     this.track = track;
     if (!track) return;
     this.bodies = track.bodies.map((body) => ({ ...body, count: body.path.length / 3 }));
-    this.end = Math.max(...this.bodies.map(({ first, count }) => (first + count - 1) * track.period), track.period);
+    const looks = this.bodies.reduce((most, { first, count }) => Math.max(most, first + count - 1), 1);
+    this.end = Number((looks * track.period).toFixed(2)); // as the slider has it
     this.speed = Math.max(1, this.end / LONGEST);
     this.slider.max = this.end;
     this.box = boxOf(track);
@@ -131,8 +132,8 @@ export class Film {
     const { e, f } = g.getTransform();
     g.setTransform(1, 0, 0, 1, 0, 0);
     for (const each of robots) {
-      const [x, y] = poseAt(each, this._index(each, this.at));
-      g.fillText(each.name, e + scale * x + 10 * this.ratio, f - scale * y - 10 * this.ratio);
+      const [x, y] = poseAt(each, this._index(each, this.at)), beside = 0.8 * scale * (each.circle || Math.max(...each.corners.flat())) + 4 * this.ratio;
+      g.fillText(each.name, e + scale * x + beside, f - scale * y - beside);
     }
   }
 }
