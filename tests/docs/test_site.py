@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 import yaml
 
+from robolink.learn.languages import _WORDS
 from tools.docs_site.markdown import LINK, blocks, headings, outside_blocks, slugs, with_site_tables
 from tools.docs_site.pages import DOCS, LANGUAGES, Page, addresses, listing, pages
 from tools.docs_site.same_code import pairs
@@ -147,6 +148,31 @@ def test_a_term_is_explained_where_it_comes_first(number: int, language: str) ->
             assert match[1], f"{name_of(page)}: '{text[max(0, match.start() - 40) : match.end() + 40]}'"
             return
     pytest.fail(f"no page has it: {word}")
+
+
+def portuguese_texts() -> dict[str, str]:
+    """The Portuguese that people read, by its place: pages, exercises, and the words of commands and of the view."""
+    root = DOCS.parent
+    texts = {name_of(page): prose(page) for page in WRITTEN if page.language == "pt"}
+    texts["README.pt-BR.md"] = re.sub(
+        r"^```.*?^```$", "", (root / "README.pt-BR.md").read_text("utf-8"), flags=re.S | re.M
+    )
+    for file in (*root.glob("robolink/learn/exercises/*/exercise.yaml"), *root.glob("robolink/view/page/**/*.js")):
+        texts[str(file.relative_to(root))] = file.read_text(encoding="utf-8")
+    texts["words of robolink learn"] = "\n".join(portuguese for _, portuguese in _WORDS.values())
+    return texts
+
+
+@pytest.mark.parametrize("term", [each for each in terms() if "not" in each], ids=lambda term: term["not"])
+def test_portuguese_has_one_word_for_a_term(term: dict[str, str]) -> None:
+    """The one of courses and commands: a page that says nó beside exercises that say node speaks of two things."""
+    other = re.compile(rf"(?<![\w(]){term['not']}s?(?!\w)", re.IGNORECASE)
+    found = {
+        place: text[max(0, match.start() - 40) : match.end() + 40]
+        for place, text in portuguese_texts().items()
+        if (match := other.search(re.sub(r"`[^`\n]*`|\]\([^)]*\)", "", text)))
+    }
+    assert found == {}, f"the word is {term['pt']} (docs/terms.yaml)"
 
 
 def test_terms_are_all_that_is_in_bold() -> None:

@@ -19,7 +19,7 @@ NOTES = {"pt": '!!! note "Em inglês"\n\n    Esta página ainda não foi traduzi
 """Note on top of a page that is not translated."""
 SUMMARIES = {
     "en": "ROS 2 nodes from pip install: nodes, topics, services and a simulated robot, in Python.",
-    "pt": "Nós de ROS 2 com pip install: nós, tópicos, serviços e um robô simulado, em Python.",
+    "pt": "Nodes de ROS 2 com pip install: nodes, topics, services e um robô simulado, em Python.",
 }
 
 CONFIGURATION = """\

@@ -44,7 +44,7 @@ WORDS: dict[str, dict[str, str]] = {
         "en": "What programs use most, from its docstrings. The modules have rclpy's names.",
         "pt": "O que os programas mais usam, das docstrings, que são em inglês. Os módulos têm os nomes de rclpy.",
     },
-    "messages": {"en": "Messages, services, actions", "pt": "Mensagens, serviços, ações"},
+    "messages": {"en": "Messages, services, actions", "pt": "Mensagens, services, actions"},
     "messages.about": {
         "en": "The types that are included. `robolink interface show TYPE` shows one with all that is in it.",
         "pt": "Os tipos incluídos. `robolink interface show TYPE` mostra um com tudo o que há nele.",

@@ -4,7 +4,7 @@ import { brief, button } from "./dom.js";
 import { addPairs, words } from "./words.js";
 
 addPairs("record", {
-  start: ["record all topics", "gravar todos os tópicos"], stop: ["stop recording: {path}", "parar de gravar: {path}"], idle: ["● Rec", "● Gravar"],
+  start: ["record all topics", "gravar todos os topics"], stop: ["stop recording: {path}", "parar de gravar: {path}"], idle: ["● Rec", "● Gravar"],
   on: ["■ {seconds} s  {size}B", "■ {seconds} s  {size}B"], dropped: ["{count} dropped", "{count} perdidas"],
   done: ["recorded {count} messages, {size}B: {path}", "{count} mensagens gravadas, {size}B: {path}"], bag: ["a bag is shown: there is nothing to record", "um bag é mostrado: não há o que gravar"],
 });

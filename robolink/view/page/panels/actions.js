@@ -7,7 +7,7 @@ import { Form, Picker } from "./form.js";
 import { leaf, Tree } from "./tree.js";
 
 addPairs("actions", {
-  choose: ["action", "ação"], none: ["no actions", "nenhuma ação"], send: ["Send goal", "Enviar objetivo"], cancel: ["Cancel", "Cancelar"],
+  choose: ["action", "action"], none: ["no actions", "nenhuma action"], send: ["Send goal", "Enviar objetivo"], cancel: ["Cancel", "Cancelar"],
   cancelling: ["canceling", "cancelando"], rejected: ["rejected", "rejeitado"], sent: ["sent…", "enviado…"], feedback: ["feedback", "feedback"], result: ["result", "resultado"],
   refused: ["the cancel request was refused", "o cancelamento foi recusado"],
   0: ["unknown", "desconhecido"], 1: ["accepted", "aceito"], 2: ["executing", "executando"], 3: ["canceling", "cancelando"], 4: ["succeeded", "concluído"], 5: ["canceled", "cancelado"], 6: ["aborted", "abortado"],

@@ -5,7 +5,7 @@ import { addPairs } from "../words.js";
 
 addPairs("graph", {
   filter: ["filter", "filtrar"], quiet: ["hide /rosout and such", "ocultar /rosout e outros"], fit: ["fit", "tudo"], none: ["nobody runs", "nada em execução"],
-  publishes: ["publishes", "publica"], subscribes: ["subscribes", "assina"], publishers: ["publishers", "publicadores"], subscribers: ["subscribers", "assinantes"], services: ["services", "serviços"],
+  publishes: ["publishes", "publica"], subscribes: ["subscribes", "assina"], publishers: ["publishers", "publishers"], subscribers: ["subscribers", "subscribers"], services: ["services", "services"],
 });
 
 const WIDTH = 190, HEIGHT = 24, COLUMN = 270, ROW = 34, LETTERS = 27;

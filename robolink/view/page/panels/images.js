@@ -6,7 +6,7 @@ import { Picker } from "./form.js";
 import { paint } from "./pixels.js";
 
 addPairs("images", {
-  topic: ["topic", "tópico"], none: ["no images", "nenhuma imagem"], waiting: ["no image yet", "nenhuma imagem ainda"],
+  topic: ["topic", "topic"], none: ["no images", "nenhuma imagem"], waiting: ["no image yet", "nenhuma imagem ainda"],
   save: ["save as PNG", "salvar como PNG"], state: ["{width}x{height}  {encoding}  {fps} fps", "{width}x{height}  {encoding}  {fps} fps"],
 });
 

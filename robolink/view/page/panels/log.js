@@ -4,7 +4,7 @@ import { button, h } from "../dom.js";
 import { addPairs } from "../words.js";
 
 addPairs("log", {
-  level: ["least level", "nível mínimo"], node: ["node", "nó"], text: ["text", "texto"], clear: ["clear", "limpar"],
+  level: ["least level", "nível mínimo"], node: ["node", "node"], text: ["text", "texto"], clear: ["clear", "limpar"],
   pause: ["pause or go on", "pausar ou continuar"], waiting: ["nothing logged yet", "nada registrado ainda"],
   count: ["{shown} of {all}", "{shown} de {all}"], more: ["{count} more while paused", "mais {count} durante a pausa"],
 });

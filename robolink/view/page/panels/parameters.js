@@ -5,8 +5,8 @@ import { addPairs } from "../words.js";
 import { number, Picker } from "./form.js";
 
 addPairs("parameters", {
-  node: ["node", "nó"], none: ["no nodes with parameters", "nenhum nó com parâmetros"], filter: ["filter", "filtrar"], again: ["read again", "ler de novo"],
-  readonly: ["read-only parameter", "parâmetro só de leitura"], refused: ["{name}: {reason}", "{name}: {reason}"], refused_why: ["the node refused it", "o nó recusou"],
+  node: ["node", "node"], none: ["no nodes with parameters", "nenhum node com parâmetros"], filter: ["filter", "filtrar"], again: ["read again", "ler de novo"],
+  readonly: ["read-only parameter", "parâmetro só de leitura"], refused: ["{name}: {reason}", "{name}: {reason}"], refused_why: ["the node refused it", "o node recusou"],
   empty: ["no parameters", "sem parâmetros"], range: ["{low} to {high}", "de {low} a {high}"], set: ["{name} = {value}", "{name} = {value}"], unset: ["not set", "sem valor"],
 });
 

@@ -5,7 +5,7 @@ import { addPairs } from "../words.js";
 import { csv, Series, ticks } from "./series.js";
 
 addPairs("plot", {
-  empty: ["drag a number here from the tree of a topic, or click it there", "arraste um número da árvore de um tópico para cá, ou clique nele"],
+  empty: ["drag a number here from the tree of a topic, or click it there", "arraste um número da árvore de um topic para cá, ou clique nele"],
   seconds: ["seconds shown", "segundos mostrados"], png: ["save as PNG", "salvar como PNG"], csv: ["save as CSV", "salvar como CSV"],
   clear: ["remove all", "remover tudo"], remove: ["remove {name}", "remover {name}"], axis: ["left or right axis", "eixo esquerdo ou direito"],
   pause: ["pause or go on", "pausar ou continuar"], canvas: ["drag: zoom; wheel: zoom; double click: back", "arraste ou roda: zoom; clique duplo: volta"],

@@ -7,8 +7,8 @@ import { Form, Picker } from "./form.js";
 import { Tree } from "./tree.js";
 
 addPairs("services", {
-  choose: ["service", "serviço"], none: ["no services", "nenhum serviço"], call: ["Call", "Chamar"], calling: ["calling…", "chamando…"],
-  answered: ["answered in {seconds} s", "respondido em {seconds} s"], hidden: ["all", "todos"], hidden_title: ["also those of parameters and actions", "também os de parâmetros e ações"],
+  choose: ["service", "service"], none: ["no services", "nenhum service"], call: ["Call", "Chamar"], calling: ["calling…", "chamando…"],
+  answered: ["answered in {seconds} s", "respondido em {seconds} s"], hidden: ["all", "todos"], hidden_title: ["also those of parameters and actions", "também os de parâmetros e actions"],
 });
 
 const OFTEN = /\/(describe_parameters|get_parameters|get_parameter_types|list_parameters|set_parameters|set_parameters_atomically|get_type_description|get_loggers?_levels?|set_loggers?_levels?)$/;

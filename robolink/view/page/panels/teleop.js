@@ -7,7 +7,7 @@ import { button, h } from "../dom.js";
 import { addPairs } from "../words.js";
 
 addPairs("teleop", {
-  topic: ["topic", "tópico"], none: ["no cmd_vel topic is known", "nenhum tópico cmd_vel conhecido"],
+  topic: ["topic", "topic"], none: ["no cmd_vel topic is known", "nenhum topic cmd_vel conhecido"],
   linear: ["m/s", "m/s"], angular: ["rad/s", "rad/s"], linear_title: ["greatest speed", "velocidade máxima"], angular_title: ["greatest turn", "giro máximo"],
   stick: ["stick: drag it, or hold W A S D or the arrows (Q and E: sideways)", "alavanca: arraste, ou segure W A S D ou as setas (Q e E: para o lado)"],
   keys: ["Click the stick to drive by keys: W A S D or arrows, Q E sideways. Release to stop.", "Clique na alavanca para dirigir por teclas: W A S D ou setas, Q E de lado. Solte para parar."],
