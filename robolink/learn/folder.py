@@ -116,10 +116,21 @@ def the_folder() -> StudentFolder:
     """Return the student's folder at or above the working directory. Raises NoFolderError if there is none."""
     found = find_folder()
     if found is None:
-        raise NoFolderError(
-            f"no exercises in this folder or above it: `robolink learn start` writes them into {DEFAULT}, then cd there"
-        )
+        raise NoFolderError(_where_to_go())
     return found
+
+
+def _where_to_go() -> str:
+    below = folder_below()
+    if below:
+        return f"the exercises are in {below}: cd {below}"
+    return f"no exercises in this folder or above it: `robolink learn start` writes them into {DEFAULT}, then cd there"
+
+
+def folder_below() -> str:
+    """Return the name of a student's folder in the working directory, preferably the usual one; '' for none."""
+    names = sorted(each.parent.name for each in Path.cwd().glob(f"*/{FILE}"))
+    return DEFAULT if DEFAULT in names else next(iter(names), "")
 
 
 def start_folder(path: str = "", *, language: Language | None = None, source: str = "") -> StudentFolder:

@@ -37,12 +37,14 @@ def default_language(environ: Mapping[str, str] | None = None) -> Language:
 
 _HOW_EN = """\
   read it:   robolink learn show
+  run it:    robolink {verb} {file}
   try it:    robolink learn check
   a hint:    robolink learn hint
   or check at each save: robolink learn watch
   all of it in the browser: robolink learn view"""
 _HOW_PT = """\
   leia:      robolink learn show
+  execute:   robolink {verb} {file}
   teste:     robolink learn check
   uma dica:  robolink learn hint
   ou teste a cada vez que salvar: robolink learn watch
@@ -59,6 +61,7 @@ _WORDS: dict[str, tuple[str, str]] = {
     ),
     "written": ("exercises in {folder}: {count}", "exercícios em {folder}: {count}"),
     "all there": ("all exercises are in {folder} already", "todos os exercícios já estão em {folder}"),
+    "all here": ("all exercises are here already", "todos os exercícios já estão aqui"),
     "go": ("cd {folder}, then: robolink learn", "cd {folder}, e depois: robolink learn"),
     "reset": (
         "{file} is as it was at the beginning; yours is {kept}",
@@ -70,8 +73,8 @@ _WORDS: dict[str, tuple[str, str]] = {
     "last hint": ("that was the last hint", "essa foi a última dica"),
     "done": ("{file} is done ({seconds:.1f} s)", "{file} está feito ({seconds:.1f} s)"),
     "not yet": (
-        "{file} is not there yet; a hint: robolink learn hint",
-        "{file} ainda não; uma dica: robolink learn hint",
+        "{file} is not there yet; a hint: robolink learn hint {name}",
+        "{file} ainda não; uma dica: robolink learn hint {name}",
     ),
     "printed": ("it printed:", "ele imprimiu:"),
     "more": ("... and {count} more lines", "... e mais {count} linhas"),

@@ -33,13 +33,13 @@ def listed(folder: StudentFolder) -> Iterator[str]:
     yield from next_step(folder)
 
 
-def course_listed(course: list[Exercise], language: Language) -> Iterator[str]:
-    """Yield the lines of a list for somebody who has no folder yet."""
+def course_listed(course: list[Exercise], language: Language, below: str = "") -> Iterator[str]:
+    """Yield the lines of a list for somebody who has no folder yet, or has it `below` the working directory."""
     longest = max(len(each.file) for each in course)
     for each in course:
         yield f"  {each.file:{longest}}  {each.title(language)}"
     yield ""
-    yield words(language, "no folder")
+    yield words(language, "go", folder=below) if below else words(language, "no folder")
 
 
 def next_step(folder: StudentFolder) -> Iterator[str]:
@@ -49,7 +49,8 @@ def next_step(folder: StudentFolder) -> Iterator[str]:
         yield words(folder.language, "all done")
     else:
         yield words(folder.language, "next", file=following.file, title=following.title(folder.language))
-        yield words(folder.language, "how")
+        verb = "launch" if following.file.endswith(".yaml") else "run"
+        yield words(folder.language, "how", verb=verb, file=following.file)
 
 
 def task(exercise: Exercise, language: Language) -> Iterator[str]:
@@ -84,7 +85,7 @@ def reported(exercise: Exercise, report: Report, language: Language) -> Iterator
         yield from _item(each.mark, each.text)
         yield from (f"    {line}" for line in each.below)
     key = "done" if report.passed else "not yet"
-    yield words(language, key, file=exercise.file, seconds=report.seconds)
+    yield words(language, key, file=exercise.file, name=exercise.name, seconds=report.seconds)
 
 
 def _printed(text: str, language: Language) -> Iterator[str]:

@@ -136,6 +136,24 @@ class Trial:
         except ExpectationError:
             return None
 
+    def answers(self, within: float = 1.0) -> bool:
+        """Ask the student's nodes for their parameters; return whether all answer, as nodes do that are spun.
+
+        Args:
+            within: Timeout in virtual seconds.
+        """
+        from robolink.testing.expectations import ExpectationError, NodeFailure
+
+        try:
+            for each in self.system.nodes:
+                if each != "/world":
+                    self.system.call("rcl_interfaces/srv/ListParameters", f"{each}/list_parameters", within=within)
+        except NodeFailure:
+            raise
+        except ExpectationError:
+            return False
+        return True
+
     @property
     def published(self) -> str:
         """Names of the topics that the student's nodes publish, for a sentence; '-' for none."""

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from robolink.running.ports import ContextLike
 
 
+FAILURE = "an exception in a callback ends the spinning:"
+"""First line of the log's text about a callback that has failed."""
+
+
 class TimeoutException(RobolinkError):  # noqa: N818 - rclpy's name
     """Nothing became ready in time."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import linecache
 import re
 import sys
 from collections.abc import Callable
@@ -71,8 +72,17 @@ def _unknown_name(error: Any, frame: FrameType) -> str:
         return _no_self(frame)
     if hasattr(frame.f_locals.get("self"), name):
         return f"did you mean self.{name}?"
+    within = next((each for each, value in frame.f_globals.items() if _has(value, name)), "")
+    if within:
+        return f"did you mean {within}.{name}?"
     statement = "" if unbound else home_of(name, _style(frame))
     return f"is `{statement}` missing on top?" if statement else ""
+
+
+def _has(value: Any, name: str) -> bool:
+    """True for a module of Python's own that has this name, as math has pi."""
+    known = isinstance(value, ModuleType) and value.__name__ in sys.stdlib_module_names
+    return known and name in vars(value)
 
 
 def _no_self(frame: FrameType) -> str:
@@ -82,11 +92,10 @@ def _no_self(frame: FrameType) -> str:
 
 
 def _style(frame: FrameType) -> str:
-    """Return `rclpy` for a program that has rclpy's names, and `robolink` for one with robolink's."""
-    homes = [str(getattr(each, "__module__", "")) for each in frame.f_globals.values()]
-    if any(each.startswith("robolink.interfaces.") for each in homes):
-        return "robolink"
-    return "rclpy" if "rclpy" in frame.f_globals else imported_as()
+    """Return `robolink` for a program that imports robolink's names, and `rclpy` for one with those of ROS 2."""
+    text = "".join(linecache.getlines(frame.f_code.co_filename, frame.f_globals))
+    imported = re.findall(r"^\s*(?:from|import)\s+(robolink|rclpy)\b", text, re.MULTILINE)
+    return imported[0] if imported else imported_as()
 
 
 _NOT_IN_MODULE = re.compile(r"cannot import name '(\w+)' from '([\w.]+)'")

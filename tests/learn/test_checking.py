@@ -81,6 +81,12 @@ def test_a_file_without_a_node_is_told(text: str, tmp_path: Path) -> None:
     assert "Traceback" not in "\n".join(reported(HELLO, report, "en"))
 
 
+@pytest.mark.parametrize("text", ["", "# 02_hello: a comment alone\n"])
+def test_a_file_that_was_not_saved_is_told(text: str, tmp_path: Path) -> None:
+    report = tried(text, tmp_path)
+    assert next(reported(HELLO, report, "en")) == "  ✗ 02_hello.py is empty, or has only comments"
+
+
 def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
     report = check(HELLO, tmp_path / "02_hello.py")
     assert report.mistake == Mistake("file", "02_hello.py: No such file or directory")

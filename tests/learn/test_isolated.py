@@ -39,6 +39,14 @@ def test_a_solution_passes_and_what_it_prints_is_shown(tmp_path: Path) -> None:
     assert lines[-1].startswith("02_hello.py is done")
 
 
+def test_an_exception_in_a_callback_is_told_once(tmp_path: Path) -> None:
+    timer = "self.create_timer(0.1, lambda: 1 // 0)"
+    report = tried(SOLUTION.replace('self.get_logger().info("hello")', timer), tmp_path)
+    assert report.mistake is not None
+    assert report.mistake.text.startswith("ZeroDivisionError")
+    assert report.printed == ""
+
+
 def test_an_endless_loop_is_found_with_its_line(tmp_path: Path) -> None:
     report = tried(SOLUTION.replace("    rclpy.spin(node)", "    while True:\n        pass"), tmp_path)
     assert report.mistake is not None

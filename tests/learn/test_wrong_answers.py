@@ -18,6 +18,12 @@ TWICE = """    executor = SingleThreadedExecutor()
     executor.add_node(Listener())
     executor.spin()"""
 
+SLEEPS = "import time\n    while True:\n        time.sleep(1.0)"
+LOOP = "import time\n        while True:\n            time.sleep(1.0)\n            self.tick()"
+TENTH = "0.1, self.drive)\n\n    def drive"
+AT_ONCE = "1.0, self.ten)\n\n    def ten(self):\n        for _ in range(10):\n            self.drive()\n\n    def drive"
+"""Ten messages each second, all at once."""
+
 WRONG = [
     (
         "walk",
@@ -28,20 +34,35 @@ WRONG = [
     ("walk", "def __init__(self)", "def __init__(self, name)", "missing 1 required positional argument: 'name'"),
     ("walk", "270)", "0)", "it ends 2.12 m from where it began"),
     ("hello", 'get_logger().info("hello")', "get_logger()", "it says nothing"),
+    ("hello", 'self.get_logger().info("hello")', 'print("hello")', "print writes none"),
     ("hello", "spin(node)", "spin(FirstNode)", "expected a Node to spin"),
+    ("hello", "spin(node)", "spin_once(node)", "it ended by itself within six seconds"),
+    ("hello", "rclpy.spin(node)", SLEEPS, "it stays, but answers nobody"),
     ("hello", "    rclpy.init()\n", "", "rclpy.init() has not been called"),
     ("hello", '"first_node"', '"FirstNode"', "its name is FirstNode, and not first_node"),
     ("hello", "        self.get_logger", "      self.get_logger", "IndentationError"),
     ("timer", "self.tick)", "self.tick())", "give it the function itself, without ()"),
+    ("timer", "def tick(self)", "def tick()", "at line 11: 11 | def tick(): TypeError: Counter.tick() takes 0"),
+    ("timer", "1.0, self.tick", "1,0, self.tick", "a decimal number has a point: 1.0"),
+    ("timer", "self.get_logger().info(", "print(", "the log is empty (print does not write into it)"),
+    ("timer", "self.timer = self.create_timer(1.0, self.tick)", LOOP, "let a timer call tick, in place of a loop"),
     ("timer", "self.count = 0", "self.count = 1", 'should have "count 1", and has count 2'),
     ("publisher", '"cmd_vel"', '"cmdvel"', "the node has a publisher for: cmdvel"),
+    ("publisher", "        self.publisher.publish(twist)\n", "", "is publish called, and often enough?"),
+    ("publisher", TENTH, AT_ONCE, "10 messages come at once, and should come one by one"),
     ("publisher", "linear.x", "linear.y", "linear.x is 0.00, and should be 0.30"),
     ("publisher", "= 0.3", '= "0.3"', "Twist.linear.x: expected float64, got '0.3'"),
     ("ramp", "> 1.0", "> 2.0", "after 1.0 it should begin again with 0.0, and said 1.1"),
+    ("ramp", "> 1.0", "== 1.0", "its 1.0 is 0.9999999999999999, since computers round 0.1"),
     ("square", "math.pi / 4", "45", "it ends "),
     ("subscriber", "if r > 0", "if r >= 0", "with a beam of 0 among 1.5 and 2.5 it said 0.00"),
     ("stop", "scan.ranges[middle - 30 : middle + 30]", "scan.ranges", "it drove 0.0 m in three seconds"),
-    ("react", "< 1.0", "< 0.1", "it ran into something after "),
+    ("react", "< 1.0", "< 0.5", "something is 0.8 m ahead, and it drives on with 0.30 m/s"),
+    ("react", "z = 0.5\n        else:\n            twist", "z = 0.5\n        twist", "it drives on with 0.30 m/s"),
+    ("react", "angular.z = 0.5", "angular.x = 0.5", "something is 0.8 m ahead, and angular.z is 0.00, not 0.50"),
+    ("react", "angular.z = 0.5", "angular.z = -0.5", "angular.z is -0.50, not 0.50"),
+    ("odometry", "0.4", "0.3", "it drives with 0.30 m/s, and not 0.40"),
+    ("odometry", "self.begin = x", "self.begin = 0.0", "at the beginning odom said x = 3.0"),
     ("odometry", "< 2.0", "< 1.0", "it drove 1.0"),
     ("talk", TWICE, "    rclpy.spin(Talker())\n    rclpy.spin(Listener())", "there is no node called listener"),
     ("talk", "create_timer(1.0", "create_timer(0.5", "messages on chatter in three seconds: 6, and should be 3"),

@@ -73,6 +73,7 @@ MISTAKES = [
     ("        self.get_logger.info('x')", "get_logger is a function: call it, get_logger()"),
     ("        self.logger().info('x')", "Did you mean: 'get_logger'?"),
     ("        self.declare_parameter('near', 0.5) < 3", "its value is what .value has"),
+    ("        import math\n        globals()['math'] = math\n        pi", "did you mean math.pi?"),
     ("        math.pi", "is `import math` missing on top?"),
     ("\n    self.cmd_vel.publish(Twist())", "this line is in no function"),
     ("        self.go(3)\n\n    def go(speed):\n        pass", "the first parameter of go (line 12) has to be self"),
@@ -102,10 +103,10 @@ def test_a_usual_mistake_is_told_with_what_to_do(body: str, advice: str, tmp_pat
 @pytest.mark.parametrize(
     ("program", "advice"),
     [
-        ("from robolink import Node, Twist", "write `from robolink.interfaces.geometry_msgs.msg import Twist`"),
+        ("from robolink import Node, Twist", "geometry_msgs.msg import Twist`"),
         (
             "from robolink.interfaces.geometry_msgs.msg import Odometry",
-            "write `from robolink.interfaces.nav_msgs.msg import Odometry`",
+            "nav_msgs.msg",
         ),
         ("from geometry_msgs.msg import Odometry", "it is in nav_msgs.msg"),
         (

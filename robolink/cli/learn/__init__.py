@@ -76,12 +76,12 @@ def check(
 
 
 @app.command("watch")
-def watch(context: typer.Context, language: Language = "") -> None:
+def watch(context: typer.Context, name: MaybeName = "", language: Language = "") -> None:
     """Check exercises each time their files are saved, until Ctrl-C."""
     from robolink.cli.learn import work
     from robolink.cli.shared import languages
 
-    work.watch(languages.language_of(language or context.obj))
+    work.watch(name, languages.language_of(language or context.obj))
 
 
 @app.command("view")

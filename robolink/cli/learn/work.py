@@ -11,7 +11,7 @@ from pathlib import Path
 from robolink.cli.shared.output import say
 from robolink.exceptions import RobolinkError
 from robolink.learn.exercise import Exercise, read_course
-from robolink.learn.folder import StudentFolder, find_folder, start_folder, the_folder
+from robolink.learn.folder import StudentFolder, find_folder, folder_below, start_folder, the_folder
 from robolink.learn.isolated import check_apart
 from robolink.learn.languages import Language, default_language, words
 from robolink.learn.lines import course_listed, listed, next_step, reported, task
@@ -28,7 +28,7 @@ def list_exercises(language: Language | None) -> None:
     """List the exercises, with the progress of the folder in which the student is."""
     folder = find_folder()
     if folder is None:
-        say_all(course_listed(read_course(), language or default_language()))
+        say_all(course_listed(read_course(), language or default_language(), folder_below()))
         return
     _speak(folder, language)
     say_all(listed(folder))
@@ -39,7 +39,7 @@ def start(path: str, source: str, language: Language | None) -> None:
     folder = start_folder(path, language=language, source=source)
     place = shown(folder.path)
     written = folder.write()
-    key = "written" if written else "all there"
+    key = "written" if written else "all here" if folder.path == Path.cwd() else "all there"
     say(words(folder.language, key, count=len(written), folder=place))
     if folder.path != Path.cwd():
         say(words(folder.language, "go", folder=place))
@@ -72,15 +72,15 @@ def check_all(language: Language | None) -> bool:
     return passed == len(folder.course)
 
 
-def watch(language: Language | None) -> None:
-    """Check the exercises whose files are saved, and the next one at once."""
+def watch(name: str, language: Language | None) -> None:
+    """Check the exercises whose files are saved, and the named one (default: the next) at once."""
     from robolink.learn.watching import EVERY, Watch
 
     folder = folder_here(language)
     say(words(folder.language, "watching"))
     watching = Watch(folder, lambda exercise: _check(folder, exercise))
-    if folder.next is not None:
-        _check(folder, folder.next)
+    if name or folder.next is not None:
+        _check(folder, folder.chosen(name))
     while True:
         watching.look()
         time.sleep(EVERY)

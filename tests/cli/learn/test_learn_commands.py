@@ -113,7 +113,7 @@ def test_hints_show_and_reset(student: Path, capsys: Captured) -> None:
 def test_watch_checks_at_once_and_ends_with_ctrl_c(
     student: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
-    fake(monkeypatch, BAD)
+    fake(monkeypatch, BAD, BAD)
 
     def interrupt(seconds: float) -> None:
         raise KeyboardInterrupt
@@ -121,6 +121,22 @@ def test_watch_checks_at_once_and_ends_with_ctrl_c(
     monkeypatch.setattr("robolink.cli.learn.work.time.sleep", interrupt)
     assert main(["learn", "watch"]) == 130
     assert "it stands" in capsys.readouterr().out
+    assert main(["learn", "watch", "stop"]) == 130
+    out = capsys.readouterr().out
+    assert "08_stop.py: Stop before the wall" in out
+    assert out.endswith("a hint: robolink learn hint stop\n"), "the hint of this exercise, not of the next"
+
+
+def test_beside_the_folder_one_is_told_where_it_is(
+    here: Path, student: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    assert main(["learn", "start"]) == 0
+    assert capsys.readouterr().out.startswith("all exercises are here already\n")
+    monkeypatch.chdir(here)
+    assert main(["learn", "check"]) == 1
+    assert capsys.readouterr().err == f"robolink: the exercises are in {student.name}: cd {student.name}\n"
+    assert main(["learn"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == f"cd {student.name}, then: robolink learn"
 
 
 def test_mistakes_are_one_line(here: Path, student: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
@@ -128,7 +144,8 @@ def test_mistakes_are_one_line(here: Path, student: Path, monkeypatch: pytest.Mo
     assert capsys.readouterr().err == "robolink: no exercise named 'helo' (did you mean 'hello'?)\n"
     assert main(["learn", "--language", "fr"]) == 2
     assert "'fr' is none of en, pt" in capsys.readouterr().err
-    monkeypatch.chdir(here)
+    (here / "empty").mkdir()
+    monkeypatch.chdir(here / "empty")
     assert main(["learn", "check"]) == 1
     assert capsys.readouterr().err.startswith("robolink: no exercises in this folder or above it")
 

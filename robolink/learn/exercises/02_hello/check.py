@@ -13,4 +13,6 @@ def check(trial: Trial) -> None:
     trial.tell("named", "/first_node" in nodes, name=nodes[0].strip("/"))
     trial.run(5.0)
     trial.tell("says", any("hello" in each.message.lower() for each in trial.system.logs))
+    trial.tell("answers", trial.answers())
+    trial.run(1.0)
     trial.tell("stays", trial.system.nodes)

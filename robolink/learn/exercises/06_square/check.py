@@ -18,7 +18,7 @@ def check(trial: Trial) -> None:
     trial.tell("free", robot.contacts == 0)
     good = 0.85 < area.width < 1.2 and 0.85 < area.height < 1.2
     trial.tell("sides", good, width=area.width, height=area.height)
-    away = math.dist((robot.pose.x, robot.pose.y), (begin.x, begin.y))
-    trial.tell("back", away < 0.25, metres=away)
     still = abs(robot.twist.v) < 0.01 and abs(robot.twist.w) < 0.01
     trial.tell("stands", still, speed=robot.twist.v, turn=robot.twist.w)
+    away = math.dist((robot.pose.x, robot.pose.y), (begin.x, begin.y))
+    trial.tell("back", away < 0.25, metres=away)

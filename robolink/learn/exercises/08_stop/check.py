@@ -16,4 +16,4 @@ def check(trial: Trial) -> None:
     trial.run(17.0)
     trial.tell("stops", robot.contacts == 0, metres=robot.driven)
     left = WALL - robot.pose.x
-    trial.tell("near", 0.4 < left < 0.75, metres=left)
+    trial.tell("near", 0.5 < left < 0.75, metres=left)
