@@ -7,6 +7,8 @@ import inspect
 from collections.abc import Iterator
 from typing import Any
 
+from tools.docs_site.translations import help_of, shown_options, translated
+
 API = (
     "robolink.node",
     "robolink.publisher",
@@ -35,7 +37,7 @@ WORDS: dict[str, dict[str, str]] = {
     "cli": {"en": "Commands", "pt": "Comandos"},
     "cli.about": {
         "en": "Every command and option. `robolink COMMAND --help` says the same.",
-        "pt": "Todos os comandos e opções. `robolink COMMAND --help` diz o mesmo, em inglês, como esta página.",
+        "pt": "Todos os comandos e opções. `robolink COMMAND --help` diz o mesmo, em inglês.",
     },
     "option": {"en": "option", "pt": "opção"},
     "meaning": {"en": "meaning", "pt": "significado"},
@@ -70,7 +72,7 @@ def text(name: str, language: str) -> str:
 
     Args:
         name: cli, api, messages or files.
-        language: en or pt: that of headings; docstrings and helps are in English.
+        language: en or pt: that of headings, and of what has a translation in a catalogue; docstrings are in English.
     """
     made: dict[str, Any] = {"cli": _cli, "api": _api, "messages": _messages, "files": _files}
     head = [f"# {WORDS[name][language]}", "", WORDS[f"{name}.about"][language], ""]
@@ -94,17 +96,26 @@ def _cli(language: str) -> Iterator[str]:
     from robolink.cli.root import command
 
     root = command()
-    for path, each in _leaves(root, []):
+    for path, each in leaves(root, []):
         yield f"## robolink {' '.join(path)}\n"
-        yield f"{inspect.cleandoc(each.help or '')}\n"
-        options = [param for param in each.params if not getattr(param, "hidden", False) and param.name != "help"]
+        yield f"{translated('cli', help_of(each), language)}\n"
+        options = shown_options(each)
         if options:
             yield from table(WORDS["option"][language], WORDS["meaning"][language])
-            yield from (f"| `{_spelling(param)}` | {cell(getattr(param, 'help', None) or '')} |" for param in options)
+            meanings = [translated("cli", help_of(param), language) for param in options]
+            yield from (
+                f"| `{_spelling(param)}` | {cell(text)} |" for param, text in zip(options, meanings, strict=True)
+            )
             yield ""
 
 
-def _leaves(command: Any, path: list[str]) -> Iterator[tuple[list[str], Any]]:
+def leaves(command: Any, path: list[str]) -> Iterator[tuple[list[str], Any]]:
+    """Yield the commands below a command that have no commands themselves, each with its path.
+
+    Args:
+        command: The command.
+        path: Its own path.
+    """
     verbs = getattr(command, "commands", None)
     if not hasattr(command, "list_commands"):
         yield path, command
@@ -115,7 +126,7 @@ def _leaves(command: Any, path: list[str]) -> Iterator[tuple[list[str], Any]]:
     for name in command.list_commands(context):
         each = verbs.get(name) if verbs and name in verbs else command.get_command(context, name)
         if each is not None and not getattr(each, "hidden", False):
-            yield from _leaves(each, [*path, name])
+            yield from leaves(each, [*path, name])
 
 
 def _spelling(param: Any) -> str:
