@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import inspect
 from collections.abc import Iterator
+from types import ModuleType
 from typing import Any
 
 from tools.docs_site.translations import help_of, shown_options, translated
@@ -33,6 +34,14 @@ API = (
 )
 """Modules whose public classes and functions are described."""
 
+PARTS = (
+    "robolink.node_parts.",
+    "robolink.parameters.callbacks",
+    "robolink.testing.system_",
+    "robolink.executors.executor",
+)
+"""Modules of the classes that are parts of one in `API`, whose methods are described as its own."""
+
 WORDS: dict[str, dict[str, str]] = {
     "cli": {"en": "Commands", "pt": "Comandos"},
     "cli.about": {
@@ -44,7 +53,8 @@ WORDS: dict[str, dict[str, str]] = {
     "api": {"en": "Python API", "pt": "API de Python"},
     "api.about": {
         "en": "What programs use most, from its docstrings. The modules have rclpy's names.",
-        "pt": "O que os programas mais usam, das docstrings, que são em inglês. Os módulos têm os nomes de rclpy.",
+        "pt": "O que os programas mais usam, das docstrings. As primeiras frases são em português; o resto de cada"
+        " docstring, nos quadros, fica em inglês. Os módulos têm os nomes de rclpy.",
     },
     "messages": {"en": "Messages, services, actions", "pt": "Mensagens, services, actions"},
     "messages.about": {
@@ -142,43 +152,87 @@ def _api(language: str) -> Iterator[str]:
     for name in API:
         module = importlib.import_module(name)
         yield f"## {name}\n"
-        yield f"{_first_paragraph(module)}\n"
-        public = getattr(module, "__all__", None) or [each for each in vars(module) if not each.startswith("_")]
-        for each in sorted(public):
+        yield f"{_described(module, language)}\n"
+        for each in public(module):
             thing = getattr(module, each)
-            if inspect.isclass(thing) and thing.__module__.startswith("robolink"):
-                yield from _class(each, thing)
-            elif inspect.isfunction(thing) and thing.__module__.startswith("robolink"):
-                yield from _function(each, thing, "###")
+            yield from (
+                _class(each, thing, language) if inspect.isclass(thing) else _function(each, thing, "###", language)
+            )
 
 
-def _class(name: str, kind: type) -> Iterator[str]:
+def public(module: ModuleType) -> list[str]:
+    """Return the names of a module's public classes and functions: those of `__all__`, or those that it defines."""
+    names = getattr(module, "__all__", None)
+    found = [(each, getattr(module, each)) for each in names or vars(module) if not each.startswith("_")]
+    return sorted(
+        each
+        for each, thing in found
+        if (inspect.isclass(thing) or inspect.isfunction(thing))
+        and (thing.__module__ == module.__name__ or (names and thing.__module__.startswith("robolink")))
+    )
+
+
+def summaries() -> Iterator[str]:
+    """Yield the first paragraph of each docstring of the page, in English."""
+    for name in API:
+        module = importlib.import_module(name)
+        things = [getattr(module, each) for each in public(module)]
+        yield summary(module)
+        for each in things:
+            yield summary(each)
+            yield from (summary(member) for _, member in (methods(each) if inspect.isclass(each) else ()))
+
+
+def summary(thing: Any) -> str:
+    """Return the first paragraph of a docstring in one line; '' if there is none."""
+    return " ".join((inspect.getdoc(thing) or "").partition("\n\n")[0].split())
+
+
+def _class(name: str, kind: type, language: str) -> Iterator[str]:
     yield f"### {name}\n"
-    yield f"{_block(inspect.getdoc(kind) or '')}\n"
-    for each, member in sorted(vars(kind).items()):
-        if not each.startswith("_") and inspect.isfunction(member) and member.__doc__:
-            yield from _function(f"{name}.{each}", member, "####")
+    yield f"{_described(kind, language)}\n"
+    for each, member in methods(kind):
+        yield from _function(f"{name}.{each}", member, "####", language)
 
 
-def _function(name: str, function: Any, level: str) -> Iterator[str]:
+def methods(kind: type) -> list[tuple[str, Any]]:
+    """Return the public methods of a class by their names, with those of the parts that a user does not see apart."""
+    found = {name: member for each in reversed(_with_parts(kind)) for name, member in vars(each).items()}
+    return sorted(
+        (name, each)
+        for name, each in found.items()
+        if not name.startswith("_") and inspect.isfunction(each) and each.__doc__
+    )
+
+
+def _with_parts(kind: type) -> list[type]:
+    """Return a class and those of its bases that are parts of it alone, in the order in which methods are looked up."""
+    whole = [each for each in kind.__mro__[1:] if each.__module__ in API]
+    parts = [each for each in kind.__mro__[1:] if each.__module__.startswith(PARTS)]
+    return [kind, *(part for part in parts if not any(issubclass(each, part) for each in whole))]
+
+
+def _function(name: str, function: Any, level: str, language: str) -> Iterator[str]:
     try:
         signature = str(inspect.signature(function)).replace("robolink.", "")
     except (TypeError, ValueError):
         signature = "(...)"
     yield f"{level} {name}\n"
     yield f"```text\n{name.rpartition('.')[2]}{signature}\n```\n"
-    yield f"{_block(inspect.getdoc(function) or '')}\n"
+    yield f"{_described(function, language)}\n"
 
 
-def _first_paragraph(thing: Any) -> str:
-    return " ".join((inspect.getdoc(thing) or "").partition("\n\n")[0].split()).replace("<", "&lt;")
+def _described(thing: Any, language: str) -> str:
+    """Return a docstring as Markdown: its first paragraph, translated, and, but for a module, the rest as it stands."""
+    words = translated("api", summary(thing), language)
+    rest = "" if inspect.ismodule(thing) else (inspect.getdoc(thing) or "").partition("\n\n")[2]
+    return _block(words, rest)
 
 
-def _block(docstring: str) -> str:
-    """Return a docstring as Markdown: its first paragraph, and the rest as it stands."""
-    first, _, rest = docstring.partition("\n\n")
-    words = " ".join(first.split()).replace("<", "&lt;")
-    return f"{words}\n\n```text\n{rest}\n```" if rest.strip() else words
+def _block(words: str, rest: str) -> str:
+    """Return a paragraph, and a text below it as it stands, as Markdown."""
+    paragraph = " ".join(words.split()).replace("<", "&lt;")
+    return f"{paragraph}\n\n```text\n{rest}\n```" if rest.strip() else paragraph
 
 
 # Types
@@ -224,7 +278,8 @@ def _files(language: str) -> Iterator[str]:
                 continue
             if name:
                 yield f"### {name}\n"
-            yield f"{_block(part.get('description', ''))}\n"
+            first, _, rest = part.get("description", "").partition("\n\n")
+            yield f"{_block(first, rest)}\n"
             yield from table(
                 WORDS["key"][language], WORDS["type"][language], WORDS["default"][language], WORDS["meaning"][language]
             )
