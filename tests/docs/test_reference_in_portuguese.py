@@ -8,7 +8,7 @@ from functools import cache
 import pytest
 
 from robolink.cli.root import command
-from tools.docs_site.reference import leaves, summaries, text
+from tools.docs_site.reference import descriptions, leaves, summaries, text
 from tools.docs_site.translations import catalogue, command_texts
 
 KEPT = re.compile(r"`[^`]*`|--[a-z][a-z-]*|/\w[\w/]*|\b[A-Z_]{3,}\b|\d+|(?<!\w)'[^' ]+[^']*'|\n\n")
@@ -20,17 +20,19 @@ WAITING = 0.1
 
 @cache
 def english(page: str) -> set[str]:
-    texts = summaries() if page == "api" else command_texts(leaves(command(), []))
-    return set(texts) - {""}
+    made = {"api": summaries, "cli": lambda: command_texts(leaves(command(), [])), "files": descriptions}
+    return set(made[page]()) - {""}
 
 
-def test_each_help_text_has_a_translation() -> None:
-    missing = english("cli") - set(catalogue("cli"))
-    assert sorted(missing) == [], "add them to docs/pt/reference/cli.yaml, or change the ones that were reworded"
+@pytest.mark.parametrize("page", ["cli", "files"])
+def test_each_text_has_a_translation(page: str) -> None:
+    missing = english(page) - set(catalogue(page))
+    assert sorted(missing) == [], f"add them to docs/pt/reference/{page}.yaml, or change the ones that were reworded"
 
 
-def test_no_translation_is_of_a_help_text_that_is_gone() -> None:
-    assert sorted(set(catalogue("cli")) - english("cli")) == []
+@pytest.mark.parametrize("page", ["cli", "files"])
+def test_no_translation_is_of_a_text_that_is_gone(page: str) -> None:
+    assert sorted(set(catalogue(page)) - english(page)) == []
 
 
 def test_nearly_all_first_paragraphs_of_the_api_have_a_translation() -> None:
@@ -40,7 +42,7 @@ def test_nearly_all_first_paragraphs_of_the_api_have_a_translation() -> None:
     assert len(gone) <= WAITING * len(english("api")), f"take out of docs/pt/reference/api.yaml: {sorted(gone)}"
 
 
-@pytest.mark.parametrize("page", ["api", "cli"])
+@pytest.mark.parametrize("page", ["api", "cli", "files"])
 def test_translations_keep_names_and_numbers(page: str) -> None:
     changed = {
         each: portuguese
@@ -58,3 +60,6 @@ def test_the_pages_are_portuguese() -> None:
     assert "Cria um timer, que chama uma função periodicamente." in page
     assert "Create a timer, which calls a function periodically." not in page
     assert "Create a timer, which calls a function periodically." in text("api", "en")
+    page = text("files", "pt")
+    assert "| Campo de visão em graus. |" in page
+    assert [each for each in english("files") if len(each.split()) > 4 and f"| {each} |" in page] == []

@@ -70,7 +70,8 @@ WORDS: dict[str, dict[str, str]] = {
         " `robolink simulate --schema` and `robolink world schema` print them.",
         "pt": "Launch files, arquivos de falhas e de mundos. Editores os completam e conferem: a primeira linha de um"
         " arquivo diz onde está o schema, `# yaml-language-server: $schema=launch.schema.json`; `robolink launch"
-        " --schema`, `robolink simulate --schema` e `robolink world schema` os mostram.",
+        " --schema`, `robolink simulate --schema` e `robolink world schema` os mostram. As explicações mais longas, nos"
+        " quadros, são em inglês; [launch files](launch.md) e [o mundo simulado](simulator.md) as têm em português.",
     },
     "key": {"en": "key", "pt": "chave"},
     "default": {"en": "default", "pt": "padrão"},
@@ -267,29 +268,46 @@ def _keys(shown: Any) -> list[str]:
 
 
 def _files(language: str) -> Iterator[str]:
+    for schema in _schemas():
+        yield f"## {translated('files', schema['title'], language)}\n"
+        for name, part in _parts(schema):
+            if name:
+                yield f"### {name}\n"
+            first, _, rest = part.get("description", "").partition("\n\n")
+            yield f"{_block(translated('files', first, language), rest)}\n"
+            yield from table(
+                WORDS["key"][language], WORDS["type"][language], WORDS["default"][language], WORDS["meaning"][language]
+            )
+            yield from (_row(key, value, language) for key, value in part["properties"].items())
+            yield ""
+
+
+def descriptions() -> Iterator[str]:
+    """Yield the titles and descriptions of all schemas, of each the first paragraph, in English."""
+    for schema in _schemas():
+        yield schema["title"]
+        for _, part in _parts(schema):
+            for each in (part, *part["properties"].values()):
+                yield each.get("description", "").partition("\n\n")[0]
+
+
+def _schemas() -> list[dict[str, Any]]:
     from robolink.faults.schema import faults_schema
     from robolink.launch.schema import launch_schema
     from robolink.sim.schema import world_schema
 
-    for schema in (launch_schema(), faults_schema(), world_schema()):
-        yield f"## {schema['title']}\n"
-        for name, part in ({"": schema} | schema["definitions"]).items():
-            if "properties" not in part:
-                continue
-            if name:
-                yield f"### {name}\n"
-            first, _, rest = part.get("description", "").partition("\n\n")
-            yield f"{_block(first, rest)}\n"
-            yield from table(
-                WORDS["key"][language], WORDS["type"][language], WORDS["default"][language], WORDS["meaning"][language]
-            )
-            yield from (_row(key, value) for key, value in part["properties"].items())
-            yield ""
+    return [launch_schema(), faults_schema(), world_schema()]
 
 
-def _row(key: str, value: dict[str, Any]) -> str:
+def _parts(schema: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
+    """Return the kinds of mappings of a schema by name; '' is the file itself."""
+    return [(name, part) for name, part in ({"": schema} | schema["definitions"]).items() if "properties" in part]
+
+
+def _row(key: str, value: dict[str, Any], language: str) -> str:
     default = f"`{value['default']}`" if value.get("default") not in (None, "") else ""
-    return f"| `{key}` | {cell(_kind(value))} | {default} | {cell(value.get('description', ''))} |"
+    meaning = translated("files", value.get("description", "").partition("\n\n")[0], language)
+    return f"| `{key}` | {cell(_kind(value))} | {default} | {cell(meaning)} |"
 
 
 def _kind(value: dict[str, Any]) -> str:
