@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-import tempfile
 import threading
 import time
 from pathlib import Path
@@ -13,18 +11,14 @@ import msgspec
 
 from robolink.learn.exercise import Exercise, read_exercise
 from robolink.learn.languages import Language
-from robolink.learn.process import limit_memory, run_apart, show_own_lines
-from robolink.learn.report import Mistake, Report
-from robolink.system.own_command import own_command
+from robolink.learn.process import run_apart
+from robolink.learn.report import Report
 
 if TYPE_CHECKING:
     from robolink.learn.trial import Trial
 
 LONGEST = 60.0
 """Seconds of real time after which a check is ended from outside, whatever it does."""
-
-LARGEST = 8 * 2**20
-"""Most bytes of a report: it comes from a process in which a student's program runs."""
 
 COMMAND = "learn-check"
 """Hidden command of the process that checks."""
@@ -51,59 +45,30 @@ def check_apart(
         The report; nothing that the file does raises.
     """
     begin = time.perf_counter()
-    with tempfile.TemporaryDirectory(prefix="robolink-learn-", ignore_cleanup_errors=True) as scratch:
-        out, work = Path(scratch, "report.json"), Path(scratch, "work")
-        work.mkdir()
-        words = [*own_command(), COMMAND, str(exercise.folder), str(file.resolve()), str(out), "--language", language]
-        printed = run_apart(words, work, longest, stop)
-        report = _read(out)
-    return msgspec.structs.replace(report, printed=printed, seconds=time.perf_counter() - begin)
-
-
-def _read(out: Path) -> Report:
+    file = file.resolve()
+    ended = run_apart([COMMAND, str(exercise.folder.resolve()), str(file), language], file, longest, stop=stop)
     try:
-        with out.open("rb") as file:
-            return msgspec.json.decode(file.read(LARGEST), type=Report)
-    except (OSError, msgspec.DecodeError):
-        return Report(mistake=Mistake("ended all"))
+        report = msgspec.json.decode(ended.answer, type=Report)
+    except msgspec.DecodeError:
+        report = Report(mistake=ended.mistake)
+    return msgspec.structs.replace(report, printed=ended.printed, seconds=time.perf_counter() - begin)
 
 
-# --- The other side: the process that checks ---
-
-
-def serve(folder: Path, file: Path, out: Path, language: Language) -> None:
-    """Check a student's file in this process, and write the report; ends the process if the program is stuck.
+def serve(folder: Path, file: Path, answer: Path, language: Language) -> None:
+    """Check a student's file in this process, which that ends: the other side of `check_apart`.
 
     Args:
         folder: Folder of the exercise.
         file: The student's file.
-        out: File for the report.
+        answer: File for the report.
         language: Language of the sentences.
     """
-    from robolink.learn.checking import check  # late: whoever asks for a check does not need it
-    from robolink.learn.watchdog import Watchdog, end_process
+    from robolink.learn.checking import check  # late: whoever asks for a check needs none of it
+    from robolink.learn.child import Child
 
-    sys.dont_write_bytecode = True  # no __pycache__ beside the student's file
-    limit_memory()
-    show_own_lines()
-    trials: list[Trial] = []
-
-    def stuck(mistake: Mistake) -> None:
-        _write(out, Report(trials[0].lines, mistake, track=trials[0].track()))
-        end_process()
-
-    watchdogs: list[Watchdog] = []
+    child = Child(answer)
 
     def begun(trial: Trial) -> None:
-        trials.append(trial)
-        watchdogs.append(Watchdog(trial, stuck))
-        watchdogs[0].start()
+        child.watch(trial, lambda mistake: Report(trial.lines, mistake, track=trial.track()))
 
-    report = check(read_exercise(folder), file, language, begun=begun)
-    watchdogs[0].stop()
-    _write(out, report)
-    end_process()
-
-
-def _write(out: Path, report: Report) -> None:
-    out.write_bytes(msgspec.json.encode(report))
+    child.end(check(read_exercise(folder), file, language, begun=begun))

@@ -21,7 +21,9 @@ LONGEST = 500
 def mistake_in(file: Path) -> Mistake | None:
     """Return what keeps a file from being run at all, a syntax error for example; None for one that can be run."""
     try:
-        text = read_plain(file, LONGEST_SOURCE).decode("utf-8")
+        text = read_plain(file, LONGEST_SOURCE).decode(
+            "utf-8-sig"
+        )  # with the mark that Windows' editors may begin with
     except OSError as error:
         return Mistake("file", f"{file.name}: {error.strerror or error}")
     except UnicodeDecodeError:
@@ -33,7 +35,7 @@ def mistake_in(file: Path) -> Mistake | None:
     except SyntaxError as error:
         return _of_syntax(error)
     except (ValueError, RecursionError, MemoryError) as error:  # null characters; brackets of a thousand levels
-        return Mistake("file", f"{file.name}: {error or type(error).__name__}")
+        return Mistake("file", f"{file.name}: {type(error).__name__}: {error}".removesuffix(": "))
     return Mistake("empty") if all(map(_is_text, tree.body)) else None
 
 
@@ -65,10 +67,7 @@ def mistake_of(error: BaseException, file: Path) -> Mistake | None:
     if place is not None and _is(place.file, file):
         lines.append(place.line)
     if lines:
-        linecache.checkcache(str(file))
-        return Mistake(
-            "exception", _shortly(_told(error), file), lines[-1], linecache.getline(str(file), lines[-1]).rstrip()
-        )
+        return Mistake("exception", _shortly(_told(error), file), lines[-1], line_of(file, lines[-1]))
     if isinstance(error, RobolinkError):
         return Mistake("file", _shortly(_told_plainly(error), file))
     return None
@@ -77,6 +76,12 @@ def mistake_of(error: BaseException, file: Path) -> Mistake | None:
 def mistake_elsewhere(error: BaseException) -> Mistake:
     """Return the mistake of a program that failed at none of its own lines."""
     return Mistake("elsewhere", _told(error))
+
+
+def line_of(file: Path, number: int) -> str:
+    """Return a line of a student's file, as it is now; numbers begin at 1."""
+    linecache.checkcache(str(file))
+    return linecache.getline(str(file), number).rstrip()
 
 
 def _is(filename: str, file: Path) -> bool:

@@ -1,69 +1,129 @@
-"""Child process for a student's program: its output is bounded, and nothing of it is left."""
+"""Child process for a student's program, from the side of its parent: output is bounded, and nothing of it is left."""
 
 from __future__ import annotations
 
 import contextlib
 import os
+import re
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import IO
+from types import MappingProxyType
+from typing import IO, NamedTuple
+
+from robolink.learn.mistakes import line_of
+from robolink.learn.report import Mistake
+from robolink.supervisor.processes.guardian import marked, signal_group
+from robolink.supervisor.processes.lifeline import Lifeline
+from robolink.system.own_command import own_command
 
 MOST_PRINTED = 20_000
 """Most bytes of what a program prints that are kept."""
 
-MOST_MEMORY = 4 * 2**30
-"""Most bytes of address space that a program may have."""
+MARK = "ROBOLINK_APART"
+"""Environment variable by which the processes are found that a program has started and left."""
+
+SETTINGS = {
+    "PYTHONHASHSEED": "0",
+    "PYTHONIOENCODING": "utf-8",
+    "PYTHONUNBUFFERED": "1",  # what it prints is not lost when it is killed
+    "OPENBLAS_NUM_THREADS": "1",
+}
+"""Environment variables of each child."""
+
+TRACE = "trace.txt"
+"""Name of the file, beside the answer, into which a child that stands still writes where it stands."""
 
 STOP_WITHIN = 0.2
 """Period in seconds of the looks whether a process shall stop."""
 
-_OURS = ("world", "test", "robolink")
-"""Loggers whose lines a student does not need."""
+LARGEST = 8 * 2**20
+"""Most bytes of an answer: it comes from a process in which a student's program runs."""
+
+_PLACE = re.compile(r'^  File "(.*)", line (\d+) in ', re.MULTILINE)
 
 
-def run_apart(words: Sequence[str], work: Path, longest: float, stop: threading.Event | None = None) -> str:
-    """Run a process to its end, or kill it and all that it has started; return what it printed.
+class Ended(NamedTuple):
+    """Outcome of a child process."""
+
+    answer: bytes
+    """Content of the file that it was to write; nothing if it wrote none."""
+    printed: str
+    mistake: Mistake
+    """Mistake that explains a missing answer."""
+
+
+def run_apart(
+    words: Sequence[str],
+    file: Path,
+    longest: float,
+    *,
+    stop: threading.Event | None = None,
+    variables: Mapping[str, str] = MappingProxyType({}),
+) -> Ended:
+    """Run a command of robolink's in a process of its own; end it, and all that it has started.
+
+    It works in a temporary folder, and the path of the file for its answer is the last word of its command line.
 
     Args:
-        words: Its command line.
-        work: Its working directory.
+        words: Words of the command line, after `robolink`.
+        file: The student's file, for the line at which it stands still.
         longest: Seconds after which it is killed.
-        stop: Event that has it killed before; None for none.
+        stop: Event that ends the process before its time; None for none.
+        variables: Environment variables of it, beside those of this process.
     """
-    environ = {**os.environ, "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8", "OPENBLAS_NUM_THREADS": "1"}
+    with tempfile.TemporaryDirectory(prefix="robolink-apart-", ignore_cleanup_errors=True) as scratch:
+        answer, work = Path(scratch, "answer.json"), Path(scratch, "work")
+        work.mkdir()
+        command = [*own_command(), *words, str(answer)]
+        printed, in_time = _run(command, work, {**os.environ, **variables}, longest, stop or threading.Event())
+        return Ended(_content(answer), printed, why_no_answer(answer.with_name(TRACE), file, in_time))
+
+
+def _run(
+    command: Sequence[str], work: Path, environ: Mapping[str, str], longest: float, stop: threading.Event
+) -> tuple[str, bool]:
+    """Run a process to its end, or kill it; return what it printed, and whether it ended by itself."""
+    lifeline = Lifeline()
     kept: list[bytes] = []
-    with subprocess.Popen(
-        words,
-        cwd=work,
-        env=environ,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        start_new_session=True,
-    ) as process:
-        assert process.stdout is not None
-        reader = threading.Thread(target=_keep, args=(process.stdout, kept), daemon=True)
-        reader.start()
-        try:
-            _wait(process, longest, stop)
-        finally:
-            _kill(process)
-            reader.join(1.0)
-    return b"".join(kept)[:MOST_PRINTED].decode("utf-8", errors="replace")
+    try:
+        variables, options = lifeline.options()
+        with subprocess.Popen(
+            command,
+            cwd=work,
+            env={**environ, **SETTINGS, **variables, MARK: f"apart:{lifeline.mark}"},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+            **options,
+        ) as process:
+            assert process.stdout is not None
+            reader = threading.Thread(target=_keep, args=(process.stdout, kept), daemon=True)
+            try:
+                reader.start()
+                in_time = _wait(process, longest, stop)
+            finally:
+                _kill(process, lifeline.mark)
+                reader.join(1.0)
+    finally:
+        lifeline.close()
+    return b"".join(kept)[:MOST_PRINTED].decode("utf-8", errors="replace"), in_time
 
 
-def _wait(process: subprocess.Popen[bytes], longest: float, stop: threading.Event | None) -> None:
-    """Wait for the end of a process, for so many seconds, or until it shall stop."""
-    end = time.monotonic() + longest
-    while (left := end - time.monotonic()) > 0 and not (stop is not None and stop.is_set()):
+def _wait(process: subprocess.Popen[bytes], longest: float, stop: threading.Event) -> bool:
+    """Wait until a process ends; return False if it has to be ended."""
+    deadline = time.monotonic() + longest
+    while not stop.is_set() and time.monotonic() < deadline:
         with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(left if stop is None else min(left, STOP_WITHIN))
-            return
+            process.wait(STOP_WITHIN)
+            return True
+    return False
 
 
 def _keep(stream: IO[bytes], kept: list[bytes]) -> None:
@@ -76,36 +136,39 @@ def _keep(stream: IO[bytes], kept: list[bytes]) -> None:
                 left -= len(part)
 
 
-def _kill(process: subprocess.Popen[bytes]) -> None:
-    """End a process and all that it has started."""
-    with contextlib.suppress(OSError):
-        if sys.platform == "win32":
+def _kill(process: subprocess.Popen[bytes], mark: str) -> None:
+    """End a process and all that it has started, in other sessions too where the system shows environments (Linux)."""
+    if sys.platform == "win32":
+        with contextlib.suppress(OSError):
             process.kill()
-        else:
-            os.killpg(process.pid, signal.SIGKILL)
+        return
+    signal_group(process.pid, signal.SIGKILL)
+    for group in marked(mark):
+        signal_group(group, signal.SIGKILL)
 
 
-def limit_memory() -> None:
-    """Let this process have `MOST_MEMORY` at most, where the system can limit it: more is a MemoryError."""
-    if sys.platform == "linux":
-        import resource
-
-        _, most = resource.getrlimit(resource.RLIMIT_AS)
-        wanted = MOST_MEMORY if most == resource.RLIM_INFINITY else min(MOST_MEMORY, most)
-        resource.setrlimit(resource.RLIMIT_AS, (wanted, most))
+def _content(answer: Path) -> bytes:
+    try:
+        with answer.open("rb") as file:
+            return file.read(LARGEST)
+    except OSError:
+        return b""
 
 
-def show_own_lines() -> None:
-    """Print what the student's nodes log, as `INFO robo: hello`, and nothing of the world's."""
-    from robolink import logging
-    from robolink.logging import Record
-    from robolink.running.execution import ENDS_THE_SPINNING
-    from robolink.text.tracebacks import without_own_frames
+def why_no_answer(trace: Path, file: Path, in_time: bool) -> Mistake:
+    """Return why a process wrote no answer: it stood still, and no other thread of it could run, or it died.
 
-    def show(record: Record) -> None:
-        is_told = record.message.startswith(ENDS_THE_SPINNING)  # by the report, with its line
-        if record.name.partition(".")[0] not in _OURS and not is_told:
-            text = without_own_frames(record.message)
-            print(f"[{record.severity.name}] {record.name}: {text}", flush=True)  # noqa: T201
-
-    logging.set_console_handler(show)
+    Args:
+        trace: File with the trace of a process that stood still.
+        file: The student's file.
+        in_time: Whether it ended by itself.
+    """
+    try:
+        text = trace.read_text(encoding="ascii", errors="replace")
+    except OSError:
+        text = ""
+    if not text:
+        return Mistake("ended all" if in_time else "stuck somewhere")
+    name = str(file).encode("ascii", "backslashreplace").decode()  # as faulthandler writes it
+    line = next((int(found[2]) for found in _PLACE.finditer(text) if found[1] == name[: len(found[1])]), 0)
+    return Mistake("stuck", "", line, line_of(file, line)) if line else Mistake("stuck somewhere")

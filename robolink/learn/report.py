@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from msgspec import Struct
+from msgspec.structs import force_setattr
 
 Kind = Literal[
     "syntax",
@@ -25,11 +26,24 @@ Kind = Literal[
 ]
 
 
+LONGEST = 1000
+"""Longest text of a report, in letters."""
+
+
+def fit_text(text: str) -> str:
+    r"""Return a text that fits into a report: cut to `LONGEST`, and with `\ud800` for a surrogate, which JSON lacks."""
+    short = text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
+    return short.encode("utf-8", "backslashreplace").decode()
+
+
 class Line(Struct, frozen=True):
     """Sentence of a check."""
 
     good: bool
     text: str
+
+    def __post_init__(self) -> None:
+        force_setattr(self, "text", fit_text(self.text))
 
 
 class Mistake(Struct, frozen=True):
@@ -39,6 +53,10 @@ class Mistake(Struct, frozen=True):
     text: str = ""
     line: int = 0
     code: str = ""
+
+    def __post_init__(self) -> None:
+        force_setattr(self, "text", fit_text(self.text))
+        force_setattr(self, "code", fit_text(self.code))
 
 
 class Body(Struct, frozen=True):

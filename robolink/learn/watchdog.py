@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import os
+import faulthandler
 import sys
 import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
-from typing import Protocol
+from typing import IO, Protocol
 
 from robolink.host.patches.clocks import is_sleep
+from robolink.learn.mistakes import line_of
 from robolink.learn.report import Mistake
 
 LOOK = 0.05
@@ -24,13 +25,23 @@ ASLEEP = 20.0
 """Seconds of real time without any progress: the program waits for something that does not come."""
 
 
+FROZEN = 10.0
+"""Seconds of real time in which code in C (`9**9**9`) may let no other thread run, this one neither."""
+
+REARM = 1.0
+"""Period in which that time begins again, in seconds."""
+
+SLOTS = 10
+"""Looks notice progress of virtual time in tenths of a second: a timer of a nanosecond stands still as well."""
+
+
 class Watched(Protocol):
     """Protocol of what is watched: the run of a student's file."""
 
     file: Path
 
     def moment(self) -> tuple[float, int]:
-        """Return how far it is."""
+        """Return how far it is: its virtual time in seconds, and a count."""
 
 
 class Watchdog(threading.Thread):
@@ -41,24 +52,46 @@ class Watchdog(threading.Thread):
         found: Called once, on this thread.
         stuck: Seconds of a processor.
         asleep: Seconds of real time.
+        trace: File for the trace of a process in which this thread cannot run any more; None lets it stand for ever.
     """
 
     def __init__(
-        self, watched: Watched, found: Callable[[Mistake], object], *, stuck: float = STUCK, asleep: float = ASLEEP
+        self,
+        watched: Watched,
+        found: Callable[[Mistake], object],
+        *,
+        stuck: float = STUCK,
+        asleep: float = ASLEEP,
+        trace: IO[str] | None = None,
     ) -> None:
         super().__init__(name="robolink learn's watchdog", daemon=True)
-        self._watched, self._found, self._stuck, self._asleep = watched, found, stuck, asleep
+        self._watched, self._found, self._trace = watched, found, trace
+        self._stuck, self._asleep = stuck, asleep
         self._over = threading.Event()
 
     def run(self) -> None:
         """Look until stopped."""
-        moment, used, since = self._watched.moment(), time.process_time(), time.monotonic()
+        moment, used, since = self._moment(), time.process_time(), time.monotonic()
+        self._arm()
+        armed = since
         while not self._over.wait(LOOK):
-            if self._watched.moment() != moment:
-                moment, used, since = self._watched.moment(), time.process_time(), time.monotonic()
+            if time.monotonic() - armed > REARM:
+                self._arm()
+                armed = time.monotonic()
+            if self._moment() != moment:
+                moment, used, since = self._moment(), time.process_time(), time.monotonic()
             elif time.process_time() - used > self._stuck or time.monotonic() - since > self._asleep:
                 self._found(where_stuck(self._watched.file))
                 return
+
+    def _moment(self) -> tuple[int, int]:
+        seconds, sentences = self._watched.moment()
+        return int(seconds * SLOTS), sentences
+
+    def _arm(self) -> None:
+        """Let this process end, with a trace of where it stands, if this thread cannot do so `FROZEN` from now on."""
+        if self._trace is not None:
+            faulthandler.dump_traceback_later(FROZEN, exit=True, file=self._trace)
 
     def stop(self) -> None:
         """Stop the watchdog."""
@@ -72,7 +105,7 @@ def where_stuck(file: Path) -> Mistake:
     line = next((each for each in places if each), 0)
     if not line:
         return Mistake("stuck somewhere")
-    return Mistake("stuck", "", line, _code(file, line))
+    return Mistake("stuck", "", line, line_of(file, line))
 
 
 def where_asleep(file: Path) -> Mistake | None:
@@ -80,7 +113,7 @@ def where_asleep(file: Path) -> Mistake | None:
     for frame in sys._current_frames().values():
         line = _sleeps_at(frame, str(file))
         if line:
-            return Mistake("asleep", "", line, _code(file, line))
+            return Mistake("asleep", "", line, line_of(file, line))
     return None
 
 
@@ -93,23 +126,9 @@ def _sleeps_at(frame: FrameType | None, file: str) -> int:
     return 0
 
 
-def _code(file: Path, line: int) -> str:
-    import linecache
-
-    linecache.checkcache(str(file))
-    return linecache.getline(str(file), line).rstrip()
-
-
 def _line(frame: FrameType | None, file: str) -> int:
     while frame is not None:
         if frame.f_code.co_filename == file:
             return frame.f_lineno
         frame = frame.f_back
     return 0
-
-
-def end_process() -> None:
-    """End this process at once, whatever its threads do."""
-    for stream in (sys.stdout, sys.stderr):
-        stream.flush()
-    os._exit(0)

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import os
-import sys
-import tempfile
+import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import msgspec
 
-from robolink.learn.process import limit_memory, run_apart, show_own_lines
-from robolink.learn.report import Mistake
-from robolink.learn.watchdog import Watchdog, end_process
-from robolink.race.driving import Drive
+from robolink.learn.process import run_apart
 from robolink.race.races import RACES, Race
 from robolink.race.result import Result
-from robolink.system.own_command import own_command
+from robolink.workspace import user_workspace
+from robolink.workspace.find import VARIABLE
 
 LONGEST = 300.0
 """Seconds of real time after which a run is ended from outside."""
@@ -31,23 +28,32 @@ def race_all(
 ) -> list[Result]:
     """Run programs in a race, as many at a time as there are processors; return their results in the same order.
 
+    Whatever interrupts it ends the programs that run.
+
     Args:
         race: The race.
         programs: Files, or names of nodes.
         seed: Seed of the world and of all chance.
         on_done: Called with each result as it comes.
     """
+    stop = threading.Event()
 
     def run(program: str) -> Result:
-        result = run_one(race, program, seed)
+        result = run_one(race, program, seed, stop=stop)
         on_done(result)
         return result
 
     with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
-        return list(pool.map(run, programs))
+        try:
+            return list(pool.map(run, programs))
+        except BaseException:
+            stop.set()
+            raise
 
 
-def run_one(race: Race, program: str, seed: int, *, longest: float = LONGEST) -> Result:
+def run_one(
+    race: Race, program: str, seed: int, *, longest: float = LONGEST, stop: threading.Event | None = None
+) -> Result:
     """Run one program in a process of its own.
 
     Args:
@@ -55,41 +61,38 @@ def run_one(race: Race, program: str, seed: int, *, longest: float = LONGEST) ->
         program: A file, or the name of a node.
         seed: Seed of the world and of all chance.
         longest: Seconds after which the process is killed.
+        stop: Event that ends the run; None for none.
     """
-    path = Path(program)
-    what = str(path.resolve()) if path.suffix == ".py" else program
-    with tempfile.TemporaryDirectory(prefix="robolink-race-", ignore_cleanup_errors=True) as scratch:
-        out, work = Path(scratch, "result.json"), Path(scratch, "work")
-        work.mkdir()
-        run_apart([*own_command(), COMMAND, race.name, what, str(seed), str(out)], work, longest)
-        try:
-            result = msgspec.json.decode(out.read_bytes(), type=Result)
-        except (OSError, msgspec.DecodeError):
-            result = Result(mistake=Mistake("ended all"))
+    file = Path(program)
+    what = str(file.resolve()) if file.is_file() else program
+    workspace = user_workspace()  # the process works elsewhere, and is to find the same nodes
+    ended = run_apart(
+        [COMMAND, race.name, str(seed), what],
+        file.resolve(),
+        longest,
+        stop=stop,
+        variables={} if workspace is None else {VARIABLE: str(workspace)},
+    )
+    try:
+        result = msgspec.json.decode(ended.answer, type=Result)
+    except msgspec.DecodeError:
+        result = Result(mistake=ended.mistake)
     return msgspec.structs.replace(result, program=program)
 
 
-def serve(name: str, program: str, seed: int, out: Path) -> None:
-    """Run one program in this process, write the result, and end the process.
+def serve(name: str, program: str, seed: int, answer: Path) -> None:
+    """Run one program in this process, which that ends: the other side of `run_one`.
 
     Args:
         name: Name of the race.
         program: A file, or the name of a node.
         seed: Seed of the world and of all chance.
-        out: File for the result.
+        answer: File for the result.
     """
-    sys.dont_write_bytecode = True
-    limit_memory()
-    show_own_lines()
+    from robolink.learn.child import Child  # late: whoever asks for a run needs none of it
+    from robolink.race.driving import Drive
+
+    child = Child(answer)
     drive = Drive(RACES[name], program, seed)
-
-    def stuck(mistake: Mistake) -> None:
-        out.write_bytes(msgspec.json.encode(drive.result(mistake)))
-        end_process()
-
-    watchdog = Watchdog(drive, stuck)
-    watchdog.start()
-    result = drive.run()
-    watchdog.stop()
-    out.write_bytes(msgspec.json.encode(result))
-    end_process()
+    child.watch(drive, drive.result)
+    child.end(drive.run())

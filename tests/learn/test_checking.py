@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
+import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -12,7 +14,7 @@ from robolink.learn.checking import check
 from robolink.learn.exercise import Exercise, chosen, read_course, read_exercise
 from robolink.learn.lines import WIDTH, reported
 from robolink.learn.mistakes import mistake_in
-from robolink.learn.report import Line, Mistake, Report
+from robolink.learn.report import LONGEST, Line, Mistake, Report
 from robolink.learn.trial import Trial
 
 COURSE = read_course()
@@ -38,6 +40,29 @@ def test_a_syntax_error_has_its_line(tmp_path: Path) -> None:
     lines = list(reported(HELLO, report, "pt"))
     assert lines[0] == f"  ✗ 02_hello.py não é Python válido na linha {report.mistake.line}:"
     assert lines[1].endswith("| def main()")
+
+
+def test_what_windows_editors_put_before_a_program_is_no_mistake(tmp_path: Path) -> None:
+    assert tried("\ufeff" + solution(HELLO), tmp_path).passed
+
+
+def test_what_json_lacks_is_in_a_report_in_escapes(tmp_path: Path) -> None:
+    report = tried(solution(HELLO).replace("rclpy.spin(node)", "raise ValueError('\\ud800' + 'x' * 10_000)"), tmp_path)
+    assert msgspec.json.decode(msgspec.json.encode(report), type=Report) == report
+    assert report.mistake is not None
+    assert report.mistake.text.startswith("ValueError: \\ud800xxx")
+    assert len(report.mistake.text) < 2 * LONGEST
+
+
+def test_a_line_without_end_is_cut(tmp_path: Path) -> None:
+    report = tried("x = '" + "a" * 100_000, tmp_path)
+    assert max(map(len, reported(HELLO, report, "en"))) < LONGEST
+
+
+def test_a_mistake_without_words_has_its_name(tmp_path: Path) -> None:
+    report = tried("x = " + "-" * 200_000 + "1", tmp_path)
+    assert report.mistake is not None
+    assert re.fullmatch(r"02_hello.py: (MemoryError|RecursionError.*)", report.mistake.text)
 
 
 def test_an_exception_in_a_constructor_has_its_line_and_the_nearest_name(tmp_path: Path) -> None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -13,8 +16,9 @@ from robolink.cli.shared.output import say
 from robolink.learn.exercise import Exercise, chosen, read_course
 from robolink.learn.isolated import check_apart
 from robolink.learn.lines import reported
-from robolink.learn.process import MOST_PRINTED
-from robolink.learn.report import Report
+from robolink.learn.process import MOST_PRINTED, SETTINGS, TRACE, why_no_answer
+from robolink.learn.report import Mistake, Report
+from robolink.supervisor.processes.guardian import is_alive
 
 HELLO = chosen(read_course(), "hello")
 SOLUTION = (Path(__file__).parent / "solutions" / "02_hello.py").read_text(encoding="utf-8")
@@ -26,6 +30,13 @@ def tried(text: str, folder: Path, exercise: Exercise = HELLO, longest: float = 
     file = folder / exercise.file
     file.write_text(text, encoding="utf-8")
     return check_apart(exercise, file, "en", longest=longest)
+
+
+def wait_until(is_so: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + 30.0
+    while not is_so():
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
 
 
 def test_a_solution_passes_and_what_it_prints_is_shown(tmp_path: Path) -> None:
@@ -85,7 +96,7 @@ def test_what_does_not_even_let_others_run_is_killed(tmp_path: Path) -> None:
     hangs = "import re\nre.match(r'(a+)+$', 'a' * 60 + 'b')\n"  # in C, which keeps all other threads from running
     begin = time.monotonic()
     report = tried(hangs + SOLUTION, tmp_path, longest=3.0)
-    assert report.mistake is not None
+    assert report.mistake == Mistake("stuck somewhere")
     assert time.monotonic() - begin < 20.0
 
 
@@ -112,6 +123,65 @@ def test_a_program_that_wants_all_memory_is_told(tmp_path: Path) -> None:
     assert report.mistake.kind == "exception"
     assert report.mistake.text == "MemoryError"
     assert report.mistake.code == "    text = 'a' * 10**10"
+
+
+def test_where_code_stands_that_lets_no_other_thread_run(tmp_path: Path) -> None:
+    file, answer = tmp_path / HELLO.file, tmp_path / "answer.json"
+    file.write_text(
+        SOLUTION.replace("    rclpy.spin(node)", "    print('before')\n    number = 9**9**9"), encoding="utf-8"
+    )
+    program = (
+        "import sys; from pathlib import Path; from robolink.learn import isolated, watchdog; watchdog.FROZEN = 3;"
+        " isolated.serve(*map(Path, sys.argv[1:]), 'en')"
+    )
+    words = [sys.executable, "-c", program, str(HELLO.folder), str(file), str(answer)]
+    done = subprocess.run(words, capture_output=True, check=False, timeout=60.0, env={**os.environ, **SETTINGS})
+    assert done.returncode == 1
+    assert b"before" in done.stdout
+    assert not answer.exists()
+    mistake = why_no_answer(tmp_path / TRACE, file, in_time=True)
+    assert (mistake.kind, mistake.code) == ("stuck", "    number = 9**9**9")
+
+
+def test_a_process_that_is_killed_from_outside_is_stuck_somewhere(tmp_path: Path) -> None:
+    assert why_no_answer(tmp_path / TRACE, tmp_path, in_time=False) == Mistake("stuck somewhere")
+    assert why_no_answer(tmp_path / TRACE, tmp_path, in_time=True) == Mistake("ended all")
+
+
+def test_the_line_is_found_in_folders_of_any_name(tmp_path: Path) -> None:
+    file = tmp_path / "Área" / "ação" / HELLO.file
+    file.parent.mkdir(parents=True)
+    file.write_text("one\ntwo\n", encoding="utf-8")
+    with (tmp_path / TRACE).open("w", encoding="ascii") as trace:
+        code = compile("import faulthandler\nfaulthandler.dump_traceback(trace)", str(file), "exec")
+        exec(code, {"trace": trace})
+    assert why_no_answer(tmp_path / TRACE, file, in_time=True) == Mistake("stuck", "", 2, "two")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not show environments")
+def test_nothing_is_left_of_what_a_program_starts(tmp_path: Path) -> None:
+    starts = "    import subprocess\n    print(subprocess.Popen(['sleep', '60'], start_new_session=True).pid)\n"
+    report = tried(SOLUTION.replace("    rclpy.spin(node)", starts + "    rclpy.spin(node)"), tmp_path)
+    assert report.passed
+    number = next(int(each) for each in report.printed.split() if each.isdecimal())
+    assert not is_alive(number)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="its processes end otherwise")
+def test_nothing_is_left_when_the_command_is_killed(tmp_path: Path) -> None:
+    file, note = tmp_path / HELLO.file, tmp_path / "note"
+    waits = (
+        "    import os, subprocess\n    open({!r}, 'w').write(str(os.getpid()))\n    subprocess.run(['sleep', '60'])\n"
+    )
+    file.write_text(SOLUTION.replace("    rclpy.spin(node)", waits.format(str(note))), encoding="utf-8")
+    program = (
+        "import sys; from pathlib import Path; from robolink.learn import exercise, isolated;"
+        " isolated.check_apart(exercise.read_exercise(Path(sys.argv[1])), Path(sys.argv[2]), 'en')"
+    )
+    with subprocess.Popen([sys.executable, "-c", program, str(HELLO.folder), str(file)]) as process:
+        wait_until(lambda: note.exists() and note.read_text() != "")
+        process.kill()
+    wait_until(lambda: not is_alive(int(note.read_text())))
 
 
 def test_a_flood_of_words_is_cut(tmp_path: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -97,6 +99,44 @@ def test_several_run_side_by_side_and_none_ends_the_others(tmp_path: Path) -> No
     assert gone.mistake == Mistake("ended all")
     assert good.score is not None
     assert good == run_one(FOLLOW, "wall_follower", 1)
+
+
+@pytest.mark.processes
+@pytest.mark.skipif(sys.platform == "win32", reason="it has no sleep")
+def test_what_interrupts_a_race_ends_its_programs(tmp_path: Path) -> None:
+    (tmp_path / "gone.py").write_text("import os\nos._exit(0)\n")
+    (tmp_path / "waits.py").write_text("import subprocess\nsubprocess.run(['sleep', '60'])\n")
+
+    def interrupt(result: Result) -> None:
+        raise KeyboardInterrupt
+
+    begin = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        race_all(FOLLOW, [str(tmp_path / "gone.py"), str(tmp_path / "waits.py")], 1, on_done=interrupt)
+    assert time.monotonic() - begin < 15.0, "it did not wait for the other, which ends after 20 s"
+
+
+@pytest.mark.processes
+def test_a_node_of_the_workspace_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for each in ("nodes", "configs"):
+        (tmp_path / each).mkdir()
+    (tmp_path / "nodes" / "my_racer.py").write_text("def main(:\n")
+    monkeypatch.chdir(tmp_path)
+    (program,) = programs_of("follow", ["my_racer"])
+    result = run_one(FOLLOW, program, 1)
+    assert result.program == "my_racer"
+    assert result.mistake is not None
+    assert (result.mistake.kind, result.mistake.line) == ("syntax", 1)
+
+
+def test_a_program_has_any_name_that_a_file_can_have(tmp_path: Path) -> None:
+    for name in ("bare", "UPPER.PY", "a b.py", "two\nlines.py"):
+        file = tmp_path / name
+        file.write_text(STANDS)
+        result = Drive(FOLLOW._replace(seconds=0.1), str(file), 1).run()
+        assert (result.mistake, result.score) == (None, 0.0)
+        assert len(list(table(FOLLOW, [result], 1))) == 2
+        assert all("\n" not in line for line in table(FOLLOW, [result], 1))
 
 
 def test_places() -> None:

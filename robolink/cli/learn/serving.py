@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
@@ -11,9 +10,9 @@ app = typer.Typer()
 
 
 @app.command()
-def serve(folder: Path, file: Path, out: Path, language: Annotated[str, typer.Option("--language")] = "en") -> None:
+def serve(folder: Path, file: Path, language: str, answer: Path) -> None:
     """Check a program in this process, and write the report into a file."""
     from robolink.learn.isolated import serve
     from robolink.learn.languages import language_of
 
-    serve(folder, file, out, language_of(language) or "en")
+    serve(folder, file, answer, language_of(language) or "en")

@@ -10,8 +10,8 @@ app = typer.Typer()
 
 
 @app.command()
-def serve(name: str, program: str, seed: int, out: Path) -> None:
+def serve(name: str, seed: int, program: str, answer: Path) -> None:
     """Run a program in this process, and write the result into a file."""
     from robolink.race.apart import serve
 
-    serve(name, program, seed, out)
+    serve(name, program, seed, answer)
