@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import struct
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robolink.exceptions import NotFoundError
 from robolink.learn.mistakes import mistake_in, mistake_of
 from robolink.learn.report import Mistake
 from robolink.race.races import Race
 from robolink.race.result import Result
+from robolink.workspace import find_node
 
 if TYPE_CHECKING:
     from robolink.race.judges import Judge
@@ -34,7 +37,7 @@ class Drive:
     """
 
     def __init__(self, race: Race, program: str, seed: int) -> None:
-        self.file = Path(program)
+        self.file = _file_of(program)
         self._race, self._program, self._seed = race, program, seed
         self._system: System | None = None
         self._judge: Judge = race.judge(seed)
@@ -59,7 +62,7 @@ class Drive:
 
     def run(self) -> Result:
         """Run it to its end; nothing that the program does raises."""
-        mistake = mistake_in(self.file) if self.file.suffix == ".py" else None
+        mistake = mistake_in(self.file) if self.file.is_file() else None
         if mistake is None:
             mistake = self._ran()
         return self.result(mistake)
@@ -75,7 +78,7 @@ class Drive:
                 try:
                     self._system.start("world", parameters={"world": str(world)})
                     robot = self._system.robot()
-                    self._system.start(self.file if self.file.suffix == ".py" else self._program)
+                    self._system.start(Path(self._program) if Path(self._program).is_file() else self._program)
                     self._drive(self._system, robot)
                 finally:
                     self._system.close()
@@ -92,3 +95,11 @@ class Drive:
             self._judge.see(number * STEP, pose.x, pose.y, self._contacts)
             if self._judge.is_over:
                 return
+
+
+def _file_of(program: str) -> Path:
+    """Return the file of a program, for the lines of its mistakes."""
+    with contextlib.suppress(NotFoundError):  # it is told when the program is started
+        if not Path(program).is_file():
+            return find_node(program).path or Path(program)
+    return Path(program)

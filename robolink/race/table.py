@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from robolink.learn.languages import Language, words
 from robolink.race.races import Race
 from robolink.race.result import Result, ranked
+from robolink.system.terminal import shown
 
 SHOWN = 16
 """Digits of a hash that the table for people shows."""
@@ -19,9 +20,9 @@ COLUMNS = ["place", "program", "score", "unit", "progress", "contacts", "seed", 
 def table(race: Race, results: Sequence[Result], seed: int, language: Language = "en") -> Iterator[str]:
     """Yield the lines of a table for people, in a language."""
     yield words(language, "race", name=race.name, seed=seed, rule=words(language, f"rule {race.name}"))
-    longest = max((len(each.program) for each in results), default=0)
+    longest = max((len(shown(each.program)) for each in results), default=0)
     for place, each in ranked(race, results):
-        yield f"{place or '-':>3}  {each.program:{longest}}  {_said(race, each, language)}"
+        yield f"{place or '-':>3}  {shown(each.program):{longest}}  {_said(race, each, language)}"
 
 
 def _said(race: Race, result: Result, language: Language) -> str:

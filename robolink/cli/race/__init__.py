@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Annotated
 
 import typer
@@ -58,10 +59,13 @@ def race(
     programs = programs_of(name, files)
     others = without_program(name, files)
     for each in others if as_json or as_csv else ():
-        tell(f"{each}: {words(tongue, 'no program', text=f'{name}.py')}")
+        _note(f"{each}: {words(tongue, 'no program', text=f'{name}.py')}")
     many = len(programs) > 1
     results = race_all(
-        rules, programs, seed, on_done=lambda each: tell(words(tongue, "raced", program=each.program)) if many else None
+        rules,
+        programs,
+        seed,
+        on_done=lambda each: _note(words(tongue, "raced", program=each.program)) if many else None,
     )
     if as_json:
         say_json(table.rows(rules, results, seed))
@@ -71,3 +75,9 @@ def race(
         results += [Result(each, mistake=Mistake("no program", f"{name}.py")) for each in others]
         for line in table.table(rules, results, seed, tongue):
             say(line)
+
+
+def _note(text: str) -> None:
+    """Write a note; a race goes on if nobody can be told, as with `2>&1 | head`."""
+    with contextlib.suppress(OSError):
+        tell(text)

@@ -27,7 +27,13 @@ def say_json(value: Any) -> None:
     """Write a value as one line of JSON to standard output, and flush it."""
     import msgspec
 
-    say(msgspec.json.encode(value).decode())
+    try:
+        text = msgspec.json.encode(value).decode()
+    except UnicodeEncodeError:  # a surrogate: the name of a file that is not UTF-8, for example
+        import json
+
+        text = json.dumps(msgspec.to_builtins(value))
+    say(text)
 
 
 def clear() -> None:

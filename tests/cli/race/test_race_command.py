@@ -128,6 +128,26 @@ def test_a_table_for_programs(capsys: Captured) -> None:
 
 
 @pytest.mark.usefixtures("three")
+def test_a_name_that_is_not_utf_8_is_escaped(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(RESULTS, "a.py", Result("caf\udce9\n.py", 41.5, 1.0, 0, "ab" * 32))
+    assert main(["race", "maze", "a.py", "--json"]) == 0
+    (row,) = json.loads(capsys.readouterr().out)
+    assert row["program"] == "caf\udce9\n.py"
+    assert main(["race", "maze", "a.py"]) == 0
+    assert capsys.readouterr().out.splitlines()[1].startswith("  1  caf\\udce9\\n.py  ")
+
+
+@pytest.mark.usefixtures("three")
+def test_a_race_goes_on_if_nobody_listens(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+    def closed(text: str) -> None:
+        raise BrokenPipeError
+
+    monkeypatch.setattr("robolink.cli.race.tell", closed)
+    assert main(["race", "maze", "a.py", "b.py"]) == 0
+    assert "b.py" in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("three")
 def test_wrong_usage(capsys: Captured) -> None:
     assert main(["race", "lime", "a.py"]) == 2
     assert "'lime' is none of line, maze, follow (did you mean 'line'?)" in capsys.readouterr().err
