@@ -73,6 +73,8 @@ def _of_use(error: BaseException, trial: Trial) -> Mistake | None:
     """Return the mistake of a module that lacks a name, or has a function with other arguments, as a check found."""
     if not trial.has_imported or not isinstance(error, (AttributeError, TypeError)):
         return None
+    if isinstance(error, AttributeError) and isinstance(error.obj, Trial):
+        return None
     lacking = _LACKING.fullmatch(str(error))
     return Mistake("lacks", lacking[1]) if lacking else Mistake("use", str(error))
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from msgspec import Struct
 
-from robolink.documents.yamlfile import load
+from robolink.documents.yamlfile import load, read_text
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.learn.languages import Language
 
@@ -91,7 +91,7 @@ class Exercise:
     def given_text(self, language: Language) -> str:
         """Return the file that a student begins with: the task as a comment, then the program."""
         head = "\n".join(f"# {line}".rstrip() for line in [self.title(language), "", *self.text(language).splitlines()])
-        return f"{head}\n\n{self._in_language(self.given.read_text(encoding='utf-8'), language)}"
+        return f"{head}\n\n{self._in_language(read_text(self.given), language)}"
 
     def _in_language(self, program: str, language: Language) -> str:
         """Replace the comments that are placeholders: `# {todo}` by the comment `todo` of exercise.yaml."""
@@ -133,13 +133,19 @@ def read_course(folder: Path | None = None) -> list[Exercise]:
         folder: The folder; None is that of the exercises that come with robolink.
 
     Raises:
-        ExerciseError: (a ValueError) if there is none, or one is not complete.
+        ExerciseError: (a ValueError) if there is none, one is not complete, or two have the same name.
     """
     place = BUILT_IN if folder is None else folder
     found = sorted(each.parent for each in place.glob(f"*/{SETTINGS}"))
     if not found:
         raise ExerciseError(f"{place} has no exercises: folders with an {SETTINGS} in each")
-    return [read_exercise(each) for each in found]
+    course = [read_exercise(each) for each in found]
+    folders: dict[str, Path] = {}
+    for each in course:
+        if each.name in folders:
+            raise ExerciseError(f"{each.folder} and {folders[each.name]} are both '{each.name}': rename one of them")
+        folders[each.name] = each.folder
+    return course
 
 
 def chosen(course: list[Exercise], name: str) -> Exercise:
@@ -147,8 +153,7 @@ def chosen(course: list[Exercise], name: str) -> Exercise:
     bare = re.sub(r"\.(py|yaml)$", "", Path(name).name)
     for each in course:
         number = each.folder.name.partition("_")[0]
-        if bare in (each.name, each.folder.name) or (
-            bare.isdecimal() and number.isdecimal() and int(bare) == int(number)
-        ):
+        is_number = bare.isdecimal() and number.isdecimal() and bare.lstrip("0") == number.lstrip("0")
+        if is_number or bare in (each.name, each.folder.name):
             return each
     raise NotFoundError("exercise", name, [each.name for each in course])

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
+from collections.abc import Iterator
 from pathlib import Path
 
-from robolink.exceptions import RobolinkError
+from robolink.exceptions import DocumentError, RobolinkError
 from robolink.learn.exercise import Exercise, chosen, read_course
 from robolink.learn.languages import Language, default_language
 from robolink.learn.progress import FILE, Progress, load_progress, save_progress
-from robolink.system.paths import expanded
+from robolink.system.paths import expanded, is_file
+from robolink.system.whole_files import write_new
 
 DEFAULT = "learn_robolink"
 """Name of the folder that `start` makes."""
@@ -59,56 +63,61 @@ class StudentFolder:
     def write(self) -> list[str]:
         """Write the given files that are not there yet; return their names."""
         self.path.mkdir(parents=True, exist_ok=True)
-        missing = [each for each in self.course if not self.file_of(each).exists()]
+        missing = [each for each in self.course if not os.path.lexists(self.file_of(each))]
         for each in missing:
-            _write(self.file_of(each), each.given_text(self.language))
-        self.save()
+            write_new(self.file_of(each), each.given_text(self.language).encode())
+        save_progress(self.path, self.progress)
         return [each.file for each in missing]
 
     def reset(self, exercise: Exercise) -> Path | None:
         """Write the given file of an exercise again; return where the student's own is kept, None if there was none."""
-        path, kept = self.file_of(exercise), None
-        if path.exists():
-            kept = _free(path)
+        path, given = self.file_of(exercise), exercise.given_text(self.language).encode()
+        kept = _free(path) if os.path.lexists(path) else None
+        if kept is not None:
             path.rename(kept)
-        _write(path, exercise.given_text(self.language))
-        if exercise.name in self.progress.done:
-            self.progress.done.remove(exercise.name)
-        self.progress.hints.pop(exercise.name, None)
-        self.save()
+        try:
+            write_new(path, given)
+        except OSError:
+            if kept is not None:
+                kept.rename(path)
+            raise
+        with self._changed() as progress:
+            progress.forget(exercise.name)
         return kept
 
     def next_hint(self, exercise: Exercise) -> int:
         """Return the number of the next hint, from 1 on; the last one again after the last, and 0 if there are none."""
-        count = min(self.progress.hints.get(exercise.name, 0) + 1, len(exercise.settings.hints))
-        self.progress.hints[exercise.name] = count
-        self.save()
-        return count
+        with self._changed() as progress:
+            return progress.next_hint(exercise.name, len(exercise.settings.hints))
 
     def finish(self, exercise: Exercise) -> None:
         """Note that an exercise is done."""
-        self.progress.finish(exercise.name)
-        self.save()
+        with self._changed() as progress:
+            progress.finish(exercise.name)
 
     def speak(self, language: Language) -> None:
         """Set the language, and keep it."""
         if language != self.progress.language:
-            self.progress.language = language
-            self.save()
+            with self._changed() as progress:
+                progress.language = language
 
     def reload(self) -> None:
         """Read the progress again, which another command may have changed. Raises DocumentError if it cannot be."""
         self.progress = load_progress(self.path)
 
-    def save(self) -> None:
-        """Write the progress."""
+    @contextlib.contextmanager
+    def _changed(self) -> Iterator[Progress]:
+        """Provide the progress as the file has it by now, to be changed, and write it: `watch` runs beside others."""
+        with contextlib.suppress(DocumentError):  # somebody has removed or broken the file: ours is as good
+            self.reload()
+        yield self.progress
         save_progress(self.path, self.progress)
 
 
 def find_folder() -> StudentFolder | None:
     """Return the student's folder at or above the working directory; None if there is none."""
     here = Path.cwd()
-    found = next((each for each in (here, *here.parents) if (each / FILE).is_file()), None)
+    found = next((each for each in (here, *here.parents) if is_file(each / FILE)), None)
     return None if found is None else StudentFolder(found, load_progress(found))
 
 
@@ -146,7 +155,7 @@ def start_folder(path: str = "", *, language: Language | None = None, source: st
         folder = Path.cwd() / DEFAULT if found is None else found.path
     else:
         folder = expanded(path).absolute()
-    is_old = (folder / FILE).is_file()
+    is_old = is_file(folder / FILE)
     progress = load_progress(folder) if is_old else Progress(language or default_language())
     progress.language = language or progress.language
     if source:
@@ -154,14 +163,11 @@ def start_folder(path: str = "", *, language: Language | None = None, source: st
     return StudentFolder(folder, progress)
 
 
-def _write(path: Path, text: str) -> None:
-    with path.open("x", encoding="utf-8", newline="\n") as file:
-        file.write(text)
-
-
 def _free(path: Path) -> Path:
     """Return a name for a file that is put aside, which no other has: 02_stop.mine.py, 02_stop.mine2.py ..."""
     number = 1
-    while (free := path.with_name(f"{path.stem}.mine{number if number > 1 else ''}{path.suffix}")).exists():
+    free = path.with_name(f"{path.stem}.mine{path.suffix}")
+    while os.path.lexists(free):
         number += 1
+        free = path.with_name(f"{path.stem}.mine{number}{path.suffix}")
     return free

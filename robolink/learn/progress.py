@@ -9,6 +9,7 @@ from msgspec import Struct
 
 from robolink.exceptions import DocumentError
 from robolink.learn.languages import Language
+from robolink.system.whole_files import write_whole
 
 FILE = ".robolink_learn.json"
 """Name of the file, by which a student's folder is known."""
@@ -33,6 +34,16 @@ class Progress(Struct):
         if name not in self.done:
             self.done.append(name)
 
+    def forget(self, name: str) -> None:
+        """Note that an exercise is as it was at the beginning."""
+        self.done = [each for each in self.done if each != name]
+        self.hints.pop(name, None)
+
+    def next_hint(self, name: str, most: int) -> int:
+        """Count a hint, and return its number, from 1 on; `most` again after the last, and 0 if there are none."""
+        self.hints[name] = min(max(self.hints.get(name, 0), 0) + 1, most)
+        return self.hints[name]
+
 
 def load_progress(folder: Path) -> Progress:
     """Read the progress of a folder. Raises DocumentError if the file cannot be read."""
@@ -40,7 +51,7 @@ def load_progress(folder: Path) -> Progress:
     try:
         with path.open("rb") as file:
             return msgspec.json.decode(file.read(LARGEST), type=Progress)
-    except (OSError, msgspec.DecodeError, UnicodeDecodeError) as error:
+    except (OSError, msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise DocumentError(
             f"{reason}; delete this file and run `robolink learn start {folder}`: your programs stay", str(path)
@@ -49,6 +60,4 @@ def load_progress(folder: Path) -> Progress:
 
 def save_progress(folder: Path, progress: Progress) -> None:
     """Write the progress of a folder, as a whole or not at all. Raises OSError."""
-    new = folder / f"{FILE}.new"
-    new.write_bytes(msgspec.json.format(msgspec.json.encode(progress)) + b"\n")
-    new.replace(folder / FILE)
+    write_whole(folder / FILE, msgspec.json.format(msgspec.json.encode(progress)) + b"\n")

@@ -12,6 +12,7 @@ from robolink.learn.exercise import LONGEST_NAME, SETTINGS, Exercise, ExerciseEr
 from robolink.learn.languages import Language, words
 from robolink.learn.report import Report
 from robolink.scaffold.rendering import rendered
+from robolink.scaffold.writing import written
 from robolink.system.paths import expanded
 
 FOLDER = "exercises"
@@ -44,10 +45,7 @@ def new_exercise(name: str, folder: str = "") -> Path:
         raise ExerciseError(f"{place} has an exercise '{name}' already: take another name")
     numbers = [int(each.partition("_")[0]) for each in there if each.partition("_")[0].isdecimal()]
     made = place / f"{max(numbers, default=0) + 1:02}_{name}"
-    made.mkdir(parents=True)
-    for path, text in rendered("exercise", {"NAME": name}).items():
-        (made / path).write_text(text, encoding="utf-8", newline="\n")
-    return made
+    return written(made, name, rendered("exercise", {"NAME": name})).folder
 
 
 class Proof(NamedTuple):

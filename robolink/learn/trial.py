@@ -61,10 +61,13 @@ class Trial:
             name: Name of a world, or of a file in the exercise's folder.
             parameters: More parameters of the node `world`.
         """
-        own = self.folder / name
-        self.system.start("world", parameters={"world": str(own) if own.is_file() else name, **parameters})
-        from robolink.exceptions import NotFoundError
+        from robolink.exceptions import NotFoundError, RobolinkError
 
+        own = self.folder / name
+        try:
+            self.system.start("world", parameters={"world": str(own) if own.is_file() else name, **parameters})
+        except RobolinkError as error:  # no mistake of the student's
+            raise ExerciseError(str(error)) from error
         try:
             return self.system.robot()
         except NotFoundError:

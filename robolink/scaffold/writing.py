@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -9,6 +11,7 @@ from typing import NamedTuple
 from robolink.scaffold.naming import ScaffoldError, checked, class_name
 from robolink.scaffold.rendering import rendered
 from robolink.system.paths import expanded
+from robolink.system.whole_files import write_new
 from robolink.workspace import built_in_workspace, user_workspace
 from robolink.workspace.source import Folder
 
@@ -92,13 +95,27 @@ def _workspace(asked: Folder) -> Path | None:
 def written(folder: Path, name: str, files: Mapping[str, str]) -> Made:
     """Write `files`, texts by relative path, into a `folder`, and return the record of the thing called `name`.
 
-    Raises ScaffoldError if one of them is there already.
+    All of them are written, or none.
+
+    Raises:
+        ScaffoldError: (a ValueError) if one of them is there already.
+        OSError: if one cannot be written.
     """
-    there = [each for each in files if (folder / each).exists()]
+    there = [each for each in files if os.path.lexists(folder / each)]
     if there:
         raise ScaffoldError(f"{folder / there[0]} is there already, and stays as it is: take another name")
-    for path, text in files.items():
-        (folder / path).parent.mkdir(parents=True, exist_ok=True)
-        with (folder / path).open("x", encoding="utf-8", newline="\n") as file:
-            file.write(text)
+    with contextlib.ExitStack() as undo:
+        for path, text in files.items():
+            _make_folder((folder / path).parent, undo)
+            write_new(folder / path, text.encode())
+            undo.callback((folder / path).unlink)
+        undo.pop_all()
     return Made(name, folder, list(files))
+
+
+def _make_folder(folder: Path, undo: contextlib.ExitStack) -> None:
+    """Make a folder and those above it that are not there, and note how to remove them."""
+    for each in (*reversed(folder.parents), folder):
+        if not each.exists():
+            each.mkdir()
+            undo.callback(each.rmdir)

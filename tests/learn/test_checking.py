@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 
 import msgspec
@@ -181,3 +182,14 @@ def test_a_trial_tells_how_far_it_is(tmp_path: Path) -> None:
 def test_lines_are_not_wider_than_a_terminal() -> None:
     report = Report([Line(False, "word " * 60)])
     assert max(map(len, reported(HELLO, report, "en"))) <= WIDTH
+
+
+@pytest.mark.parametrize(
+    "check_text", ["trial.world('nowhere')", "trial.module()\n    trial.nothing()"], ids=["a world", "a name"]
+)
+def test_mistakes_of_a_check_are_not_the_student_s(check_text: str, tmp_path: Path) -> None:
+    shutil.copytree(HELLO.folder, tmp_path / "01_mine")
+    (tmp_path / "01_mine" / "check.py").write_text(f"def check(trial):\n    {check_text}\n")
+    report = tried(solution(HELLO), tmp_path, read_exercise(tmp_path / "01_mine"))
+    assert report.mistake is not None
+    assert report.mistake.kind == "check"

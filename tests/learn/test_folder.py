@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -14,6 +16,8 @@ from robolink.learn.lines import listed
 from robolink.learn.progress import FILE, Progress, load_progress, save_progress
 from robolink.learn.watching import Watch
 from robolink.supervisor.monitoring.file_watch import Changes
+
+DEEP = b'{"x":' + b"[" * 100_000
 
 
 @pytest.fixture
@@ -32,6 +36,53 @@ def test_start_writes_what_is_missing_and_nothing_else(folder: StudentFolder) ->
     folder.file_of(folder.course[1]).unlink()
     assert start_folder().write() == [folder.course[1].file]
     assert first.read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="it lets few people make links")
+def test_a_link_that_leads_nowhere_is_there_already(folder: StudentFolder) -> None:
+    path = folder.file_of(folder.course[0])
+    path.unlink()
+    path.symlink_to("nowhere")
+    assert start_folder().write() == []
+    assert folder.reset(folder.course[0]) is not None
+    assert path.is_file()
+    assert not path.is_symlink()
+
+
+def test_two_commands_at_once_lose_nothing_of_each_other(folder: StudentFolder) -> None:
+    one, other = the_folder(), the_folder()  # `watch` in one terminal, for example, and `check` in another
+    one.finish(folder.course[0])
+    other.next_hint(folder.course[1])
+    one.finish(folder.course[2])
+    other.speak("en")
+    assert the_folder().progress == Progress(
+        "en", "", [folder.course[0].name, folder.course[2].name], {folder.course[1].name: 1}
+    )
+
+
+def test_progress_that_was_broken_meanwhile_is_written_again(folder: StudentFolder) -> None:
+    folder.finish(folder.course[0])
+    (folder.path / FILE).write_text("{")
+    folder.finish(folder.course[1])
+    assert the_folder().done == 2
+
+
+def test_a_full_disk_leaves_no_half_of_a_file(folder: StudentFolder, monkeypatch: pytest.MonkeyPatch) -> None:
+    exercise = folder.course[0]
+    folder.file_of(exercise).write_text("mine")
+    folder.file_of(folder.course[1]).unlink()
+    before = {each.name: each.read_bytes() for each in folder.path.iterdir()}
+    write = Path.write_bytes
+
+    def full(path: Path, data: bytes) -> int:
+        write(path, data[:10])
+        raise OSError(28, "No space left on device", str(path))
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    for act in (folder.write, lambda: folder.reset(exercise), lambda: folder.finish(exercise)):
+        with pytest.raises(OSError, match="No space left"):
+            act()
+    assert {each.name: each.read_bytes() for each in folder.path.iterdir()} == before
 
 
 def test_progress_is_kept(folder: StudentFolder) -> None:
@@ -90,7 +141,10 @@ def test_without_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         the_folder()
 
 
-@pytest.mark.parametrize("content", [b"", b"{", b"[]", b'{"language": "fr"}', b'{"done": 3}', b"\xff\xfe", b"{}" * 10])
+@pytest.mark.parametrize(
+    "content",
+    [b"", b"{", b"[]", b'{"language": "fr"}', b'{"done": 3}', b"\xff\xfe", b"{}" * 10, b'{"x":' + b"[" * 100_000],
+)
 def test_progress_that_cannot_be_read_is_one_line(content: bytes, tmp_path: Path) -> None:
     (tmp_path / FILE).write_bytes(content)
     with pytest.raises(DocumentError, match="delete this file") as told:
@@ -116,6 +170,13 @@ def test_the_locale_s_variables_have_an_order() -> None:
     assert default_language({"LANG": "en_US.UTF-8", "LC_MESSAGES": "pt_BR.UTF-8"}) == "pt"
 
 
+@pytest.mark.parametrize("count", [-5, 10**18])
+def test_hints_that_somebody_has_counted(count: int, folder: StudentFolder) -> None:
+    exercise = folder.course[0]
+    save_progress(folder.path, Progress(hints={exercise.name: count}))
+    assert 1 <= the_folder().next_hint(exercise) <= len(exercise.settings.hints)
+
+
 @pytest.mark.parametrize("name", ["hello", "02_hello", "02_hello.py", "some/where/02_hello.py", "2", "02"])
 def test_an_exercise_has_several_names(name: str) -> None:
     assert chosen(read_course(), name).name == "hello"
@@ -135,6 +196,31 @@ def test_a_folder_without_exercises(tmp_path: Path) -> None:
     (tmp_path / "BAD NAME").mkdir()
     with pytest.raises(ExerciseError, match="is called like 01_stop"):
         read_exercise(tmp_path / "BAD NAME")
+
+
+def test_a_number_of_any_length_is_a_name(folder: StudentFolder) -> None:
+    with pytest.raises(NotFoundError, match="no exercise named"):
+        folder.chosen("1" * 5000)
+    assert folder.chosen("0002").name == "hello"
+
+
+def test_two_exercises_of_one_name(tmp_path: Path) -> None:
+    for each in ("01_stop", "02_stop"):
+        shutil.copytree(read_course()[0].folder, tmp_path / each)
+    with pytest.raises(ExerciseError, match=r"02_stop and .*01_stop are both 'stop'"):
+        read_course(tmp_path)
+
+
+def test_given_files_that_cannot_be_read(tmp_path: Path) -> None:
+    shutil.copytree(read_course()[0].folder, tmp_path / "01_stop")
+    given = tmp_path / "01_stop" / "given.py"
+    given.write_bytes(b"# \xe7\n")
+    with pytest.raises(DocumentError, match=r"given\.py:1:3: not UTF-8 text"):
+        read_exercise(given.parent).given_text("en")
+    with given.open("wb") as file:
+        file.truncate(10**10)
+    with pytest.raises(DocumentError, match="longer than"):
+        read_exercise(given.parent).given_text("en")
 
 
 def test_what_is_saved_is_checked_again(folder: StudentFolder) -> None:

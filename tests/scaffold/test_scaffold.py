@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from robolink.launch import plan
-from robolink.scaffold import ScaffoldError, new_node, new_project, new_world
+from robolink.scaffold import ScaffoldError, new_node, new_project, new_world, writing
 from robolink.scaffold.naming import LONGEST, class_name
 from robolink.scaffold.rendering import TEMPLATES, rendered
 from robolink.sim.worldfile import check_world
@@ -136,3 +136,22 @@ def test_names_that_are_taken(here: Path) -> None:
 @pytest.mark.parametrize(("name", "class_"), [("talker", "Talker"), ("wall_watcher", "WallWatcher"), ("a-b2", "AB2")])
 def test_a_class_is_named_after_its_node(name: str, class_: str) -> None:
     assert class_name(name) == class_
+
+
+def test_a_full_disk_leaves_nothing_of_a_project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[Path] = []
+
+    def full(path: Path, data: bytes) -> None:
+        made.append(path)
+        if len(made) > 4:
+            raise OSError(28, "No space left on device", str(path))
+        path.write_bytes(data)
+
+    monkeypatch.setattr(writing, "write_new", full)
+    (tmp_path / "there").mkdir()
+    for name in ("demo", "there/too"):
+        made.clear()
+        with pytest.raises(OSError, match="No space left"):
+            new_project(str(tmp_path / name))
+        assert len(made) > 4
+        assert [each.name for each in tmp_path.rglob("*")] == ["there"]
