@@ -15,7 +15,13 @@ from robolink.companions.launch.bases import LaunchError, Place, no_argument
 from robolink.exceptions import DocumentError, RobolinkError
 from robolink.system.terminal import shown
 
-_OWN = str(Path(__file__).resolve().parents[2])
+_NOT_USERS = [
+    str(Path(__file__).resolve().parents[2]),
+    sysconfig.get_paths()["stdlib"],
+    *site.getsitepackages(),
+    sys.prefix,
+]
+"""Folders of robolink and of libraries. Looked up early: sysconfig imports modules, and imports ask `is_users`."""
 _LONGEST = 400
 _UNEXPECTED = re.compile(r"(?:(\w+)\.)?(\w+)\(\) got an unexpected keyword argument '(\w+)'")
 _LACKING = re.compile(r"(\w+)\.__init__\(\) missing \d+ required (?:[a-z-]+ )*arguments?: (.+)")
@@ -102,5 +108,4 @@ def is_users(file: str) -> bool:
     """Return whether a file of Python code is the user's: neither robolink's nor of a library."""
     if file.startswith("<"):
         return False
-    library = [sysconfig.get_paths()["stdlib"], *site.getsitepackages(), sys.prefix]
-    return not any(Path(file).is_relative_to(each) for each in (_OWN, *library))
+    return not any(Path(file).is_relative_to(each) for each in _NOT_USERS)
