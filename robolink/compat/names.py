@@ -36,6 +36,7 @@ ROOMS = {
     "ament_index_python": "robolink.companions.ament_index",
     "rosbag2_py": "robolink.companions.rosbag2_py",
     "launch_testing": "robolink.companions.launch_testing",
+    "launch_testing_ros": "robolink.companions.launch_testing_ros",
     "nav2_common": "robolink.companions.nav2_common",
     "nav2_simple_commander": "robolink.companions.nav2_simple_commander",
     **LAUNCH_ROOMS,
@@ -43,7 +44,6 @@ ROOMS = {
 """Modules by name; '' is a package with nothing in it. A name below another is below its module."""
 
 INSTEAD = {
-    "launch_testing_ros": "a test makes its nodes itself, in memory and in virtual time",
     "launch_pytest": "a test makes its nodes itself, in memory and in virtual time",
     "launch.exit_handler": "that is ROS 2 before Bouncy (2018): Node(respawn=True, on_exit=...) is what it has now",
     "launch.legacy": "that is ROS 2 before Bouncy (2018): launch.actions and launch_ros.actions are what it has now",

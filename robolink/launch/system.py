@@ -19,7 +19,9 @@ from robolink.supervisor.director import Director
 from robolink.workspace import Folder
 
 if TYPE_CHECKING:
+    from robolink.companions.launch import LaunchDescription
     from robolink.launch.ros.stage import Stage
+    from robolink.launch.ros.visit import Visit
 
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 
@@ -76,6 +78,26 @@ def read_system(
     visit = visited(path, given, workspace)
     if foresee:
         foresee_all(visit)
+    return _system_of(visit, foresee)
+
+
+def read_description(description: LaunchDescription, path: Path, given: Mapping[str, str] = _NOTHING) -> System:
+    """Read what a Python file of ROS 2 has described already.
+
+    Args:
+        description: The description.
+        path: The file, for relative paths and for errors.
+        given: Launch arguments by name, as people type them.
+
+    Raises:
+        DocumentError: for a mistake in it, with `file:line`.
+    """
+    from robolink.launch.ros.reading import visited
+
+    return _system_of(visited(path, given, None, description), foresee=False)
+
+
+def _system_of(visit: Visit, foresee: bool) -> System:
     entries, notes = [each.entry for each in visit.started], list(visit.context.said)
     visit.context.said.clear()
     if foresee or not visit.goes_on:

@@ -285,10 +285,11 @@ class Supervisor:
         if process.cpu and (why_not := set_affinity(child.group, process.cpu)):
             self._dispatcher.say(f"{name}: {why_not}")
         self._dispatcher.started(name, child.group, self._policy.processes[name].restarts)
-        child.watch(self._line, lambda name, code: self._events.put(partial(self._exited, name, code)))
         if self._director is not None:
             pid = child.group
             self._events.put(lambda now: self._ask(lambda director: director.started(name, pid, now), now))
+        # Only then: one that ends at once would end before it started.
+        child.watch(self._line, lambda name, code: self._events.put(partial(self._exited, name, code)))
 
     def _line(self, name: str, line: bytes) -> None:
         """Pass on a line of a process; called on a thread of its own."""

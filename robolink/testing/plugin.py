@@ -6,8 +6,10 @@ for one of the fixtures, and a project's own fixtures of the same names go first
 
 from __future__ import annotations
 
+import contextlib
 import os
 import random
+import re
 import sys
 import zlib
 from collections.abc import Generator, Iterable, Iterator
@@ -69,6 +71,37 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         metavar="FOLDER",
         help="record the system of every test into a bag in FOLDER, and keep those of tests that fail",
     )
+
+    with contextlib.suppress(ValueError):  # ROS 2's own plugin has it, too
+        group.addoption(
+            "--launch-args",
+            nargs="*",
+            default=[],
+            metavar="NAME:=VALUE",
+            help="launch arguments of launch tests, files with generate_test_description()",
+        )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Register the marks of launch tests."""
+    for name in ("launch_test", "rostest"):
+        config.addinivalue_line("markers", f"{name}: the function that describes the processes of a launch test")
+
+
+_LAUNCH_TEST = re.compile(rb"^def generate_test_description\(", re.MULTILINE)
+
+
+def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> pytest.Module | None:
+    """Return the collector of a file that is a launch test; None leaves others, and ROS 2's own, to other plugins."""
+    if parent.config.pluginmanager.hasplugin("launch_testing") or not _LAUNCH_TEST.search(module_path.read_bytes()):
+        return None
+    from robolink import compat
+
+    if not compat.activate():
+        return None
+    from robolink.testing.launch_collector import LaunchTestModule
+
+    return LaunchTestModule.from_parent(parent, path=module_path)
 
 
 _SYSTEM = pytest.StashKey["System"]()

@@ -18,7 +18,13 @@ DOCS = (Path(__file__).parents[2] / "docs" / "testing.md").read_text(encoding="u
 PROGRAMS = re.findall(r'```python\n("""(\w+)\.py""".*?)```', DOCS, re.DOTALL)
 
 
-@pytest.mark.parametrize(("text", "name"), PROGRAMS, ids=[name for _, name in PROGRAMS])
+def _marks(text: str) -> list[pytest.MarkDecorator]:
+    return [pytest.mark.processes] if "generate_test_description" in text else []
+
+
+@pytest.mark.parametrize(
+    ("text", "name"), [pytest.param(text, name, marks=_marks(text), id=name) for text, name in PROGRAMS]
+)
 def test_its_tests_pass(text: str, name: str, pytester: pytest.Pytester) -> None:
     pytester.makepyfile(**{name: text})
     result = pytester.runpytest_inprocess("-p", "no:cacheprovider", "-p", "no:xdist")

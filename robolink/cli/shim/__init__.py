@@ -1,4 +1,4 @@
-"""robolink shim: second names of the command, so that a course's own lines with ros2 and colcon work."""
+"""robolink shim: second names of the command, so that a course's own lines work."""
 
 from __future__ import annotations
 
@@ -9,9 +9,13 @@ import typer
 
 from robolink.cli.shared.output import say, tell
 
-app = typer.Typer(help="Write a second command, ros2 or colcon, that leads to robolink.")
+app = typer.Typer(help="Write a second command, ros2, colcon or launch_test, that leads to robolink.")
 
-TARGETS = {"ros2": "robolink.cli.main", "colcon": "robolink.cli.shim.colcon"}
+TARGETS = {
+    "ros2": "robolink.cli.main",
+    "colcon": "robolink.cli.shim.colcon",
+    "launch_test": "robolink.cli.shim.launch_test",
+}
 """Modules whose `main` the commands call."""
 
 
@@ -23,14 +27,16 @@ def _checked(name: str) -> str:
 
 @app.command("shim")
 def shim(
-    name: Annotated[str, typer.Argument(metavar="ros2|colcon", help="The command's name.", callback=_checked)],
+    name: Annotated[
+        str, typer.Argument(metavar="ros2|colcon|launch_test", help="The command's name.", callback=_checked)
+    ],
     remove: Annotated[bool, typer.Option("--remove", help="Take it away again.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Also where a real one would be hidden.")] = False,
     folder: Annotated[
         Path | None, typer.Option("--folder", metavar="FOLDER", help="Where; by default where robolink's command is.")
     ] = None,
 ) -> None:
-    """Write a command ros2, which is robolink by another name, or colcon, whose build has nothing to build."""
+    """Write a command ros2, which is robolink by another name, colcon, whose build does nothing, or launch_test."""
     from robolink.cli.shim import writing
 
     place = folder or writing.scripts_folder()

@@ -171,6 +171,8 @@ def read_python_file(path: Path) -> LaunchDescription:
 def _instead_of_maker(module: ModuleType) -> str:
     if callable(getattr(module, "launch", None)):
         return ": launch(launch_descriptor, argv) is of ROS 2 before Bouncy (2018), and nodes are Node(...) actions now"
+    if hasattr(module, "generate_test_description"):
+        return f"; it is a launch test: pytest {Path(str(module.__file__)).name}"
     return "; a node is run by 'robolink run'"
 
 

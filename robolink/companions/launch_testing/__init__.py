@@ -1,26 +1,42 @@
-"""launch_testing: the names by which ROS 2's launch files are tests, so that `robolink launch` can read these files.
+"""launch_testing: launch files that are tests, run by `pytest FILE` with robolink's plugin, or by `launch_test FILE`.
 
-Nothing of it runs a test: `system.launch(FILE)` of `robolink.testing` starts the same file in a pytest.
+These are the names that such a file imports; `robolink.testing` starts its processes and runs its test classes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TypeVar
 
-from robolink.companions.launch_testing import actions, asserts, legacy, markers, util
-from robolink.companions.launch_testing.refusal import no_test_runner
+from robolink.companions.launch_testing import actions, asserts, event_handlers, legacy, markers, tools, util
+from robolink.companions.launch_testing.io_handler import ActiveIoHandler, IoHandler
+from robolink.companions.launch_testing.parametrize import parametrize
+from robolink.companions.launch_testing.proc_info_handler import ActiveProcInfoHandler, ProcInfoHandler
 
-__all__ = ["actions", "asserts", "legacy", "markers", "parametrize", "post_shutdown_test", "util"]
+__all__ = [
+    "ActiveIoHandler",
+    "ActiveProcInfoHandler",
+    "IoHandler",
+    "ProcInfoHandler",
+    "actions",
+    "asserts",
+    "event_handlers",
+    "legacy",
+    "markers",
+    "parametrize",
+    "post_shutdown_test",
+    "tools",
+    "util",
+]
 
 T = TypeVar("T", bound=type)
 
 
 def post_shutdown_test() -> Callable[[T], T]:
-    """Return a decorator that leaves a class of tests as it is: nothing runs them here."""
-    return lambda cls: cls
+    """Return a decorator by which a class of tests runs after the processes have ended."""
 
+    def decorate(cls: T) -> T:
+        cls.__post_shutdown_test__ = True  # type: ignore[attr-defined]
+        return cls
 
-def parametrize(*args: Any, **kwargs: Any) -> Callable[..., Any]:
-    """Refuse to make several launches of one file: raises LaunchError. `args` and `kwargs` are of no effect."""
-    raise no_test_runner("launch_testing.parametrize")
+    return decorate

@@ -4,17 +4,27 @@ from __future__ import annotations
 
 from typing import Any
 
-from robolink.companions.launch.bases import Action, Condition, LaunchContext
+from robolink.companions.launch.bases import Action, Condition, Event, LaunchContext
 
 __all__ = ["GTest", "ReadyToTest", "TestProcess"]
 
 
+class ReadyEvent(Event):
+    """The processes are started: the tests may begin."""
+
+    name = "launch_testing.events.Ready"
+
+
 class ReadyToTest(Action):
-    """Start of the tests, which are not run here: nothing is done.
+    """Begin the tests: here the launch file has come to the point from which on they make sense.
 
     Args:
         **kwargs: `condition`.
     """
+
+    def execute(self, context: LaunchContext) -> None:
+        """Emit the event for which the tests wait, in `context`."""
+        context.emit_event_sync(ReadyEvent())
 
 
 class TestProcess(Action):
@@ -33,7 +43,7 @@ class TestProcess(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Add a line to `context`: it is left out."""
-        context.said.append(f"left out: a {type(self).__name__}, since 'robolink launch' runs no tests")
+        context.said.append(f"left out: a {type(self).__name__}, since robolink runs no programs of tests")
 
 
 class GTest(TestProcess):

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from typing import Any
 
-from robolink.companions.launch_testing.refusal import no_test_runner
+from robolink.companions.launch.bases import LaunchError
 
 __all__ = ["LaunchTestService"]
 
 
 class LaunchTestService:
-    """Test runner, which robolink has not.
+    """Test runner within a program, which robolink has not: LaunchError is raised.
 
     Args:
-        *args, **kwargs: Those of ROS 2, of no effect: LaunchError is raised.
+        *args: Those of ROS 2, of no effect.
+        **kwargs: Those of ROS 2, of no effect.
     """
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
-        raise no_test_runner("LaunchTestService")
+        raise LaunchError(
+            "there is no LaunchTestService here: 'pytest FILE' runs files with generate_test_description()"
+        )

@@ -94,6 +94,9 @@ class EntryMaker:
     def _node(self, action: Node, context: LaunchContext) -> Entry | None:
         package = None if action.node_package is None else performed(context, action.node_package)
         executable = performed(context, action.node_executable)
+        arguments = list(texts_of(action.arguments, context))
+        if package is None:
+            executable, arguments = _script_of(executable, arguments)
         program = self._program(package, executable, action.place)
         if program.absent:
             self._leave_out(action, program.absent)
@@ -103,9 +106,7 @@ class EntryMaker:
         wanted = Wanted(program, executable, naming, action.parameters, action.remappings, action.place)
         action.expanded_name = wanted.full_name
         words = list(texts_of(action.ros_arguments, context))
-        entry = self._entry_of(
-            wanted, [words, *texts_of(action.arguments, context)], self._shared(action, context), context
-        )
+        entry = self._entry_of(wanted, [words, *arguments], self._shared(action, context), context)
         return entry if program.source is not None else _compiled(entry, program.path)
 
     def shared(self, wanted: Wanted, action: ExecuteLocal, process: str, context: LaunchContext) -> Entry:
@@ -292,6 +293,12 @@ def _script_at(words: Sequence[str]) -> int | None:
     if _PYTHON.fullmatch(PurePath(words[0]).name):
         at = next((n for n, each in enumerate(words) if n and each not in ("-u", "-B", "-O")), 0)
     return at if words[at].endswith(".py") and Path(words[at]).is_file() else None
+
+
+def _script_of(executable: str, arguments: list[str]) -> tuple[str, list[str]]:
+    """Return a node's executable and arguments; where that is Python with a file, the file and what is behind it."""
+    at = _script_at([executable, *arguments])
+    return (arguments[at - 1], arguments[at:]) if at else (executable, arguments)
 
 
 def _in_shell(line: str) -> list[str]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from robolink.companions.launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
 from robolink.companions.launch.bases import LaunchContext, LaunchError
 from robolink.companions.launch.described import FILES, Described, described
-from robolink.companions.launch.launch_description_sources import AnyLaunchDescriptionSource
+from robolink.companions.launch.launch_description_sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
 from robolink.companions.launch.utilities import perform_substitutions
 from robolink.exceptions import DocumentError, nearest
 from robolink.launch.reading.arguments import ArgumentHelp
@@ -25,13 +25,16 @@ if TYPE_CHECKING:
     from robolink.companions.launch.launch_description import LaunchDescription
 
 
-def visited(path: Path, given: Mapping[str, str], workspace: Folder) -> Visit:
+def visited(
+    path: Path, given: Mapping[str, str], workspace: Folder, description: LaunchDescription | None = None
+) -> Visit:
     """Return the visit of a launch file, up to the point at which only time and events go on.
 
     Args:
         path: The launch file.
         given: Launch arguments by name, as people type them.
         workspace: Folder in which the packages of a file outside of all workspaces are looked up.
+        description: Description that the file has made already; None reads it from the file.
 
     Raises:
         DocumentError: for a mistake, with the file and line of the user's code.
@@ -44,9 +47,10 @@ def visited(path: Path, given: Mapping[str, str], workspace: Folder) -> Visit:
         absences.say = context.said.append
         context.launch_configurations.update(given)
         visit = Visit(context, EntryMaker(home, context.said.append), path)
-        visit.first = _included(path)
+        visit.first = _included(path, description)
         visit.run([visit.first])
-    _note_unread(context, given)
+    if description is None:  # else whoever made it may read them
+        _note_unread(context, given)
     return visit
 
 
@@ -94,9 +98,10 @@ def _declared(description: LaunchDescription, path: Path, context: LaunchContext
     return list(found.values())
 
 
-def _included(path: Path) -> LaunchDescriptionEntity:
+def _included(path: Path, description: LaunchDescription | None) -> LaunchDescriptionEntity:
     """Return the action that includes the launch file itself; it has no place of its own."""
-    action = IncludeLaunchDescription(AnyLaunchDescriptionSource(str(path)))
+    read = LaunchDescriptionSource(description, str(path)) if description is not None else None
+    action = IncludeLaunchDescription(read or AnyLaunchDescriptionSource(str(path)))
     action.place = action.place._replace(file="", line=0)
     return action
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.main import main
-from robolink.cli.shim import colcon
+from robolink.cli.shim import colcon, launch_test
 from tests.support.ros_tree import write_package
 
 Captured = pytest.CaptureFixture[str]
@@ -115,3 +115,21 @@ def test_the_other_verbs(capsys: Captured) -> None:
     assert f"pkg_one\t{Path('src/pkg_one')}\t(ros.ament_python)\npkg_two\t" in out
     assert colcon.main(["graph"]) == 2
     assert capsys.readouterr().err == "robolink: colcon graph is not here: colcon build | colcon list | colcon test\n"
+
+
+def test_launch_test_leads_to_pytest(tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[list[str]] = []
+
+    def note(words: list[str]) -> int:
+        asked.append(words)
+        return 3
+
+    monkeypatch.setattr(pytest, "main", note)
+    file = tmp_path / "a_launch_test.py"
+    file.touch()
+    assert launch_test.main([str(file), "speed:=2", "--junit-xml", "x.xml"]) == 3
+    assert asked == [["-v", str(file), "--junit-xml", "x.xml", "--launch-args", "speed:=2"]]
+    assert launch_test.main([]) == 0
+    assert capsys.readouterr().out.startswith("launch_test FILE [NAME:=VALUE]...")
+    assert launch_test.main(["gone.py"]) == 2
+    assert capsys.readouterr().err.startswith("robolink: there is no Python file among 'gone.py': launch_test FILE")

@@ -192,11 +192,18 @@ class AfterShutdown(unittest.TestCase):
 def test_a_launch_file_that_is_a_test_launches(package: Path) -> None:
     system = read(package, TESTED)
     assert [each.name for each in system.entries] == ["talker"]
-    assert system.notes == ["left out: a GTest, since 'robolink launch' runs no tests"]
+    assert system.notes == ["left out: a GTest, since robolink runs no programs of tests"]
 
 
-@pytest.mark.parametrize("call", ["legacy.LaunchTestService()", "asserts.assertExitCodes({})", "parametrize('a', [1])"])
-def test_what_needs_a_test_runner_tells_of_the_one_that_is_here(package: Path, call: str) -> None:
-    with pytest.raises(DocumentError, match=r"needs ROS 2's test runner: test by .* robolink\.testing") as caught:
-        read(package, f"import launch_testing\nlaunch_testing.{call}\ndef generate_launch_description(): 0")
+def test_the_older_test_runner_tells_of_the_one_that_is_here(package: Path) -> None:
+    with pytest.raises(DocumentError, match=r"no LaunchTestService here: 'pytest FILE' runs files with gen") as caught:
+        read(
+            package,
+            "import launch_testing\nlaunch_testing.legacy.LaunchTestService()\ndef generate_launch_description(): 0",
+        )
     assert caught.value.line == FIRST + 1
+
+
+def test_a_launch_test_that_is_launched_tells_what_runs_it(package: Path) -> None:
+    with pytest.raises(DocumentError, match=r"; it is a launch test: pytest bot.launch.py"):
+        read(package, "def generate_test_description():\n    pass\ndef generate_launch_description_(): 0")

@@ -1,0 +1,208 @@
+"""Launch of one launch test: its processes, and the records of them that its test classes look at."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import os
+import sys
+import threading
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from robolink.companions.launch import LaunchDescription
+from robolink.companions.launch.actions import RegisterEventHandler
+from robolink.companions.launch.bases import Event, EventHandler, LaunchContext
+from robolink.companions.launch.described import Described, described
+from robolink.companions.launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
+from robolink.companions.launch.events.process import ProcessExited, ProcessIO, ProcessStarted
+from robolink.companions.launch_testing import ActiveIoHandler, ActiveProcInfoHandler
+from robolink.companions.launch_testing.actions import ReadyEvent, ReadyToTest
+from robolink.exceptions import DocumentError, RobolinkError, nearest
+from robolink.launch.reading.lookup import home_of
+from robolink.launch.ros.surroundings import surroundings
+from robolink.launch.system import read_description
+from robolink.testing.supervisor_thread import Launch
+from robolink.transport.free_domain import free_domain
+from robolink.utilities import try_shutdown
+
+if TYPE_CHECKING:
+    from robolink.supervisor.events import Exited
+
+NETWORK = "localhost"
+"""Network of the processes and of the test, unless one is asked for: this machine's loopback alone."""
+READY_WITHIN = 15.0
+"""Timeout of the ReadyToTest action, in s, as in ROS 2."""
+DOWN_WITHIN = 20.0
+"""Timeout of the end of all processes, in s: they are killed before."""
+
+
+class LaunchTestError(RobolinkError, RuntimeError):
+    """The processes of a launch test could not be started, or never were ready for its tests."""
+
+
+class LaunchTest:
+    """Processes of a launch test, on a domain of their own that the tests share.
+
+    Args:
+        describe: Its function generate_test_description.
+        path: Its file.
+        parameters: Arguments of that function.
+        given: Launch arguments by name.
+    """
+
+    def __init__(
+        self, describe: Callable[..., Any], path: Path, parameters: Mapping[str, Any], given: Mapping[str, str]
+    ) -> None:
+        self._describe, self._path = describe, path
+        self._parameters, self._given = dict(parameters), dict(given)
+        self.proc_info, self.proc_output = ActiveProcInfoHandler(), ActiveIoHandler()
+        self._of_file: dict[str, Any] = {}
+        self._ready = threading.Event()
+        self._launch: Launch | None = None
+        self._stack = ExitStack()
+        self._failed: Exception | None = None
+        self._has_begun = self._is_over = False
+        self._could_not_start: list[str] = []
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """Values by the names that arguments of tests may have: what the file returns, and the records."""
+        records = {"proc_info": self.proc_info, "proc_output": self.proc_output}
+        return {**self._parameters, **self._of_file, **records, "test_args": self._given, "launch_service": self}
+
+    def begin(self) -> None:
+        """Start the processes and wait until they are ready; with no effect once it was called.
+
+        Raises DocumentError for a mistake in the launch file, LaunchTestError if they do not get ready.
+        """
+        if self._failed is not None:
+            raise self._failed
+        if not self._has_begun:
+            self._has_begun = True
+            try:
+                self._start()
+                self._await_ready()
+            except Exception as error:
+                self._failed = error
+                self.shutdown()
+                raise
+
+    def shutdown(self) -> None:
+        """End the processes in order, and by force what does not end; with no effect once it was called, or before."""
+        if self._is_over or not self._has_begun:
+            return
+        self._is_over = True
+        try_shutdown()
+        if self._launch is not None:
+            self._launch.supervisor.stop()
+            self._launch.thread.join(DOWN_WITHIN)
+        self._stack.close()
+
+    def _start(self) -> None:
+        with ExitStack() as stack:
+            domain = _domain(stack)
+            system = read_description(self._description(), self._path, self._given)
+            for note in system.notes:
+                sys.stderr.write(f"[launch] {note}\n")
+            network = os.environ["ROBOLINK_NETWORK"]
+            self._launch = Launch(system.entries, domain, network, self._note_exit, direct=system.direct)
+            self._launch.begin()
+            self._stack = stack.pop_all()
+
+    def _description(self) -> LaunchDescription:
+        """Return the description of the file, with handlers that keep records."""
+        with surroundings(home_of(self._path, None)):
+            given = {**self._parameters, "ready_fn": self._ready.set}  # the older way to begin
+            made = bound(self._describe, given)()
+        description, of_file = made if isinstance(made, tuple) else (made, {})
+        self._of_file = dict(of_file)
+        if not isinstance(description, LaunchDescription):
+            kind = type(description).__name__
+            raise DocumentError(
+                f"generate_test_description() returned {kind}, not a LaunchDescription", str(self._path)
+            )
+        self._check_ready(description)
+        return LaunchDescription([*map(RegisterEventHandler, self._handlers()), description])
+
+    def _check_ready(self, description: LaunchDescription) -> None:
+        with surroundings(home_of(self._path, None)):
+            entities = [each.entity for each in described(Described(description), LaunchContext())]
+        takes_function = "ready_fn" in inspect.signature(self._describe).parameters
+        if not takes_function and not any(isinstance(each, ReadyToTest) for each in entities):
+            raise DocumentError("its description has no launch_testing.actions.ReadyToTest()", str(self._path))
+
+    def _handlers(self) -> list[Any]:
+        def note(event: ProcessStarted | ProcessExited, _: LaunchContext) -> None:
+            self.proc_info.append(event)
+
+        def hear(event: ProcessIO) -> None:
+            self.proc_output.append(event)
+
+        def begin(event: Event) -> bool:
+            if isinstance(event, ReadyEvent):
+                self._ready.set()
+            return False
+
+        return [
+            OnProcessStart(on_start=note),
+            OnProcessExit(on_exit=note),
+            OnProcessIO(on_stdout=hear),  # each line is told as output and as error
+            EventHandler(matcher=begin),
+        ]
+
+    def _await_ready(self) -> None:
+        assert self._launch is not None
+        for _ in range(int(READY_WITHIN * 10)):
+            if self._ready.wait(0.1):
+                break
+            if not self._launch.thread.is_alive():
+                self._ready.wait(0.1)
+                break
+        if self._could_not_start:
+            raise LaunchTestError(f"the processes could not be started: {'; '.join(self._could_not_start)}")
+        if not self._ready.is_set():
+            raise LaunchTestError(
+                f"its ReadyToTest() was not reached within {READY_WITHIN:g} s, or all processes ended before"
+            )
+
+    def _note_exit(self, event: Exited) -> None:
+        if event.returncode == 127 and event.pid == 0:
+            self._could_not_start.append(event.cause)
+
+
+def bound(function: Callable[..., Any], arguments: Mapping[str, Any]) -> Callable[..., Any]:
+    """Return a `function` with those of the `arguments` that it takes by their names.
+
+    Raises LaunchTestError if it takes another one that it cannot do without.
+    """
+    __tracebackhide__ = True
+    taken = inspect.signature(function).parameters
+    for name, each in taken.items():
+        is_needed = each.default is each.empty and each.kind not in (each.VAR_POSITIONAL, each.VAR_KEYWORD)
+        if is_needed and name not in arguments:
+            what = f"{getattr(function, '__name__', 'a function')} asks for '{name}'"
+            raise LaunchTestError(f"{what}{nearest(name, arguments) or ''}: there is {', '.join(arguments)}")
+    return functools.partial(function, **{name: each for name, each in arguments.items() if name in taken})
+
+
+def _domain(stack: ExitStack) -> int:
+    """Set the environment for tests and processes until the end of `stack`, and return their domain id."""
+    asked = os.environ.get("ROS_DOMAIN_ID", "")
+    domain = int(asked) if asked.isascii() and asked.isdecimal() else stack.enter_context(free_domain())
+    changed = {"ROS_DOMAIN_ID": str(domain), "ROBOLINK_TRANSPORT": "zenoh"}
+    changed["ROBOLINK_NETWORK"] = os.environ.get("ROBOLINK_NETWORK") or NETWORK
+    before = {name: os.environ.get(name) for name in changed}
+    os.environ.update(changed)
+    stack.callback(_restore, before)
+    return domain
+
+
+def _restore(before: Mapping[str, str | None]) -> None:
+    for name, value in before.items():
+        if value is None:
+            os.environ.pop(name, None)
+        else:
+            os.environ[name] = value
