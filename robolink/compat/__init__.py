@@ -6,9 +6,9 @@
 
 `robolink run` does the same for what it runs, and prepares OpenCV for machines without a screen. There are rclpy, the
 message packages, tf2_ros, tf2_py, tf2_geometry_msgs, tf2_sensor_msgs, tf_transformations, message_filters,
-sensor_msgs_py, cv_bridge, image_geometry, rosidl_runtime_py, ament_index_python, rosbag2_py, nav2_common.launch,
-nav2_simple_commander (its robot_navigator and utils), launch, launch_ros, launch_testing, launch_testing_ros and
-webots_ros2_driver (WebotsController, and what launch files start).
+sensor_msgs_py, cv_bridge, image_geometry, diagnostic_updater, rosidl_runtime_py, ament_index_python, rosbag2_py,
+nav2_common.launch, nav2_simple_commander (its robot_navigator and utils), launch, launch_ros, launch_testing,
+launch_testing_ros and webots_ros2_driver (WebotsController, and what launch files start).
 
 **All or none.** These modules hand each other their classes, so they are robolink's together or not at all. Where a
 real rclpy is installed, the import above leaves all of them alone. `robolink run` does not: whoever asks robolink to

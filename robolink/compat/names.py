@@ -35,6 +35,7 @@ ROOMS = {
     "turtlesim_msgs": "robolink.interfaces.turtlesim",
     "ament_index_python": "robolink.companions.ament_index",
     "rosbag2_py": "robolink.companions.rosbag2_py",
+    "diagnostic_updater": "robolink.companions.diagnostic_updater",
     "launch_testing": "robolink.companions.launch_testing",
     "launch_testing_ros": "robolink.companions.launch_testing_ros",
     "nav2_common": "robolink.companions.nav2_common",

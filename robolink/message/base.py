@@ -255,7 +255,7 @@ else:
             return f"{package}.{kind}.{name}({', '.join(_shown_fields(self))})"
 
 
-def _set_fields(message: Any, **fields: Any) -> None:
+def _set_fields(message: Any, /, **fields: Any) -> None:
     known = message.__ros_fields__
     for name, value in fields.items():
         if name not in known:

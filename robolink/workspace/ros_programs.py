@@ -112,6 +112,7 @@ PACKAGES = {
     "laser_filters": f"filters scans, in C++; {_THERE}",
     "apriltag_ros": f"finds AprilTags, in C++; {_THERE}",
     "aruco_ros": f"finds ArUco tags, in C++; cv2.aruco does the same in a node, else {_THERE}",
+    "diagnostic_aggregator": f"sorts /diagnostics, in C++; 'robolink topic echo /diagnostics' shows all, else {_THERE}",
     "twist_mux": f"chooses among velocity commands, in C++; {_THERE}",
     "rosbag2_*": "'robolink bag record' and 'robolink bag play' do the same",
 }

@@ -7,6 +7,7 @@ from typing import Annotated, Any, ClassVar
 import pytest
 
 from robolink.exceptions import DefinitionError, MessageError
+from robolink.interfaces.diagnostic_msgs.msg import DiagnosticStatus
 from robolink.interfaces.geometry_msgs.msg import Point, Twist
 from robolink.interfaces.std_msgs.msg import Header
 from robolink.message import (
@@ -204,6 +205,14 @@ def test_a_python_class_cannot_extend_another() -> None:
 
         class Faster(Twist):
             factor: float32
+
+
+def test_a_class_that_extends_another_takes_fields_of_any_name() -> None:
+    class Status(DiagnosticStatus):
+        """A message with a method."""
+
+    made = Status(message="fine", name="motor")
+    assert (made.message, made.name) == ("fine", "motor")
 
 
 @pytest.mark.parametrize(
