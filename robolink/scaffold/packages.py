@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-import sys
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import escape
 
-from robolink.scaffold.naming import ScaffoldError, checked, class_name
+from robolink.scaffold.naming import ScaffoldError, checked, checked_module, class_name
 from robolink.scaffold.rendering import rendered
 from robolink.scaffold.writing import Made, written
 
@@ -65,33 +64,17 @@ def new_package(wanted: NewPackage, destination: Path) -> Made:
 
 def _check(wanted: NewPackage) -> None:
     """Raise ScaffoldError if a name or a text is not fit for the files of a package."""
-    taken = _come_with_robolink() if wanted.build_type == PYTHON else ()
-    _check_name("package", wanted.name, taken)
-    if wanted.node:
-        _check_name("node", wanted.node)
-    if wanted.library:
-        _check_name("library", wanted.library)
+    names = {"package": wanted.name, "node": wanted.node, "library": wanted.library}
+    for kind, name in names.items():
+        fit = checked_module if kind == "package" and wanted.build_type == PYTHON else checked
+        if (name or kind == "package") and not fit(kind, name).isidentifier():
+            raise ScaffoldError(f"'{name}' is no name for a {kind}: Python imports no '-', take '_'")
     for each in wanted.dependencies:
         if not _DEPENDENCY.fullmatch(each):
             raise ScaffoldError(f"'{each[:60]}' is no name of a package to depend on")
     if wanted.node and wanted.node == wanted.library:
         raise ScaffoldError(f"the node and the library cannot both be called '{wanted.node}'")
     _check_texts(wanted)
-
-
-def _check_name(kind: str, name: str, taken: Collection[str] = ()) -> None:
-    if not checked(kind, name, taken).isidentifier():
-        raise ScaffoldError(f"'{name}' is no name for a {kind}: Python imports no '-', take '_'")
-    if taken and name in sys.stdlib_module_names:
-        raise ScaffoldError(f"'{name}' is a module of Python: take another name, such as my_{name}")
-
-
-def _come_with_robolink() -> set[str]:
-    """Return the names of the ROS packages that come with robolink, and its own."""
-    from robolink.compat.maker import TOPS  # late: only packages in Python need it
-    from robolink.workspace import COUNTERPARTS
-
-    return {"robolink", *TOPS, *COUNTERPARTS}
 
 
 def _check_texts(wanted: NewPackage) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from robolink.scaffold.naming import ScaffoldError, checked, class_name
+from robolink.scaffold.naming import ScaffoldError, checked, checked_module, class_name
 from robolink.scaffold.rendering import rendered
 from robolink.system.paths import expanded
 from robolink.system.whole_files import write_new
@@ -56,7 +56,7 @@ def new_node(name: str, *, workspace: Folder = None) -> Made:
         OSError: if the files cannot be written.
     """
     taken = [each.stem for each in (built_in_workspace() / "nodes").glob("*.py")]
-    name = checked("node", name.removesuffix(".py"), taken).replace("-", "_")
+    name = checked_module("node", name.removesuffix(".py"), taken).replace("-", "_")
     files = rendered("node", {"NAME": name, "CLASS": class_name(name)})
     folder = _workspace(workspace)
     if folder is None:

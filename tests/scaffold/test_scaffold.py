@@ -129,8 +129,27 @@ def test_names_that_are_taken(here: Path) -> None:
         new_node("wall-follower")
     with pytest.raises(ScaffoldError, match="a world 'classroom' comes with robolink"):
         new_world("classroom.yaml")
-    with pytest.raises(ScaffoldError, match="a word of Python"):
-        new_node("import")
+    with pytest.raises(ScaffoldError, match="a node 'World' comes with robolink"):
+        new_node("World")  # one file with `world` on macOS and Windows
+    for name in ("import", "match", "True", "none"):
+        with pytest.raises(ScaffoldError, match="a word of Python"):
+            new_node(name)
+    for name in ("random", "String", "std_msgs", "turtlesim", "robolink"):  # programs beside it would import it
+        with pytest.raises(ScaffoldError, match="take another name, such as my_"):
+            new_node(name)
+    for make in (new_node, new_world, new_project):
+        with pytest.raises(ScaffoldError, match="a device of Windows"):
+            make("Con")
+    assert list(here.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["Node", "external-shutdown-exception", "null", "on"])
+def test_names_that_mean_something_in_a_template(here: Path, name: str) -> None:
+    project = new_project(name).folder
+    assert not check_world(project / new_world(name, workspace=project).files[0]).errors
+    with System() as system:
+        system.start(project / new_node(name, workspace=project).files[0])
+        system.expect("chatter", within=2.0)
 
 
 @pytest.mark.parametrize(("name", "class_"), [("talker", "Talker"), ("wall_watcher", "WallWatcher"), ("a-b2", "AB2")])
