@@ -1,6 +1,7 @@
-"""Generator of the README's picture of the page: a simulated robot, seen by `robolink view` in headless Chromium.
+"""Generator of the pictures of the page: a simulated robot, or an exercise, seen in headless Chromium.
 
 Usage: python tools/view_picture.py docs/view.png [--system wander] [--seconds 30] [--theme dark]
+       python tools/view_picture.py docs/exercises.png --exercise stop --theme light --height 640
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -19,6 +21,8 @@ from typing import Any
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
+from robolink.learn.folder import start_folder  # noqa: E402
+from robolink.learn.languages import Language  # noqa: E402
 from tests.support.browser import Browser, chromium  # noqa: E402
 from tests.support.domains import free_domain  # noqa: E402
 
@@ -45,6 +49,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", type=Path)
     parser.add_argument("--system", default="wander", help="launch file")
+    parser.add_argument("--exercise", help="an exercise of robolink learn as it is given, in the place of a system")
     parser.add_argument("--seconds", type=float, default=30.0, help="seconds that the robot drives")
     parser.add_argument("--theme", default="dark", choices=["dark", "light"])
     parser.add_argument("--width", type=int, default=1280)
@@ -53,22 +58,38 @@ def main() -> None:
     asked = parser.parse_args()
     if chromium is None:
         sys.exit("chromium is not installed: apt-get install chromium")
-    with started(asked.system) as address, Browser(asked.width, asked.height) as browser:
-        take(browser, address, asked)
+    with Browser(asked.width, asked.height) as browser, tempfile.TemporaryDirectory() as scratch:
+        if asked.exercise:
+            folder = begun(Path(scratch), asked.exercise, asked.language)
+            with started(folder, "learn", "view", "--no-browser", "--port", "0") as address:
+                take_exercise(browser, address, asked)
+        else:
+            with started(ROOT, "launch", asked.system, "--view") as address:
+                take(browser, address, asked)
+        if browser.problems:
+            sys.exit(f"the page's console: {browser.problems[:3]}")
+
+
+def begun(folder: Path, exercise: str, language: Language) -> Path:
+    """A folder of exercises in which those before one are done."""
+    student = start_folder(str(folder), language=language)
+    student.write()
+    while student.next is not None and student.next != student.chosen(exercise):
+        student.finish(student.next)
+    return folder
 
 
 @contextmanager
-def started(system: str) -> Iterator[str]:
-    """Launch a system with its page; the address of the page."""
-    command = [sys.executable, "-m", "robolink", "launch", system, "--view"]
+def started(folder: Path, *words: str) -> Iterator[str]:
+    """Run a command that serves the page; the address of the page."""
     with free_domain() as domain:
         process = subprocess.Popen(
-            command,
+            [sys.executable, "-P", "-m", "robolink", *words],
             env=dict(os.environ, ROS_DOMAIN_ID=str(domain), DISPLAY="", BROWSER="true"),
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            cwd=ROOT,
+            cwd=folder,
         )
         try:
             assert process.stdout is not None
@@ -78,14 +99,18 @@ def started(system: str) -> Iterator[str]:
             process.communicate(timeout=20)
 
 
+def take_exercise(browser: Browser, address: str, asked: argparse.Namespace) -> None:
+    """Open the page, let it play the path of the check to its end, and take a picture."""
+    remember(browser, asked, {})
+    browser.open(address)
+    film = "robolink.layout?.panel('learn')?.film"
+    browser.wait(f"globalThis.robolink && {film}?.end && {film}.at == {film}.end && !{film}.changed")
+    browser.screenshot(asked.file)
+
+
 def take(browser: Browser, address: str, asked: argparse.Namespace) -> None:
     """Open the page as somebody left it, let the robot drive, and take a picture."""
-    remembered = {"layout": LAYOUT, "settings": {"theme": asked.theme, "language": asked.language}}
-    source = "".join(
-        f"localStorage.setItem('robolink.{name}', {json.dumps(json.dumps(value))});"
-        for name, value in remembered.items()
-    )
-    browser.call("Page.addScriptToEvaluateOnNewDocument", source=source)
+    remember(browser, asked, {"layout": LAYOUT})
     browser.open(address)
     browser.wait("globalThis.robolink?.layout?.isReady && robolink.topics.get('/cmd_vel')?.view")
     for branch in ("linear", "angular"):
@@ -93,8 +118,16 @@ def take(browser: Browser, address: str, asked: argparse.Namespace) -> None:
     browser.move((640.0, 18.0))
     time.sleep(asked.seconds)
     browser.screenshot(asked.file)
-    if browser.problems:
-        sys.exit(f"the page's console: {browser.problems[:3]}")
+
+
+def remember(browser: Browser, asked: argparse.Namespace, remembered: CELL) -> None:
+    """Fill the browser's memory before the page is opened."""
+    remembered["settings"] = {"theme": asked.theme, "language": asked.language}
+    source = "".join(
+        f"localStorage.setItem('robolink.{name}', {json.dumps(json.dumps(value))});"
+        for name, value in remembered.items()
+    )
+    browser.call("Page.addScriptToEvaluateOnNewDocument", source=source)
 
 
 if __name__ == "__main__":

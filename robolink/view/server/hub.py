@@ -121,8 +121,6 @@ class Hub:
 
     async def run(self) -> None:
         """Deliver what arrives, on each tick; a few times a second while there are no clients."""
-        if self.learning is not None:
-            self.learning.begin()
         while True:
             if not self.clients:
                 with contextlib.suppress(asyncio.TimeoutError):

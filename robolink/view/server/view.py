@@ -157,6 +157,8 @@ class View:
         server = await self._listen()
         self._access = self._access._replace(port=next(iter(server.sockets)).getsockname()[1])
         self._source.begin(self.hub)
+        if self.hub.learning is not None:
+            self.hub.learning.begin()
         ticking = asyncio.create_task(self.hub.run())
         self._ready.set()
         try:
