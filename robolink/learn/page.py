@@ -85,7 +85,7 @@ class PageExercises:
                 "heading": words(language, "heading", done=folder.done, all=len(folder.course)),
                 "current": self._current,
                 "saves": self._saves,
-                "checking": self._checking,
+                "checking": self._checking or next(iter(self._waiting), None),
                 "exercises": [
                     {
                         "name": each.name,
@@ -194,7 +194,6 @@ class PageExercises:
     def _work(self) -> None:
         while True:
             with self._news:
-                self._checking = None
                 self._news.wait_for(lambda: self._is_closed or self._waiting)
                 if self._is_closed:
                     return
@@ -205,6 +204,10 @@ class PageExercises:
                 self._tell(self.state())
             with self._telling():
                 self._check_one(self._by_name[name])
+            with self._lock:
+                if self._checking is not None:  # it was ended, or could not begin
+                    self._checking = None
+                    self._tell(self.state())
 
     def _check_one(self, exercise: Exercise) -> None:
         folder = self._folder

@@ -193,6 +193,8 @@ def test_a_check_that_cannot_begin_is_told_and_the_next_one_runs(tmp_path: Path)
         while (found := told.get(timeout=WITHIN))["op"] != "status":
             pass
         assert "No space left" in found["message"]
+        while "checking" not in (found := told.get(timeout=WITHIN)) or found["checking"] is not None:
+            pass
         exercises.obey("check", "walk")
         while (found := told.get(timeout=WITHIN))["op"] != "exercise":
             pass
