@@ -9,6 +9,7 @@ from robolink.learn.trial import Trial
 def check(trial: Trial) -> None:
     """Send scans, then let it drive, and look for contacts."""
     trial.start()
+    trial.run(0.3)  # before the first scan
     speed, turn = answer(trial, 3.0)
     trial.tell("drives", abs(speed - 0.3) < 0.01, speed=speed)
     trial.tell("straight", abs(turn) < 0.01, turn=turn)
