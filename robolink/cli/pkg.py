@@ -11,6 +11,7 @@ from robolink.cli.shared import complete
 from robolink.cli.shared.listed_options import ListedOptions
 from robolink.cli.shared.options import choice
 from robolink.cli.shared.output import say, tell
+from robolink.exceptions import nearest
 
 if TYPE_CHECKING:
     from robolink.scaffold import NewPackage
@@ -33,7 +34,9 @@ def create(
         list[str] | None, typer.Option("--dependencies", metavar="PACKAGE...", help="Packages that it needs.")
     ] = None,
     description: Annotated[str, typer.Option("--description", help="For package.xml.")] = "TODO: Package description",
-    license_: Annotated[str, typer.Option("--license", help="For package.xml.")] = "TODO: License declaration",
+    license_: Annotated[
+        str, typer.Option("--license", metavar="ID", help="Such as MIT, with its file LICENSE; '?' lists them.")
+    ] = "TODO: License declaration",
     maintainer_name: Annotated[str, typer.Option("--maintainer-name", help="For package.xml.")] = "",
     maintainer_email: Annotated[str, typer.Option("--maintainer-email", help="For package.xml.")] = "",
     package_format: Annotated[str, choice("--package-format", ["2", "3"], "Of package.xml")] = "3",
@@ -42,8 +45,11 @@ def create(
     ] = Path(),
 ) -> None:
     """Make a package that runs here at once, and that colcon builds: in the folder src/ of a workspace, say."""
-    from robolink.scaffold import NewPackage, new_package
+    from robolink.scaffold import NewPackage, known_licenses, new_package
 
+    if license_ == "?":
+        say("\n".join(["Supported licenses:", *known_licenses()]))
+        return
     user = maintainer_name or _user()
     email = maintainer_email or f"{user}@todo.todo"
     wanted = NewPackage(
@@ -76,6 +82,12 @@ def _tell_of(wanted: NewPackage, destination: Path, files: list[str]) -> None:
         say(f"creating ./{wanted.name}/{each}")
     if wanted.license.startswith("TODO"):
         tell("say under which licence others may use it: <license> in package.xml, and a file LICENSE")
+    elif "LICENSE" not in files:
+        from robolink.scaffold import known_licenses
+
+        known = known_licenses()
+        hint = nearest(wanted.license, known) or f": there is {', '.join(known)}"
+        tell(f"no file LICENSE was made: robolink has no text of '{wanted.license}'{hint}")
     if wanted.node:
         say(f"\nnext:\n  robolink run {wanted.name} {wanted.node}")
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import escape
 
+from robolink.scaffold.licenses import license_files
 from robolink.scaffold.naming import ScaffoldError, checked, checked_module, class_name
 from robolink.scaffold.rendering import rendered
 from robolink.scaffold.writing import Made, written
@@ -59,6 +60,7 @@ def new_package(wanted: NewPackage, destination: Path) -> Made:
             f"{destination / wanted.name} is there already: take another name or --destination-directory"
         )
     files = _python(wanted) if wanted.build_type == PYTHON else _cmake(wanted)
+    files.update(license_files(wanted.license, wanted.maintainer))
     return written(destination / wanted.name, wanted.name, files)
 
 

@@ -34,7 +34,14 @@ def test_no_placeholder_is_left_in_any_file() -> None:
 
 def test_every_template_is_of_a_kind() -> None:
     packages = ["package_cmake", "package_library", "package_python"]
-    assert sorted(each.name for each in TEMPLATES.iterdir()) == ["exercise", "node", *packages, "project", "world"]
+    assert sorted(each.name for each in TEMPLATES.iterdir()) == [
+        "exercise",
+        "licenses",
+        "node",
+        *packages,
+        "project",
+        "world",
+    ]
 
 
 def test_a_project_launches_what_its_files_say(here: Path) -> None:

@@ -48,6 +48,20 @@ def test_a_package_in_python_runs_at_once(src: Path, capsys: Captured) -> None:
     assert [each.text for each in root.all("export", "build_type")] == ["ament_python"]
 
 
+def test_a_licence_is_written_and_an_unknown_one_is_told(src: Path, capsys: Captured) -> None:
+    assert main(["pkg", "create", "pkg_a", "--license", "BSD-3-Clause", "--maintainer-name", "Ada"]) == 0
+    out, err = capsys.readouterr()
+    assert ("\ncreating ./pkg_a/LICENSE\n" in out, err) == (True, "")
+    assert ", Ada\n" in (src / "pkg_a/LICENSE").read_text()
+    assert main(["pkg", "create", "pkg_b", "--license", "BSD-3-Claus"]) == 0
+    hint = "(did you mean 'BSD-3-Clause'?)"
+    assert capsys.readouterr().err == f"no file LICENSE was made: robolink has no text of 'BSD-3-Claus' {hint}\n"
+    assert not (src / "pkg_b/LICENSE").exists()
+    assert main(["pkg", "create", "pkg_c", "--license", "?"]) == 0
+    assert capsys.readouterr().out.splitlines()[:3] == ["Supported licenses:", "Apache-2.0", "BSD-2-Clause"]
+    assert not (src / "pkg_c").exists()
+
+
 def test_what_setuptools_and_colcon_need_is_in_it(src: Path) -> None:
     awkward = 'it\'s "new" <&> {}'
     main(
