@@ -9,7 +9,7 @@ from pathlib import Path
 
 from robolink.exceptions import DocumentError, RobolinkError
 from robolink.learn.exercise import Exercise, chosen, read_course
-from robolink.learn.languages import Language, default_language
+from robolink.learn.languages import Language, default_language, words
 from robolink.learn.progress import FILE, Progress, load_progress, save_progress
 from robolink.system.paths import expanded, is_file
 from robolink.system.whole_files import write_new
@@ -131,9 +131,8 @@ def the_folder() -> StudentFolder:
 
 def _where_to_go() -> str:
     below = folder_below()
-    if below:
-        return f"the exercises are in {below}: cd {below}"
-    return f"no exercises in this folder or above it: `robolink learn start` writes them into {DEFAULT}, then cd there"
+    language = default_language()
+    return words(language, "go below", folder=below) if below else words(language, "no exercises", folder=DEFAULT)
 
 
 def folder_below() -> str:

@@ -59,6 +59,15 @@ _WORDS: dict[str, tuple[str, str]] = {
         "robolink learn start    writes the exercises into a folder, to begin with",
         "robolink learn start    grava os exercícios em uma pasta, para começar",
     ),
+    "no exercises": (
+        "no exercises in this folder or above it: `robolink learn start` writes them into {folder}, then cd there",
+        "não há exercícios nesta pasta nem acima dela: `robolink learn start` os grava em {folder}; depois, cd para lá",
+    ),
+    "go below": ("the exercises are in {folder}: cd {folder}", "os exercícios estão em {folder}: cd {folder}"),
+    "no file": (
+        "there is no {file} here: `robolink learn reset {name}` writes it again",
+        "não há {file} aqui: `robolink learn reset {name}` o grava de novo",
+    ),
     "written": ("exercises in {folder}: {count}", "exercícios em {folder}: {count}"),
     "all there": ("all exercises are in {folder} already", "todos os exercícios já estão em {folder}"),
     "all here": ("all exercises are here already", "todos os exercícios já estão aqui"),
@@ -92,6 +101,10 @@ _WORDS: dict[str, tuple[str, str]] = {
         "seu programa parou com um erro na linha {line}:",
     ),
     "elsewhere": ("your program stopped with an error:", "seu programa parou com um erro:"),
+    "input": (
+        "your program waits for the keyboard at line {line}, where a check has none: take the input() out",
+        "seu programa espera o teclado na linha {line}, e um teste não tem teclado: tire o input()",
+    ),
     "stuck": (
         "your program is stuck at line {line}: is there a loop that never ends or never waits?",
         "seu programa está preso na linha {line}: há um laço que nunca termina ou nunca espera?",

@@ -67,7 +67,9 @@ def mistake_of(error: BaseException, file: Path) -> Mistake | None:
     if place is not None and _is(place.file, file):
         lines.append(place.line)
     if lines:
-        return Mistake("exception", _shortly(_told(error), file), lines[-1], line_of(file, lines[-1]))
+        code = line_of(file, lines[-1])
+        is_input = isinstance(error, EOFError) and "input(" in code
+        return Mistake("input" if is_input else "exception", _shortly(_told(error), file), lines[-1], code)
     if isinstance(error, RobolinkError):
         return Mistake("file", _shortly(_told_plainly(error), file))
     return None

@@ -15,6 +15,7 @@ Kind = Literal[
     "stuck",
     "stuck somewhere",
     "asleep",
+    "input",
     "ended",
     "ended all",
     "file",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 import shutil
 from pathlib import Path
@@ -90,6 +91,16 @@ def test_a_value_of_the_wrong_type_has_its_line(tmp_path: Path) -> None:
     assert report.mistake.kind == "exception"
     assert "expected float64, got 'fast'" in report.mistake.text
     assert report.mistake.code.strip() == "self.publisher.publish(twist)"
+
+
+def test_a_program_that_asks_the_keyboard_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdin", io.StringIO())
+    report = tried("name = input('name? ')\n" + solution(HELLO), tmp_path)
+    assert list(reported(HELLO, report, "pt"))[:3] == [
+        "  ✗ seu programa espera o teclado na linha 1, e um teste não tem teclado: tire",
+        "    o input()",
+        "       1 | name = input('name? ')",
+    ]
 
 
 @pytest.mark.parametrize("ending", ["raise SystemExit(3)", "exit(3)", "import sys; sys.exit(3)"])

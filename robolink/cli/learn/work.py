@@ -52,7 +52,7 @@ def check(name: str, language: Language | None) -> bool:
     folder = folder_here(language)
     exercise = folder.chosen(name)
     if not folder.file_of(exercise).exists():
-        raise NoFileError(f"there is no {exercise.file} here: `robolink learn reset {exercise.name}` writes it again")
+        raise NoFileError(words(folder.language, "no file", file=exercise.file, name=exercise.name))
     return _check(folder, exercise)
 
 

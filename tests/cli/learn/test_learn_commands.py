@@ -148,6 +148,9 @@ def test_mistakes_are_one_line(here: Path, student: Path, monkeypatch: pytest.Mo
     monkeypatch.chdir(here / "empty")
     assert main(["learn", "check"]) == 1
     assert capsys.readouterr().err.startswith("robolink: no exercises in this folder or above it")
+    monkeypatch.setenv("LC_ALL", "pt_BR.UTF-8")
+    assert main(["learn", "check"]) == 1
+    assert capsys.readouterr().err.startswith("robolink: não há exercícios nesta pasta nem acima dela")
 
 
 def test_a_file_that_is_gone_is_told(student: Path, capsys: Captured) -> None:
