@@ -147,6 +147,13 @@ WRONG = [
     ),
     ("safe", '"cmd_vel"', '"cmdvel"', "scans came, and nothing was published on cmd_vel"),
     ("follow_wall", "-2.0 * (right", "2.0 * (right", "and ran into something"),
+    (
+        "follow_wall",
+        "angular.z = 0.5",
+        "angular.z = 30.0",
+        "standing, it asked for a turn of 30.0 rad/s, and not of 0.5",
+    ),
+    ("follow_wall", "linear.x = 0.3", "linear.x = 1.0", "it asked for 1.0 m/s, and not for 0.3"),
 ]
 
 
