@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import json
+from collections.abc import Mapping
 from typing import Any
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
@@ -43,16 +44,40 @@ def text_of(schema: dict[str, Any]) -> str:
     return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
 
 
-def schema_of(kind: type, title: str) -> dict[str, Any]:
+def described(name: str, part: dict[str, Any], meanings: Mapping[str, str]) -> dict[str, Any]:
+    """Add the description of each key of a Struct, which editors show, and return the Struct's schema.
+
+    Args:
+        name: The Struct's name.
+        part: Its schema, as `draft_7` returns it.
+        meanings: Descriptions by Struct and key, as "Respawn.delay", or by a key that means the same everywhere.
+
+    Raises:
+        LookupError: If a key has none.
+    """
+    for key, schema in part.get("properties", {}).items():
+        meaning = schema.get("description") or meanings.get(f"{name}.{key}") or meanings.get(key)
+        if meaning is None:
+            raise LookupError(
+                f"{name}.{key} has no description for editors: give it Annotated[..., Meta(description=...)]"
+            )
+        schema["description"] = meaning
+        if "$ref" in schema:
+            schema["allOf"] = [{"$ref": schema.pop("$ref")}]
+    return part
+
+
+def schema_of(kind: type, title: str, meanings: Mapping[str, str]) -> dict[str, Any]:
     """Return the schema of a file.
 
     Args:
         kind: Struct of the whole file; the docstrings of the Structs are what editors show.
         title: Title of the schema.
+        meanings: Descriptions of the keys; see `described`.
     """
     import msgspec
 
     _, parts = msgspec.json.schema_components([kind], ref_template="#/definitions/{name}")
-    definitions = {name: draft_7(part) for name, part in sorted(parts.items())}
+    definitions = {name: described(name, draft_7(part), meanings) for name, part in sorted(parts.items())}
     whole = definitions.pop(kind.__name__)
     return {"$schema": DRAFT, **whole, "title": title, "definitions": definitions}

@@ -15,6 +15,8 @@ from robolink.system.whole_files import write_new
 from robolink.workspace import built_in_workspace, user_workspace
 from robolink.workspace.source import Folder
 
+MODELINE = "# yaml-language-server: $schema="
+"""First words of a YAML file that tell editors its schema, a file beside it."""
 PARTS = ("nodes", "configs")
 """Folders of which a workspace of robolink's own kind has one at least."""
 
@@ -41,7 +43,7 @@ def new_project(path: str) -> Made:
     name = checked("project", folder.name if path else "")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ScaffoldError(f"{path} is there already and not empty: take another name, or an empty folder")
-    return written(folder, name, rendered("project", {"NAME": name}))
+    return written(folder, name, _with_schemas(rendered("project", {"NAME": name}), folder))
 
 
 def new_node(name: str, *, workspace: Folder = None) -> Made:
@@ -80,8 +82,21 @@ def new_world(name: str, *, workspace: Folder = None) -> Made:
     files = rendered("world", {"NAME": name})
     folder = _workspace(workspace)
     if folder is None:
-        return written(Path.cwd(), name, {f"{name}.yaml": files[f"configs/worlds/{name}.yaml"]})
-    return written(folder, name, files)
+        _, _, text = files[f"configs/worlds/{name}.yaml"].partition("\n")  # there is no schema beside it
+        return written(Path.cwd(), name, {f"{name}.yaml": text})
+    return written(folder, name, _with_schemas(files, folder))
+
+
+def _with_schemas(files: Mapping[str, str], folder: Path) -> dict[str, str]:
+    """Return the files, and the schemas that they name and that are not in the folder yet."""
+    made = dict(files)
+    for path, text in files.items():
+        line = text.partition("\n")[0]
+        if line.startswith(MODELINE):
+            schema = f"{Path(path).parent.as_posix()}/{line.removeprefix(MODELINE)}"
+            if not (folder / schema).exists():
+                made[schema] = (built_in_workspace() / schema).read_text(encoding="utf-8")
+    return made
 
 
 def _workspace(asked: Folder) -> Path | None:

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import msgspec
 
-from robolink.documents.json_schema import DRAFT, draft_7, text_of
+from robolink.documents.json_schema import DRAFT, described, draft_7, text_of
 from robolink.sim.description import WorldDescription
 from robolink.sim.sensors import SENSORS, Sensor
 
@@ -51,9 +51,6 @@ MEANINGS = {
     "Obstacle.path": "Points [x, y] along which it moves by itself.",
     "Obstacle.speed": "Speed along its path, in m/s.",
     "Obstacle.closed": "True: round and round, from the last point to the first; false: to and fro.",
-    "Pose.x": "Position along x, in metres.",
-    "Pose.y": "Position along y, in metres.",
-    "Pose.theta": "Heading in radians, counter-clockwise from the x axis.",
     "RobotDescription.name": "Letters, digits and '_', a letter first.",
     "RobotDescription.pose": "Pose at the start: [x, y, theta].",
     "RobotDescription.shape": "Outline about its origin; a circle with a radius of 0.17 m by default.",
@@ -107,7 +104,8 @@ def world_schema() -> Schema:
     """Return the schema of world files as plain data."""
     types = [WorldDescription, *SENSORS.values()]
     _, parts = msgspec.json.schema_components(types, schema_hook=_any_sensor, ref_template="#/definitions/{name}")
-    definitions = {name: _described(name, draft_7(part)) for name, part in sorted(parts.items())}
+    meanings = {**MEANINGS, **dict.fromkeys(SENSORS, "The topic that it publishes on.")}
+    definitions = {name: described(name, draft_7(part), meanings) for name, part in sorted(parts.items())}
     for shape in ("Shape", "Obstacle"):
         definitions[shape]["oneOf"] = _OUTLINES
     definitions["Paint"]["oneOf"] = [{"required": ["line"]}, *_OUTLINES]
@@ -126,18 +124,3 @@ def _any_sensor(kind: type) -> Schema:
     if kind is not Sensor:
         raise NotImplementedError(kind)
     return {"oneOf": [{"$ref": f"#/definitions/{each.__name__}"} for each in SENSORS.values()]}
-
-
-def _described(name: str, part: Schema) -> Schema:
-    """Add the description of each key of a Struct. Raises LookupError for a key that has none."""
-    for key, schema in part.get("properties", {}).items():
-        topic = "The topic that it publishes on." if key in SENSORS else None
-        meaning = schema.get("description") or topic or MEANINGS.get(f"{name}.{key}") or MEANINGS.get(key)
-        if meaning is None:
-            raise LookupError(
-                f"{name}.{key} has no description for editors: give it Annotated[..., Meta(description=...)]"
-            )
-        schema["description"] = meaning
-        if "$ref" in schema:
-            schema["allOf"] = [{"$ref": schema.pop("$ref")}]
-    return part

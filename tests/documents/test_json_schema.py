@@ -11,8 +11,12 @@ import pytest
 
 from robolink.cli.main import main
 from robolink.documents.yamlfile import parse
+from robolink.faults.schema import MEANINGS as faults_meanings
 from robolink.faults.schema import faults_schema
+from robolink.launch.schema import MEANINGS as launch_meanings
 from robolink.launch.schema import launch_schema
+from robolink.sim.schema import MEANINGS as world_meanings
+from robolink.sim.schema import world_schema
 
 ROOT = Path(__file__).parents[2]
 CONFIGS = ROOT / "configs"
@@ -96,3 +100,26 @@ def test_mistakes_in_launch_files_are_found(text: str) -> None:
 )
 def test_mistakes_in_faults_files_are_found(text: str) -> None:
     assert problems(FAULTS, text)
+
+
+@pytest.mark.parametrize("schema", [launch_schema(), faults_schema(), world_schema()], ids=lambda each: each["title"])
+def test_every_key_says_what_it_means_where_the_mouse_is(schema: dict[str, Any]) -> None:
+    parts = {"": schema, **schema["definitions"]}
+    keys = {f"{name}.{key}": value for name, part in parts.items() for key, value in part.get("properties", {}).items()}
+    assert len(keys) > 20
+    assert [key for key, value in keys.items() if not value.get("description", "").endswith(".")] == []
+    assert [name for name, part in parts.items() if not part.get("description")] == []
+
+
+def test_descriptions_are_of_keys_that_are_there() -> None:
+    for schema, meanings in (
+        (launch_schema(), launch_meanings),
+        (faults_schema(), faults_meanings),
+        (world_schema(), world_meanings),
+    ):
+        parts = {schema.get("title", ""): schema, **schema["definitions"]}
+        keys = {key for part in parts.values() for key in part.get("properties", {})}
+        names = {f"{name}.{key}" for name, part in schema["definitions"].items() for key in part.get("properties", {})}
+        whole = ("LaunchDescription", "FaultsDescription", "WorldDescription")
+        assert [key for key in meanings if key.partition(".")[2] in keys and key.startswith(whole)]
+        assert [key for key in meanings if not key.startswith(whole) and key not in keys | names] == []

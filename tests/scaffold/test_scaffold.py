@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
+import json
+import re
 from pathlib import Path
 
 import pytest
@@ -11,9 +14,12 @@ from robolink.launch import plan
 from robolink.scaffold import ScaffoldError, new_node, new_project, new_world, writing
 from robolink.scaffold.naming import LONGEST, class_name
 from robolink.scaffold.rendering import TEMPLATES, rendered
+from robolink.scaffold.writing import MODELINE
 from robolink.sim.worldfile import check_world
 from robolink.testing import System
 from robolink.workspace import VARIABLE
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture
@@ -88,6 +94,7 @@ def test_a_node_says_what_its_parameter_has(here: Path, monkeypatch: pytest.Monk
 def test_without_a_workspace_a_node_is_one_file_here(here: Path) -> None:
     assert new_node("talker.py").files == ["talker.py"]
     assert new_world("kitchen").files == ["kitchen.yaml"]
+    assert "$schema" not in (here / "kitchen.yaml").read_text()  # there is none beside it
     assert not check_world(here / "kitchen.yaml").errors
 
 
@@ -102,6 +109,32 @@ def test_a_world_is_found_by_its_name(here: Path, monkeypatch: pytest.MonkeyPatc
     made = new_world("kitchen")
     assert made.files == ["configs/worlds/kitchen.yaml"]
     assert not check_world(made.folder / made.files[0]).errors
+
+
+def schema_errors(file: Path) -> list[str]:
+    """What an editor says of a file, by the schema that its first line names; nothing is asked of a network."""
+    jsonschema = importlib.import_module("jsonschema")  # by name, since it has no types
+    text = file.read_text(encoding="utf-8")
+    first = text.splitlines()[0]
+    assert first.startswith(MODELINE)
+    schema = json.loads((file.parent / first.removeprefix(MODELINE)).read_text(encoding="utf-8"))
+    assert not re.findall(r'"\$ref": "(?!#)', json.dumps(schema))
+    return [each.message for each in jsonschema.Draft7Validator(schema).iter_errors(yaml.safe_load(text))]
+
+
+def test_editors_find_the_schemas_of_a_project(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = new_project("demo").folder
+    launch, room = folder / "configs/demo.yaml", folder / "configs/worlds/room.yaml"
+    assert (schema_errors(launch), schema_errors(room)) == ([], [])
+    launch.write_text(launch.read_text().replace("parameters:", "parametres:"))
+    room.write_text(room.read_text().replace("circle: 0.2", "circle: big"))
+    assert "parametres" in schema_errors(launch)[0]
+    assert schema_errors(room)
+    assert (folder / "configs/launch.schema.json").read_text() == (ROOT / "configs/launch.schema.json").read_text()
+    monkeypatch.chdir(folder)
+    (folder / "configs/worlds/world.schema.json").unlink()
+    assert new_world("kitchen").files == ["configs/worlds/kitchen.yaml", "configs/worlds/world.schema.json"]
+    assert schema_errors(folder / "configs/worlds/kitchen.yaml") == []
 
 
 def test_what_is_there_stays_as_it_is(here: Path) -> None:
