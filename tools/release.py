@@ -22,7 +22,7 @@ def notes(tag: str, root: Path = ROOT) -> str:
         root: Folder with pyproject.toml, CHANGELOG.md and CITATION.cff.
 
     Raises:
-        ValueError: If one of the three names another version.
+        ValueError: If one of the three names another version, or the section says something twice.
     """
     wanted = tag.removeprefix("v")
     for name, pattern in (("pyproject.toml", VERSION), ("CITATION.cff", CITED)):
@@ -33,8 +33,16 @@ def notes(tag: str, root: Path = ROOT) -> str:
     for section in sections[1:]:
         title, _, text = section.partition("\n")
         if title.split(" ")[0].strip("[]") == wanted:
+            if repeated := twice(text):
+                raise ValueError(f"CHANGELOG.md: '{repeated}' stands twice in the section of {wanted}")
             return text.strip() + "\n"
     raise ValueError(f"CHANGELOG.md: no section '## {wanted}': rename 'Unreleased' and begin a new one")
+
+
+def twice(section: str) -> str:
+    """Return the first heading or entry that a section has twice, if any: two changes were merged by hand."""
+    found = re.findall(r"^(?:###+|[ ]*-) (.*)$", section, re.MULTILINE)
+    return next((each for each in found if found.count(each) > 1), "")
 
 
 def main(words: list[str]) -> int:
