@@ -1,27 +1,10 @@
-"""docs/behaviour_trees.md: its program wanders, and its test passes."""
+"""docs/behaviour_trees.md: py_trees' own timers in virtual time; its blocks are run by test_pages_run.py."""
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
-from types import ModuleType
-
-import pytest
 
 from robolink.testing import System
-
-PAGE = (Path(__file__).parents[2] / "docs" / "behaviour_trees.md").read_text(encoding="utf-8")
-PROGRAM, TEST = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
-
-
-@pytest.mark.slow
-def test_the_test_of_the_page_passes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "wanderer.py").write_text(PROGRAM, encoding="utf-8")
-    monkeypatch.chdir(tmp_path)
-    made = ModuleType("test_wanderer")
-    exec(TEST, made.__dict__)
-    with System(seed=1) as system:
-        made.test_it_wanders_and_touches_nothing(system)
 
 
 def test_timers_of_py_trees_go_by_simulated_time(system: System, tmp_path: Path) -> None:

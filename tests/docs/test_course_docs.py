@@ -1,24 +1,24 @@
-"""docs/course_camera.md: the world is valid, both programs run, and the page's test passes."""
+"""docs/course_camera.md: its programs do in other worlds what it says; its blocks are run by test_pages_run.py."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
 
 from robolink.testing import System
+from tools.docs_site.markdown import blocks
 
 PAGE = (Path(__file__).parents[2] / "docs" / "course_camera.md").read_text(encoding="utf-8")
-SEES, FOLLOWS, TEST = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
-(WORLD,) = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
+FILES = {each.title: each.text for each in blocks(PAGE) if each.title}
+WORLD = FILES["line.yaml"]
 
 
 @pytest.fixture(autouse=True)
 def _files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name, text in {"line.yaml": WORLD, "see_line.py": SEES, "follow_line.py": FOLLOWS}.items():
+    for name, text in FILES.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
 
@@ -30,13 +30,6 @@ def test_the_line_is_seen(system: System) -> None:
     seen = [each.message for each in system.logs if each.message.startswith("the line is at")]
     assert seen
     assert all(re.fullmatch(r"the line is at \d+, \d+", each) for each in seen)
-
-
-@pytest.mark.slow
-def test_the_test_of_the_page_passes(system: System) -> None:
-    made = ModuleType("test_follow_line")
-    exec(TEST, made.__dict__)
-    made.test_it_stays_on_the_line(system)
 
 
 @pytest.mark.slow

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.console import fits
+from tests.support.domains import free_domain
 from tests.support.page_kinds import imports_ros
 from tests.support.page_runner import Shells, steps
 from tests.support.page_shell import Shell, lines_of
@@ -154,6 +155,55 @@ def test_a_page_without_mistakes_passes(tmp_path: Path) -> None:
     )
     with Shells(tmp_path, 0) as shells:
         shells.run(text)
+
+
+HELPED = """
+<!-- run: early a.py -->
+<!-- run: with PLACE as {port} {port} {port2} -->
+```sh
+export COLOUR=red
+python a.py PLACE   # another number is typed
+```
+
+<!-- run: new shell -->
+```console
+$ python a.py
+...
+colour none
+```
+
+<!-- run: copy walk.yaml as again.yaml -->
+<!-- run: try python -c "raise SystemExit(open('again.yaml').read().count('nodes'))" -->
+<!-- run: is a.py -->
+```python
+import os, sys
+print(*sys.argv[1:])
+print("colour", os.environ.get("COLOUR", "none"))
+```
+
+<!-- run: then shot_check.py -->
+```python
+import numpy as np
+image, depths = np.zeros((240, 320, 3)), np.zeros((240, 320))
+```
+"""
+
+
+@pytest.mark.processes
+def test_hidden_comments_help_a_page(tmp_path: Path) -> None:
+    with Shells(tmp_path, 0) as shells:
+        shells.run(HELPED)
+        first = shells.all[0].lines
+    number, same, other = first[0].text.split()
+    assert (number == same, number == other, first[1].text) == (True, False, "colour red")
+
+
+@pytest.mark.processes
+def test_examples_are_stopped_when_they_have_said_something(tmp_path: Path) -> None:
+    with free_domain() as domain, Shells(tmp_path, domain) as shells:
+        shells.run("<!-- run: each -->\n```sh\nrobolink run world\nrobolink world list\n```")
+        assert shells.running == []
+        assert "world 'obstacles'" in shells.all[0].lines[0].text
 
 
 def test_blocks_know_their_title_line_and_directive() -> None:

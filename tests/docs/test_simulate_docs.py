@@ -1,4 +1,4 @@
-"""docs/simulate.md: its example ends as it says, its faults file is one, and it knows every option and key."""
+"""docs/simulate.md: it has every option and key, and faults that come along fit (test_pages_run.py runs its blocks)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import pytest
 import typer.main
 
 from robolink.cli.launching.simulate import app
-from robolink.cli.main import main
 from robolink.faults.description import ClockFault, Crash, MessageFault, Partition
 from robolink.faults.file import check_nodes, read_faults
 from robolink.launch import read_launch_file
@@ -20,25 +19,6 @@ from robolink.workspace import find_faults, find_launch
 from tests.support.simulations import workspace
 
 PAGE = (Path(__file__).parents[2] / "docs" / "simulate.md").read_text(encoding="utf-8")
-
-
-def test_its_faults_file_is_one_for_follow(tmp_path: Path) -> None:
-    [text] = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
-    (tmp_path / "faults.yaml").write_text(text, encoding="utf-8")
-    document = read_faults(tmp_path / "faults.yaml")
-    check_nodes(document, [each.name for each in read_launch_file(find_launch("follow"))])
-
-
-def test_its_example_prints_such_lines(capsys: pytest.CaptureFixture[str]) -> None:
-    _, *example = PAGE.partition("```console\n")[2].partition("```")[0].splitlines()
-    assert main(["simulate", "follow", "--duration", "2"]) == 0
-    printed = capsys.readouterr().out.splitlines()
-    assert {_shape(each) for each in example} - {"..."} <= {_shape(each) for each in printed}
-
-
-def _shape(line: str) -> str:
-    """Give a line without its numbers, spaces and hash."""
-    return re.sub(r"-?\d[\d.]*| {2,}", "", re.sub(r"^hash .*", "hash", line))
 
 
 def test_it_has_every_option() -> None:

@@ -11,6 +11,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import yaml
+import zenoh
 
 from tests.support.commands import ROBOLINK
 from tests.support.page_shell import PROGRAMS
@@ -70,6 +71,8 @@ def read(block: Block) -> Any:
             return list(yaml.safe_load_all(block.text))
         case "json":
             return json.loads(block.text)
+        case "json5":
+            return zenoh.Config.from_json5(block.text)
         case "xml":
             return ElementTree.fromstring(block.text)
         case language:

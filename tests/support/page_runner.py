@@ -7,31 +7,35 @@ block tells more:
 
     <!-- run: fails -->                the command ends with an error
     <!-- run: each -->                 examples: what goes on is stopped when it has said something
-    <!-- run: terminal -->             each command has a terminal of its own, where the system has such (not Windows)
+    <!-- run: terminal -->             each command has a terminal of its own, but on Windows; `each terminal`
     <!-- run: of careful.py -->        what an earlier command says, which still runs
     <!-- run: stop --> (or stop X)     Ctrl-C in the other shells (in that of X) first
     <!-- run: part of careful.py -->   these lines stand in that file
     <!-- run: is careful.py -->        a file, whose name the page does not show as a title
-    <!-- run: after NAME -->           lines that go on after those of tests/data/pages/NAME
+    <!-- run: after NAME -->           lines that go on after those of tests/data/pages/NAME, or
+    <!-- run: then NAME -->            before them
     <!-- run: not, REASON -->          nothing is run; its commands have to be right, all the same
 
 A comment that stands alone is done at its place, and the reader does not see it:
 
     <!-- run: type COMMAND -->         a command, such as a world beside the page
     <!-- run: try COMMAND -->          the same, whether it ends with an error or not
-    <!-- run: copy NAME -->            the file or folder tests/data/pages/NAME, in the reader's folder
-    <!-- run: with A as B -->          in commands from here on, B is typed for A; `{port}` in B is a free port
+    <!-- run: copy NAME -->            the file or folder tests/data/pages/NAME; copy A as B gives it another name
+    <!-- run: early NAME -->           the file that the page shows further below
+    <!-- run: with A as B -->          in commands from here on, B is typed for A; {port} and {port2} are free
     <!-- run: new shell -->            the folder and the variables of the beginning
     <!-- run: stop -->                 as above
 """
 
 from __future__ import annotations
 
+import re
 import shlex
 import shutil
 import subprocess
 import sys
 import time
+from collections import defaultdict
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -44,12 +48,12 @@ from tests.support.ports import free_port
 from tools.docs_site.markdown import DIRECTIVE, Block, blocks
 
 PATIENCE = 60.0
-FIRST_WORDS = 1.5
+FIRST_WORDS = 1.0
 """Seconds that a command which goes on has for its first line, before the next command is typed."""
 LOOKS = {"list", "info", "--status", "doctor"}
 """Words of commands that look and change nothing: a reader types them again when what they look at is not there yet."""
 INTERRUPTED = (0, 130, -2, 0xC000013A)
-ALONE = ("type", "try", "copy", "with", "new")
+ALONE = ("type", "try", "copy", "early", "with", "new")
 """Orders that are no block's own, even where one follows."""
 GIVEN = Path(__file__).parents[1] / "data" / "pages"
 """Files and folders that a page speaks of and does not show."""
@@ -61,14 +65,17 @@ class Shells:
     def __init__(self, folder: Path, domain: int) -> None:
         self.folder, self.domain = folder, domain
         self.shell = Shell(folder)
+        self.steps: list[Block] = []
         self.instead: dict[str, str] = {}
+        self.ports: defaultdict[str, int] = defaultdict(free_port)
         self.all: list[Command] = []
         self.running: list[tuple[str, Command]] = []
         self.last: tuple[str, Command] | None = None
 
     def run(self, text: str) -> None:
         """Run the blocks of a page, then stop what still runs."""
-        for step in steps(text):
+        self.steps = steps(text)
+        for step in self.steps:
             try:
                 self.take(step)
             except Exception as error:
@@ -82,10 +89,10 @@ class Shells:
             self.stop(rest)
         if block.language == "run":
             self.obey(order, rest)
-        elif order == "not," or (order == "terminal" and sys.platform == "win32"):
+        elif order == "not," or ("terminal" in block.directive and sys.platform == "win32"):
             page_words.check(block)
         elif block.language == "sh":
-            self.type_all(block.text, order)
+            self.type_all(block.text, *block.directive.split())
         elif block.language == "console":
             self.screen(block, rest if order == "of" else "")
         elif order == "part":
@@ -93,19 +100,24 @@ class Shells:
         elif block.title or order == "is":
             self.write(block, block.title or rest)
         else:
-            self.check(block, (GIVEN / rest).read_text(encoding="utf-8") if order == "after" else "")
+            given = (GIVEN / rest).read_text(encoding="utf-8") if order in ("after", "then") else ""
+            self.check(block._replace(text=given + block.text if order == "after" else block.text + given))
 
     def obey(self, order: str, rest: str) -> None:
         """Do what a comment that stands alone asks for."""
         if order in ("type", "try"):
-            self.type_all(rest, "either" if order == "try" else "")
+            self.type_all(rest, order)
         elif order == "copy":
-            source, target = GIVEN / rest, self.folder / rest
+            name, _, own = rest.partition(" as ")
+            source, target = GIVEN / name, self.folder / (own or name)
             target.parent.mkdir(parents=True, exist_ok=True)
             (shutil.copytree if source.is_dir() else shutil.copyfile)(source, target)
+        elif order == "early":
+            names = [(each.title or each.directive.removeprefix("is "), each) for each in self.steps]
+            self.write(next(each for name, each in names if name == rest), rest)
         elif order == "with":
             shown, _, typed = rest.partition(" as ")
-            self.instead[shown] = typed.replace("{port}", str(free_port()))
+            self.instead[shown] = re.sub(r"\{(port\d?)\}", lambda match: str(self.ports[match[1]]), typed)
         elif (order, rest) == ("new", "shell"):
             self.shell = Shell(self.folder)
         else:
@@ -117,9 +129,8 @@ class Shells:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(block.text, encoding="utf-8")
 
-    def check(self, block: Block, before: str) -> None:
+    def check(self, block: Block) -> None:
         """Run or read a block that is no file."""
-        block = block._replace(text=before + block.text)
         if program := program_for(block, self.shell.folder):
             self.last = (block.language, self.command(program, {}))
             assert self.last[1].end(PATIENCE) == 0, said(self.last[1])
@@ -133,30 +144,30 @@ class Shells:
         starts = range(len(lines) - len(wanted) + 1)
         assert any(lines[at : at + len(wanted)] == wanted for at in starts), f"not in {name}: {wanted}"
 
-    def type_all(self, text: str, order: str) -> None:
-        """Type the commands of lines: `fails` and `each` are as above; `either` if their exit code says nothing."""
+    def type_all(self, text: str, *orders: str) -> None:
+        """Type the commands of lines: `fails` and `each` are as above; `try` if their exit code says nothing."""
         for line in lines_of(text):
             for shown, typed in self.instead.items():
                 line = line.replace(shown, typed)
             for words in self.shell.commands(line):
                 running = list(self.running)
                 if not self.shell.obeys(words):
-                    self.type(words, order)
-                if order == "each" and self.running != running:
+                    self.type(words, *orders)
+                if "each" in orders and self.running != running:
                     self.stop_talking(*self.running.pop())
 
-    def type(self, words: list[str], order: str) -> None:
+    def type(self, words: list[str], *orders: str) -> None:
         """Type a command."""
         line = shlex.join(words)
         program, variables = self.shell.program(words)
-        command = self.command(program, variables, on_terminal=order == "terminal")
+        command = self.command(program, variables, on_terminal="terminal" in orders)
         self.last = (line, command)
-        if page_words.goes_on(words) and order != "fails":
+        if page_words.goes_on(words) and "fails" not in orders:
             self.running.append(self.last)
             wait(lambda: has_said(command), FIRST_WORDS)
             return
         code = command.end(PATIENCE)
-        assert order == "either" or (code != 0) is (order == "fails"), f"'{line}' ended with {code}: {said(command)}"
+        assert "try" in orders or (code != 0) is ("fails" in orders), f"'{line}' ended with {code}: {said(command)}"
 
     def command(self, program: tuple[str, ...], variables: dict[str, str], *, on_terminal: bool = False) -> Command:
         """Start a program in the reader's folder."""
@@ -180,7 +191,7 @@ class Shells:
             return
         for each in block.text.removeprefix("$ ").split("\n$ "):
             line, _, shown = each.partition("\n")
-            self.type_all(line, "either" if shown.strip() else "")
+            self.type_all(line, "try" if shown.strip() else "")
             if shown.strip():
                 self.compare(shown, "")
 
@@ -210,9 +221,11 @@ class Shells:
         """Press Ctrl-C where commands run whose lines have this in them, the youngest first."""
         stopped = [each for each in self.running if name in each[0]]
         assert stopped or not name, f"nothing runs that has '{name}' in it"
-        for each in reversed(stopped):
+        for _, command in reversed(stopped):
+            press_ctrl_c(command)
+        for each in stopped:
             self.running.remove(each)
-            self.interrupt(*each)
+            check_end(*each)
 
     def stop_talking(self, line: str, command: Command) -> None:
         """Press Ctrl-C in a command as soon as it has said something, which shows that it runs."""
@@ -220,19 +233,8 @@ class Shells:
         assert has_said(command), f"'{line}' says nothing"
         if command.lines[0].text.startswith("robolink: "):  # as errors do, after which it ends by itself
             wait(lambda: command.process.poll() is not None, FIRST_WORDS)
-        self.interrupt(line, command)
-
-    def interrupt(self, line: str, command: Command) -> None:
-        """Press Ctrl-C in a command, which has to end by it."""
-        if command.process.stdin is not None and command.process.poll() is None:
-            command.press("\x03")
-        else:
-            command.interrupt()
-        try:
-            code = command.end(PATIENCE)
-        except subprocess.TimeoutExpired:
-            raise AssertionError(f"Ctrl-C does not end '{line}': {said(command)}") from None
-        assert code in INTERRUPTED, f"'{line}' ended with {code}: {said(command)}"
+        press_ctrl_c(command)
+        check_end(line, command)
 
     def __enter__(self) -> Shells:
         return self
@@ -260,6 +262,23 @@ def steps(text: str) -> list[Block]:
 def is_alone(directive: str) -> bool:
     """Return True if a comment is done by itself, and says nothing about the block below."""
     return directive.partition(" ")[0] in ALONE
+
+
+def press_ctrl_c(command: Command) -> None:
+    """Press Ctrl-C in a command, on its terminal if it has one."""
+    if command.process.stdin is not None and command.process.poll() is None:
+        command.press("\x03")
+    else:
+        command.interrupt()
+
+
+def check_end(line: str, command: Command) -> None:
+    """Fail if a command does not end after Ctrl-C, or not well."""
+    try:
+        code = command.end(PATIENCE)
+    except subprocess.TimeoutExpired:
+        raise AssertionError(f"Ctrl-C does not end '{line}': {said(command)}") from None
+    assert code in INTERRUPTED, f"'{line}' ended with {code}: {said(command)}"
 
 
 def said(command: Command) -> str:

@@ -30,7 +30,7 @@ class Shell:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.variables = {"LC_ALL": "en_US.UTF-8"}
+        self.variables = {"LC_ALL": "en_US.UTF-8", "COLORTERM": "truecolor"}
 
     def commands(self, line: str) -> list[list[str]]:
         """Split a line into commands of words, without comments; variables are replaced by what they are now."""

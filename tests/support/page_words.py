@@ -47,8 +47,10 @@ def check(block: Block) -> None:
     if block.language not in ("sh", "console", "powershell"):
         read(block)
         return
-    for line in lines_of(block.text):
-        for words in Shell(Path.cwd()).commands(line.removeprefix("$ ")):
+    prompt = "$ " if block.language == "console" else ""
+    for line in [each for each in lines_of(block.text) if each.startswith(prompt)]:
+        for words in Shell(Path.cwd()).commands(line.removeprefix(prompt)):
+            words = without_settings(words)
             if words[0] == "robolink":
                 found = problem(words[1:])
                 assert not found, f"'{line}': {found}"

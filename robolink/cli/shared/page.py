@@ -18,6 +18,10 @@ def announce(server: View, browser: bool, panels: str) -> None:
         browser: True opens it in the browser.
         panels: Names of panels to begin with, parted by ``+``; '' leaves it to the browser's memory.
     """
+    # Before it is printed: a Ctrl-C that comes in an import may leave a lock of Python's behind, for which the server's
+    # threads, which import as well, would wait for ever.
+    from robolink.system.browser import open_in_browser
+
     address = f"{server.address}#{panels}" if panels else server.address
     say(f"robolink view: {address}")
     if server.exposed:
@@ -26,11 +30,8 @@ def announce(server: View, browser: bool, panels: str) -> None:
         others = f"http://{socket.gethostname()}:{server.port}/?{address.partition('?')[2]}"
         tell(f"others on the network open {others}: whoever has the token can drive the robots")
         tell("the connection is not encrypted: who listens on the network can read the token (docs/view.md)")
-    if browser:
-        from robolink.system.browser import open_in_browser
-
-        if not open_in_browser(address):
-            tell("no browser here: open the address above")
+    if browser and not open_in_browser(address):
+        tell("no browser here: open the address above")
 
 
 def end_with_the_terminal() -> None:

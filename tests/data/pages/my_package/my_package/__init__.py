@@ -1,0 +1,1 @@
+"""Node of a package that pages of the manual speak of."""

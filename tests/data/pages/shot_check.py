@@ -1,0 +1,2 @@
+
+assert (image.shape, depths.shape) == ((240, 320, 3), (240, 320))
