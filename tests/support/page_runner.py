@@ -19,7 +19,7 @@ block tells more:
 A comment that stands alone is done at its place, and the reader does not see it:
 
     <!-- run: type COMMAND -->         a command, such as a world beside the page
-    <!-- run: try COMMAND -->          the same, whether it ends with an error or not
+    <!-- run: try COMMAND -->          the same for one that ends, with an error or not
     <!-- run: copy NAME -->            the file or folder tests/data/pages/NAME; copy A as B gives it another name
     <!-- run: early NAME -->           the file that the page shows further below
     <!-- run: with A as B -->          in commands from here on, B is typed for A; {port} and {port2} are free
@@ -162,7 +162,7 @@ class Shells:
         program, variables = self.shell.program(words)
         command = self.command(program, variables, on_terminal="terminal" in orders)
         self.last = (line, command)
-        if page_words.goes_on(words) and "fails" not in orders:
+        if page_words.goes_on(words) and not {"fails", "try"} & set(orders):
             self.running.append(self.last)
             wait(lambda: has_said(command), FIRST_WORDS)
             return
