@@ -109,7 +109,7 @@ def test_by_keyboard_in_portuguese_in_the_dark_and_on_a_phone(browser: Browser, 
         browser.wait(f"document.querySelectorAll('.learn nav li').length && {FINDINGS}.length == 3")
         assert "12 | f(" in browser.js(FINDINGS)[2]
         assert browser.js("document.querySelectorAll('.learn img').length") == 0, "no text is HTML"
-        browser.js(f"document.querySelector('.learn nav [data-name=hello]').focus() ?? {FILM}._go({FILM}.end)")
+        browser.js(f"document.querySelector('.learn nav [data-name=hello]').focus(); {FILM}._go({FILM}.end)")
         page.picture("learn_dark")
         browser.press("ArrowDown")
         browser.wait(f"{CHOSEN} == 'timer' && document.activeElement.dataset.name == 'timer'")
@@ -132,9 +132,14 @@ def test_by_keyboard_in_portuguese_in_the_dark_and_on_a_phone(browser: Browser, 
             browser.wait(f"{FILM}.canvas.clientWidth < 390 && {FINDINGS}.length == 3")
             assert browser.js("document.documentElement.scrollWidth") <= 390, "nothing sticks out"
             page.picture("learn_phone")
-            browser.js("document.querySelector('.film').scrollIntoView()")
-            browser.wait(f"!{FILM}.playing && {PIXELS}('accent') > 100")
+            browser.js(f"document.querySelector('.film').scrollIntoView(); {FILM}._go({FILM}.end)")
+            browser.wait(f"!{FILM}.playing && !{FILM}.changed && {PIXELS}('accent') > 100")
+            assert browser.js(f"{FILM}.canvas.clientHeight") < 150, "as wide as the world is"
             page.picture("learn_phone_film")
+            browser.resize(320, 640, phone=True)
+            browser.wait(f"{FILM}.canvas.clientWidth < 320")
+            assert browser.js("document.documentElement.scrollWidth") <= 320
+            page.picture("learn_phone_small")
         finally:
             browser.resize(1280, 720)
         browser.click("#language")

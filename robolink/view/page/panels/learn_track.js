@@ -37,6 +37,7 @@ export class Film {
     this.speed = Math.max(1, this.end / LONGEST);
     this.slider.max = this.end;
     this.box = boxOf(track);
+    this.canvas.style.aspectRatio = (this.box[2] - this.box[0]) / (this.box[3] - this.box[1]);
     this.canvas.ariaLabel = this.words("track", { seconds: this.end.toFixed(0), contacts: track.contacts.length });
     this.playing = !matchMedia(STILL).matches;
     this._go(this.playing ? 0 : this.end);
@@ -131,9 +132,12 @@ export class Film {
     g.fillStyle = colour;
     const { e, f } = g.getTransform();
     g.setTransform(1, 0, 0, 1, 0, 0);
+    const { width } = this.canvas;
     for (const each of robots) {
       const [x, y] = poseAt(each, this._index(each, this.at)), beside = 0.8 * scale * (each.circle || Math.max(...each.corners.flat())) + 4 * this.ratio;
-      g.fillText(each.name, e + scale * x + beside, f - scale * y - beside);
+      const at = e + scale * x, side = at > width * 0.7 ? -1 : 1; // near the edge it stands at the left
+      g.textAlign = side < 0 ? "right" : "left";
+      g.fillText(each.name, at + side * beside, f - scale * y - beside);
     }
   }
 }
