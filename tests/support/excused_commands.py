@@ -32,7 +32,7 @@ EXCUSED = {
     "new world": "shows names that it has checked",
     "component list": "names nodes, which are plain",
     "component types": "lists names of files and of programs, as `ls` does",
-    "component standalone": "shows the words that it was given, which `tell` escapes",
+    "component standalone": "runs a node, and shows its name, which `say` escapes",
     "component unload": "shows a number, and the name that it was given",
     "daemon start": "shows a text of robolink's own",
     "daemon status": "shows a text of robolink's own",

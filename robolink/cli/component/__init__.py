@@ -8,7 +8,7 @@ import typer
 
 from robolink.cli.shared import complete
 from robolink.cli.shared.options import choice
-from robolink.cli.shared.output import say, tell
+from robolink.cli.shared.output import say
 
 app = typer.Typer(no_args_is_help=True, help="See what containers of nodes hold, and load nodes into them.")
 
@@ -52,21 +52,31 @@ def types(package: Annotated[str, typer.Argument(metavar="PACKAGE", help="Only t
         say("\n".join([name, *(f"  {each}" for each in found)]))
 
 
+Name = Annotated[str, typer.Option("--node-name", "-n", metavar="NAME", help="Another name for the node.")]
+Namespace = Annotated[str, typer.Option("--node-namespace", metavar="NAME", help="The node's namespace.")]
+LogLevel = Annotated[str, choice("--log-level", list(LEVELS)[1:], "The node's log level")]
+Remap = Annotated[list[str] | None, typer.Option("--remap-rule", "-r", metavar="FROM:=TO", help="Rename.")]
+Parameters = Annotated[
+    list[str] | None, typer.Option("--parameter", "-p", metavar="NAME:=VALUE", help="Set a parameter.")
+]
+Extra = Annotated[
+    list[str] | None, typer.Option("--extra-argument", "-e", metavar="NAME:=VALUE", help="For the container.")
+]
+Package = Annotated[str, typer.Argument(metavar="PACKAGE", help="Package that offers it.")]
+Plugin = Annotated[str, typer.Argument(metavar="TYPE", help="Its type: an executable, or as types lists it.")]
+
+
 @app.command("load")
 def load(
     container: Container,
-    package: Annotated[str, typer.Argument(metavar="PACKAGE", help="Package that offers it.")],
-    plugin: Annotated[str, typer.Argument(metavar="TYPE", help="Its type: an executable, or as types lists it.")],
-    name: Annotated[str, typer.Option("--node-name", "-n", metavar="NAME", help="Another name for the node.")] = "",
-    namespace: Annotated[str, typer.Option("--node-namespace", metavar="NAME", help="The node's namespace.")] = "",
-    log_level: Annotated[str, choice("--log-level", list(LEVELS)[1:], "The node's log level")] = "",
-    remap: Annotated[list[str] | None, typer.Option("--remap-rule", "-r", metavar="FROM:=TO", help="Rename.")] = None,
-    parameters: Annotated[
-        list[str] | None, typer.Option("--parameter", "-p", metavar="NAME:=VALUE", help="Set a parameter.")
-    ] = None,
-    extra: Annotated[
-        list[str] | None, typer.Option("--extra-argument", "-e", metavar="NAME:=VALUE", help="For the container.")
-    ] = None,
+    package: Package,
+    plugin: Plugin,
+    name: Name = "",
+    namespace: Namespace = "",
+    log_level: LogLevel = "",
+    remap: Remap = None,
+    parameters: Parameters = None,
+    extra: Extra = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the number.")] = False,
 ) -> None:
     """Load a node into a running container."""
@@ -95,9 +105,22 @@ def unload(
 
 @app.command("standalone")
 def standalone(
-    package: Annotated[str, typer.Argument(metavar="PACKAGE", help="Package that offers it.")],
-    plugin: Annotated[str, typer.Argument(metavar="TYPE", help="Its type.")],
+    package: Package,
+    plugin: Plugin,
+    name: Name = "",
+    namespace: Namespace = "",
+    log_level: LogLevel = "",
+    remap: Remap = None,
+    parameters: Parameters = None,
+    extra: Extra = None,
+    container: Annotated[
+        str, typer.Option("--container-node-name", "-c", metavar="NAME", help="Name of the container's node.")
+    ] = "",
 ) -> None:
-    """Run a component in a process of its own: that is `robolink run`."""
-    tell(f"a component in a process of its own is a node: robolink run {package} {plugin}")
-    raise typer.Exit(1)
+    """Run a container with one node in it, until Ctrl-C."""
+    from robolink.cli.component import alone, asking
+
+    wanted = asking.Wanted(
+        package, plugin, name, namespace, LEVELS[log_level], remap or [], parameters or [], extra or []
+    )
+    alone.run(wanted, container)

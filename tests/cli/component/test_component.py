@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +16,7 @@ from robolink.cli.main import main
 from robolink.interfaces.composition_interfaces.srv import ListNodes, LoadNode, UnloadNode
 from robolink.parameter import Parameter
 from robolink.testing import System
+from robolink.transport.free_domain import free_domain
 from robolink.workspace import VARIABLE
 from tests.support.ros_tree import write_package
 from tests.support.seen_by_commands import a_node_that_commands_see, spinning
@@ -153,7 +157,6 @@ def test_all_that_is_asked_for_is_sent(asked: list[LoadNode.Request]) -> None:
         ("load /lab/robot demo tlker", "/lab/robot did not load demo tlker: no such thing"),
         ("load /lab/robot demo talker -p rate", "'rate' is no parameter: expected NAME:=VALUE"),
         ("unload /lab/robot 8", "/lab/robot did not unload 8: no such number"),
-        ("standalone demo talker", "robolink run demo talker"),
         ("types no_such_package", "no package named 'no_such_package'"),
     ],
 )
@@ -170,3 +173,27 @@ def test_types_are_nodes_that_can_share_a_process(capsys: Captured) -> None:
     assert lines[0] == "demo_nodes_cpp"
     assert "  talker" in lines
     assert "  add_two_ints_client" not in lines  # it is a main()
+
+
+@pytest.mark.processes
+@pytest.mark.skipif(sys.platform == "win32", reason="a process there gets no SIGINT from another one")
+def test_a_component_runs_in_a_container_of_its_own_until_it_is_interrupted() -> None:
+    with free_domain() as domain:
+        environ = {**os.environ, "ROS_DOMAIN_ID": str(domain)}
+        words = ["demo_nodes_py", "talker", "-n", "ada", "-r", "chatter:=said", "-c", "alone"]
+        command = [sys.executable, "-m", "robolink", "component", "standalone"]
+        with subprocess.Popen([*command, *words], env=environ, stdout=subprocess.PIPE, text=True) as process:
+            assert process.stdout is not None
+            assert process.stdout.readline() == "Loaded component 1 into 'alone' container node as '/ada'\n"
+            process.send_signal(signal.SIGINT)
+            assert process.wait(20) == 0
+        refused = subprocess.run(
+            [*command, "demo_nodes_py", "tlker", "-c", "alone"],
+            env=environ,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    reason = "no executable named 'tlker' in package demo_nodes_py (did you mean 'talker'?)"
+    assert refused.stderr.endswith(f"robolink: /alone did not load demo_nodes_py tlker: {reason}\n")
+    assert (refused.returncode, refused.stdout) == (1, "")
