@@ -61,7 +61,7 @@ class Learn {
     this.printed = h("pre");
     this.output = h("div", {}, h("p", { class: "dim" }, words("printed")), this.printed);
     this.task = h("div", { class: "task" }, this.title, this.text, h("div", { class: "row" }, this.check, this.hint, this.reset, this.state, this.onward),
-      this.hints, this.findings, this.output, this.film.element);
+      this.hints, this.findings, this.film.element, this.output);
     this.body = h("div", { class: "learn", hidden: true }, h("nav", { "aria-label": words("list"), onkeydown: (event) => this._key(event) }, this.heading, this.items), this.task);
     element.append(this.none, this.body);
   }
