@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import shlex
-import subprocess
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from robolink.cli.shared.output import say
+from robolink.cli.shared.typed_paths import shown, typed
 
 if TYPE_CHECKING:
     from robolink.scaffold import Made
@@ -30,7 +27,7 @@ def new_project(
 
     made = new_project(name)
     _tell(made)
-    there = "" if made.folder.samefile(Path.cwd()) else f"  cd {_typed(made.folder)}\n"
+    there = "" if made.folder.samefile(Path.cwd()) else f"  cd {typed(made.folder)}\n"
     say(f"\nnext:\n{there}  robolink simulate {made.name}    # or: launch {made.name}\n  pytest")
 
 
@@ -45,7 +42,7 @@ def new_node(
     made = new_node(name, workspace=workspace or None)
     _tell(made)
     in_workspace = len(made.files) > 1
-    test = f"\n  pytest {_typed(made.folder / made.files[1])}" if in_workspace else ""
+    test = f"\n  pytest {typed(made.folder / made.files[1])}" if in_workspace else ""
     say(f"\nnext:\n  robolink run {made.name if in_workspace else made.files[0]}{test}")
 
 
@@ -64,17 +61,4 @@ def new_world(
 
 def _tell(made: Made) -> None:
     for each in made.files:
-        say(f"made {_shown(made.folder / each)}")
-
-
-def _typed(path: Path) -> str:
-    """Return a path as one types it into a shell here: in quotes if need be, and never like an option."""
-    shown = _shown(path)
-    shown = f"./{shown}" if shown.startswith("-") else shown
-    return subprocess.list2cmdline([shown]) if sys.platform == "win32" else shlex.quote(shown)
-
-
-def _shown(path: Path) -> str:
-    """Return a path relative to this folder if it is within."""
-    here = Path.cwd()
-    return os.path.relpath(path, here) if path.is_relative_to(here) else str(path)
+        say(f"made {shown(made.folder / each)}")

@@ -9,6 +9,7 @@ import typer
 
 from robolink.cli.shared import complete
 from robolink.cli.shared.output import say, tell
+from robolink.cli.shared.typed_paths import shown
 from robolink.system.terminal import fit
 
 if TYPE_CHECKING:
@@ -112,9 +113,7 @@ def _found(name: str, workspace: str) -> str:
     """Return the path of a world, relative to the working directory if it is below it."""
     from robolink.workspace import find_world
 
-    path = find_world(name, workspace=workspace or None)
-    here = Path.cwd()
-    return str(path.relative_to(here) if path.is_relative_to(here) else path)
+    return shown(find_world(name, workspace=workspace or None))
 
 
 def _checked(name: str, workspace: str) -> tuple[str, Checked]:

@@ -24,9 +24,14 @@ def deprecated(since: str, instead: str) -> Callable[[Callable[P, R]], Callable[
     Args:
         since: First version in which it is deprecated: "0.3".
         instead: What to use in its place, as one would write it.
+
+    Raises:
+        TypeError: for a class, which would be none any more: decorate its `__init__`.
     """
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
+        if isinstance(function, type):
+            raise TypeError(f"deprecated takes functions: decorate the __init__ of {function.__name__}")
         name = f"{function.__module__}.{function.__qualname__}"
         words = f"{name} is deprecated since {since} and ends with {end_of(since)}: use {instead}"
 

@@ -34,11 +34,18 @@ def test_it_ends_two_minor_versions_later(since: str, end: str) -> None:
     assert end_of(since) == end
 
 
+def test_a_class_stays_a_class() -> None:
+    with pytest.raises(TypeError, match="decorate the __init__ of Node"):
+
+        @deprecated("0.3", "another")
+        class Node: ...
+
+
 def overdue(text: str, version: str) -> list[str]:
     """The functions of a program that are deprecated and should have gone by a version."""
     found = []
     for node in ast.walk(ast.parse(text)):
-        if not isinstance(node, ast.FunctionDef):
+        if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
             continue
         for each in node.decorator_list:
             if isinstance(each, ast.Call) and ast.unparse(each.func).split(".")[-1] == "deprecated":
@@ -54,7 +61,7 @@ def parts(version: str) -> list[int]:
 
 
 def test_what_is_overdue_is_found() -> None:
-    text = '@deprecated("0.3", "b")\ndef a(): ...\n\n@x.deprecated(since="0.9", instead="b")\ndef c(): ...\n'
+    text = '@deprecated("0.3", "b")\nasync def a(): ...\n\n@x.deprecated(since="0.9", instead="b")\ndef c(): ...\n'
     assert overdue(text, "0.4.9") == []
     assert overdue(text, "0.5.0") == ["a"]
     assert overdue(text, "1.0.0") == ["a", "c"]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from robolink.cli.learn.work import say_all, shown
+from robolink.cli.learn.work import say_all
 from robolink.cli.shared.output import say
+from robolink.cli.shared.typed_paths import shown, typed
 from robolink.learn.exercise import SETTINGS, read_course
 from robolink.learn.isolated import check_apart
 from robolink.learn.languages import Language, words
@@ -19,7 +20,7 @@ def new(name: str, folder: str, language: Language) -> None:
     for each in sorted(made.iterdir()):
         say(words(language, "made", path=shown(each)))
     for key in ("next prove", "next start"):
-        say(words(language, key, folder=shown(made.parent)))
+        say(words(language, key, folder=typed(made.parent)))
 
 
 def prove(folder: str, language: Language) -> bool:

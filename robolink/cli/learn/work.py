@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import time
 from collections.abc import Iterable
 from pathlib import Path
 
 from robolink.cli.shared.output import say
+from robolink.cli.shared.typed_paths import typed
 from robolink.exceptions import RobolinkError
 from robolink.learn.exercise import Exercise, read_course
 from robolink.learn.folder import StudentFolder, find_folder, folder_below, start_folder, the_folder
@@ -37,7 +37,7 @@ def list_exercises(language: Language | None) -> None:
 def start(path: str, source: str, language: Language | None) -> None:
     """Write the given files that are not there yet."""
     folder = start_folder(path, language=language, source=source)
-    place = shown(folder.path)
+    place = typed(folder.path)
     written = folder.write()
     key = "written" if written else "all here" if folder.path == Path.cwd() else "all there"
     say(words(folder.language, key, count=len(written), folder=place))
@@ -154,9 +154,3 @@ def _fit(line: str) -> str:
         except (UnicodeEncodeError, LookupError):
             line = line.replace(mark, plain)
     return line
-
-
-def shown(path: Path) -> str:
-    """Return a path as one types it here."""
-    here = Path.cwd()
-    return os.path.relpath(path, here) if path.is_relative_to(here) else str(path)

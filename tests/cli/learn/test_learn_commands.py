@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -198,3 +199,12 @@ def test_a_teacher_s_exercises(here: Path, monkeypatch: pytest.MonkeyPatch, caps
     assert "01_stop_early.py  Ande para a frente\n" in capsys.readouterr().out
     assert main(["learn", "new", "Bad Name"]) == 1
     assert capsys.readouterr().err.startswith("robolink: 'Bad Name' is no name for an exercise")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the quotes of a POSIX shell")
+def test_a_folder_is_shown_as_a_shell_takes_it(
+    tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["learn", "start", "minha pasta", "--language", "en"]) == 0
+    assert "cd 'minha pasta', then: robolink learn" in capsys.readouterr().out
