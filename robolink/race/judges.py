@@ -6,7 +6,7 @@ import math
 from typing import Protocol
 
 from robolink.race.closed_line import ClosedLine, Progress
-from robolink.race.maze import GOAL, Maze
+from robolink.race.maze import GOAL, START, Maze
 
 PENALTY = 5.0
 """Seconds, or metres, that each contact costs."""
@@ -71,14 +71,18 @@ class LapJudge:
 class MazeJudge:
     """Judge of a maze: the score is the time in seconds to its goal, and some more for each contact; less is better.
 
+    The robot has to come from cell to open cell. One that is put elsewhere, by the world's service teleport, counts as
+    where it was.
+
     Args:
         maze: The maze.
         reach: Distance in metres from the middle of the last cell at which it is reached.
     """
 
     def __init__(self, maze: Maze, reach: float) -> None:
-        self._steps, self._reach = maze.steps_to_goal(), reach
-        self._longest = self._least = self._steps[0, 0]
+        self._doors, self._steps, self._reach = maze.doors, maze.steps_to_goal(), reach
+        self._cell = START
+        self._longest = self._least = self._steps[START]
         self._contacts = 0
         self._finish: float | None = None
 
@@ -94,9 +98,13 @@ class MazeJudge:
 
     def see(self, time: float, x: float, y: float, contacts: int) -> None:
         """Note where the robot is."""
-        self._least = min(self._least, self._steps.get((math.floor(x), math.floor(y)), self._least))
+        cell = (math.floor(x), math.floor(y))
+        if cell in self._doors[self._cell]:
+            self._cell = cell
+        self._least = min(self._least, self._steps[self._cell])
         self._contacts = contacts
-        if self._finish is None and math.dist((x, y), (GOAL[0] + 0.5, GOAL[1] + 0.5)) <= self._reach:
+        is_there = cell == self._cell == GOAL and math.dist((x, y), (GOAL[0] + 0.5, GOAL[1] + 0.5)) <= self._reach
+        if self._finish is None and is_there:
             self._finish = time
 
     def score(self) -> float | None:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.race.judges import PENALTY, LapJudge, MazeJudge, WallJudge
-from robolink.race.maze import GOAL, SIZE, START, make_maze
+from robolink.race.maze import GOAL, SIZE, START, Maze, make_maze
 from tests.race.test_closed_line import SQUARE
 
 
@@ -25,6 +25,15 @@ def test_a_seed_has_one_maze_and_another_seed_another() -> None:
     assert make_maze(7) != make_maze(8)
 
 
+def drive_to_goal(judge: MazeJudge, maze: Maze) -> None:
+    """Let a judge see a robot at the border of the last cell, after all those on the way."""
+    steps, (x, y) = maze.steps_to_goal(), START
+    while steps[x, y]:
+        judge.see(2.9, x + 0.5, y + 0.5, 0)
+        x, y = min(maze.doors[x, y], key=lambda cell: steps[cell])
+    judge.see(2.9, x + 0.01, y + 0.01, 0)
+
+
 def test_a_maze_s_judge() -> None:
     maze = make_maze(3)
     judge = MazeJudge(maze, 0.35)
@@ -34,6 +43,9 @@ def test_a_maze_s_judge() -> None:
     (door, *_) = maze.doors[START]
     judge.see(2.0, door[0] + 0.5, door[1] + 0.5, 0)
     assert judge.progress > 0.0
+    judge.see(2.5, GOAL[0] + 0.5, GOAL[1] + 0.5, 0)
+    assert judge.progress < 1.0, "it was teleported"
+    drive_to_goal(judge, maze)
     judge.see(3.0, GOAL[0] + 0.5, GOAL[1] + 0.3, 2)
     assert (judge.progress, judge.score(), judge.is_over) == (1.0, 3.0 + 2 * PENALTY, True)
     judge.see(4.0, GOAL[0] + 0.5, GOAL[1] + 0.5, 2)
