@@ -36,6 +36,9 @@ def _beside(path: Path, data: bytes) -> Iterator[Path]:
     try:
         new.write_bytes(data)
         yield new
+    except OSError as error:
+        error.filename, error.filename2 = str(path), None  # the name that one knows
+        raise
     finally:
         with contextlib.suppress(OSError):
             new.unlink(missing_ok=True)
