@@ -361,6 +361,7 @@ def _no_node(name: str, workspace: Folder) -> NotFoundError:
 def _not_found(kind: str, name: str, workspace: Folder, known: Iterable[str]) -> NotFoundError:
     *own, _ = _workspaces(workspace)
     names = list(known)
-    if not own and name.endswith(".py") and not nearest(name, names):  # often one is in another folder than one thinks
-        return NotFoundError(kind, name, (), str(Path.cwd()))
+    hidden = [each for each in (f"{name}.txt",) if name.endswith(".py") and is_file(Path(each))]
+    if hidden or (not own and name.endswith(".py") and not nearest(name, names)):
+        return NotFoundError(kind, name, hidden, str(Path.cwd()))  # another folder, or an ending that Windows hides
     return NotFoundError(kind, name, names, f"{own[0]} or robolink itself" if own else "")

@@ -159,7 +159,10 @@ def _parse(path: Path) -> ast.Module:
     import ast
 
     try:
-        return ast.parse(read_plain(path, LONGEST_SOURCE), str(path))
+        source = read_plain(path, LONGEST_SOURCE)
+        if source.startswith((b"\xff\xfe", b"\xfe\xff")):  # as PowerShell's > writes it
+            raise NodeLoadError(f"{path} is in UTF-16: save it in UTF-8")
+        return ast.parse(source, str(path))
     except SyntaxError as error:
         place = f"{path}:{error.lineno or 1}:{error.offset or 1}"
         raise NodeLoadError(f"{place}: {error.msg}") from None

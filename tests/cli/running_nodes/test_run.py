@@ -170,6 +170,8 @@ def test_a_signal_in_a_slow_callback_is_no_fault_of_it(write: Write) -> None:
     ("words", "told"),
     [
         (["run", "other.py"], "no node named 'other.py' in {here}"),
+        (["run", "text.py"], "no node named 'text.py' in {here} (did you mean 'text.py.txt'?)"),
+        (["run", "wide.py"], "{here}/wide.py is in UTF-16: save it in UTF-8"),
         (["run", "carefull.py"], "no node named 'carefull.py' (did you mean 'careful.py'?)"),
         (
             ["run", "careful.py"],
@@ -193,6 +195,8 @@ def test_mistakes_of_a_first_day_are_told_with_what_to_do(
     head = "from robolink import Node\n\n\n"
     (tmp_path / "careful.py").write_text(f"{head}class Careful(Node):\n    def _init_(self):\n        pass\n")
     (tmp_path / "nameless.py").write_text(f"{head}class Nameless(Node):\n    pass\n")
+    (tmp_path / "text.py.txt").write_text(head)
+    (tmp_path / "wide.py").write_text(head, encoding="utf-16")
     (tmp_path / "hall.yaml").write_text("world: {name: hall, size: [2, 2]}\nrobots: []\n")
     (tmp_path / "lap.yaml").write_text("nodes: []\n")
     monkeypatch.chdir(tmp_path)
