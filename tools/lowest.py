@@ -25,6 +25,8 @@ def lowest(text: str) -> Iterator[str]:
         found = re.search(rf"^{name} = \[(.*?)\](?: *#.*)?$", text, re.MULTILINE | re.DOTALL)
         for requirement, version in LOWER.findall(found[1] if found else ""):
             yield f"{requirement}=={version}"
+            if requirement == "opencv-python":  # developers have its twin, which needs no window system
+                yield f"{requirement}-headless=={version}"
 
 
 if __name__ == "__main__":
