@@ -10,6 +10,9 @@ sensor_msgs_py, cv_bridge, image_geometry, diagnostic_updater, rosidl_runtime_py
 nav2_common.launch, nav2_simple_commander (its robot_navigator and utils), launch, launch_ros, launch_testing,
 launch_testing_ros and webots_ros2_driver (WebotsController, and what launch files start).
 
+Types of a workspace's own `.msg`, `.srv` and `.action` files can be imported, too: of the workspace in which the file
+lies that imports them, or of the user's.
+
 **All or none.** These modules hand each other their classes, so they are robolink's together or not at all. Where a
 real rclpy is installed, the import above leaves all of them alone. `robolink run` does not: whoever asks robolink to
 run a program wants it on robolink's network, and has `ros2 run` and `python` for the other; a real rclpy is hidden
@@ -26,6 +29,7 @@ import sys
 
 from robolink.compat.maker import MAKER, has_rclpy, hidden
 from robolink.compat.opencv import prepare_opencv
+from robolink.compat.workspace_types import workspace_types
 from robolink.exceptions import RobolinkError
 from robolink.workspace.modules import FINDER
 
@@ -58,6 +62,7 @@ def activate(mode: str = AUTO) -> bool:
     if mode == NEVER or (mode == AUTO and (is_foreign or has_rclpy())):
         return False
     FINDER.hides = hidden
+    FINDER.add(workspace_types, first=True)
     FINDER.add(MAKER)
     return True
 

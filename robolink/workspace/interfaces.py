@@ -167,11 +167,11 @@ def use_interfaces(workspace: Folder = None) -> None:
         assert found is not None  # one was named
         WORKSPACE_TYPES.add(found)
     interfaces.add_source(WORKSPACE_TYPES)
-    FINDER.add(_interface_module, first=True)
+    FINDER.add(interface_module, first=True)
 
 
-def _interface_module(fullname: str) -> Fill | None:
-    """Return the function that fills `my_msgs` or `my_msgs.msg`, if a workspace has that folder."""
+def interface_module(fullname: str) -> Fill | None:
+    """Return the function that fills the module `fullname` (`my_msgs`, `my_msgs.msg`); None if no workspace has it."""
     package, _, kind = fullname.partition(".")
     if kind and kind not in interfaces.KINDS:
         return None
