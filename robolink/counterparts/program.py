@@ -1,4 +1,4 @@
-"""Main function of a counterpart's node: reads the command line, spins the node, and ends in good order."""
+"""Main function of a counterpart's node: reads the command line, spins the node, and ends in good order; and pauses."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ import sys
 from collections.abc import Callable
 
 import robolink
+from robolink.callback_groups import CallbackGroup
 from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.node import Node
+from robolink.task import Future
 from robolink.utilities import remove_ros_args
 
 
@@ -45,3 +47,24 @@ def spin_times(make: Callable[[], Node], count: int) -> None:
 def own_words(args: list[str] | None = None) -> list[str]:
     """Return a program's own arguments, without its name and without those for ROS; `args` as in `spin_program`."""
     return remove_ros_args(sys.argv if args is None else args)[1:]
+
+
+async def pause(node: Node, seconds: float, group: CallbackGroup) -> None:
+    """Let `seconds` pass by the clock of a node, in a coroutine.
+
+    Args:
+        node: The node.
+        seconds: How long.
+        group: Callback group of the timer, in which nothing may wait for this coroutine.
+    """
+    done: Future[None] = Future()
+
+    def wake() -> None:
+        if not done.done():
+            done.set_result(None)
+
+    timer = node.create_timer(seconds, wake, callback_group=group)
+    try:
+        await done
+    finally:
+        node.destroy_timer(timer)

@@ -155,12 +155,9 @@ class BasicNavigator(Tasks):
         Returns:
             The kind of task, None if the goal was rejected.
         """
-        goal = action.BackUp.Goal(
-            target=Point(x=float(backup_dist)), speed=float(backup_speed), time_allowance=time_of(time_allowance)
-        )
         self._note_checks_(disable_collision_checks)
-        words = f"Backing up {backup_dist} m at {backup_speed} m/s"
-        return self._task_(RunningTask.BACKUP, goal, words)
+        goal = _straight(action.BackUp.Goal, backup_dist, backup_speed, time_allowance)
+        return self._task_(RunningTask.BACKUP, goal, f"Backing up {backup_dist} m at {backup_speed} m/s")
 
     def driveOnHeading(
         self,
@@ -180,12 +177,9 @@ class BasicNavigator(Tasks):
         Returns:
             The kind of task, None if the goal was rejected.
         """
-        goal = action.DriveOnHeading.Goal(
-            target=Point(x=float(dist)), speed=float(speed), time_allowance=time_of(time_allowance)
-        )
         self._note_checks_(disable_collision_checks)
-        words = f"Driving {dist} m on the heading at {speed} m/s"
-        return self._task_(RunningTask.DRIVE_ON_HEADING, goal, words)
+        goal = _straight(action.DriveOnHeading.Goal, dist, speed, time_allowance)
+        return self._task_(RunningTask.DRIVE_ON_HEADING, goal, f"Driving {dist} m on the heading at {speed} m/s")
 
     def assistedTeleop(self, time_allowance: float = 30) -> RunningTask | None:
         """Let a person drive, with stops before collisions.
@@ -248,3 +242,8 @@ class BasicNavigator(Tasks):
     def _note_checks_(self, disabled: bool) -> None:
         if disabled:
             self.warn("Jazzy's servers have no disable_collision_checks: they check for collisions")
+
+
+def _straight(goal_type: type[Any], distance: float, speed: float, time_allowance: float) -> Any:
+    """Return the goal of a way straight ahead, or back."""
+    return goal_type(target=Point(x=float(distance)), speed=float(speed), time_allowance=time_of(time_allowance))

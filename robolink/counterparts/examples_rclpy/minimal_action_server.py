@@ -7,9 +7,9 @@ from typing import Any
 from robolink.action import ActionServer, CancelResponse, GoalResponse
 from robolink.action.server import ServerGoalHandle
 from robolink.callback_groups import ReentrantCallbackGroup
+from robolink.counterparts.program import pause
 from robolink.interfaces.example_interfaces.action import Fibonacci
 from robolink.node import Node
-from robolink.task import Future
 
 PERIOD = 1.0
 """Time for each number, in seconds."""
@@ -55,21 +55,8 @@ class MinimalActionServer(Node):
             feedback.sequence.append(feedback.sequence[-1] + feedback.sequence[-2])
             self.get_logger().info(f"Publishing feedback: {feedback.sequence}")
             goal_handle.publish_feedback(feedback)
-            await self._sleep(PERIOD)
+            await pause(self, PERIOD, self._group)
         goal_handle.succeed()
         result = Fibonacci.Result(sequence=feedback.sequence)
         self.get_logger().info(f"Returning result: {result.sequence}")
         return result
-
-    async def _sleep(self, seconds: float) -> None:
-        done: Future[None] = Future()
-
-        def wake() -> None:
-            if not done.done():
-                done.set_result(None)
-
-        timer = self.create_timer(seconds, wake, callback_group=self._group)
-        try:
-            await done
-        finally:
-            self.destroy_timer(timer)

@@ -10,7 +10,7 @@ from typing import Any
 
 from robolink.callback_groups import ReentrantCallbackGroup
 from robolink.client import Client
-from robolink.counterparts.program import spin_program
+from robolink.counterparts.program import pause, spin_program
 from robolink.interfaces.lifecycle_msgs.msg import State, Transition
 from robolink.interfaces.lifecycle_msgs.srv import ChangeState, GetState
 from robolink.interfaces.nav2_msgs.srv import ManageLifecycleNodes
@@ -18,7 +18,6 @@ from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.node import Node
 from robolink.parameters.descriptors import described
-from robolink.task import Future
 
 Command = ManageLifecycleNodes.Request
 
@@ -167,21 +166,8 @@ class LifecycleManager(Node):
             if looks % round(1.0 / LOOK) == 0:
                 self.get_logger().info(f"Waiting for service {client.service_name.lstrip('/')}...")
             looks += 1
-            await self._sleep(LOOK)
+            await pause(self, LOOK, self._group)
         return True
-
-    async def _sleep(self, seconds: float) -> None:
-        done: Future[None] = Future()
-
-        def wake() -> None:
-            if not done.done():
-                done.set_result(None)
-
-        timer = self.create_timer(seconds, wake, callback_group=self._group)
-        try:
-            await done
-        finally:
-            self.destroy_timer(timer)
 
     def _now(self) -> int:
         return self.context.time.now()
