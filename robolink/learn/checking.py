@@ -45,8 +45,17 @@ def check(
         mistake = _ran(trial)
         is_over = trial.is_over
     track = trial.track()
-    trial.close()
-    return Report(trial.lines, mistake, is_over, seconds=time.perf_counter() - begin, track=track)
+    at_end = _closed(trial)
+    return Report(trial.lines, mistake or at_end, is_over, seconds=time.perf_counter() - begin, track=track)
+
+
+def _closed(trial: Trial) -> Mistake | None:
+    """End all programs; return the mistake of what one of them does at its end."""
+    try:
+        trial.close()
+    except BaseException as error:  # noqa: BLE001 - as below
+        return mistake_of(error, trial.file) or mistake_elsewhere(error)
+    return None
 
 
 def _ran(trial: Trial) -> Mistake | None:

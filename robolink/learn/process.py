@@ -1,4 +1,4 @@
-"""Child process for a student's program, from the side of its parent: output is bounded, and nothing of it is left."""
+"""Child process for a student's program, as its parent sees it: output is bounded, and nothing of it is left."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from robolink.learn.report import Mistake
 from robolink.supervisor.processes.guardian import marked, signal_group
 from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.system.own_command import own_command
+from robolink.system.plainfile import read_plain
 
 MOST_PRINTED = 20_000
 """Most bytes of what a program prints that are kept."""
@@ -147,10 +148,10 @@ def _kill(process: subprocess.Popen[bytes], mark: str) -> None:
         signal_group(group, signal.SIGKILL)
 
 
-def _content(answer: Path) -> bytes:
+def _content(path: Path) -> bytes:
+    """Return what the child wrote into a file; nothing if it wrote none."""
     try:
-        with answer.open("rb") as file:
-            return file.read(LARGEST)
+        return read_plain(path, LARGEST)  # the program may have put a FIFO there
     except OSError:
         return b""
 
@@ -163,10 +164,7 @@ def why_no_answer(trace: Path, file: Path, in_time: bool) -> Mistake:
         file: The student's file.
         in_time: Whether it ended by itself.
     """
-    try:
-        text = trace.read_text(encoding="ascii", errors="replace")
-    except OSError:
-        text = ""
+    text = _content(trace).decode("ascii", errors="replace")
     if not text:
         return Mistake("ended all" if in_time else "stuck somewhere")
     name = str(file).encode("ascii", "backslashreplace").decode()  # as faulthandler writes it

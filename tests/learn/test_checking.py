@@ -67,6 +67,23 @@ def test_a_mistake_without_words_has_its_name(tmp_path: Path) -> None:
     assert re.fullmatch(r"02_hello.py: (MemoryError|RecursionError.*)", report.mistake.text)
 
 
+@pytest.mark.parametrize(
+    "own", ["def is_over(self):\n        return True", "@property\n    def is_over(self):\n        raise ValueError"]
+)
+def test_a_class_may_have_names_that_a_program_has(own: str, tmp_path: Path) -> None:
+    assert tried(solution(HELLO).replace("\n\n\ndef main", f"\n\n    {own}\n\n\ndef main"), tmp_path).passed
+
+
+def test_an_exception_at_the_end_has_its_line(tmp_path: Path) -> None:
+    raises = "rclpy.get_default_context().on_shutdown(lambda: 1 / 0)\n    rclpy.spin(node)"
+    report = tried(solution(HELLO).replace("rclpy.spin(node)", raises), tmp_path)
+    assert report.mistake is not None
+    assert (report.mistake.kind, report.mistake.code) == (
+        "exception",
+        "    rclpy.get_default_context().on_shutdown(lambda: 1 / 0)",
+    )
+
+
 def test_an_exception_in_a_constructor_has_its_line_and_the_nearest_name(tmp_path: Path) -> None:
     report = tried(solution(HELLO).replace("get_logger", "get_loger"), tmp_path)
     assert report.mistake is not None

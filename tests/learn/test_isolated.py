@@ -158,6 +158,12 @@ def test_the_line_is_found_in_folders_of_any_name(tmp_path: Path) -> None:
     assert why_no_answer(tmp_path / TRACE, file, in_time=True) == Mistake("stuck", "", 2, "two")
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="it has no FIFOs")
+def test_a_fifo_in_the_place_of_the_answer_blocks_nobody(tmp_path: Path) -> None:
+    blocks = "    import os, sys\n    os.mkfifo(sys.orig_argv[-1])\n    os._exit(0)\n"
+    assert tried(SOLUTION.replace("    rclpy.spin(node)", blocks), tmp_path).mistake == Mistake("ended all")
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not show environments")
 def test_nothing_is_left_of_what_a_program_starts(tmp_path: Path) -> None:
     starts = "    import subprocess\n    print(subprocess.Popen(['sleep', '60'], start_new_session=True).pid)\n"
