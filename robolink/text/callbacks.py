@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import re
+import traceback
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -65,11 +66,10 @@ def callback_of(error: BaseException) -> tuple[Callable[..., Any], tuple[str, ..
 
 
 def _raiser(error: BaseException) -> Any:
-    """Return the object whose method raised a TypeError; None for other errors."""
-    trace = error.__traceback__
-    while trace is not None and trace.tb_next is not None:
-        trace = trace.tb_next
-    return trace.tb_frame.f_locals.get("self") if trace is not None and isinstance(error, TypeError) else None
+    """Return the object whose method raised a TypeError, called by robolink itself; None for other errors."""
+    frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)][-2:]
+    own = [frame.f_globals.get("__name__", "").startswith("robolink.") for frame in frames]
+    return frames[-1].f_locals.get("self") if own == [True, True] and isinstance(error, TypeError) else None
 
 
 def miscalled(error: BaseException) -> str:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import robolink.exceptions
 from robolink.exceptions import RobolinkError, closest
 from robolink.text.advice import advice
+from robolink.text.callbacks import place_of
 
 if TYPE_CHECKING:
     import ast
@@ -25,6 +26,10 @@ def formatted(error: BaseException, trace: TracebackType | None = None) -> str:
     trace = trace or error.__traceback__
     _leave_out_search(trace)
     head, newline, last = "".join(traceback.format_exception(type(error), error, trace)).rstrip().rpartition("\n")
+    place = place_of(error)
+    if place is not None:
+        linecache.checkcache(place.file)  # the traceback has no line of it, and robolink's say nothing of the mistake
+        head = f'  File "{place.file}", line {place.line}\n    {linecache.getline(place.file, place.line).strip()}'
     return head + newline + advised(last, error)
 
 

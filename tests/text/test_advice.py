@@ -133,6 +133,13 @@ def test_the_place_is_that_of_the_callback_which_no_line_of_the_traceback_has(tm
     body = "        self.create_timer(0.1, self.on_timer)\n\n    def on_timer():\n        pass\n"
     place = place_of(failure(HEAD + body, tmp_path, system))
     assert place == (str(tmp_path / "m.py"), 12)
+    text = formatted(failure(HEAD + body, tmp_path, system)).splitlines()
+    assert text[:2] == [f'  File "{tmp_path / "m.py"}", line 12', "    def on_timer():"]
+    assert len(text) == 3, "no line of robolink's own"
+    answered = SERVICE.replace("self.create_service", "self.s = self.create_service") + (
+        "    def on_go(self, request, response):\n        self.s.send_response(3, None)\n"
+    )
+    assert place_of(failure(HEAD + answered, tmp_path, system)) is None, "its own line is in the traceback"
     within = failure(HEAD + TIMER + "        self.get_name(3)\n", tmp_path, system)
     assert place_of(within) is None
 
