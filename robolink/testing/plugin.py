@@ -93,7 +93,7 @@ _LAUNCH_TEST = re.compile(rb"^def generate_test_description\(", re.MULTILINE)
 
 def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> pytest.Module | None:
     """Return the collector of a file that is a launch test; None leaves others, and ROS 2's own, to other plugins."""
-    if parent.config.pluginmanager.hasplugin("launch_testing") or not _LAUNCH_TEST.search(module_path.read_bytes()):
+    if parent.config.pluginmanager.hasplugin("launch_testing") or not _is_launch_test(module_path):
         return None
     from robolink import compat
 
@@ -102,6 +102,13 @@ def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> 
     from robolink.testing.launch_collector import LaunchTestModule
 
     return LaunchTestModule.from_parent(parent, path=module_path)
+
+
+def _is_launch_test(file: Path) -> bool:
+    try:
+        return _LAUNCH_TEST.search(file.read_bytes()) is not None
+    except OSError:  # pytest itself says why it cannot be read
+        return False
 
 
 _SYSTEM = pytest.StashKey["System"]()

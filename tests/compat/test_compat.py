@@ -217,7 +217,7 @@ def test_a_name_that_is_missing(code: str, kind: type[Exception], report: str) -
     [
         ("image_transport", "CompressedImage"),
         ("tf2_kdl", "tf2_geometry_msgs"),
-        ("launch_pytest", "virtual time"),
+        ("launch_pytest", "pytest runs tests of launch_testing"),
         ("rospy", "ROS 1"),
         ("move_base_msgs", "NavigateToPose"),
         ("ros2topic", "get_topic_names_and_types"),
