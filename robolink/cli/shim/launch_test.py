@@ -28,7 +28,7 @@ def main(args: Sequence[str] | None = None) -> int:
     try:
         import pytest
     except ImportError:
-        return complain("launch tests are run by pytest, which is not installed: pip install 'robolink[test]'")
+        return complain("launch tests are run by pytest, which is not installed: pip install pytest")
     others = [each for each in words if each not in given]
     return int(pytest.main(["-v", *others, *(["--launch-args", *given] if given else [])]))
 
