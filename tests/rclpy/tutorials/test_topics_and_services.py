@@ -71,7 +71,7 @@ def test_creating_a_package(ros2_ws: TutorialWorkspace) -> None:
         assert f"{line}\n" in told
     package = ros2_ws.folder / "src/my_package"
     assert {each.relative_to(package).as_posix() for each in package.rglob("*") if each.is_file()} == {
-        *("package.xml", "setup.py", "setup.cfg", "resource/my_package"),
+        *("LICENSE", "package.xml", "setup.py", "setup.cfg", "resource/my_package"),
         *("my_package/__init__.py", "my_package/my_node.py"),
     }
     assert ros2_ws.ros2("ros2 pkg executables my_package") == "my_package my_node\n"
