@@ -37,6 +37,9 @@ SETTINGS = {
 }
 """Environment variables of each child."""
 
+TEMPORARY = ("TMPDIR", "TEMP", "TMP")
+"""Environment variables with the folder for temporary files: a child that is killed leaves some."""
+
 TRACE = "trace.txt"
 """Name of the file, beside the answer, into which a child that stands still writes where it stands."""
 
@@ -69,7 +72,8 @@ def run_apart(
 ) -> Ended:
     """Run a command of robolink's in a process of its own; end it, and all that it has started.
 
-    It works in a temporary folder, and the path of the file for its answer is the last word of its command line.
+    It works in a temporary folder, and has another one for its temporary files. The path of the file for its answer is
+    the last word of its command line.
 
     Args:
         words: Words of the command line, after `robolink`.
@@ -79,10 +83,12 @@ def run_apart(
         variables: Environment variables of it, beside those of this process.
     """
     with tempfile.TemporaryDirectory(prefix="robolink-apart-", ignore_cleanup_errors=True) as scratch:
-        answer, work = Path(scratch, "answer.json"), Path(scratch, "work")
+        answer, work, temporary = (Path(scratch, each) for each in ("answer.json", "work", "temporary"))
         work.mkdir()
+        temporary.mkdir()
         command = [*own_command(), *words, str(answer)]
-        printed, in_time = _run(command, work, {**os.environ, **variables}, longest, stop or threading.Event())
+        environ = {**os.environ, **variables, **dict.fromkeys(TEMPORARY, str(temporary))}
+        printed, in_time = _run(command, work, environ, longest, stop or threading.Event())
         return Ended(_content(answer), printed, why_no_answer(answer.with_name(TRACE), file, in_time))
 
 

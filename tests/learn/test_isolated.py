@@ -166,11 +166,16 @@ def test_a_fifo_in_the_place_of_the_answer_blocks_nobody(tmp_path: Path) -> None
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not show environments")
 def test_nothing_is_left_of_what_a_program_starts(tmp_path: Path) -> None:
-    starts = "    import subprocess\n    print(subprocess.Popen(['sleep', '60'], start_new_session=True).pid)\n"
+    starts = (
+        "    import subprocess, tempfile\n    print(tempfile.mkdtemp())\n"
+        "    print(subprocess.Popen(['sleep', '60'], start_new_session=True).pid)\n"
+    )
     report = tried(SOLUTION.replace("    rclpy.spin(node)", starts + "    rclpy.spin(node)"), tmp_path)
     assert report.passed
     number = next(int(each) for each in report.printed.split() if each.isdecimal())
     assert not is_alive(number)
+    (made,) = (each for each in report.printed.split() if Path(each).is_absolute())
+    assert not Path(made).exists()
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="its processes end otherwise")
