@@ -23,12 +23,13 @@ _NAME = re.compile(r"[a-z][a-z0-9_]*")
 Check = Callable[[Exercise, Path, Language], Report]
 
 
-def new_exercise(name: str, folder: str = "") -> Path:
+def new_exercise(name: str, folder: str = "", language: Language = "en") -> Path:
     """Make an exercise that works, to be changed; return its folder.
 
     Args:
         name: Name of the exercise: small letters, digits and `_`.
         folder: Folder of the exercises; by default the working directory if it has some, else `FOLDER` in it.
+        language: Language of the comments in its files.
 
     Raises:
         ExerciseError: (a ValueError) if the name is not valid, or there is such an exercise.
@@ -45,7 +46,8 @@ def new_exercise(name: str, folder: str = "") -> Path:
         raise ExerciseError(f"{place} has an exercise '{name}' already: take another name")
     numbers = [int(each.partition("_")[0]) for each in there if each.partition("_")[0].isdecimal()]
     made = place / f"{max(numbers, default=0) + 1:02}_{name}"
-    return written(made, name, rendered("exercise", {"NAME": name})).folder
+    files = rendered("exercise", {"NAME": name}) | (rendered("exercise_pt", {"NAME": name}) if language == "pt" else {})
+    return written(made, name, files).folder
 
 
 class Proof(NamedTuple):

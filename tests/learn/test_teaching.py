@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import pytest
 
 from robolink.exceptions import DocumentError
 from robolink.learn.checking import check
-from robolink.learn.exercise import Exercise, ExerciseError, read_course
+from robolink.learn.exercise import Exercise, ExerciseError, read_course, read_exercise
 from robolink.learn.languages import Language
 from robolink.learn.report import Report
 from robolink.learn.teaching import new_exercise, proofs
@@ -38,7 +39,9 @@ def test_a_new_exercise_fails_as_given_and_its_solution_passes(here: Path) -> No
 
 
 def test_a_proof_speaks_portuguese(here: Path) -> None:
-    folder = new_exercise("stop_early")
+    folder = new_exercise("stop_early", language="pt")
+    assert "# Dicas, uma de cada vez" in (folder / "exercise.yaml").read_text(encoding="utf-8")
+    assert "Teste de stop_early" in (folder / "check.py").read_text(encoding="utf-8")
     (folder / "solution.py").write_text("")
     found = [each.text for each in proofs(read_course(here / "exercises"), here_checked, "pt")]
     assert found == [
@@ -120,3 +123,12 @@ def test_a_mistake_in_its_file_has_its_place(here: Path, text: str, told: str) -
     with pytest.raises(DocumentError, match=re.escape(told)) as error:
         exercise.given_text("en")
     assert "\n" not in str(error.value)
+
+
+def test_both_templates_make_the_same_exercise(here: Path) -> None:
+    """They differ in comments and docstrings alone."""
+    english, portuguese = new_exercise("one"), new_exercise("two", language="pt")
+    assert read_exercise(english).settings == read_exercise(portuguese).settings
+    code = [ast.parse((each / "check.py").read_text(encoding="utf-8")).body[1:] for each in (english, portuguese)]
+    texts = [ast.unparse(function).splitlines()[2:] for (function,) in code]
+    assert texts[0] == texts[1]

@@ -30,7 +30,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_no_placeholder_is_left_in_any_file() -> None:
-    for kind in ("project", "node", "world", "exercise"):
+    for kind in ("project", "node", "world", "exercise", "exercise_pt"):
         for path, text in rendered(kind, {"NAME": "demo", "CLASS": "Demo"}).items():
             assert "@" not in path
             assert "@NAME@" not in text
@@ -42,6 +42,7 @@ def test_every_template_is_of_a_kind() -> None:
     packages = ["package_cmake", "package_library", "package_python"]
     assert sorted(each.name for each in TEMPLATES.iterdir()) == [
         "exercise",
+        "exercise_pt",
         "licenses",
         "node",
         *packages,

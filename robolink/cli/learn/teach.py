@@ -16,7 +16,7 @@ from robolink.system.paths import expanded
 
 def new(name: str, folder: str, language: Language) -> None:
     """Make an exercise, and say what to do with it, in a language."""
-    made = new_exercise(name, folder)
+    made = new_exercise(name, folder, language)
     for each in sorted(made.iterdir()):
         say(words(language, "made", path=shown(each)))
     for key in ("next prove", "next start"):
