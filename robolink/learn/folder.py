@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from robolink.exceptions import DocumentError, RobolinkError
+from robolink.exceptions import DocumentError, NotFoundError, RobolinkError, closest
 from robolink.learn.exercise import Exercise, chosen, read_course
 from robolink.learn.languages import Language, default_language, words
 from robolink.learn.progress import FILE, Progress, load_progress, save_progress
@@ -56,9 +56,17 @@ class StudentFolder:
     def chosen(self, name: str = "") -> Exercise:
         """Return the exercise of a name, number or file; the next one for '', and the last one if all are done.
 
-        Raises NotFoundError with the nearest name.
+        Raises NotFoundError with the nearest name, in the folder's language.
         """
-        return chosen(self.course, name) if name else self.next or self.course[-1]
+        if not name:
+            return self.next or self.course[-1]
+        try:
+            return chosen(self.course, name)
+        except NotFoundError as error:
+            near = closest(name, [each.name for each in self.course])
+            nearest = words(self.language, "nearest", name=near) if near else ""
+            error.args = (words(self.language, "no exercise", name=name[:100], nearest=nearest),)
+            raise
 
     def write(self) -> list[str]:
         """Write the given files that are not there yet; return their names."""

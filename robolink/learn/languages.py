@@ -68,6 +68,11 @@ _WORDS: dict[str, tuple[str, str]] = {
         "there is no {file} here: `robolink learn reset {name}` writes it again",
         "não há {file} aqui: `robolink learn reset {name}` o grava de novo",
     ),
+    "no exercise": (
+        "no exercise named '{name}'{nearest}",
+        "não há exercício chamado '{name}'{nearest}",
+    ),
+    "nearest": (" (did you mean '{name}'?)", " (você quis dizer '{name}'?)"),
     "written": ("exercises in {folder}: {count}", "exercícios em {folder}: {count}"),
     "all there": ("all exercises are in {folder} already", "todos os exercícios já estão em {folder}"),
     "all here": ("all exercises are here already", "todos os exercícios já estão aqui"),
@@ -83,10 +88,10 @@ _WORDS: dict[str, tuple[str, str]] = {
     "done": ("{file} is done ({seconds:.1f} s)", "{file} está feito ({seconds:.1f} s)"),
     "not yet": (
         "{file} is not there yet; a hint: robolink learn hint {name}",
-        "{file} ainda não; uma dica: robolink learn hint {name}",
+        "{file} ainda não está pronto; uma dica: robolink learn hint {name}",
     ),
     "printed": ("it printed:", "ele imprimiu:"),
-    "more": ("... and {count} more lines", "... e mais {count} linhas"),
+    "more": ("... and {count} more lines", "... e mais linhas: {count}"),
     "watching": (
         "Save a file and it is checked. Ctrl-C ends.",
         "Salve um arquivo e ele é testado. Ctrl-C termina.",
@@ -149,8 +154,8 @@ _WORDS: dict[str, tuple[str, str]] = {
         "o tempo de uma volta pela linha, e mais 5 s por contato",
     ),
     "rule maze": (
-        "the time to the middle of the far corner, (5.5, 5.5), and 5 s for each contact",
-        "o tempo até o meio do canto oposto, (5.5, 5.5), e mais 5 s por contato",
+        "the time to the middle of the far corner, ({end}, {end}), and 5 s for each contact",
+        "o tempo até o meio do canto oposto, ({end}, {end}), e mais 5 s por contato",
     ),
     "rule follow": (
         "metres along the wall in 120 s, 0.3 to 0.8 m away from it, less 5 m for each contact",

@@ -5,8 +5,10 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 from robolink.learn.languages import Language, words
+from robolink.race.maze import SIZE
 from robolink.race.races import Race
 from robolink.race.result import Result, ranked
 from robolink.system.terminal import shown
@@ -19,7 +21,7 @@ COLUMNS = ["place", "program", "score", "unit", "progress", "contacts", "seed", 
 
 def table(race: Race, results: Sequence[Result], seed: int, language: Language = "en") -> Iterator[str]:
     """Yield the lines of a table for people, in a language."""
-    yield words(language, "race", name=race.name, seed=seed, rule=words(language, f"rule {race.name}"))
+    yield words(language, "race", name=race.name, seed=seed, rule=words(language, f"rule {race.name}", end=SIZE - 0.5))
     longest = max((len(shown(each.program)) for each in results), default=0)
     for place, each in ranked(race, results):
         yield f"{place or '-':>3}  {shown(each.program):{longest}}  {_said(race, each, language)}"
@@ -39,7 +41,7 @@ def error_of(result: Result, language: Language = "en") -> str:
     mistake = result.mistake
     if mistake is None:
         return ""
-    head = words(language, mistake.kind, file=result.program, line=mistake.line, text=mistake.text)
+    head = words(language, mistake.kind, file=Path(result.program).name, line=mistake.line, text=mistake.text)
     told = mistake.text.partition("\n")[0]
     return f"{head} {told}" if mistake.kind in ("syntax", "exception", "elsewhere") else head
 

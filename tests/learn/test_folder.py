@@ -94,6 +94,8 @@ def test_progress_is_kept(folder: StudentFolder) -> None:
     assert again.next == folder.course[1]
     lines = list(listed(again))
     assert lines[0] == f"1 de {len(folder.course)} exercícios feitos"
+    with pytest.raises(NotFoundError, match=r"^não há exercício chamado 'helo' \(você quis dizer 'hello'\?\)$"):
+        folder.chosen("helo")
     assert lines[1].startswith("  ✓ ")
     assert lines[2].startswith("  → ")
 
@@ -199,7 +201,7 @@ def test_a_folder_without_exercises(tmp_path: Path) -> None:
 
 
 def test_a_number_of_any_length_is_a_name(folder: StudentFolder) -> None:
-    with pytest.raises(NotFoundError, match="no exercise named"):
+    with pytest.raises(NotFoundError, match="não há exercício chamado"):
         folder.chosen("1" * 5000)
     assert folder.chosen("0002").name == "hello"
 
