@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.companions.launch import LaunchDescription
-from robolink.companions.launch.actions import RegisterEventHandler
+from robolink.companions.launch.actions import RegisterEventHandler, TimerAction
 from robolink.companions.launch.bases import Event, EventHandler, LaunchContext
 from robolink.companions.launch.described import Described, described
 from robolink.companions.launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
@@ -29,12 +29,16 @@ from robolink.transport.free_domain import free_domain
 from robolink.utilities import try_shutdown
 
 if TYPE_CHECKING:
+    from robolink.launch.ros.stage import Stage
+    from robolink.launch.system import Direct
     from robolink.supervisor.events import Exited
 
 NETWORK = "localhost"
 """Network of the processes and of the test, unless one is asked for: this machine's loopback alone."""
 READY_WITHIN = 15.0
 """Timeout of the ReadyToTest action, in s, as in ROS 2."""
+FOR_EVER = 1e6
+"""Time for which the launch goes on if nothing ends it, in s."""
 DOWN_WITHIN = 20.0
 """Timeout of the end of all processes, in s: they are killed before."""
 
@@ -66,6 +70,8 @@ class LaunchTest:
         self._failed: Exception | None = None
         self._has_begun = self._is_over = False
         self._could_not_start: list[str] = []
+        self._reactions: tuple[Any, Stage[Any]] | None = None
+        """Director of the launch and its stage."""
 
     @property
     def arguments(self) -> dict[str, Any]:
@@ -101,6 +107,23 @@ class LaunchTest:
             self._launch.thread.join(DOWN_WITHIN)
         self._stack.close()
 
+    def emit_event(self, event: Event) -> None:
+        """Let the launch handle an `event`, such as the inclusion of another description."""
+        if self._reactions is None:
+            raise LaunchTestError("the processes of this launch test are not there yet")
+        reactions, stage = self._reactions
+        stage.post(lambda now: reactions.emit(event, now))
+
+    def _direct(self, direct: Direct) -> Direct:
+        """Return a maker of the director that notes it."""
+
+        def made(stage: Stage[Any]) -> Any:
+            reactions: Any = direct(stage)
+            self._reactions = (reactions, stage)
+            return reactions
+
+        return made
+
     def _start(self) -> None:
         with ExitStack() as stack:
             domain = _domain(stack)
@@ -108,7 +131,9 @@ class LaunchTest:
             for note in system.notes:
                 sys.stderr.write(f"[launch] {note}\n")
             network = os.environ["ROBOLINK_NETWORK"]
-            self._launch = Launch(system.entries, domain, network, self._note_exit, direct=system.direct)
+            assert system.direct is not None  # there are handlers
+            direct = self._direct(system.direct)
+            self._launch = Launch(system.entries, domain, network, self._note_exit, direct=direct)
             self._launch.begin()
             self._stack = stack.pop_all()
 
@@ -125,7 +150,8 @@ class LaunchTest:
                 f"generate_test_description() returned {kind}, not a LaunchDescription", str(self._path)
             )
         self._check_ready(description)
-        return LaunchDescription([*map(RegisterEventHandler, self._handlers()), description])
+        going_on = TimerAction(period=FOR_EVER, actions=[])  # without any process, too: tests may start some
+        return LaunchDescription([*map(RegisterEventHandler, self._handlers()), going_on, description])
 
     def _check_ready(self, description: LaunchDescription) -> None:
         with surroundings(home_of(self._path, None)):

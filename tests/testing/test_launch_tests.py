@@ -163,6 +163,40 @@ def test_failures_show_the_tests_own_lines(pytester: pytest.Pytester) -> None:
     assert "unittest/case.py" not in result.stdout.str()
 
 
+STARTS = """
+    import sys, unittest
+    import launch, launch_testing, launch_testing.actions
+    from launch.actions import ExecuteProcess
+
+    def generate_test_description():
+        return launch.LaunchDescription([launch_testing.actions.ReadyToTest()])
+
+    class TestIt(unittest.TestCase):
+        def start(self, text, launch_service, proc_info, proc_output):
+            process = ExecuteProcess(cmd=[sys.executable, "-u", "-c", text])
+            return launch_testing.tools.launch_process(launch_service, process, proc_info, proc_output)
+
+        def test_ends(self, launch_service, proc_info, proc_output):
+            with self.start("print('a'); raise SystemExit(4)", launch_service, proc_info, proc_output) as process:
+                self.assertTrue(process.wait_for_shutdown(timeout=30))
+            self.assertEqual((process.exit_code, process.output, process.running), (4, "a\\n", False))
+
+        def test_is_ended(self, launch_service, proc_info, proc_output):
+            text = "import time; print('b'); time.sleep(100)"
+            with self.start(text, launch_service, proc_info, proc_output) as process:
+                self.assertTrue(process.wait_for_output(lambda output: "b" in output, timeout=30))
+                self.assertFalse(process.wait_for_output(lambda output: "c" in output, timeout=0.1))
+                self.assertTrue(process.running)
+            self.assertTrue(process.wait_for_shutdown(timeout=30))
+    """
+
+
+@pytest.mark.processes
+def test_a_test_starts_and_ends_processes(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(test_starts=STARTS)
+    run(pytester).assert_outcomes(passed=2)
+
+
 MISTAKES = {
     "LaunchDescription([])": "its description has no launch_testing.actions.ReadyToTest()",
     "[]": "generate_test_description() returned list, not a LaunchDescription",

@@ -50,13 +50,23 @@ class ActiveIoHandler(IoHandler):
 
     def __init__(self) -> None:
         super().__init__()
-        self._changed = threading.Condition()
+        self._changed = threading.Condition(threading.RLock())
 
     def append(self, process_io: ProcessIO) -> None:
         """Add a line, the event `process_io`, and wake who waits; on any thread."""
         with self._changed:
             super().append(process_io)
             self._changed.notify_all()
+
+    def wait_until(self, condition: Callable[[], bool], timeout: float | None) -> bool:
+        """Wait until a condition holds; return whether it does.
+
+        Args:
+            condition: The condition; it is asked again whenever something was written.
+            timeout: Longest wait in seconds; None has no limit.
+        """
+        with self._changed:
+            return self._changed.wait_for(condition, timeout)
 
     def assertWaitFor(self, expected_output: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N802 - ROS 2's name
         """Raise AssertionError unless an output comes in time.
@@ -113,8 +123,7 @@ class ActiveIoHandler(IoHandler):
                 return False
             return True
 
-        with self._changed:
-            found = self._changed.wait_for(is_there, timeout)
+        found = self.wait_until(is_there, timeout)
         if not found:
             resolveProcesses(self, process=process, cmd_args=cmd_args, strict_proc_matching=False)
         return found

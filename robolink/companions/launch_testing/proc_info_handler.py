@@ -51,13 +51,23 @@ class ActiveProcInfoHandler(ProcInfoHandler):
 
     def __init__(self) -> None:
         super().__init__()
-        self._changed = threading.Condition()
+        self._changed = threading.Condition(threading.RLock())
 
     def append(self, process_info: RunningProcessEvent) -> None:
         """Note an event, `process_info`, and wake who waits; on any thread."""
         with self._changed:
             super().append(process_info)
             self._changed.notify_all()
+
+    def wait_until(self, condition: Callable[[], bool], timeout: float | None) -> bool:
+        """Wait until a condition holds; return whether it does.
+
+        Args:
+            condition: The condition; it is asked again whenever a process has started or ended.
+            timeout: Longest wait in seconds; None has no limit.
+        """
+        with self._changed:
+            return self._changed.wait_for(condition, timeout)
 
     def assertWaitForStartup(  # noqa: N802 - ROS 2's name
         self, process: ExecuteLocal | str | None, cmd_args: Any = None, *, timeout: float = 10
@@ -101,8 +111,7 @@ class ActiveProcInfoHandler(ProcInfoHandler):
             except NoMatchingProcessException:
                 return False
 
-        with self._changed:
-            if self._changed.wait_for(is_there, timeout):
-                return
+        if self.wait_until(is_there, timeout):
+            return
         who = name_of(process) if isinstance(process, ExecuteLocal) else process
         raise AssertionError(f"waited in vain for {who} to {what}")

@@ -138,6 +138,10 @@ class Reactions(Generic[T]):
 
         return self._following(now, fire)
 
+    def emit(self, event: Event, now: float) -> list[Request[T]]:
+        """Handle an event that somebody else than the launch file emits."""
+        return self._following(now, lambda: self._emit(event))
+
     # What follows from an event
 
     def _following(self, now: float, act: Callable[[], None]) -> list[Request[T]]:
