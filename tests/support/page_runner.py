@@ -40,8 +40,9 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from tests.support import page_words
-from tests.support.commands import TERMINAL, Command
+from tests.support.commands import ROBOLINK, TERMINAL, Command
 from tests.support.console import fits
+from tests.support.page_inside import Ended, is_for_here, run_here
 from tests.support.page_kinds import program_for, read
 from tests.support.page_shell import Shell, lines_of
 from tests.support.ports import free_port
@@ -70,7 +71,7 @@ class Shells:
         self.ports: defaultdict[str, int] = defaultdict(free_port)
         self.all: list[Command] = []
         self.running: list[tuple[str, Command]] = []
-        self.last: tuple[str, Command] | None = None
+        self.last: tuple[str, Command | Ended] | None = None
 
     def run(self, text: str) -> None:
         """Run the blocks of a page, then stop what still runs."""
@@ -132,8 +133,12 @@ class Shells:
     def check(self, block: Block) -> None:
         """Run or read a block that is no file."""
         if program := program_for(block, self.shell.folder):
-            self.last = (block.language, self.command(program, {}))
-            assert self.last[1].end(PATIENCE) == 0, said(self.last[1])
+            if program[: len(ROBOLINK)] == ROBOLINK:
+                self.type(["robolink", *program[len(ROBOLINK) :]], "ends")
+                return
+            command = self.command(program, {})
+            self.last = (block.language, command)
+            assert command.end(PATIENCE) == 0, said(command)
         else:
             read(block)
 
@@ -160,10 +165,15 @@ class Shells:
         """Type a command."""
         line = shlex.join(words)
         program, variables = self.shell.program(words)
+        if is_for_here(words[1:]) and "terminal" not in orders:
+            ended = run_here(words[1:], self.shell.folder, self.domain, variables)
+            self.last = (line, ended)
+            assert "try" in orders or (ended.code != 0) is ("fails" in orders), f"'{line}' fails: {said(ended)}"
+            return
         command = self.command(program, variables, on_terminal="terminal" in orders)
         self.last = (line, command)
-        if page_words.goes_on(words) and not {"fails", "try"} & set(orders):
-            self.running.append(self.last)
+        if page_words.goes_on(words) and not {"fails", "try", "ends"} & set(orders):
+            self.running.append((line, command))
             wait(lambda: has_said(command), FIRST_WORDS)
             return
         code = command.end(PATIENCE)
@@ -197,10 +207,9 @@ class Shells:
 
     def compare(self, text: str, name: str) -> None:
         """Compare what a command has said, or says within the patience, with what is shown."""
-        found = [each for each in self.running if name in each[0]] if name else [self.last]
-        if not found or (last := found[-1]) is None:
-            raise AssertionError("no such command was typed before this output")
-        line, command = last
+        found = [self.last] if not name and self.last else [each for each in self.running if name and name in each[0]]
+        assert found, "no such command was typed before this output"
+        line, command = found[-1]
         shown = text.splitlines()
         goes = (line, command) in self.running
         waits = text.lower().startswith("waiting")
@@ -281,7 +290,7 @@ def check_end(line: str, command: Command) -> None:
     assert code in INTERRUPTED, f"'{line}' ended with {code}: {said(command)}"
 
 
-def said(command: Command) -> str:
+def said(command: Command | Ended) -> str:
     """Output of a command so far."""
     return "\n".join(each.text for each in command.lines)
 
