@@ -11,6 +11,7 @@ import pytest
 import yaml
 
 from robolink.learn.languages import _WORDS
+from tools.docs_site.build import finished
 from tools.docs_site.markdown import LINK, blocks, headings, outside_blocks, slugs, with_site_tables
 from tools.docs_site.pages import DOCS, LANGUAGES, Page, addresses, listing, pages
 from tools.docs_site.same_code import pairs
@@ -181,6 +182,14 @@ def test_terms_are_all_that_is_in_bold() -> None:
         bold = {each.lower() for each in re.findall(r"\*\*(..+?)\*\*", text)}
         known = {each[language].lower() for each in terms()}
         assert bold - known - {f"{each}s" for each in known} == set()
+
+
+def test_comments_for_the_tests_are_not_on_the_site() -> None:
+    page = next(each for each in pages("en") if each.address == "reference/bags.md")
+    assert "<!-- run: each -->" in page.text()
+    text = finished(page, {})
+    assert "<!--" not in text
+    assert [each.text for each in blocks(text)] == [each.text for each in blocks(page.text())]
 
 
 def test_pictures_are_made_by_the_script() -> None:

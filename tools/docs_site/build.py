@@ -9,7 +9,14 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tools.docs_site.markdown import headings, slugs, with_anchors, with_site_links, with_site_tables
+from tools.docs_site.markdown import (
+    headings,
+    slugs,
+    with_anchors,
+    with_site_links,
+    with_site_tables,
+    without_directives,
+)
 from tools.docs_site.pages import DOCS, LANGUAGES, ROOT, Page, addresses, listing, pages
 
 GATHERED = ROOT / "build" / "docs"
@@ -90,7 +97,7 @@ def gather(language: str) -> None:
 
 def finished(page: Page, known: dict[Path, str]) -> str:
     """Return a page's text as it is on the site: links between pages, and the English anchors in both languages."""
-    text = with_site_tables(page.text())
+    text = with_site_tables(without_directives(page.text()))
     if page.source is None:
         return text
     text = with_site_links(text, page.source, page.address, known)

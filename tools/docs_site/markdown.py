@@ -133,3 +133,8 @@ def with_site_tables(text: str) -> str:
         return CODE.sub(lambda code: code[0].replace("\\|", "|"), line) if line.startswith("|") else line
 
     return outside_blocks(text, plain)
+
+
+def without_directives(text: str) -> str:
+    """Return a page without its comments `<!-- run: ... -->`, which are for the tests."""
+    return outside_blocks(text, lambda line: "" if DIRECTIVE.match(line) else line)
