@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -37,6 +38,8 @@ class Child:
     def __init__(self, answer: Path) -> None:
         self._answer = answer
         self._watchdog: Watchdog | None = None
+        self._last = threading.Lock()
+        """Held from the end on: the watchdog and the run may come to it at once, and one of them writes."""
         sys.dont_write_bytecode = True  # no __pycache__ beside the student's file
         _limit_memory()
         watch_lifeline()
@@ -61,6 +64,7 @@ class Child:
         self._end(answer)
 
     def _end(self, answer: msgspec.Struct) -> NoReturn:
+        self._last.acquire()
         try:
             with contextlib.suppress(Exception):  # the program has removed the folder, say: it gets no answer
                 self._answer.write_bytes(msgspec.json.encode(answer))
