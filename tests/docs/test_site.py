@@ -14,7 +14,7 @@ from robolink.learn.languages import _WORDS
 from tools.docs_site.build import finished
 from tools.docs_site.markdown import LINK, blocks, headings, outside_blocks, slugs, with_site_tables
 from tools.docs_site.pages import DOCS, LANGUAGES, Page, addresses, listing, pages
-from tools.docs_site.same_code import pairs
+from tools.docs_site.same_code import pairs, with_code_of
 
 PORTUGUESE = [other for _, other in pairs()]
 WRITTEN = [each for language in LANGUAGES for each in pages(language) if each.source and each.is_translated]
@@ -202,3 +202,10 @@ def test_pictures_are_made_by_the_script() -> None:
 def test_tables_show_a_bar_in_code_without_its_backslash() -> None:
     page = "| `en\\|pt` | a \\| b |\n\n`a\\|b`\n\n```text\n| `a\\|b` |\n```\n"
     assert with_site_tables(page) == page.replace("`en\\|pt`", "`en|pt`")
+
+
+def test_a_block_can_show_fences() -> None:
+    page = "# A\n\n````markdown\n```text\n# B\n```\n````\n\n# C\n"
+    assert [(each.language, each.text) for each in blocks(page)] == [("markdown", "```text\n# B\n```\n")]
+    assert [words for _, words in headings(page)] == ["A", "C"]
+    assert with_code_of(page, page.replace("```text\n# B\n```\n", ""), "page") == page

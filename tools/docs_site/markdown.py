@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -28,21 +28,37 @@ class Block(NamedTuple):
     """Words of a comment `<!-- run: ... -->` on the line before."""
 
 
+def parts(text: str) -> Iterator[tuple[str, str]]:
+    """Yield the lines of a page, each with where it stands: `outside` of fenced blocks, `inside`, `opens` or `closes`.
+
+    A fence closes a block if it is as long as the one that opened it, and has no more words: blocks can show fences.
+    """
+    opened = ""
+    for line in text.splitlines():
+        match = FENCE.match(line)
+        if not opened:
+            opened = match[2] if match else ""
+            yield line, "opens" if match else "outside"
+        elif match and len(match[2]) >= len(opened) and not match[3].strip():
+            opened = ""
+            yield line, "closes"
+        else:
+            yield line, "inside"
+
+
 def blocks(text: str) -> list[Block]:
     """List the fenced blocks of a page."""
     found: list[Block] = []
     lines = text.splitlines()
     start: int | None = None
-    for number, line in enumerate(lines):
-        match = FENCE.match(line)
-        if match is None:
-            continue
-        if start is None:
+    for number, (_, place) in enumerate(parts(text)):
+        if place == "opens":
             start = number
-        elif not match[3].strip():
+        elif place == "closes":
+            assert start is not None
             found.append(_block(lines, start, number))
             start = None
-    assert start is None, f"a block is not closed: line {start}"
+    assert start is None, f"a block is not closed: line {start + 1}"
     return found
 
 
@@ -59,12 +75,7 @@ def _block(lines: list[str], start: int, end: int) -> Block:
 
 def outside_blocks(text: str, change: Callable[[str], str]) -> str:
     """Return a page whose lines outside of its fenced blocks are changed."""
-    made, is_inside = [], False
-    for line in text.splitlines():
-        fence = FENCE.match(line)
-        if fence:
-            is_inside = not is_inside
-        made.append(line if fence or is_inside else change(line))
+    made = [change(line) if place == "outside" else line for line, place in parts(text)]
     return "\n".join(made) + "\n"
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tools.docs_site.markdown import FENCE, blocks
+from tools.docs_site.markdown import blocks, parts
 from tools.docs_site.pages import Page, pages
 
 
@@ -29,13 +29,11 @@ def with_code_of(english: str, other: str, name: str) -> str:
     if len(wanted) != len(blocks(other)):
         raise ValueError(f"{name}: {len(wanted)} blocks in English, {len(blocks(other))} in Portuguese")
     made: list[str] = []
-    waiting, is_inside = iter(wanted), False
-    for line in other.splitlines():
-        if FENCE.match(line):
-            if not is_inside:
-                made += next(waiting)
-            is_inside = not is_inside
-        elif not is_inside:
+    waiting = iter(wanted)
+    for line, place in parts(other):
+        if place == "opens":
+            made += next(waiting)
+        elif place == "outside":
             made.append(line)
     return "\n".join(made) + "\n"
 
