@@ -191,7 +191,7 @@ class LaunchTest:
             raise LaunchTestError(f"the processes could not be started: {'; '.join(self._could_not_start)}")
         if not self._ready.is_set():
             raise LaunchTestError(
-                f"its ReadyToTest() was not reached within {READY_WITHIN:g} s, or all processes ended before"
+                f"its ReadyToTest() was not reached within {READY_WITHIN:g} s, or the launch ended before"
             )
 
     def _note_exit(self, event: Exited) -> None:
