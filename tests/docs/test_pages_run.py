@@ -18,15 +18,12 @@ REASONS = {
     "installs packages",
     "is for Windows",
     "is for a Raspberry Pi",
-    "is for a shell's settings",
-    "makes keys for a class",
     "needs Docker",
     "measures for minutes",
     "needs ROS 2",
     "needs a robot",
     "needs a world of Webots",
     "needs other machines",
-    "needs running nodes",
 }
 """Why blocks are not run, over all pages."""
 
