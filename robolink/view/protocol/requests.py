@@ -243,7 +243,9 @@ def _decode_json(raw: str) -> Request:
 def _why(raw: str, error: msgspec.ValidationError) -> str:
     try:
         op = msgspec.json.decode(raw)["op"]
-    except (msgspec.DecodeError, TypeError, KeyError, RecursionError):
+    except msgspec.DecodeError as broken:  # behind the first wrong value
+        return f"a message that is no JSON: {broken}"
+    except (TypeError, KeyError, RecursionError):
         return "a JSON message without 'op'"
     if op not in _OP_NAMES:
         return f"no operation {str(op)[:60]!r}{nearest(str(op)[:60], _OP_NAMES)}"
