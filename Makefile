@@ -6,8 +6,8 @@ BIN := $(VENV)/bin
 DEMO := $(VENV)/.demo
 READY := $(VENV)/.ready
 SITE := $(VENV)/.docs
-# Two cores for three processes: one of them waits for robots that drive for two minutes.
-PARALLEL ?= -n 3 --dist loadfile --no-loadscope-reorder
+# Four processes for two cores: pages and systems that run in real time wait for much of theirs (7:18; with three 8:26).
+PARALLEL ?= -n 4 --dist loadfile --no-loadscope-reorder
 
 # Compiled modules are kept, whatever the environment says: tests start robolink a few hundred times.
 export PYTHONDONTWRITEBYTECODE :=

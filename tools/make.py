@@ -42,7 +42,7 @@ INSTALLING = {"install-" + name: name for name in STAGES}
 COMMANDS: Dict[str, List[str]] = {
     "demo": ["-m", "robolink", "launch", "wander", "--view"],
     "docs": ["-m", "tools.docs_site"],
-    "test": ["-m", "pytest", "-n", "3", "--dist", "loadfile", "--no-loadscope-reorder"],
+    "test": ["-m", "pytest", "-n", "4", "--dist", "loadfile", "--no-loadscope-reorder"],
 }
 """What Python is given; the Makefile says the same."""
 
