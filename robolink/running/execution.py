@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from robolink.running.ports import ContextLike
 
 
-FAILURE = "an exception in a callback ends the spinning:"
-"""First line of the log's text about a callback that has failed."""
+ENDS_THE_SPINNING = "an exception in a callback ends the spinning"
+"""Beginning of the line that is logged for a callback that failed; its traceback follows."""
 
 
 class TimeoutException(RobolinkError):  # noqa: N818 - rclpy's name
@@ -31,10 +31,6 @@ class ShutdownException(RobolinkError):  # noqa: N818 - rclpy's name
 
 class ConditionReachedException(RobolinkError):  # noqa: N818 - rclpy's name
     """The condition of a wait is met."""
-
-
-ENDS_THE_SPINNING = "an exception in a callback ends the spinning"
-"""Beginning of the line that is logged for it; its traceback follows."""
 
 
 class TimeoutObject:

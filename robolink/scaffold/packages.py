@@ -13,7 +13,7 @@ from robolink.scaffold.naming import ScaffoldError, checked, checked_module, cla
 from robolink.scaffold.rendering import rendered
 from robolink.scaffold.writing import Made, written
 
-PYTHON, CMAKE = BUILD_TYPES = ("ament_python", "ament_cmake")
+PYTHON, CMAKE = ("ament_python", "ament_cmake")
 """Build types of packages that can be made."""
 _DEPENDENCY = re.compile(r"[A-Za-z0-9][A-Za-z0-9_+.-]*")
 _UNFIT = re.compile("[^\\t\\n\\x20-\\x7e\\xa0-\\ud7ff\\ue000-\\ufffd\\U00010000-\\U0010ffff]")

@@ -34,7 +34,6 @@ FLAGS = (
     "--remote-debugging-port=0",
 )
 PATIENCE = 20.0
-BLANK = "about:blank"
 KEYS = {
     "Enter": ("Enter", 13, "\r"),
     "Escape": ("Escape", 27, ""),
