@@ -1,4 +1,4 @@
-"""Sizes: a file has at most 400 lines, a function outside of tests at most 40 below its signature and docstring."""
+"""Sizes: a file has at most 600 lines, a function outside of tests at most 40 below its signature and docstring."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 CODE = ("robolink", "nodes", "tools", "benchmarks")
 """Folders of Python code, besides the tests: those hold programs of some length inside of functions."""
-LONGEST_FILE, LONGEST_BODY = 400, 40
+LONGEST_FILE, LONGEST_BODY = 600, 40
 """Most lines of a file, and of a function without its signature and its docstring."""
 
 PROGRAMS = ROOT / "tests" / "tutorials"
@@ -33,7 +33,7 @@ def test_a_body_is_counted_without_signature_and_docstring() -> None:
     assert [body_lines(each) for each in ast.parse(text).body if isinstance(each, Function)] == [2]
 
 
-def test_no_file_has_more_than_400_lines() -> None:
+def test_no_file_has_more_than_600_lines() -> None:
     lengths = {path.relative_to(ROOT).as_posix(): path.read_text("utf-8").count("\n") for path in files(*CODE, "tests")}
     assert len(lengths) > 900
     assert {name: lines for name, lines in lengths.items() if lines > LONGEST_FILE} == {}
