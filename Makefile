@@ -56,10 +56,11 @@ format: $(READY)  ## Mend what ruff can mend
 	$(BIN)/ruff check --fix-only .
 	$(BIN)/ruff format .
 
-pages: $(READY)  ## Write the generated pages of docs/development
+pages: $(READY)  ## Write the picture of the floors, and a page of all rooms and modules into build/docs
 	$(BIN)/python tools/development_docs.py
 
 docs: $(SITE)  ## The documentation site, in English and Portuguese, into build/docs/site
+	$(BIN)/python tools/development_docs.py
 	$(BIN)/python -m tools.docs_site
 
 # Python 3.10, since later ones have no wheels of some of the lowest versions. What those take of newer ones warns.

@@ -1,7 +1,7 @@
-"""Generator of docs/development: rooms.md from the modules' docstrings, floors.svg from pyproject.toml.
+"""Generator of docs/development/floors.svg from pyproject.toml, and of rooms.md from the modules' docstrings.
 
-python tools/development_docs.py            writes both
-python tools/development_docs.py --check    exit code 1 if a file is out of date
+python tools/development_docs.py            writes the picture, and rooms.md into build/docs
+python tools/development_docs.py --check    exit code 1 if the picture is out of date
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "docs" / "development"
 PACKAGE = ROOT / "robolink"
+ROOMS = ROOT / "build" / "docs" / "rooms.md"
+"""Page that is not committed: every change of a module would be in it."""
 
 RENEW = "python tools/development_docs.py"
 """Command that writes the files again."""
@@ -25,8 +27,8 @@ RENEW = "python tools/development_docs.py"
 
 HEAD = f"""# Rooms
 
-A line for each room and each module: the first sentence of its docstring. This page is generated; after a change of a
-docstring, or of a file's name, run `{RENEW}`. What may import what is in [the picture of the floors](README.md).
+A line for each room and each module: the first sentence of its docstring. `{RENEW}` writes this page.
+What may import what is in the picture of the floors, docs/development/README.md.
 """
 
 SUMMARIZED = frozenset(["interfaces"])
@@ -167,8 +169,14 @@ def _wrapped(names: list[str], width: float) -> Iterator[str]:
 
 
 def written() -> dict[Path, str]:
-    """Return the generated files and the text of each."""
-    return {FOLDER / "rooms.md": rooms(), FOLDER / "floors.svg": picture()}
+    """Return the generated files that are committed, and the text of each."""
+    return {FOLDER / "floors.svg": picture()}
+
+
+def write_rooms() -> None:
+    """Write the page of all rooms and modules."""
+    ROOMS.parent.mkdir(parents=True, exist_ok=True)
+    ROOMS.write_text(rooms(), encoding="utf-8", newline="\n")
 
 
 def is_fresh(path: Path, text: str) -> bool:
@@ -177,13 +185,15 @@ def is_fresh(path: Path, text: str) -> bool:
 
 
 def main(words: list[str]) -> int:
-    """Write the files, or with `--check` compare them; return the exit code."""
+    """Write the files, or with `--check` compare those that are committed; return the exit code."""
     stale = [path for path, text in written().items() if not is_fresh(path, text)]
     for path in stale:
         if words == ["--check"]:
             sys.stderr.write(f"{path.relative_to(ROOT)} is out of date: {RENEW}\n")
         else:
             path.write_text(written()[path], encoding="utf-8", newline="\n")
+    if words != ["--check"]:
+        write_rooms()
     return int(bool(stale) and words == ["--check"])
 
 
