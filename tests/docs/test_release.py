@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import runpy
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -40,11 +41,13 @@ def test_version_citation_and_changelog_are_checked_against_the_tag(tmp_path: Pa
     (tmp_path / "pyproject.toml").write_text('[project]\nversion = "1.2.0"\n')
     (tmp_path / "CITATION.cff").write_text("version: 1.2.0\n")
     changelog = tmp_path / "CHANGELOG.md"
-    changelog.write_text("# Changelog\n\n## Unreleased\n\n- x\n\n## 1.2.0 (2030-01-01)\n\n- y\n\n## 1.1.0\n\n- z\n")
+    changelog.write_text(
+        "# Changelog\n\n## 1.3.0 (2031-01-01)\n\n- x\n\n## 1.2.0 (2030-01-01)\n\n- y\n\n## 1.1.0\n\n- z\n"
+    )
     assert RELEASE["notes"]("v1.2.0", tmp_path) == "- y\n"
     with pytest.raises(ValueError, match=r"pyproject.toml: the version is 1.2.0, the tag is v1.3.0"):
         RELEASE["notes"]("v1.3.0", tmp_path)
-    changelog.write_text("# Changelog\n\n## Unreleased\n")
+    changelog.write_text("# Changelog\n")
     with pytest.raises(ValueError, match=r"CHANGELOG.md: no section '## 1.2.0'"):
         RELEASE["notes"]("v1.2.0", tmp_path)
     (tmp_path / "CITATION.cff").write_text("version: 1.1.0\n")
@@ -62,14 +65,42 @@ def test_a_section_that_says_something_twice_is_no_release(tmp_path: Path) -> No
             RELEASE["notes"]("v1.2.0", tmp_path)
 
 
-def test_the_changelog_has_a_section_for_the_version_and_a_place_for_new_entries() -> None:
+def test_fragments_are_collected_into_a_section_by_their_kinds(tmp_path: Path) -> None:
+    (tmp_path / "changes").mkdir()
+    changelog = tmp_path / "CHANGELOG.md"
+    changelog.write_text("# Changelog\n\nWords.\n\n## 1.2.0 (2030-01-01)\n\n- y\n")
+    (tmp_path / "changes" / "README.md").write_text("How to.\n")
+    with pytest.raises(ValueError, match="changes/ has no fragments"):
+        RELEASE["collect"]("1.3.0", date(2031, 2, 3), tmp_path)
+    (tmp_path / "changes" / "a.md").write_text("- **Fixed**: a.\n- **Added**: b,\n  on two lines:\n  - c\n")
+    (tmp_path / "changes" / "b.md").write_text("- **Changed**: d.\n")
+    RELEASE["collect"]("1.3.0", date(2031, 2, 3), tmp_path)
+    assert changelog.read_text() == (
+        "# Changelog\n\nWords.\n\n## 1.3.0 (2031-02-03)\n\n- **Added**: b,\n  on two lines:\n  - c\n- **Changed**: d.\n"
+        "- **Fixed**: a.\n\n## 1.2.0 (2030-01-01)\n\n- y\n"
+    )
+    assert [each.name for each in (tmp_path / "changes").iterdir()] == ["README.md"]
+
+
+@pytest.mark.parametrize("text", ["", "Words.\n", "- Fixed: a\n", "- **Mended**: a\n", "Words.\n\n- **Fixed**: a\n"])
+def test_a_fragment_without_a_kind_is_refused_by_its_name(text: str, tmp_path: Path) -> None:
+    (tmp_path / "changes").mkdir()
+    (tmp_path / "changes" / "a.md").write_text(text)
+    with pytest.raises(ValueError, match=r"changes/a.md: an entry begins with '- ', then one of \*\*Added"):
+        RELEASE["entries"](tmp_path)
+
+
+def test_the_fragments_of_now_can_be_collected() -> None:
+    assert len(RELEASE["entries"]()) >= len(RELEASE["fragments"]())
+
+
+def test_the_changelog_has_a_section_for_the_version() -> None:
     version = RELEASE["VERSION"].search(PYPROJECT)
     assert version is not None
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
-    titles = re.findall(r"^## (.*)$", text, re.MULTILINE)
-    assert titles[0] == "Unreleased"
-    assert re.fullmatch(re.escape(version[1]) + r" \(\d{4}-\d\d-\d\d\)", titles[1])
-    summary = text.partition(f"## {titles[1]}\n")[2].partition("\n### ")[0]
+    title = re.findall(r"^## (.*)$", text, re.MULTILINE)[0]
+    assert re.fullmatch(re.escape(version[1]) + r" \(\d{4}-\d\d-\d\d\)", title)
+    summary = text.partition(f"## {title}\n")[2].partition("\n### ")[0]
     assert 5 <= summary.count("\n- ") <= 12
 
 
