@@ -22,8 +22,8 @@ from tools.docs_site.pages import DOCS, LANGUAGES, ROOT, Page, addresses, listin
 GATHERED = ROOT / "build" / "docs"
 SITE = GATHERED / "site"
 PICTURES = (".png", ".svg")
-NOTES = {"pt": '!!! note "Em inglês"\n\n    Esta página ainda não foi traduzida para o português.\n'}
-"""Note on top of a page that is not translated."""
+NOTES = {"pt": '!!! note "Em inglês"\n\n    A referência existe só em inglês.\n'}
+"""Note on top of a page that is in English on a site of another language."""
 SUMMARIES = {
     "en": "ROS 2 nodes from pip install: nodes, topics, services and a simulated robot, in Python.",
     "pt": "Nodes de ROS 2 com pip install: nodes, topics, services e um robô simulado, em Python.",
@@ -99,12 +99,17 @@ def finished(page: Page, known: dict[Path, str]) -> str:
     """Return a page's text as it is on the site: links between pages, and the English anchors in both languages."""
     text = with_site_tables(without_directives(page.text()))
     if page.source is None:
-        return text
+        return _noted(text, page)
     text = with_site_links(text, page.source, page.address, known)
     english = next(each for each in pages("en") if each.address == page.address)
     text = with_anchors(text, slugs(english.text()))
     if page.address.endswith("/index.md"):
         text += contents(page)
+    return _noted(text, page)
+
+
+def _noted(text: str, page: Page) -> str:
+    """Return a page with the note on top that it is in English, if its site is in another language."""
     if page.is_translated:
         return text
     first, _, rest = text.partition("\n")

@@ -14,6 +14,8 @@ LIST = DOCS / "site.yaml"
 LANGUAGES = ("en", "pt")
 GENERATED = "generated"
 """Source of the pages that `tools/docs_site/reference.py` makes."""
+ENGLISH = "reference"
+"""Part that is English in every language: what one looks up changes with the code, and a translation falls behind."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,7 @@ class Page:
         if self.source is None:
             from tools.docs_site.reference import text  # imports robolink, which few need
 
-            return text(Path(self.address).stem, self.language)
+            return text(Path(self.address).stem)
         return self.source.read_text(encoding="utf-8")
 
 
@@ -53,12 +55,13 @@ def pages(language: str) -> list[Page]:
 
 
 def _page(language: str, address: str, source: str | None) -> Page:
-    own = DOCS / language / address
+    is_translated = language == "en" or not address.startswith(f"{ENGLISH}/")
+    own = DOCS / (language if is_translated else "en") / address
     if source == GENERATED:
-        return Page(language, address, None)
+        return Page(language, address, None, is_translated)
     if source is None or own.exists():
-        return Page(language, address, own)
-    return Page(language, address, ROOT / source, is_translated=language == "en")
+        return Page(language, address, own, is_translated)
+    return Page(language, address, ROOT / source, is_translated)
 
 
 def addresses() -> dict[Path, str]:

@@ -1,14 +1,12 @@
-"""Generated pages of the reference, in both languages: commands, Python API, message types, keys of files."""
+"""Generated pages of the reference, in English: commands, Python API, message types, keys of files."""
 
 from __future__ import annotations
 
 import importlib
 import inspect
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from types import ModuleType
 from typing import Any
-
-from tools.docs_site.translations import help_of, shown_options, translated
 
 API = (
     "robolink.node",
@@ -42,52 +40,34 @@ PARTS = (
 )
 """Modules of the classes that are parts of one in `API`, whose methods are described as its own."""
 
-WORDS: dict[str, dict[str, str]] = {
-    "cli": {"en": "Commands", "pt": "Comandos"},
-    "cli.about": {
-        "en": "Every command and option. `robolink COMMAND --help` says the same.",
-        "pt": "Todos os comandos e opções. `robolink COMMAND --help` diz o mesmo, em inglês.",
-    },
-    "option": {"en": "option", "pt": "opção"},
-    "meaning": {"en": "meaning", "pt": "significado"},
-    "api": {"en": "Python API", "pt": "API de Python"},
-    "api.about": {
-        "en": "What programs use most, from its docstrings. The modules have rclpy's names.",
-        "pt": "O que os programas mais usam, das docstrings. As primeiras frases são em português; o resto de cada"
-        " docstring, nos quadros, fica em inglês. Os módulos têm os nomes de rclpy.",
-    },
-    "messages": {"en": "Messages, services, actions", "pt": "Mensagens, services, actions"},
-    "messages.about": {
-        "en": "The types that are included. `robolink interface show TYPE` shows one with all that is in it.",
-        "pt": "Os tipos incluídos. `robolink interface show TYPE` mostra um com tudo o que há nele.",
-    },
-    "type": {"en": "type", "pt": "tipo"},
-    "fields": {"en": "fields", "pt": "campos"},
-    "files": {"en": "Keys of files", "pt": "Chaves de arquivos"},
-    "files.about": {
-        "en": "Launch files, faults files and world files. Editors complete and check them: the first line of a file"
-        " says where its schema is, `# yaml-language-server: $schema=launch.schema.json`; `robolink launch --schema`,"
-        " `robolink simulate --schema` and `robolink world schema` print them.",
-        "pt": "Launch files, arquivos de falhas e de mundos. Editores os completam e conferem: a primeira linha de um"
-        " arquivo diz onde está o schema, `# yaml-language-server: $schema=launch.schema.json`; `robolink launch"
-        " --schema`, `robolink simulate --schema` e `robolink world schema` os mostram. As explicações mais longas, nos"
-        " quadros, são em inglês; [launch files](launch.md) e [o mundo simulado](simulator.md) as têm em português.",
-    },
-    "key": {"en": "key", "pt": "chave"},
-    "default": {"en": "default", "pt": "padrão"},
+ABOUT = {
+    "cli": ("Commands", "Every command and option. `robolink COMMAND --help` says the same."),
+    "api": ("Python API", "What programs use most, from its docstrings. The modules have rclpy's names."),
+    "messages": (
+        "Messages, services, actions",
+        "The types that are included. `robolink interface show TYPE` shows one with all that is in it.",
+    ),
+    "files": (
+        "Keys of files",
+        (
+            "Launch files, faults files and world files. Editors complete and check them: the first line of a file says"
+            " where its schema is, `# yaml-language-server: $schema=launch.schema.json`; `robolink launch --schema`,"
+            " `robolink simulate --schema` and `robolink world schema` print them."
+        ),
+    ),
 }
+"""Title of each page, and what stands below it."""
 
 
-def text(name: str, language: str) -> str:
+def text(name: str) -> str:
     """Return a generated page.
 
     Args:
         name: cli, api, messages or files.
-        language: en or pt: that of headings, and of what has a translation in a catalogue; docstrings are in English.
     """
-    made: dict[str, Any] = {"cli": _cli, "api": _api, "messages": _messages, "files": _files}
-    head = [f"# {WORDS[name][language]}", "", WORDS[f"{name}.about"][language], ""]
-    return "\n".join([*head, *made[name](language)]) + "\n"
+    made: dict[str, Callable[[], Iterator[str]]] = {"cli": _cli, "api": _api, "messages": _messages, "files": _files}
+    title, about = ABOUT[name]
+    return "\n".join([f"# {title}", "", about, "", *made[name]()]) + "\n"
 
 
 def cell(words: str) -> str:
@@ -103,20 +83,17 @@ def table(*heads: str) -> list[str]:
 # Commands
 
 
-def _cli(language: str) -> Iterator[str]:
+def _cli() -> Iterator[str]:
     from robolink.cli.root import command
 
     root = command()
     for path, each in leaves(root, []):
         yield f"## robolink {' '.join(path)}\n"
-        yield f"{translated('cli', help_of(each), language)}\n"
+        yield f"{help_of(each)}\n"
         options = shown_options(each)
         if options:
-            yield from table(WORDS["option"][language], WORDS["meaning"][language])
-            meanings = [translated("cli", help_of(param), language) for param in options]
-            yield from (
-                f"| `{_spelling(param)}` | {cell(text)} |" for param, text in zip(options, meanings, strict=True)
-            )
+            yield from table("option", "meaning")
+            yield from (f"| `{_spelling(param)}` | {cell(help_of(param))} |" for param in options)
             yield ""
 
 
@@ -140,6 +117,16 @@ def leaves(command: Any, path: list[str]) -> Iterator[tuple[list[str], Any]]:
             yield from leaves(each, [*path, name])
 
 
+def shown_options(command: Any) -> list[Any]:
+    """Return the options and arguments of a command that its help shows."""
+    return [each for each in command.params if not getattr(each, "hidden", False) and each.name != "help"]
+
+
+def help_of(thing: Any) -> str:
+    """Return the help text of a command or an option; '' if it has none."""
+    return inspect.cleandoc(getattr(thing, "help", None) or "")
+
+
 def _spelling(param: Any) -> str:
     names = ", ".join(param.opts) if param.param_type_name == "option" else ""
     metavar = param.metavar or ("" if getattr(param, "is_flag", False) else (param.name or "").upper())
@@ -149,16 +136,14 @@ def _spelling(param: Any) -> str:
 # Python
 
 
-def _api(language: str) -> Iterator[str]:
+def _api() -> Iterator[str]:
     for name in API:
         module = importlib.import_module(name)
         yield f"## {name}\n"
-        yield f"{_described(module, language)}\n"
+        yield f"{_described(module)}\n"
         for each in public(module):
             thing = getattr(module, each)
-            yield from (
-                _class(each, thing, language) if inspect.isclass(thing) else _function(each, thing, "###", language)
-            )
+            yield from (_class(each, thing) if inspect.isclass(thing) else _function(each, thing, "###"))
 
 
 def public(module: ModuleType) -> list[str]:
@@ -173,27 +158,16 @@ def public(module: ModuleType) -> list[str]:
     )
 
 
-def summaries() -> Iterator[str]:
-    """Yield the first paragraph of each docstring of the page, in English."""
-    for name in API:
-        module = importlib.import_module(name)
-        things = [getattr(module, each) for each in public(module)]
-        yield summary(module)
-        for each in things:
-            yield summary(each)
-            yield from (summary(member) for _, member in (methods(each) if inspect.isclass(each) else ()))
-
-
 def summary(thing: Any) -> str:
     """Return the first paragraph of a docstring in one line; '' if there is none."""
     return " ".join((inspect.getdoc(thing) or "").partition("\n\n")[0].split())
 
 
-def _class(name: str, kind: type, language: str) -> Iterator[str]:
+def _class(name: str, kind: type) -> Iterator[str]:
     yield f"### {name}\n"
-    yield f"{_described(kind, language)}\n"
+    yield f"{_described(kind)}\n"
     for each, member in methods(kind):
-        yield from _function(f"{name}.{each}", member, "####", language)
+        yield from _function(f"{name}.{each}", member, "####")
 
 
 def methods(kind: type) -> list[tuple[str, Any]]:
@@ -213,19 +187,19 @@ def _with_parts(kind: type) -> list[type]:
     return [kind, *(part for part in parts if not any(issubclass(each, part) for each in whole))]
 
 
-def _function(name: str, function: Any, level: str, language: str) -> Iterator[str]:
+def _function(name: str, function: Any, level: str) -> Iterator[str]:
     try:
         signature = str(inspect.signature(function)).replace("robolink.", "")
     except (TypeError, ValueError):
         signature = "(...)"
     yield f"{level} {name}\n"
     yield f"```text\n{name.rpartition('.')[2]}{signature}\n```\n"
-    yield f"{_described(function, language)}\n"
+    yield f"{_described(function)}\n"
 
 
-def _described(thing: Any, language: str) -> str:
-    """Return a docstring as Markdown: its first paragraph, translated, and, but for a module, the rest as it stands."""
-    words = translated("api", summary(thing), language)
+def _described(thing: Any) -> str:
+    """Return a docstring as Markdown: its first paragraph and, but for a module, the rest as it stands."""
+    words = summary(thing)
     rest = "" if inspect.ismodule(thing) else (inspect.getdoc(thing) or "").partition("\n\n")[2]
     return _block(words, rest)
 
@@ -239,7 +213,7 @@ def _block(words: str, rest: str) -> str:
 # Types
 
 
-def _messages(language: str) -> Iterator[str]:
+def _messages() -> Iterator[str]:
     from robolink.interfaces import names
 
     found: dict[str, list[str]] = {}
@@ -248,7 +222,7 @@ def _messages(language: str) -> Iterator[str]:
             found.setdefault(name.partition("/")[0], []).append(name)
     for package in sorted(found):
         yield f"## {package}\n"
-        yield from table(WORDS["type"][language], WORDS["fields"][language])
+        yield from table("type", "fields")
         yield from (f"| `{each.partition('/')[2]}` | {cell(_fields(each))} |" for each in sorted(found[package]))
         yield ""
 
@@ -267,28 +241,17 @@ def _keys(shown: Any) -> list[str]:
 # Files
 
 
-def _files(language: str) -> Iterator[str]:
+def _files() -> Iterator[str]:
     for schema in _schemas():
-        yield f"## {translated('files', schema['title'], language)}\n"
+        yield f"## {schema['title']}\n"
         for name, part in _parts(schema):
             if name:
                 yield f"### {name}\n"
             first, _, rest = part.get("description", "").partition("\n\n")
-            yield f"{_block(translated('files', first, language), rest)}\n"
-            yield from table(
-                WORDS["key"][language], WORDS["type"][language], WORDS["default"][language], WORDS["meaning"][language]
-            )
-            yield from (_row(key, value, language) for key, value in part["properties"].items())
+            yield f"{_block(first, rest)}\n"
+            yield from table("key", "type", "default", "meaning")
+            yield from (_row(key, value) for key, value in part["properties"].items())
             yield ""
-
-
-def descriptions() -> Iterator[str]:
-    """Yield the titles and descriptions of all schemas, of each the first paragraph, in English."""
-    for schema in _schemas():
-        yield schema["title"]
-        for _, part in _parts(schema):
-            for each in (part, *part["properties"].values()):
-                yield each.get("description", "").partition("\n\n")[0]
 
 
 def _schemas() -> list[dict[str, Any]]:
@@ -304,9 +267,9 @@ def _parts(schema: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
     return [(name, part) for name, part in ({"": schema} | schema["definitions"]).items() if "properties" in part]
 
 
-def _row(key: str, value: dict[str, Any], language: str) -> str:
+def _row(key: str, value: dict[str, Any]) -> str:
     default = f"`{value['default']}`" if value.get("default") not in (None, "") else ""
-    meaning = translated("files", value.get("description", "").partition("\n\n")[0], language)
+    meaning = value.get("description", "").partition("\n\n")[0]
     return f"| `{key}` | {cell(_kind(value))} | {default} | {cell(meaning)} |"
 
 
