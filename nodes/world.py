@@ -10,11 +10,11 @@ start plus simulated time, or with `publish_clock` simulated time alone; they on
 from typing import Any
 
 from robolink import Node, Parameter, VirtualTime
+from robolink.documents.foreign import warnings_to
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticArray
 from robolink.parameters.descriptors import described
 from robolink.sim import load_world
 from robolink.sim.sensors import Camera
-from robolink.sim.webots import warnings_to
 from robolink.workspace import find_world
 from robolink.world_node import Runner, Services, Shapes, Simulation, diagnostics, listed, report
 

@@ -61,8 +61,8 @@ def draw_world(
 ) -> None:
     """Draw a world as it begins, into a picture (needs matplotlib: pip install matplotlib)."""
     from robolink.cli.shared.pictures import check_picture
+    from robolink.documents.foreign import warnings_to
     from robolink.sim.drawing import save_world
-    from robolink.sim.webots import warnings_to
     from robolink.sim.worldfile import load_world
 
     check_picture(out)
@@ -118,8 +118,8 @@ def _found(name: str, workspace: str) -> str:
 
 def _checked(name: str, workspace: str) -> tuple[str, Checked]:
     """Return a world's path and its problems, one of which may be that it is not found."""
+    from robolink.documents.foreign import warnings_to
     from robolink.exceptions import NotFoundError
-    from robolink.sim.webots import warnings_to
     from robolink.sim.worldfile import Checked, check_world
 
     try:

@@ -24,6 +24,7 @@ from robolink.system.terminal import quoted
 if TYPE_CHECKING:
     from robolink.documents.yamltext import Data
 
+S = TypeVar("S")
 T = TypeVar("T")
 
 
@@ -40,10 +41,18 @@ class Document(Generic[T]):
     def __init__(self, text: str, type_: type[T], name: str, hook: Hook | None = None) -> None:
         self._reader = Reader(text, name, hook)
         self.name, self.data = name, self._reader.data
+        self.value: T = self.convert(self.data, type_)
+
+    def convert(self, data: Data, type_: type[S]) -> S:
+        """Convert data to `type_`: that of the text, or some in its place whose parts lie where its parts do.
+
+        Raises:
+            DocumentError: with `file:line:column`, as from the text.
+        """
         try:
-            self.value: T = self._reader.convert(self.data, type_)
+            return self._reader.convert(data, type_)
         except msgspec.ValidationError as error:
-            raise self._reader.explained(self.data, type_, error) from None
+            raise self._reader.explained(data, type_, error) from None
 
     def error(self, path: str | Sequence[Step], message: str, *, key: bool = False) -> DocumentError:
         """Return an error (to raise) about the value at `path`, or about its key if `key` is true.

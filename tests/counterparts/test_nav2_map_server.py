@@ -9,7 +9,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robolink.counterparts.nav2_map_server.map_files import LoadResult, MapSaveError, Saving, grid_of, result_of, save
+from robolink.counterparts.nav2_map_server.map_files import (
+    LoadResult,
+    MapSaveError,
+    Saving,
+    grid_of,
+    path_of,
+    result_of,
+    save,
+)
 from robolink.counterparts.nav2_map_server.map_saver_cli import main as map_saver_cli
 from robolink.exceptions import DocumentError
 from robolink.interfaces.lifecycle_msgs.msg import Transition
@@ -92,6 +100,31 @@ def test_a_map_with_a_mistake_is_one_line_and_no_transition(system: System, file
     system.expect_log(f"Failed to load map yaml file: {file}:2:13: resolution: expected float")
 
 
+def test_a_map_of_another_dialect_is_loaded_from_the_home_folder(
+    system: System, file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("HOME", str(file.parent))
+    monkeypatch.setenv("USERPROFILE", str(file.parent))  # Windows
+    file.write_text(YAML.replace("negate: 0", "negate: no\nmode: Trinary\nmap_type: occupancy"))
+    activated(system, "map_server", yaml_filename="~/m.yaml")
+    assert list(system.expect("/map").data) == CELLS
+    system.expect_log(f"{file}:8:1: map_type: unknown key 'map_type': ignored")
+
+
+@pytest.mark.parametrize(
+    ("url", "path"),
+    [
+        ("file:///maps/my%20map.yaml", "/maps/my map.yaml"),
+        ("file:///C:/maps/a.yaml", "C:/maps/a.yaml"),
+        ("file:///c/maps/a.yaml", "/c/maps/a.yaml"),
+        ("maps/a.yaml", "maps/a.yaml"),
+        ("~other/a.yaml", "~other/a.yaml"),
+    ],
+)
+def test_urls_of_maps_are_paths(url: str, path: str) -> None:
+    assert path_of(url).as_posix() == path
+
+
 def test_the_service_says_what_is_wrong(file: Path) -> None:
     def result(text: str) -> LoadResult:
         file.write_text(text)
@@ -100,7 +133,7 @@ def test_the_service_says_what_is_wrong(file: Path) -> None:
         return result_of(error.value)
 
     assert result(YAML.replace("m.pgm", "n.pgm")) is LoadResult.INVALID_MAP_DATA
-    assert result(YAML.replace("negate: 0", "negate: 5")) is LoadResult.INVALID_MAP_METADATA
+    assert result(YAML.replace("negate: 0", "negate: maybe")) is LoadResult.INVALID_MAP_METADATA
     with pytest.raises(DocumentError) as error:
         grid_of(file.parent / "nowhere.yaml")
     assert result_of(error.value) is LoadResult.MAP_DOES_NOT_EXIST

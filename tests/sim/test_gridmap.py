@@ -15,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
+from robolink.documents.foreign import FileWarning
 from robolink.exceptions import DocumentError
 from robolink.sim import Pose, World, load_world
 from robolink.sim.maps import gridmap as room
@@ -173,18 +174,24 @@ BAD = [
     ({"negate": None}, "map.yaml:1:1: missing key 'negate'"),
     ({"resolution": "0"}, "map.yaml:2:13: resolution: expected float >= 0.0001, got '0'"),
     ({"origin": "[0, 0]"}, "map.yaml:3:9: origin: expected list of length 3, got 2"),
-    ({"origin": "[0, 0, 90]"}, "map.yaml:3:16: origin[2]: expected float <= 6.2832, got '90'"),
     ({"negate": "maybe"}, "map.yaml:4:9: negate: expected"),
-    ({"occupied_thresh": "65"}, "map.yaml:5:18: occupied_thresh: expected float <= 1.0, got '65'"),
-    ({"free_thresh": "0.7"}, "map.yaml:6:14: free_thresh: 0.7 must be less than occupied_thresh, 0.65"),
+    ({"negate": "0.5"}, "map.yaml:4:9: negate: expected"),
+    ({"image": "''"}, "map.yaml:1:8: image: expected"),
     (
         {"mode": "trinay"},
         "map.yaml:7:7: mode: expected one of trinary, scale, raw, got 'trinay' (did you mean 'trinary'?)",
     ),
-    ({"resolutoin": "1"}, "map.yaml:7:1: resolutoin: unknown key 'resolutoin' (did you mean 'resolution'?)"),
     ({"image": "mapp.pgm"}, "mapp.pgm' (did you mean 'map.pgm'?)"),
     ({"image": "."}, "map.yaml:1:8: image: '.' cannot be read: "),
 ]
+DOUBTED = [
+    ({"map_type": "occupancy"}, "map.yaml:7:1: map_type: unknown key 'map_type': ignored"),
+    ({"resolutoin": "1"}, "7:1: resolutoin: unknown key 'resolutoin' (did you mean 'resolution'?): ignored"),
+    ({"origin": "[0, 0, 90]"}, "3:16: origin[2]: the yaw is in radians, and 90 is more than a turn"),
+    ({"occupied_thresh": "65"}, "5:18: occupied_thresh: 65 is not a share from 0 to 1"),
+    ({"free_thresh": "0.7"}, "6:14: free_thresh: 0.7 is not less than occupied_thresh, 0.65"),
+]
+"""What nav2's map_io loads, and nobody means."""
 BROKEN = [
     (b"", "neither PGM (P2, P5) nor PNG: save it as one of these"),
     (b"GIF89a....", "neither PGM (P2, P5) nor PNG: save it as one of these"),
@@ -210,6 +217,39 @@ def test_a_wrong_map_is_reported_in_one_line_with_its_place(
         load_map(write(**keys))
     assert report in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(("keys", "report"), DOUBTED)
+def test_what_map_io_takes_is_taken_with_a_warning(write: Write, keys: dict[str, str | None], report: str) -> None:
+    with pytest.warns(FileWarning) as caught:
+        assert load_map(write(**keys)).cells.size
+    assert [report in str(each.message) for each in caught] == [True]
+
+
+@pytest.mark.parametrize(
+    ("keys", "same_as"),
+    [
+        ({"mode": "Trinary"}, {}),
+        ({"mode": "RAW"}, {"mode": "raw"}),
+        ({"negate": "no"}, {}),
+        ({"negate": "Yes"}, {"negate": "1"}),
+        ({"negate": "true"}, {"negate": "1"}),
+        ({"negate": "7"}, {"negate": "1"}),
+        ({"resolution": "'0.5'", "occupied_thresh": "'.65'", "origin": "['0', 0, '0.0']"}, {}),
+    ],
+)
+def test_values_are_converted_as_map_io_does(
+    write: Write, keys: dict[str, str | None], same_as: dict[str, str | None]
+) -> None:
+    found, plain = load_map(write(**keys)), load_map(write(**same_as))
+    assert found.cells.tolist() == plain.cells.tolist()
+    assert found._replace(cells=plain.cells, occupied=plain.occupied) == plain
+
+
+def test_thresholds_that_cross_leave_nothing_between(write: Write) -> None:
+    with pytest.warns(FileWarning):
+        cells = load_map(write(mode="scale", free_thresh="0.65")).cells
+    assert set(cells.ravel().tolist()) == {0, 100}
 
 
 @pytest.mark.parametrize(("image", "report"), BROKEN)

@@ -103,8 +103,8 @@ def _world(node: Node, asked: str) -> WorldDescription | None:
     name = "" if asked == NO_WORLD else asked or _simulated(node)
     if not name:
         return None
+    from robolink.documents.foreign import warnings_to
     from robolink.sim import load_world
-    from robolink.sim.webots import warnings_to
     from robolink.workspace import find_world
 
     try:

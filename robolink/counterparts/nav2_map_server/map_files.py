@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from enum import IntEnum
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -68,8 +69,12 @@ def result_of(error: DocumentError) -> LoadResult:
 
 
 def path_of(url: str) -> Path:
-    """Return the path of a map's URL, which may be a path."""
-    return Path(unquote(urlparse(url).path)) if url.startswith("file://") else Path(url)
+    """Return the path of a map's URL, which may be a path; `~` is the home folder, as nav2 has it."""
+    if not url.startswith("file://"):
+        return Path(url).expanduser() if url == "~" or url.startswith("~/") else Path(url)
+    path = unquote(urlparse(url).path)
+    # file:///C:/maps/a.yaml is C:/maps/a.yaml; a URL has a slash before the drive, which is no part of the path
+    return Path(path[1:] if re.match(r"/[A-Za-z]:(/|$)", path) else path)
 
 
 def checked(given: Saving) -> Saving:

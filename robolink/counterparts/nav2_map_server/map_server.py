@@ -9,6 +9,7 @@ from typing import Any
 
 from robolink.counterparts.nav2_map_server.map_files import LoadResult, grid_of, path_of, result_of
 from robolink.counterparts.program import spin_program
+from robolink.documents.foreign import warnings_to
 from robolink.exceptions import DocumentError
 from robolink.interfaces.lifecycle_msgs.msg import State
 from robolink.interfaces.nav2_msgs.srv import LoadMap
@@ -87,7 +88,8 @@ class MapServer(LifecycleNode):
         path = path_of(file)
         self.get_logger().info(f"Loading yaml file: {path}")
         try:
-            found = grid_of(path)
+            with warnings_to(self.get_logger().warning):
+                found = grid_of(path)
         except DocumentError as error:
             self.get_logger().error(f"Failed to load map yaml file: {error}")
             return result_of(error)

@@ -8,37 +8,45 @@ the mode `scale` those between have a number, with `raw` the shade itself is the
 from __future__ import annotations
 
 import math
+import warnings
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 from msgspec import Meta, Struct
 
 from robolink.documents import yamlfile
-from robolink.exceptions import nearest
+from robolink.documents.foreign import FileWarning, unknown_key
+from robolink.exceptions import DocumentError, nearest
 from robolink.sim.description import MapWalls
 from robolink.sim.maps.formats import read_image
 from robolink.sim.maps.image import Image, ImageError
-from robolink.sim.quantities import Angle, Coordinate, Pose, Share
+from robolink.sim.quantities import Coordinate, Pose
 from robolink.system.terminal import shown
 
 MOST_PIECES = 200_000
 """Most pieces of wall of a map: a building has about ten thousand, and noise has millions."""
 
+TRUE_WORDS, FALSE_WORDS = frozenset({"y", "yes", "true", "on"}), frozenset({"n", "no", "false", "off"})
+"""Words that yaml-cpp reads as booleans, in any case."""
+_NUMBERS = ("resolution", "occupied_thresh", "free_thresh")
+
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 """Values of cells, as in nav_msgs/OccupancyGrid."""
 
 
-class MapFile(Struct, frozen=True, forbid_unknown_fields=True):
+class MapFile(Struct, frozen=True):
     """A map's YAML file: `resolution` in metres per pixel, `origin` the pose of the image's lower left corner."""
 
-    image: str
+    image: Annotated[str, Meta(min_length=1)]
     resolution: Annotated[float, Meta(ge=0.0001, le=1000.0)]
-    origin: tuple[Coordinate, Coordinate, Angle]
-    occupied_thresh: Share
-    free_thresh: Share
-    negate: Literal[0, 1] | bool
+    origin: tuple[Coordinate, Coordinate, float]
+    occupied_thresh: float
+    free_thresh: float
+    negate: bool
     mode: Literal["trinary", "scale", "raw"] = "trinary"
 
 
@@ -76,12 +84,17 @@ class GridMap(NamedTuple):
 
 
 def load_map(path: Path) -> GridMap:
-    """Read a map's YAML file and its image. Raises `DocumentError` with file:line:column for a mistake."""
-    document = yamlfile.read(path, MapFile)
-    file = document.value
-    if file.free_thresh >= file.occupied_thresh:
-        reason = f"{file.free_thresh:g} must be less than occupied_thresh, {file.occupied_thresh:g}"
-        raise document.error("$.free_thresh", reason)
+    """Read a map's YAML file and its image as nav2's map_io does.
+
+    What that reader ignores or takes as it is, though it can hardly be meant, is told in a `FileWarning`.
+
+    Raises:
+        DocumentError: for a mistake, with file:line:column.
+    """
+    document = yamlfile.read(path, dict[str, Any])
+    file = document.convert(_as_map_io_reads(document.value), MapFile)
+    for each in _doubts(document, file):
+        warnings.warn(str(each), FileWarning, stacklevel=2)
     try:
         image = read_image(path.parent / file.image)
     except FileNotFoundError:
@@ -93,6 +106,52 @@ def load_map(path: Path) -> GridMap:
     cells = occupancy(image, file)
     occupied = cells >= (100 * file.occupied_thresh if file.mode == "raw" else OCCUPIED)
     return GridMap(cells, occupied, file.resolution, Pose(*file.origin))
+
+
+def _as_map_io_reads(data: dict[str, Any]) -> dict[str, Any]:
+    """Return the values as nav2 converts them: numbers in quotes, words for `negate`, `mode` in any case."""
+    found = {key: _number(data[key]) for key in _NUMBERS if key in data}
+    if isinstance(data.get("origin"), list):
+        found["origin"] = [_number(each) for each in data["origin"]]
+    if isinstance(mode := data.get("mode"), str):
+        found["mode"] = mode.lower()
+    if "negate" in data:
+        found["negate"] = _truth(data["negate"])
+    if isinstance(image := data.get("image"), int | float) and not isinstance(image, bool):
+        found["image"] = str(image)
+    return {**data, **found}
+
+
+def _number(value: Any) -> Any:
+    """Return the number that a text spells; anything else as it is."""
+    try:
+        return float(value) if isinstance(value, str) else value
+    except ValueError:
+        return value
+
+
+def _truth(value: Any) -> Any:
+    """Return a whole number or a word of YAML 1.1 as a boolean; anything else as it is."""
+    if isinstance(value, str) and value.lower() in TRUE_WORDS | FALSE_WORDS:
+        return value.lower() in TRUE_WORDS
+    number = _number(value)
+    return bool(number) if isinstance(number, int | float) and number == int(number) else value
+
+
+def _doubts(document: yamlfile.Document[dict[str, Any]], file: MapFile) -> Iterator[DocumentError]:
+    """Yield what nav2 loads without a word."""
+    names = [each.name for each in msgspec.structs.fields(MapFile)]
+    for key in document.data if isinstance(document.data, dict) else ():
+        if key not in names:
+            yield document.error([key], unknown_key(key, names), key=True)
+    for key in ("occupied_thresh", "free_thresh"):
+        if not 0.0 <= getattr(file, key) <= 1.0:
+            yield document.error([key], f"{getattr(file, key):g} is not a share from 0 to 1")
+    if file.free_thresh >= file.occupied_thresh:
+        reason = f"{file.free_thresh:g} is not less than occupied_thresh, {file.occupied_thresh:g}"
+        yield document.error(["free_thresh"], reason)
+    if abs(file.origin[2]) > math.tau:
+        yield document.error(["origin", 2], f"the yaw is in radians, and {file.origin[2]:g} is more than a turn")
 
 
 def map_walls(grid: GridMap, height: float | None = None, colour: str | None = None) -> MapWalls:
@@ -118,7 +177,9 @@ def occupancy(image: Image, file: MapFile) -> npt.NDArray[np.int8]:
     if not file.negate:
         share = np.float32(1) - share
     free, occupied = np.float32(file.free_thresh), np.float32(file.occupied_thresh)
-    between = np.round((share - free) / (occupied - free) * 100) if file.mode == "scale" else UNKNOWN
+    between: Any = UNKNOWN
+    if file.mode == "scale" and free < occupied:  # else nothing lies between
+        between = np.round((share - free) / (occupied - free) * 100).clip(UNKNOWN, OCCUPIED)
     cells = _looked_up(image, np.where(share >= occupied, OCCUPIED, np.where(share <= free, FREE, between)))
     if image.transparent is not None:
         cells[image.transparent] = UNKNOWN

@@ -5,19 +5,18 @@ description, notes = read("meu_mundo.wbt")
 
 from __future__ import annotations
 
-import contextlib
 import os
 import warnings
-from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from robolink.documents import yamlfile
+from robolink.documents.foreign import FileWarning
 from robolink.sim.description import WorldDescription
 
-__all__ = ["WebotsWorld", "WorldWarning", "load", "read", "warnings_to"]
+__all__ = ["WebotsWorld", "WorldWarning", "load", "read"]
 
 
-class WorldWarning(UserWarning):
+class WorldWarning(FileWarning):
     """Something of a world is left out or guessed; the text begins with the file's name."""
 
 
@@ -30,16 +29,6 @@ class WebotsWorld(NamedTuple):
     def warning(self, name: str | os.PathLike[str]) -> str:
         """Return all notes as one text; '' if there are none."""
         return f"{os.fspath(name)}: {'; '.join(self.notes)}" if self.notes else ""
-
-
-@contextlib.contextmanager
-def warnings_to(tell: Callable[[str], object]) -> Iterator[None]:
-    """Call `tell` with each warning, as text, that loading a world inside of the block gives."""
-    with warnings.catch_warnings(record=True) as found:
-        warnings.simplefilter("always", WorldWarning)
-        yield
-    for each in found:
-        tell(str(each.message))
 
 
 def load(path: str | os.PathLike[str], text: str | None = None) -> WorldDescription:

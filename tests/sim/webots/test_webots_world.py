@@ -11,11 +11,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robolink.documents.foreign import warnings_to
 from robolink.exceptions import DocumentError
 from robolink.sim import World, WorldDescription, WorldError, load_world
 from robolink.sim.description import Obstacle
 from robolink.sim.quantities import Pose
-from robolink.sim.webots import WebotsWorld, WorldWarning, load, read, warnings_to
+from robolink.sim.webots import WebotsWorld, WorldWarning, load, read
 from robolink.workspace import find_world, list_worlds
 
 HEADER = "#VRML_SIM R2023b utf8\n"
