@@ -1,4 +1,4 @@
-"""robolink new: make a project, a node or a world to begin with."""
+"""robolink new: make a project, a node or a world to begin with, and stubs for editors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robolink.cli.shared.typed_paths import shown, typed
 if TYPE_CHECKING:
     from robolink.scaffold import Made
 
-app = typer.Typer(no_args_is_help=True, help="Make a project, a node or a world to begin with.")
+app = typer.Typer(no_args_is_help=True, help="Make a project, a node or a world to begin with, and stubs for editors.")
 
 Workspace = Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Where to put it.")]
 
@@ -57,6 +57,19 @@ def new_world(
     _tell(made)
     called = made.name if "/" in made.files[0] else made.files[0]
     say(f"\nnext:\n  robolink run world -p world:={called}\n  robolink world draw {called} {made.name}.png")
+
+
+@app.command("stubs")
+def new_stubs(workspace: Workspace = "") -> None:
+    """Make typings/, by which editors and type checkers know rclpy, the message packages and your own types."""
+    from robolink.scaffold.stubs import settings_to_change, write_stubs
+    from robolink.workspace import user_workspace
+
+    folder = user_workspace(workspace or None) or Path.cwd()
+    for each in write_stubs(folder):
+        say(f"made {shown(folder / each)}")
+    for file, line in settings_to_change(folder).items():
+        say(f"add this to {shown(folder / file)}: {line}")
 
 
 def _tell(made: Made) -> None:

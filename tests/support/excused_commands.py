@@ -30,6 +30,7 @@ EXCUSED = {
     "new project": "shows names that it has checked, and the path that it was given",
     "new node": "shows names that it has checked",
     "new world": "shows names that it has checked",
+    "new stubs": "shows names of its own files",
     "component list": "names nodes, which are plain",
     "component types": "lists names of files and of programs, as `ls` does",
     "component standalone": "runs a node, and shows its name, which `say` escapes",

@@ -1,0 +1,255 @@
+"""Type stubs for a workspace: with them editors and type checkers know rclpy, the message packages and its own types.
+
+An import hook gives `import rclpy` its module when a program runs, which no type checker sees. A stub is a module of
+ROS 2's name that says where robolink has each thing (`from robolink.node import Node as Node`), so that checkers find
+one class by both names; types of the workspace's own files are written out. Format: PEP 484, "Stub Files", and PEP 561.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import importlib.util
+import pkgutil
+import shutil
+import warnings
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import robolink
+from robolink import interfaces
+from robolink.compat.names import ROOMS
+from robolink.interfaces._standard import STANDARD
+from robolink.message.annotations import FieldType
+from robolink.workspace.interfaces import WORKSPACE_TYPES, use_interfaces
+
+FOLDER = "typings"
+"""Folder of the stubs in a workspace: where pyright looks without being told."""
+SETTINGS = {
+    "mypy.ini": "[mypy]\nmypy_path = typings\n",
+    "pyrightconfig.json": '{"reportMissingModuleSource": false, "ignore": ["typings"]}\n',
+}
+"""Settings of the two checkers: mypy is told where to look, pyright that the source of a stub is elsewhere."""
+OTHER_SETTINGS = {
+    "mypy.ini": {".mypy.ini": "[mypy", "pyproject.toml": "[tool.mypy", "setup.cfg": "[mypy"},
+    "pyrightconfig.json": {"pyproject.toml": "[tool.pyright"},
+}
+"""Other files that may have a checker's settings, each with the section that shows it."""
+PARTS = {"msg": (), "srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
+"""Messages that a type of each kind is made of."""
+BASES = {"msg": "Message", "srv": "Service", "action": "Action"}
+PYTHON = {"bool": "bool", "byte": "bytes", "string": "str", "wstring": "str", "float32": "float", "float64": "float"}
+"""Python's types of ROS's primitives; the others are int."""
+
+
+def write_stubs(workspace: Path) -> list[str]:
+    """Write the stubs of a workspace anew, and the settings of checkers that have none.
+
+    Args:
+        workspace: Folder of the workspace; its `typings/` is replaced, with a `.gitignore` in it.
+
+    Returns:
+        What was written, relative to the workspace: `typings`, and each file of settings that was not there.
+
+    Raises:
+        OSError: if the files cannot be written.
+        DefinitionError: if a type of the workspace has a mistake.
+    """
+    folder = workspace / FOLDER
+    use_interfaces(workspace)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # modules that are older names of others say so when they are imported
+        texts = {**_modules(), **_standard_types(), **_own_types()}
+    if folder.exists():
+        shutil.rmtree(folder)
+    for name, text in {**_packages(texts), **texts}.items():
+        _write(folder / name, text)
+    _write(folder / ".gitignore", "*\n")  # each clone writes its own
+    lacking = [name for name in SETTINGS if not _settings_of(workspace, name)]
+    for name in lacking:
+        _write(workspace / name, SETTINGS[name])
+    return [FOLDER, *lacking]
+
+
+def settings_to_change(workspace: Path) -> dict[str, str]:
+    """Return the settings that are a user's own and do not name the stubs: their file, and what to add to it.
+
+    Args:
+        workspace: Folder of the workspace.
+    """
+    words = {"mypy.ini": "mypy_path", "pyrightconfig.json": "reportMissingModuleSource"}
+    found = {name: _settings_of(workspace, name) for name in SETTINGS}
+    return {
+        file.name: SETTINGS[name].splitlines()[-1].strip("{}")
+        for name, file in found.items()
+        if file is not None and words[name] not in _text(file)
+    }
+
+
+def _settings_of(workspace: Path, name: str) -> Path | None:
+    """Return the file that has the settings of a checker, which is named by the file that is its own."""
+    others = [
+        workspace / other for other, section in OTHER_SETTINGS[name].items() if section in _text(workspace / other)
+    ]
+    return next((each for each in (workspace / name, *others) if each.is_file()), None)
+
+
+def _text(file: Path) -> str:
+    return file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
+
+
+def _write(file: Path, text: str) -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, encoding="utf-8", newline="\n")
+
+
+def _packages(texts: Mapping[str, str]) -> dict[str, str]:
+    """Return an empty `__init__.pyi` for each folder that has none."""
+    folders = {folder for name in texts for folder in list(Path(name).parents)[:-1]}
+    return {f"{each.as_posix()}/__init__.pyi": "" for each in folders if f"{each.as_posix()}/__init__.pyi" not in texts}
+
+
+# Modules of ROS 2's packages
+
+
+def _modules() -> dict[str, str]:
+    """Return the stub of each module of rclpy and its companions, by its path."""
+    found: dict[str, str] = {}
+    for name, room in ROOMS.items():
+        if room and not _is_message_package(room):
+            for module, source in _below(name, room):
+                if module not in found:
+                    found[module] = source
+    names = set(found)
+    return {_path(name, names): _module(name, room, names) for name, room in found.items()}
+
+
+def _is_message_package(room: str) -> bool:
+    return room.startswith("robolink.interfaces")
+
+
+def _below(name: str, room: str) -> Iterator[tuple[str, str]]:
+    """Yield a module's name and robolink's, and those of what is in it."""
+    yield name, room
+    spec = importlib.util.find_spec(room)
+    for each in pkgutil.iter_modules((spec and spec.submodule_search_locations) or []):
+        inner = f"{name}.{each.name}"
+        if not each.name.startswith("_") and inner not in ROOMS and (room != "robolink" or _is_rclpys(each)):
+            yield from _below(inner, f"{room}.{each.name}")
+
+
+def _is_rclpys(module: pkgutil.ModuleInfo) -> bool:
+    """True if a module of robolink's root has a name of rclpy's: the other folders are rooms of robolink's own."""
+    return module.name in robolink._ROOMS or not module.ispkg
+
+
+def _path(name: str, names: set[str]) -> str:
+    is_package = any(each.startswith(f"{name}.") for each in names)
+    return f"{name.replace('.', '/')}{'/__init__' if is_package else ''}.pyi"
+
+
+def _module(name: str, room: str, names: set[str]) -> str:
+    """Return the text of a stub: each public name, from the module of robolink's that defines it."""
+    try:
+        module = importlib.import_module(room)
+    except ImportError:  # it needs a library that is not installed
+        return "from typing import Any\n\ndef __getattr__(name: str) -> Any: ...\n"
+    lines = [f"from {source} import {inner} as {outer}" for outer, (source, inner) in sorted(_homes(module).items())]
+    inside = sorted(each.rpartition(".")[2] for each in names if each.rpartition(".")[0] == name)
+    lines += [f"from {name} import {each} as {each}" for each in inside if each not in _homes(module)]
+    return "\n".join(lines) + "\n"
+
+
+def _homes(module: ModuleType) -> dict[str, tuple[str, str]]:
+    """Return the public names of a module, each with the module and the name that a checker finds it by."""
+    tree = ast.parse(Path(str(module.__file__)).read_text(encoding="utf-8"))
+    found: dict[str, tuple[str, str]] = {}
+    for statement in _statements(tree.body):
+        if isinstance(statement, ast.ImportFrom) and (statement.module or "").startswith("robolink"):
+            found.update({each.asname or each.name: (str(statement.module), each.name) for each in statement.names})
+        else:
+            found.update({each: (module.__name__, each) for each in _defined(statement)})
+    return {name: home for name, home in found.items() if not name.startswith("_") and hasattr(module, name)}
+
+
+def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """Yield the statements of a module, with those under `if TYPE_CHECKING:`, where a lazy name has its type."""
+    for each in body:
+        if isinstance(each, ast.If):
+            yield from _statements([*each.body, *each.orelse])
+        else:
+            yield each
+
+
+def _defined(statement: ast.stmt) -> list[str]:
+    if isinstance(statement, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+        return [statement.name]
+    if isinstance(statement, ast.Assign):
+        names = [each for target in statement.targets for each in ast.walk(target)]
+        return [each.id for each in names if isinstance(each, ast.Name)]
+    if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name):
+        return [statement.target.id]
+    return []
+
+
+# Types
+
+
+def _standard_types() -> dict[str, str]:
+    """Return the stubs of the message packages that come with robolink: the same classes by ROS 2's names."""
+    return {
+        f"{package}/{kind}.pyi": "".join(
+            f"from robolink.interfaces.{package}.{kind} import {each} as {each}\n" for each in sorted(names.split())
+        )
+        for kind, packages in STANDARD.items()
+        for package, names in packages.items()
+    }
+
+
+def _own_types() -> dict[str, str]:
+    """Return the stubs of the workspace's own packages, and of those of the built-in workspace."""
+    found: dict[str, str] = {}
+    for kind in interfaces.KINDS:
+        for package, names in WORKSPACE_TYPES.names(kind).items():
+            if package not in STANDARD[kind]:
+                types = [interfaces.find(f"{package}/{kind}/{each}", kind) for each in sorted(set(names))]
+                found[f"{package}/{kind}.pyi"] = _types(types, kind)
+    return found
+
+
+def _types(types: list[type[Any]], kind: str) -> str:
+    """Return the stub of a module of types."""
+    messages = [part for each in types for part in (each, *(getattr(each, name) for name in PARTS[kind]))]
+    fields = [field for each in messages for field in getattr(each, "__ros_fields__", {}).values()]
+    modules = sorted({field.base.replace("/", ".").rpartition(".")[0] for field in fields if field.message})
+    heads = ["builtins", "collections.abc", "typing", *modules, "robolink.message"]
+    imports = "".join(f"import {each}\n" for each in heads)
+    return f"{imports}\n{''.join(_type(each, kind) for each in types)}"
+
+
+def _type(cls: type[Any], kind: str) -> str:
+    if kind == "msg":
+        return _message(cls, cls.__name__, "")
+    parts = "".join(_message(getattr(cls, each), each, "    ") for each in PARTS[kind])
+    return f"class {cls.__name__}(robolink.message.{BASES[kind]}):\n{parts}"
+
+
+def _message(cls: type[Any], name: str, indent: str) -> str:
+    """Return a class with its constants and fields; all fields are keyword arguments that one may leave out."""
+    fields: dict[str, FieldType] = cls.__ros_fields__
+    constants: dict[str, tuple[FieldType, Any]] = cls.__ros_constants__
+    arguments = "".join(f", {each}: {_python(kind)} = ..." for each, kind in fields.items())
+    lines = [
+        *(f"{each}: typing.ClassVar[{_python(kind)}]" for each, (kind, _) in constants.items()),
+        *(f"{each}: {_python(kind)}" for each, kind in fields.items()),
+        f"def __init__(self{', *' if fields else ''}{arguments}) -> None: ...",
+    ]
+    return f"{indent}class {name}(robolink.message.Message):\n" + "".join(f"{indent}    {each}\n" for each in lines)
+
+
+def _python(kind: FieldType) -> str:
+    """Return the annotation of a field."""
+    one = kind.base.replace("/", ".") if kind.message else f"builtins.{PYTHON.get(kind.base, 'int')}"
+    return one if kind.shape == "one" else f"collections.abc.MutableSequence[{one}]"
