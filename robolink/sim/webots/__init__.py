@@ -43,14 +43,19 @@ def load(path: str | os.PathLike[str], text: str | None = None) -> WorldDescript
 
 
 def read(path: str | os.PathLike[str], text: str | None = None) -> WebotsWorld:
-    """Read a world of Webots (or `text` in its place).
+    """Read a world of Webots (or `text` in its place), with the PROTOs that lie beside it.
 
     Lengths, angles and heights are the file's; seen from above, x is east and y north. Raises `DocumentError` with
     `file:line:column` for what is no VRML, impossible sizes, and robots that start inside something.
     """
     from robolink.sim.webots.convert import convert
+    from robolink.sim.webots.protos import Protos
+    from robolink.sim.webots.scene_tree import KNOWN_TYPES
     from robolink.sim.webots.vrml import LONGEST, parse
+    from robolink.sim.webots.vrml_node import Notes
 
-    name = os.fspath(path)
-    description, notes = convert(parse(yamlfile.read_text(path, LONGEST) if text is None else text, name), name)
-    return WebotsWorld(description, notes)
+    name, repaired = os.fspath(path), Notes()
+    protos = Protos(repaired, KNOWN_TYPES)
+    nodes = parse(yamlfile.read_text(path, LONGEST) if text is None else text, name, protos)
+    description, notes = convert(nodes, name, protos.missing)
+    return WebotsWorld(description, (*notes, *(each.removeprefix(f"{name}:") for each in repaired)))

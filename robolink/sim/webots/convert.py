@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import msgspec
@@ -15,10 +15,11 @@ from robolink.sim.checks.worlds import mass_problems, problems
 from robolink.sim.description import FloorSettings, Obstacle, Settings, Wall, WorldDescription
 from robolink.sim.webots.appearance import first_colour
 from robolink.sim.webots.footprint import footprint, merged
-from robolink.sim.webots.geometry import HEIGHTS, ORIGIN, Placement, rounded
+from robolink.sim.webots.geometry import HEIGHTS, ORIGIN, WORLDS, Placement, rounded
 from robolink.sim.webots.robots import Converted, robot
 from robolink.sim.webots.scene_tree import Arena, Found, Thing
 from robolink.sim.webots.vrml_node import Node
+from robolink.system.terminal import shown
 
 FLAT = 0.02
 """Height in metres below which things lie on the floor, and robots drive over them."""
@@ -47,12 +48,20 @@ class Standing(NamedTuple):
     thing: Thing
 
 
-def convert(nodes: list[Node], name: str) -> tuple[WorldDescription, tuple[str, ...]]:
+def convert(
+    nodes: list[Node], name: str, missing: Mapping[str, str] | None = None
+) -> tuple[WorldDescription, tuple[str, ...]]:
     """Return a world made from the nodes of a file called `name`, and notes of what was left out or guessed.
 
-    Raises `DocumentError` with the place in the file.
+    Args:
+        nodes: Content of the file.
+        name: Name of the file.
+        missing: Why the definitions of PROTOs are not read, by their names.
+
+    Raises:
+        DocumentError: with the place in the file.
     """
-    found = Found(nodes, ORIGIN)
+    found = Found(nodes, _axes(nodes))
     settings = msgspec.structs.replace(_settings(found.information), floor=FloorSettings(colour=found.floor_colour))
     floor = found.floors[0] if found.floors else 0.0
     robots = _robots(found, settings.dt, floor)
@@ -68,15 +77,22 @@ def convert(nodes: list[Node], name: str) -> tuple[WorldDescription, tuple[str, 
     )
     description, moved = _settled(description, things, [node for node, _ in found.robots], floor, name)
     notes = [note for each in robots for note in each.notes] + moved
-    return description, (*_unknown(found.unknown), *notes)
+    return description, (*_unknown(found.unknown, missing or {}), *notes)
+
+
+def _axes(nodes: list[Node]) -> Placement:
+    """Return the placement of the world's axes: which of them is up."""
+    information = next((node for node in nodes if node.type == "WorldInfo"), None)
+    system = "ENU" if information is None else information.text("coordinateSystem", "ENU")
+    if information is not None and system not in WORLDS:
+        known = ", ".join(WORLDS)
+        information.note(f"expected one of {known}, got '{shown(system, 40)}'; ENU is used", "coordinateSystem")
+    return WORLDS.get(system, ORIGIN)
 
 
 def _settings(information: Node | None) -> Settings:
     if information is None:
         return Settings(dt=0.032)
-    system = information.text("coordinateSystem", "ENU")
-    if system != "ENU":
-        raise information.error(f"'{system}' is not read, only 'ENU', which has z upwards", "coordinateSystem")
     step = information.length("basicTimeStep", 32.0) / 1000.0
     if step < STEPS[0]:
         raise information.error(f"expected 1 ms or more, got {step * 1000:g}", "basicTimeStep")
@@ -204,7 +220,10 @@ def _origin(path: str, things: list[Standing], robots: Sequence[Node]) -> Node |
     return robots[int(match[2])] if match[1] == "robots" else things[int(match[2])].thing.node
 
 
-def _unknown(unknown: dict[str, int]) -> Iterator[str]:
-    if unknown:
-        listed = ", ".join(f"{name} ({count} times)" if count > 1 else name for name, count in sorted(unknown.items()))
-        yield f"not known here, so it is not there: {listed}"
+def _unknown(unknown: dict[str, int], missing: Mapping[str, str]) -> Iterator[str]:
+    """Yield what is not there: by the reason why, first what is simply not known."""
+    reasons: dict[str, list[str]] = {}
+    for name, count in sorted(unknown.items(), key=lambda each: (missing.get(each[0], ""), each[0])):
+        reasons.setdefault(missing.get(name, ""), []).append(f"{name} ({count} times)" if count > 1 else name)
+    for reason, names in reasons.items():
+        yield f"{reason or 'not known here'}, so this is not there: {', '.join(names)}"

@@ -65,6 +65,13 @@ class Placement(NamedTuple):
 
 ORIGIN = Placement(np.eye(3), np.zeros(3))
 
+WORLDS = {
+    "ENU": ORIGIN,
+    "NUE": Placement(np.array([(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]), np.zeros(3)),
+    "EUN": Placement(np.array([(1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)]), np.zeros(3)),
+}
+"""Placements of Webots' worlds by their `coordinateSystem`, which says which way x, y and z point; here z is up."""
+
 
 def turned(angle: float) -> Placement:
     """Return the placement of something at the origin that is turned about z by `angle` radians."""

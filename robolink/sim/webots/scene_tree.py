@@ -10,6 +10,7 @@ from robolink.sim.description import MOST_OBSTACLES, MOST_ROBOTS
 from robolink.sim.quantities import FARTHEST
 from robolink.sim.webots.appearance import colour_of_look, colour_of_shape
 from robolink.sim.webots.geometry import Part, Placement, box, part
+from robolink.sim.webots.known_fields import KNOWN_FIELDS
 from robolink.sim.webots.sensors import LIDARS
 from robolink.sim.webots.vrml_node import Node
 
@@ -19,8 +20,8 @@ DENSITY = 1000.0
 LIGHTEST, HEAVIEST = 0.001, 100_000.0
 """Least and greatest mass of a thing, in kg."""
 
-CIRCLE_SIDES = 48
-"""Default number of walls of a round arena, as in Webots."""
+CIRCLE_SIDES, FEWEST_SIDES = 48, 8
+"""Default number of walls of a round arena, and their least number, as in Webots."""
 
 GROUPS = frozenset({"Billboard", "Group", "Pose", "Slot", "Transform"})
 JOINTS = frozenset({"BallJoint", "Hinge2Joint", "HingeJoint", "SliderJoint"})
@@ -36,13 +37,28 @@ IGNORED = frozenset(
 )
 """Node types that make no difference to a flat world."""
 
-CENTRED_BOXES = {"CardboardBox": 0.6, "SolidBox": 2.0, "WoodenBox": 0.6}
-"""Boxes of Webots' library about their own middle, and their default size."""
+SOLID_BOX = 2.0
+"""Default size of a SolidBox."""
 
-STANDING_BOXES = {"Wall": (1.0, 0.2, 2.4), "Window": (0.8, 0.2, 2.4)}
-"""Boxes of Webots' library that stand on their own origin."""
+STANDING_BOXES = {"Wall": (0.2, 1.0, 2.4), "Window": (0.2, 0.8, 2.4)}
+"""Boxes of Webots' library that stand on their own origin, and their default sizes."""
 
-RAISED = {"CardboardBox": (0.0, 0.0, 0.3), "WoodenBox": (0.0, 0.0, 0.3)}
+
+class Container(NamedTuple):
+    """Box of Webots' library: longest side, greatest mass of a cubic metre, and volumes that it may have."""
+
+    longest: float
+    heaviest: float
+    volumes: tuple[float, float] = (0.0, math.inf)
+
+
+CONTAINERS = {"CardboardBox": Container(2.5, 100.0, (1e-6, 1.0)), "WoodenBox": Container(3.0, 1000.0)}
+"""Boxes about their own middle whose PROTOs bring sizes and masses into range."""
+
+CONTAINER_SIDE, SHORTEST = 0.6, 0.01
+"""Default and least length of a side of a container."""
+
+RAISED = {"CardboardBox": (0.0, 0.0, 0.3), "WoodenBox": (0.0, 0.0, 0.3), "SolidBox": (0.0, 0.0, 1.0)}
 """Default translations of boxes that are not at the origin."""
 
 
@@ -170,12 +186,31 @@ def mass(node: Node, parts: list[Part]) -> float:
     return min(max(found, LIGHTEST), HEAVIEST)
 
 
-def _centred_box(found: Found, node: Node, inner: Placement) -> None:
-    side = CENTRED_BOXES[node.type]
-    piece = box(node.lengths("size", side, side, side), inner)._replace(colour=_library_colour(node))
-    physics = "mass" in node.fields and node.number("mass", 0.0) > 0.0
-    weight = node.number("mass", 0.0) if physics else mass(node, [piece]) if node.nodes("physics") else None
-    found.things.append(Thing([piece], weight and min(max(weight, LIGHTEST), HEAVIEST), node))
+def _solid_box(found: Found, node: Node, inner: Placement) -> None:
+    if not node.truth("enableBoundingObject", True):
+        return  # one sees it, and nothing collides with it
+    piece = box(node.lengths("size", SOLID_BOX, SOLID_BOX, SOLID_BOX), inner)._replace(colour=_library_colour(node))
+    weight = mass(node, [piece]) if node.nodes("physics") else None
+    found.things.append(Thing([piece], weight, node))
+
+
+def _container(found: Found, node: Node, inner: Placement) -> None:
+    """A wooden or cardboard box: its PROTO clamps the size, and the mass by the volume."""
+    kind, default = CONTAINERS[node.type], 3 * (CONTAINER_SIDE,)
+    stated = sides = node.lengths("size", *default)
+    volume = math.prod(stated)
+    if not kind.volumes[0] <= volume <= kind.volumes[1]:
+        sides = default
+    sides = tuple(min(max(each, SHORTEST), kind.longest) for each in sides)
+    if sides != stated:
+        node.note(f"the PROTO does not take this; {' '.join(f'{each:g}' for each in sides)} is used", "size")
+    weight = node.number("mass", 0.0)
+    lightest = volume ** (2 / 3)
+    if weight > 0.0 and not lightest <= weight <= kind.heaviest * lightest:
+        weight = min(max(weight, lightest), kind.heaviest * lightest)
+        node.note(f"the PROTO does not take this; {weight:.3g} is used", "mass")
+    piece = box(sides, inner)._replace(colour=_library_colour(node))
+    found.things.append(Thing([piece], min(max(weight, LIGHTEST), HEAVIEST) if weight > 0.0 else None, node))
 
 
 def _standing_box(found: Found, node: Node, inner: Placement) -> None:
@@ -200,7 +235,9 @@ def _rectangle_arena(found: Found, node: Node, inner: Placement) -> None:
 
 def _circle_arena(found: Found, node: Node, inner: Placement) -> None:
     radius, sides = node.length("radius", 1.0), int(node.number("subdivision", CIRCLE_SIDES))
-    sides = min(max(sides, 3), 360)
+    if sides <= FEWEST_SIDES:
+        sides = FEWEST_SIDES
+    sides = min(sides, 360)
     turns = [math.tau * each / sides for each in range(sides)]
     _arena(found, node, inner, [(radius * math.cos(turn), radius * math.sin(turn)) for turn in turns])
 
@@ -218,10 +255,14 @@ def _arena(found: Found, node: Node, inner: Placement, corners: list[tuple[float
 
 
 _LIBRARY: dict[str, Callable[[Found, Node, Placement], None]] = {
-    **dict.fromkeys(CENTRED_BOXES, _centred_box),
+    **dict.fromkeys(CONTAINERS, _container),
     **dict.fromkeys(STANDING_BOXES, _standing_box),
     "CircleArena": _circle_arena,
     "Floor": _floor,
     "RectangleArena": _rectangle_arena,
+    "SolidBox": _solid_box,
 }
 """The PROTOs of Webots' library whose geometry is plain."""
+
+KNOWN_TYPES = frozenset(_LIBRARY) | frozenset(KNOWN_FIELDS) | SOLIDS | GROUPS | JOINTS | IGNORED | frozenset(LIDARS)
+"""Types of nodes that are read without their definition, or that make no difference."""

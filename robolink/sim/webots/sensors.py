@@ -35,7 +35,7 @@ LACKING = frozenset({"Compass", "GPS", "LightSensor", "Radar", "Receiver"})
 
 
 class Model(NamedTuple):
-    """A lidar on the market: name, beams, field of view in degrees, range in metres, noise in metres."""
+    """A lidar on the market: name, beams, field of view in degrees, range in metres, noise as a share of its end."""
 
     name: str
     beams: int
@@ -45,13 +45,13 @@ class Model(NamedTuple):
 
 
 LIDARS = {
-    "HokuyoUrg04lx": Model("Hokuyo URG-04LX", 667, 240.0, (0.06, 4.095)),
+    "HokuyoUrg04lx": Model("Hokuyo URG-04LX", 667, 240.0, (0.06, 4.096)),
     "HokuyoUrg04lxug01": Model("Hokuyo URG-04LX-UG01", 667, 240.0, (0.2, 5.6)),
     "HokuyoUtm30lx": Model("Hokuyo UTM-30LX", 1080, 270.0, (0.1, 30.0)),
     "RobotisLds01": Model("LDS-01", 360, 360.0, (0.12, 3.5), 0.0043),
-    "SickLms291": Model("Sick LMS 291", 180, 180.0, (0.1, 80.0)),
+    "SickLms291": Model("Sick LMS 291", 180, 180.0, (0.01, 80.0)),
 }
-"""Lidars of Webots' library that scan in a plane. Source: Webots' user guide, "Lidar Sensors"."""
+"""Lidars of Webots' library that scan in a plane, as their PROTOs define them."""
 
 
 def rate_near(wanted: float, dt: float) -> float:
@@ -157,7 +157,7 @@ def _lidar(node: Node, placement: Placement, names: _Names, dt: float) -> Lidar:
         beams=int(beams),
         fov=360.0 if turns else max(math.degrees(angle), 0.01),
         range=(nearest, max(farthest, 0.001)),
-        noise=min(max(node.number("noise", 0.0), 0.0) * farthest, 100.0),
+        noise=_noise(node.number("noise", 0.0), farthest),
         offset=placement.pose,
     )
 
@@ -169,9 +169,14 @@ def _bought_lidar(node: Node, model: Model, placement: Placement, names: _Names,
         beams=min(max(int(node.number("resolution", model.beams)), 2), 100_000),
         fov=model.fov,
         range=model.range,
-        noise=min(max(node.number("noise", model.noise), 0.0), 100.0),
+        noise=_noise(node.number("noise", model.noise), model.range[1]),
         offset=placement.pose,
     )
+
+
+def _noise(share: float, farthest: float) -> float:
+    """Return the standard deviation in metres of what Webots gives as a share of the range's end."""
+    return min(max(share, 0.0) * farthest, 100.0)
 
 
 def _range_finder(node: Node, placement: Placement, names: _Names, dt: float) -> RangeFinder:

@@ -1,4 +1,4 @@
-"""Parser of VRML as Webots writes its worlds: from text to nodes with fields, without their meaning.
+"""Parser of VRML as Webots writes its worlds and PROTOs: from text to nodes with fields, without their meaning.
 
 Source: ISO/IEC 14772-1 (VRML97), clause 5 and annex A, and Webots' reference manual on what its files have of it.
 """
@@ -7,10 +7,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from pathlib import Path
 from typing import NoReturn
 
+from robolink.documents.foreign import unknown_key
 from robolink.exceptions import DocumentError, nearest
+from robolink.sim.webots.known_fields import KNOWN_FIELDS
+from robolink.sim.webots.protos import Definition, Protos, Scope
 from robolink.sim.webots.vrml_node import DEEPEST, MOST, Field, Node, Source, Value
 from robolink.system.plainfile import size
 from robolink.system.terminal import shown
@@ -39,16 +43,27 @@ _NAME = re.compile(r"[^\d+\-'.][^']*")
 _HEADER = re.compile(r"#VRML_SIM\s+R(\d{4})\S*\s+utf8\b")
 
 
-def parse(text: str, name: str) -> list[Node]:
-    """Parse the text of a world into its nodes; `name` is the file's, for errors.
+def parse(text: str, name: str, protos: Protos | None = None) -> list[Node]:
+    """Parse the text of a world into its nodes.
 
-    Raises `DocumentError` with `file:line:column`.
+    Args:
+        text: The world.
+        name: Name of its file, for errors, and for files beside it.
+        protos: Finder of PROTOs; None to leave nodes of such types as they are.
+
+    Raises:
+        DocumentError: with `file:line:column`.
     """
-    source = Source(text, name)
+    source = Source(text, name, protos.notes if protos else None)
     if len(source.text) > LONGEST:
         raise DocumentError(f"longer than {size(LONGEST)}", name)
     _check_header(source)
-    return _Parser(source).nodes()
+    return _Parser(source, Scope(Path(name).parent, {}), protos).nodes()
+
+
+def parse_proto(source: Source, scope: Scope, protos: Protos) -> Definition:
+    """Parse the interface of a PROTO's file. Raises DocumentError with `file:line:column`."""
+    return _Parser(source, scope, protos).definition()
 
 
 def _check_header(source: Source) -> None:
@@ -64,9 +79,10 @@ def _check_header(source: Source) -> None:
 class _Parser:
     """Reads tokens, one ahead, by recursive descent; no deeper than `DEEPEST`."""
 
-    def __init__(self, source: Source) -> None:
-        self._source, self._end = source, 0
+    def __init__(self, source: Source, scope: Scope, protos: Protos | None) -> None:
+        self._source, self._scope, self._protos, self._end = source, scope, protos, 0
         self._defined: dict[str, Node] = {}
+        self._bound: dict[str, Field] | None = None
         self._depth = 0
         self._words = 0
         self._kind, self._text, self._offset = "", "", 0
@@ -85,6 +101,52 @@ class _Parser:
             if total > MOST:
                 self._fail(f"the nodes before this are more than {MOST}")
         return found
+
+    def definition(self) -> Definition:
+        """Read `PROTO Name [ fields ]`, up to the body."""
+        while self._text in ("EXTERNPROTO", "IMPORTABLE"):
+            self._external()
+        if self._text != "PROTO":
+            self._expected("PROTO")
+        self._next()
+        name = self._word("the name of the PROTO")
+        self._mark("[")
+        fields = dict(iter(self._interface_field, None))
+        self._mark("]")
+        return Definition(name, fields, self._source, self._offset, self._scope)
+
+    def instance(self, definition: Definition, node: Node, depth: int) -> Node:
+        """Read the body of a PROTO with the fields of a node that is one."""
+        self._end, self._depth = definition.body, depth
+        self._bound = {**definition.fields, **{k: v for k, v in node.fields.items() if k in definition.fields}}
+        self._next()
+        self._mark("{")
+        found: list[Node] = []
+        while self._text != "}" or self._kind != "mark":
+            if made := self._node():
+                found.append(made)
+        assert self._protos is not None
+        self._protos.spend(self._words, node)
+        if not found:
+            self._fail(f"the PROTO {definition.name} has no node in it")
+        return found[0]  # as VRML has it: the first is what the PROTO stands for
+
+    def _interface_field(self) -> tuple[str, Field] | None:
+        """Read `field SFVec3f translation 0 0 0`, and choices such as `SFString{"1", "2"}`; None at the end."""
+        if self._text == "]" and self._kind == "mark":
+            return None
+        self._word("a field of the PROTO or ']'")
+        self._word("the type of a field")
+        if self._text == "{" and self._kind == "mark":
+            while self._kind and self._text != "}":
+                self._next()
+            self._next()
+        return self._word("the name of a field"), self._field()
+
+    def _mark(self, mark: str) -> None:
+        if self._text != mark or self._kind != "mark":
+            self._expected(f"'{mark}'")
+        self._next()
 
     def _next(self) -> None:
         while match := _TOKEN.match(self._source.text, self._end):
@@ -107,7 +169,7 @@ class _Parser:
         self._fail(f"expected {what}, got {found}")
 
     def _external(self) -> None:
-        """Read past `EXTERNPROTO "address"`: nothing is fetched, what is known of it is known by its name."""
+        """Read `EXTERNPROTO "address"`, which may lie beside this file; nothing is fetched."""
         if self._text == "IMPORTABLE":
             self._next()
             if self._text != "EXTERNPROTO":
@@ -115,6 +177,7 @@ class _Parser:
         self._next()
         if self._kind != "string":
             self._expected("the address of a PROTO in quotes")
+        self._scope.declare(self._text[1:-1])
         self._next()
 
     def _word(self, what: str) -> str:
@@ -158,15 +221,47 @@ class _Parser:
         self._next()
         fields: dict[str, Field] = {}
         while self._text != "}" or self._kind != "mark":
-            name, place = self._field_name(), self._offset
-            fields[name] = Field(self._values(), place)
+            place, is_state = self._offset, self._text == "hidden"
+            name = self._field_name()
+            fields[name] = self._field()
+            if kind in KNOWN_FIELDS and name not in KNOWN_FIELDS[kind] and not is_state:
+                self._note(kind, name, place, KNOWN_FIELDS[kind])
         self._next()
+        node = self._expanded(Node(kind, fields, self._source, offset))
         self._depth -= 1
-        return Node(kind, fields, self._source, offset)
+        return node
+
+    def _expanded(self, node: Node) -> Node:
+        """Return what a node of a PROTO's type stands for; any other as it is."""
+        definition = self._protos.find(node, self._scope) if self._protos else None
+        if definition is None:
+            return node
+        for name, field in node.fields.items():
+            if name not in definition.fields:
+                self._note(node.type, name, field.offset, definition.fields)
+        parser = _Parser(definition.source, definition.scope, self._protos)
+        return parser.instance(definition, node, self._depth)
+
+    def _note(self, kind: str, name: str, offset: int, known: Iterable[str]) -> None:
+        text = f"{kind}.{name}: {unknown_key(name, known)}"
+        self._source.notes.add(self._source.error(offset, text), kind, name)
 
     def _field_name(self) -> str:
         name = self._word("a field or '}'")
         return self._word("a field") if name == "hidden" else name  # so Webots saves the state of joints
+
+    def _field(self) -> Field:
+        """Read the values of a field, or `IS name`: those of a field of the PROTO."""
+        place = self._offset
+        if self._kind != "word" or self._text != "IS":
+            return Field(self._values(), place, self._source)
+        self._next()
+        place, name = self._offset, self._word("the name of a field of the PROTO")
+        if self._bound is None:
+            raise self._source.error(place, "IS is for the body of a PROTO")
+        if name not in self._bound:
+            raise self._source.error(place, f"the PROTO has no field '{name}'{nearest(name, self._bound)}")
+        return self._bound[name]
 
     def _values(self) -> list[Value]:
         """Read the values of a field: a list, a run of numbers, or one value."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TypeAlias
 
 from robolink.exceptions import DocumentError
@@ -20,11 +20,31 @@ LARGEST = 1e12
 """Largest absolute value of a number."""
 
 
-class Source:
-    """The text of a world and its name; finds line and column of a place."""
+MOST_NOTES = 20
+"""Most notes about fields of a world; each kind of mistake is one note, however often it is made."""
 
-    def __init__(self, text: str, name: str) -> None:
+
+class Notes:
+    """What Webots repairs or ignores with a warning of its own, in the files of one world: a sentence each."""
+
+    def __init__(self) -> None:
+        self._found: dict[tuple[str, ...], str] = {}
+
+    def add(self, about: DocumentError, *key: str) -> None:
+        """Add a note; a later one with the same `key` is left out."""
+        if len(self._found) < MOST_NOTES:
+            self._found.setdefault(key, str(about))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._found.values())
+
+
+class Source:
+    """The text of a world or PROTO and its name; finds line and column of a place."""
+
+    def __init__(self, text: str, name: str, notes: Notes | None = None) -> None:
         self.text, self.name = text.removeprefix("\ufeff"), name
+        self.notes = Notes() if notes is None else notes
 
     def error(self, offset: int, message: str) -> DocumentError:
         """Make an error, to raise, about the text at `offset`."""
@@ -36,10 +56,10 @@ class Source:
 class Field:
     """The values of a node's field: one or a list; a vector is its numbers."""
 
-    __slots__ = ("offset", "values")
+    __slots__ = ("offset", "source", "values")
 
-    def __init__(self, values: Sequence[Value], offset: int) -> None:
-        self.values, self.offset = values, offset
+    def __init__(self, values: Sequence[Value], offset: int, source: Source) -> None:
+        self.values, self.offset, self.source = values, offset, source
 
 
 class Node:
@@ -73,7 +93,8 @@ class Node:
         """Make an error (to raise) about this node, or about one of its fields."""
         at = self.fields.get(field)
         prefix = f"{self.type}.{field}: " if field else ""
-        return self.source.error(at.offset if at else self.offset, prefix + message)
+        source, offset = (at.source, at.offset) if at else (self.source, self.offset)
+        return source.error(offset, prefix + message)
 
     def numbers(self, field: str, *default: float) -> tuple[float, ...]:
         """Return as many numbers as the default has."""
@@ -87,11 +108,23 @@ class Node:
         return self.numbers(field, default)[0]
 
     def lengths(self, field: str, *default: float) -> tuple[float, ...]:
-        """Return as many numbers as the default has, each more than 0."""
+        """Return as many numbers as the default has, each more than 0; the default, with a note, in place of others."""
         found = self.numbers(field, *default)
         if min(found) <= 0.0:
-            raise self.error(f"expected more than 0, got {min(found):g}", field)
+            self.note(f"expected more than 0, got {min(found):g}; {_spelled(default)} is used", field)
+            return default
         return found
+
+    def note(self, message: str, field: str = "") -> None:
+        """Note what Webots warns of: the value of a field that it repairs or ignores."""
+        self.source.notes.add(self.error(message, field), self.type, field)
+
+    def truth(self, field: str, default: bool) -> bool:
+        """Return a boolean."""
+        values = self.fields[field].values if field in self.fields else [default]
+        if len(values) != 1 or not isinstance(values[0], bool):
+            raise self.error(f"expected TRUE or FALSE, got {_worded(values[0] if values else None)}", field)
+        return values[0]
 
     def length(self, field: str, default: float) -> float:
         """Return a number that is more than 0."""
@@ -138,6 +171,10 @@ def _worded(value: Value) -> str:
     if isinstance(value, bool):
         return str(value).upper()
     return "NULL" if value is None else f"'{shown(value, 40)}'" if isinstance(value, str) else f"{value:g}"
+
+
+def _spelled(numbers: Sequence[float]) -> str:
+    return " ".join(f"{each:g}" for each in numbers)
 
 
 def _counted(count: int, what: str) -> str:

@@ -167,7 +167,7 @@ def test_what_is_left_out_of_a_world_of_webots_is_told_in_a_line(
     path.write_text("#VRML_SIM R2023b utf8\nFridge { }\n")
     with spinning(node):
         assert plot("odom", "/lab/odom", "--out", tmp_path / "a.png", "--world", path) == 0
-    assert capsys.readouterr().err.startswith(f"robolink: {path}: not known here, so it is not there: Fridge\n")
+    assert capsys.readouterr().err.startswith(f"robolink: {path}: not known here, so this is not there: Fridge\n")
 
 
 def test_a_world_that_cannot_be_found_is_told_of_and_the_way_is_drawn(

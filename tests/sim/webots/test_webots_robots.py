@@ -157,7 +157,7 @@ def test_a_robot_without_shape_or_motor_only_looks_on() -> None:
 def test_devices_of_joints_that_are_not_known_are_told_of() -> None:
     _, told = world(f"Robot {{ children [ {BODY} {WHEELS.replace('RotationalMotor', 'RotacionalMotor')} ] }}")
     assert told == (
-        "not known here, so it is not there: RotacionalMotor (2 times)",
+        "not known here, so this is not there: RotacionalMotor (2 times)",
         "robot: no motor turns its wheels, only cmd_vel drives it",
     )
 
@@ -198,6 +198,18 @@ def test_a_lidar() -> None:
     assert isinstance(bought, Lidar)
     assert (bought.topic, bought.beams, bought.range, bought.offset) == ("scan", 360, (0.12, 3.5), Pose(0, 0.1))
     assert [each.topic for each in sensors('Lidar { name "front" } Lidar { }')] == ["front", "lidar"]
+    assert notes(f"{BODY} {WHEELS} Lidar {{ fieldOfView 0 }}", 'name "r"')[-1].endswith(
+        "Lidar.fieldOfView: expected more than 0, got 0; 1.5708 is used"
+    )
+
+
+def test_noise_of_a_lidar_is_a_share_of_its_range() -> None:
+    (ours,) = sensors("RobotisLds01 { }")
+    assert isinstance(ours, Lidar)
+    assert ours.noise == pytest.approx(0.0043 * 3.5)
+    (sick,) = sensors("SickLms291 { noise 0.001 }")
+    assert isinstance(sick, Lidar)
+    assert (sick.noise, sick.range) == (pytest.approx(0.08), (0.01, 80.0))
 
 
 @pytest.mark.parametrize(
@@ -205,7 +217,6 @@ def test_a_lidar() -> None:
     [
         ("minRange 2", "Lidar.minRange: expected 0 to less than maxRange, 1, got 2"),
         ("horizontalResolution 1", "Lidar.horizontalResolution: expected 2 to 100000 beams, got 1"),
-        ("fieldOfView 0", "Lidar.fieldOfView: expected more than 0, got 0"),
     ],
 )
 def test_an_impossible_lidar(field: str, report: str) -> None:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from robolink.exceptions import DocumentError
 from robolink.sim.webots.vrml import parse
-from robolink.sim.webots.vrml_node import DEEPEST, MOST, Node
+from robolink.sim.webots.vrml_node import DEEPEST, MOST, MOST_NOTES, Node
 
 HEADER = "#VRML_SIM R2023b utf8\n"
 
@@ -94,7 +94,6 @@ def test_what_is_no_vrml(text: str, report: str) -> None:
     ("text", "report"),
     [
         ("Box { size 1 2 }", "2:12: Box.size: expected 3 numbers, got 2"),
-        ("Box {\n size 1 2 0 }", "3:7: Box.size: expected more than 0, got 0"),
         ('Box { size "big" }', "2:12: Box.size: expected numbers, got 'big'"),
         ("Box { size Shape {} }", "2:12: Box.size: expected numbers, got a Shape"),
         ("Box { size 1 2 1e13 }", "2:12: Box.size: expected at most 1e+12, got 1e+13"),
@@ -107,9 +106,24 @@ def test_a_field_that_holds_something_else(text: str, report: str) -> None:
     assert str(caught.value) == f"w.wbt:{report}"
 
 
+def test_what_webots_repairs_with_a_warning_is_repaired_with_a_note() -> None:
+    found = node("Box {\n size 1 2 0 }")
+    assert found.lengths("size", 1.0, 1.0, 2.5) == (1.0, 1.0, 2.5)
+    assert list(found.source.notes) == ["w.wbt:3:7: Box.size: expected more than 0, got 0; 1 1 2.5 is used"]
+    found = node("Solid { nmae 3 children [ Box { size 1 1 1 sise 2 } Box { sise 3 } ] }")
+    assert list(found.source.notes) == [
+        "w.wbt:2:9: Solid.nmae: unknown key 'nmae' (did you mean 'name'?): ignored",
+        "w.wbt:2:44: Box.sise: unknown key 'sise' (did you mean 'size'?): ignored",
+    ]
+    many = node("Solid { " + " ".join(f"x{i} 1" for i in range(2 * MOST_NOTES)) + " }")
+    assert len(list(many.source.notes)) == MOST_NOTES
+
+
 def test_text_and_nodes_are_checked_too() -> None:
     with pytest.raises(DocumentError, match=r"2:14: Solid\.name: expected a string, got 3"):
         node("Solid { name 3 }").text("name")
+    with pytest.raises(DocumentError, match=r"2:16: Solid\.locked: expected TRUE or FALSE, got 1"):
+        node("Solid { locked 1 }").truth("locked", False)
     with pytest.raises(DocumentError, match=r"2:18: Solid\.children: expected a node, got 'x'"):
         node('Solid { children "x" }').nodes("children")
 

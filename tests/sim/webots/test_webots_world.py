@@ -58,10 +58,7 @@ def test_the_world_itself() -> None:
 @pytest.mark.parametrize(
     ("text", "report"),
     [
-        ('WorldInfo { coordinateSystem "NUE" }', "2:30: WorldInfo.coordinateSystem: 'NUE' is not read, only 'ENU'"),
-        ("WorldInfo { basicTimeStep 0 }", "2:27: WorldInfo.basicTimeStep: expected more than 0, got 0"),
         ("WorldInfo { basicTimeStep 0.1 }", "2:27: WorldInfo.basicTimeStep: expected 1 ms or more, got 0.1"),
-        (box("1 -1 1"), "Box.size: expected more than 0, got -1"),
         (box("1 1 1", "translation 1e9 0 0"), "2:21: Solid.translation: this is more than 100 km away"),
     ],
 )
@@ -166,23 +163,66 @@ def test_boxes_of_the_library() -> None:
     text = """Wall { translation 0 3 0 } WoodenBox { translation 2 0 0.05 size 0.1 0.2 0.1 } CardboardBox { mass 1.5 }
               SolidBox { translation -3 0 0 size 1 1 1 physics Physics { mass 2 } } Window { translation 0 -3 0 }"""
     wall, wooden, cardboard, solid, window = obstacles(text)
-    assert (wall.box, wall.pose, wall.mass) == ((1.0, 0.2), Pose(0, 3), None)
+    assert (wall.box, wall.pose, wall.mass) == ((0.2, 1.0), Pose(0, 3), None)
     assert (wooden.box, wooden.mass) == ((0.1, 0.2), None)
     assert (cardboard.box, cardboard.mass) == ((0.6, 0.6), 1.5)
     assert (solid.box, solid.mass) == ((1.0, 1.0), 2.0)
-    assert (window.box, window.pose) == ((0.8, 0.2), Pose(0, -3))
+    assert (window.box, window.pose) == ((0.2, 0.8), Pose(0, -3))
+    assert obstacles("SolidBox { enableBoundingObject FALSE }") == []
+    (raised,) = world("SolidBox { size 1 1 0.4 }" + CART % "3 0 0.1").description.obstacles or (None,)
+    assert raised is None  # its default z is 1: above the cart
+
+
+@pytest.mark.parametrize(
+    ("text", "sides", "mass", "told"),
+    [
+        ("CardboardBox { size 2 2 2 }", (0.6, 0.6), None, "CardboardBox.size: the PROTO does not take this"),
+        ("CardboardBox { size 3 0.5 0.6 translation 0 0 0.3 }", (2.5, 0.5), None, "2.5 0.5 0.6 is used"),
+        ("WoodenBox { size 4 0.2 0.6 }", (3.0, 0.2), None, "3 0.2 0.6 is used"),
+        ("CardboardBox { mass 0.1 }", (0.6, 0.6), 0.216 ** (2 / 3), "CardboardBox.mass: the PROTO does not take this"),
+        ("CardboardBox { mass 999 }", (0.6, 0.6), 100 * 0.216 ** (2 / 3), "36 is used"),
+        ("WoodenBox { mass 1 }", (0.6, 0.6), 1.0, ""),
+        ("Wall { size 1 0 1 }", (0.2, 1.0), None, "Wall.size: expected more than 0, got 0; 0.2 1 2.4 is used"),
+    ],
+)
+def test_the_library_brings_sizes_and_masses_into_range(
+    text: str, sides: tuple[float, float], mass: float | None, told: str
+) -> None:
+    (found,), notes = world(text).description.obstacles, world(text).notes
+    assert (found.box, found.mass) == (sides, mass if mass is None else pytest.approx(mass))
+    assert [told in each for each in notes] == ([True] if told else [])
+
+
+@pytest.mark.parametrize(("asked", "sides"), [(6, 8), (8, 8), (9, 9), (24, 24), (999, 360)])
+def test_a_round_arena_has_eight_walls_at_least(asked: int, sides: int) -> None:
+    (wall,) = world(f"CircleArena {{ subdivision {asked} }}").description.walls
+    assert len(wall.polyline) == sides
+
+
+def test_worlds_with_y_upwards_are_laid_down() -> None:
+    north, height, east = 1.0, 0.5, 3.0
+    thing = f"Solid {{ translation {north} {height} {east} children [ Shape {{ geometry Box {{ size 1 1 2 }} }} ] }}"
+    (found,) = obstacles('WorldInfo { coordinateSystem "NUE" }' + thing)
+    assert (found.box, found.pose) == ((2.0, 1.0), Pose(east, north))
+    (found,) = obstacles('WorldInfo { coordinateSystem "EUN" }' + thing)
+    assert (found.box, found.pose) == ((1.0, 2.0), Pose(1.0, -3.0))
+    arena = 'WorldInfo { coordinateSystem "NUE" } RectangleArena { rotation 1 0 0 -1.5707963 floorSize 2 4 }'
+    (wall,) = world(arena).description.walls
+    assert {(round(abs(x), 3), round(abs(y), 3)) for x, y in wall.polyline} == {(2.0, 1.0)}
+    odd = world('WorldInfo { coordinateSystem "XYZ" basicTimeStep 0 }')
+    assert {each.rpartition("; ")[2] for each in odd.notes} == {"ENU is used", "32 is used"}
 
 
 def test_what_is_not_known_is_told_in_one_warning(tmp_path: Path) -> None:
     text = "Fridge { } Sofa { } Sofa { } DirectionalLight { } TexturedBackground { } Fog { } Viewpoint { }"
     text += 'Solid { children [ Shape { geometry Mesh { url "a.obj" } } ] }'
-    assert world(text).notes == ("not known here, so it is not there: Fridge, Mesh, Sofa (2 times)",)
+    assert world(text).notes == ("not known here, so this is not there: Fridge, Mesh, Sofa (2 times)",)
     path = tmp_path / "w.wbt"
     path.write_text(HEADER + text)
     with pytest.warns(WorldWarning) as caught:
         load_world(path)
     assert [str(each.message) for each in caught] == [
-        f"{path}: not known here, so it is not there: Fridge, Mesh, Sofa (2 times)"
+        f"{path}: not known here, so this is not there: Fridge, Mesh, Sofa (2 times)"
     ]
     lines: list[str] = []
     with warnings_to(lines.append):
@@ -243,7 +283,7 @@ def test_a_mesh_for_the_eye_is_left_out() -> None:
     mesh = (
         f"Solid {{ children [ Shape {{ geometry IndexedFaceSet {{ coord Coordinate {{ point [ {points} ] }} }} }} ] }}"
     )
-    assert world(mesh).notes == ("not known here, so it is not there: IndexedFaceSet of 600 points",)
+    assert world(mesh).notes == ("not known here, so this is not there: IndexedFaceSet of 600 points",)
 
 
 FIELDS = {
