@@ -98,6 +98,9 @@ class Imu(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
     noise: Annotated[ImuNoise, Meta(description="Standard deviations of a reading.")] = ImuNoise()
 
 
+_APERTURE = "Field of view in degrees that messages state; 0 is fov. Webots' sensors of one ray state another."
+
+
 class RangeFinder(Looking, Struct, frozen=True, forbid_unknown_fields=True):
     """A sonar or infrared sensor on the topic `range_finder`: the distance to the nearest thing within its cone.
 
@@ -112,6 +115,7 @@ class RangeFinder(Looking, Struct, frozen=True, forbid_unknown_fields=True):
     noise: Deviation = 0.0
     offset: Pose = Pose(0.0, 0.0, 0.0)
     radiation: Annotated[Literal["ultrasound", "infrared"], Meta(description="Kind of radiation.")] = "ultrasound"
+    aperture: Annotated[float, Meta(ge=0.0, le=180.0, description=_APERTURE)] = 0.0
 
     def problems(self, wheels: int) -> Iterator[tuple[str, str]]:
         """Yield the mistake of an empty range."""

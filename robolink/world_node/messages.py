@@ -114,7 +114,7 @@ def range_message(distance: float, header: Header, sensor: RangeFinder) -> Range
     return Range(
         header=header,
         radiation_type=Range.INFRARED if sensor.radiation == "infrared" else Range.ULTRASOUND,
-        field_of_view=math.radians(sensor.fov),
+        field_of_view=math.radians(sensor.aperture or sensor.fov),
         min_range=low,
         max_range=high,
         range=distance,

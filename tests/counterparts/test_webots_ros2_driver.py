@@ -13,7 +13,7 @@ import pytest
 
 from robolink.cli.main import main
 from robolink.companions.launch_ros.actions import Node as NodeAction
-from robolink.counterparts.webots_ros2_driver.relays import DeviceError, period
+from robolink.counterparts.webots_ros2_driver.relays import DeviceError, as_webots_scan, period
 from robolink.counterparts.webots_ros2_driver.section import read_section
 from robolink.exceptions import DocumentError
 from robolink.interfaces.nav_msgs.msg import Odometry
@@ -69,6 +69,11 @@ def test_devices_have_the_topics_of_webots_driver(system: System, workspace: Pat
     tilts, unheard = system.messages("/tilt", Imu), system.messages("/my_cart/eye_right", Range)
     system.run(6.0)
     assert 8 <= len(heard["/laser"]) <= 13  # 2 Hz, of a lidar that measures faster
+    scan, own = heard["/laser"][-1], system.expect("/scan")
+    assert (scan.angle_min, scan.angle_max) == (own.angle_max, own.angle_min)
+    assert scan.angle_increment == -own.angle_increment < 0.0
+    assert heard["/my_cart/eye_left"][-1].radiation_type == Range.INFRARED
+    assert heard["/my_cart/eye_left"][-1].field_of_view == pytest.approx(1.5708, abs=1e-3)
     assert heard["/seen"][-1].width == heard["/my_cart/front/camera_info"][-1].width == 32
     assert heard["/my_cart/eye_left"][-1].range == pytest.approx(0.3)
     assert tilts[-1].linear_acceleration.z == pytest.approx(9.81, abs=0.05)
@@ -145,6 +150,15 @@ def test_sections() -> None:
         ("eye right", "/right_eye"),
     ]
     assert [(each.kind, each.settings) for each in plugins] == [("pen.cart.Cart", {"halfAxle": "0.05"})]
+
+
+def test_scans_begin_at_the_left() -> None:
+    scan = LaserScan(angle_min=-1.0, angle_max=0.5, angle_increment=0.5, ranges=[1.0, 2.0, 3.0, 4.0])
+    scan.intensities = [5.0, 6.0, 7.0, 8.0]
+    left = LaserScan(angle_min=0.5, angle_max=-1.0, angle_increment=-0.5, ranges=[4.0, 3.0, 2.0, 1.0])
+    left.intensities = [8.0, 7.0, 6.0, 5.0]
+    as_webots_scan(scan)
+    assert scan == left
 
 
 def test_rates() -> None:

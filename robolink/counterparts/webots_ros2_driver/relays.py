@@ -81,9 +81,25 @@ class Relay:
         self._last = stamp
         if self._frame:
             message.header.frame_id = self._frame
-        if isinstance(message, Range):  # the world says inf where nothing is, and Webots the end of the range
-            message.range = min(max(message.range, message.min_range), message.max_range)
+        if isinstance(message, Range):
+            as_webots_range(message)
+        elif isinstance(message, LaserScan):
+            as_webots_scan(message)
         self._publisher.publish(message)
+
+
+def as_webots_range(message: Range) -> None:
+    """Give a message the form of Webots' driver: all is infrared, and nothing there is the end of the range."""
+    message.radiation_type = Range.INFRARED
+    message.range = min(max(message.range, message.min_range), message.max_range)
+
+
+def as_webots_scan(message: LaserScan) -> None:
+    """Turn a scan round: Webots' lidars scan from left to right, so that programs count their beams from the left."""
+    message.angle_min, message.angle_max = message.angle_max, message.angle_min
+    message.angle_increment = -message.angle_increment
+    message.ranges = message.ranges[::-1]
+    message.intensities = message.intensities[::-1]
 
 
 def make_relays(node: Node, topics: RobotTopics, section: Section, imus: list[dict[str, str]]) -> list[Relay]:

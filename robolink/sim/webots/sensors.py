@@ -187,14 +187,16 @@ def _range_finder(node: Node, placement: Placement, names: _Names, dt: float) ->
     kind = node.text("type", "generic")
     radiation: Literal["ultrasound", "infrared"] = "ultrasound" if kind == "sonar" else "infrared"
     wide = node.number("numberOfRays", 1.0) > 1.0 and kind != "laser"
-    angle = math.degrees(node.number("aperture", math.pi / 2)) if wide else NARROW
+    aperture = min(max(math.degrees(node.number("aperture", math.pi / 2)), 0.01), 180.0)
+    angle = aperture if wide else NARROW
     return RangeFinder(
         names.of(node, "distance sensor"),
         rate=rate_near(10.0, dt),
-        fov=min(max(angle, 0.01), 180.0),
+        fov=angle,
         range=(0.0, max(table[-3], 0.001)),
         offset=placement.pose,
         radiation=radiation,
+        aperture=0.0 if wide else aperture,
     )
 
 
