@@ -55,7 +55,7 @@ def write(tmp_path: Path) -> Write:
 
 
 def meant(shades: list[int], **keys: Any) -> list[int]:
-    file = MapFile("", 1.0, (0.0, 0.0, 0.0), **{"occupied_thresh": 0.65, "free_thresh": 0.25, "negate": 0, **keys})
+    file = MapFile("", 1.0, (0.0, 0.0, 0.0), **{"occupied_thresh": 0.65, "free_thresh": 0.25, "negate": False, **keys})
     cells: list[int] = occupancy(Image(np.array([shades], np.uint8)), file)[0].tolist()
     return cells
 
@@ -69,7 +69,7 @@ def test_shades_mean_what_map_server_says() -> None:
 
 
 def test_what_can_be_seen_through_is_unknown() -> None:
-    file = MapFile("", 1.0, (0.0, 0.0, 0.0), occupied_thresh=0.65, free_thresh=0.25, negate=0)
+    file = MapFile("", 1.0, (0.0, 0.0, 0.0), occupied_thresh=0.65, free_thresh=0.25, negate=False)
     image = Image(np.zeros((1, 2), np.uint8), np.array([[False, True]]))
     assert occupancy(image, file).tolist() == [[100, -1]]
 

@@ -60,12 +60,17 @@ _FIELDS = {
     "Wall": f"{_SURFACE} size",
     "Window": "translation rotation name size windowThickness bottomWallHeight windowHeight frameSize windowSillSize"
     " wallAppearance frameAppearance castShadows",
-    "SolidBox": f"{_SURFACE} size enableBoundingObject physics castShadows",
+    "SolidBox": f"{_SURFACE} size enableBoundingObject physics castShadows recognitionColors",
     "WoodenBox": "translation rotation name size mass immersionProperties locked",
     "CardboardBox": "translation rotation name size mass immersionProperties locked",
     "Floor": f"{_SURFACE} size tileSize texture",
     "RectangleArena": "translation rotation name contactMaterial floorSize floorTileSize floorAppearance wallThickness"
     " wallHeight wallAppearance floorTextureUrl wallTextureUrl wallColor wallTileSize",
+    "HokuyoUrg04lx": "translation rotation name noise resolution enablePhysics",
+    "HokuyoUrg04lxug01": "translation rotation name noise resolution enablePhysics",
+    "HokuyoUtm30lx": "translation rotation name noise resolution enablePhysics",
+    "RobotisLds01": "translation rotation name noise enablePhysics",
+    "SickLms291": "translation rotation name noise resolution enablePhysics",
     "CircleArena": "translation rotation name radius contactMaterial floorAppearance floorTileSize wallThickness"
     " wallHeight wallAppearance subdivision floorTextureUrl wallTextureUrl wallTileSize",
 }

@@ -209,8 +209,9 @@ def _container(found: Found, node: Node, inner: Placement) -> None:
     if weight > 0.0 and not lightest <= weight <= kind.heaviest * lightest:
         weight = min(max(weight, lightest), kind.heaviest * lightest)
         node.note(f"the PROTO does not take this; {weight:.3g} is used", "mass")
-    piece = box(sides, inner)._replace(colour=_library_colour(node))
-    found.things.append(Thing([piece], min(max(weight, LIGHTEST), HEAVIEST) if weight > 0.0 else None, node))
+    found.things.append(
+        Thing([box(sides, inner)], min(max(weight, LIGHTEST), HEAVIEST) if weight > 0.0 else None, node)
+    )
 
 
 def _standing_box(found: Found, node: Node, inner: Placement) -> None:
@@ -220,7 +221,7 @@ def _standing_box(found: Found, node: Node, inner: Placement) -> None:
 
 def _library_colour(node: Node) -> str | None:
     """Return the colour of a thing of Webots' library, if its appearance has one."""
-    return colour_of_look(node.node("appearance"))
+    return colour_of_look(node.node("wallAppearance" if node.type == "Window" else "appearance"))
 
 
 def _floor(found: Found, node: Node, inner: Placement) -> None:

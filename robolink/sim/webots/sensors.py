@@ -42,13 +42,15 @@ class Model(NamedTuple):
     fov: float
     range: tuple[float, float]
     noise: float = 0.0
+    is_set: bool = True
+    """True if a world may set the number of beams."""
 
 
 LIDARS = {
     "HokuyoUrg04lx": Model("Hokuyo URG-04LX", 667, 240.0, (0.06, 4.096)),
     "HokuyoUrg04lxug01": Model("Hokuyo URG-04LX-UG01", 667, 240.0, (0.2, 5.6)),
     "HokuyoUtm30lx": Model("Hokuyo UTM-30LX", 1080, 270.0, (0.1, 30.0)),
-    "RobotisLds01": Model("LDS-01", 360, 360.0, (0.12, 3.5), 0.0043),
+    "RobotisLds01": Model("LDS-01", 360, 360.0, (0.12, 3.5), 0.0043, is_set=False),
     "SickLms291": Model("Sick LMS 291", 180, 180.0, (0.01, 80.0)),
 }
 """Lidars of Webots' library that scan in a plane, as their PROTOs define them."""
@@ -124,11 +126,9 @@ def _camera(node: Node, placement: Placement, names: _Names, dt: float, raised: 
     depth = node.type == "RangeFinder"
     width, height = (int(min(max(node.number(each, 64.0), 1.0), 4096.0)) for each in ("width", "height"))
     ahead = placement.matrix[:, 0] / np.linalg.norm(placement.matrix[:, 0])
-    near, far = node.length("minRange", 0.01), node.length("maxRange", 1.0)
-    if depth and near >= far:
-        raise node.error(f"expected more than 0 to less than maxRange, {far:g}, got {near:g}", "minRange")
+    limits = _depths(node) if depth else Camera("").range
     return Camera(
-        names.of(node, "range finder" if depth else "camera"),
+        names.of(node, "range-finder" if depth else "camera"),
         rate=rate_near(10.0, dt),
         width=width,
         height=height,
@@ -138,8 +138,16 @@ def _camera(node: Node, placement: Placement, names: _Names, dt: float, raised: 
         pitch=rounded(math.degrees(math.asin(min(max(-float(ahead[2]), -1.0), 1.0)))),
         noise=0.0 if depth else min(max(255.0 * node.number("noise", 0.0), 0.0), 255.0),
         depth=depth,
-        range=(min(max(near, 0.001), 9_999.0), min(max(far, 0.002), 10_000.0)) if depth else Camera("").range,
+        range=limits,
     )
+
+
+def _depths(node: Node) -> tuple[float, float]:
+    """Return the least and the greatest depth, in metres, that a range finder sees."""
+    near, far = node.length("minRange", 0.01), node.length("maxRange", 1.0)
+    if near >= far:
+        raise node.error(f"expected more than 0 to less than maxRange, {far:g}, got {near:g}", "minRange")
+    return min(max(near, 0.001), 9_999.0), min(max(far, 0.002), 10_000.0)
 
 
 def _lidar(node: Node, placement: Placement, names: _Names, dt: float) -> Lidar:
@@ -150,7 +158,7 @@ def _lidar(node: Node, placement: Placement, names: _Names, dt: float) -> Lidar:
     if not 2 <= beams <= 100_000:
         raise node.error(f"expected 2 to 100000 beams, got {beams:g}", "horizontalResolution")
     angle = node.length("fieldOfView", math.pi / 2)
-    turns = node.text("type") == "rotating" or angle >= FULL_TURN
+    turns = node.text("type", "fixed") == "rotating" or angle >= FULL_TURN
     return Lidar(
         names.of(node, "lidar"),
         rate=rate_near(10.0, dt),
@@ -166,7 +174,7 @@ def _bought_lidar(node: Node, model: Model, placement: Placement, names: _Names,
     return Lidar(
         names.of(node, model.name),
         rate=rate_near(10.0, dt),
-        beams=min(max(int(node.number("resolution", model.beams)), 2), 100_000),
+        beams=min(max(int(node.number("resolution", model.beams)), 2), 100_000) if model.is_set else model.beams,
         fov=model.fov,
         range=model.range,
         noise=_noise(node.number("noise", model.noise), model.range[1]),

@@ -313,6 +313,7 @@ TYPES += [
     "PositionSensor",
 ]
 TYPES += ["RectangleArena", "WoodenBox", "Wall", "TouchSensor", "Gyro", "Sofa", "Floor", "CircleArena", "SolidBox"]
+TYPES += ["TurtleBot3Burger", "Pioneer3at", "CardboardBox", "RobotisLds01"]
 INNER = ["children", "geometry", "boundingObject", "endPoint", "device", "physics", "jointParameters"]
 NUMBERS = st.sampled_from([0.0, 1e-6, 0.01, 0.5, 1.0, -1.0, 3.0, 1e3, 1e7, 1e300]) | st.floats(-10, 10)
 
@@ -387,7 +388,8 @@ TEXTURED = 'appearance PBRAppearance { baseColorMap ImageTexture { url "wood.jpg
         (f"Shape {{ {TEXTURED} geometry Sphere {{ }} }}", 1.0, None),
         ("Shape { appearance Parquetry { } geometry Sphere { } }", 1.0, None),
         ("Shape { geometry Sphere { } }", 1.0, None),
-        (f"WoodenBox {{ {BLUE} size 1 1 0.4 translation 0 0 0.2 }}", 0.4, "#0080ff"),
+        (f"SolidBox {{ {BLUE} size 1 1 0.4 translation 0 0 0.2 }}", 0.4, "#0080ff"),
+        (f"Window {{ {RED.replace('appearance', 'wallAppearance', 1)} }}", 2.4, "#ff0000"),
         (f"Wall {{ {RED} }}", 2.4, "#ff0000"),
         # the colour of what is seen, where something else is what it collides with
         (
