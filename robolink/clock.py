@@ -12,6 +12,7 @@ from robolink.duration import Duration
 from robolink.exceptions import NotInitializedException, imported_as
 from robolink.running.defaults import get_defaults
 from robolink.running.timebase import TimeBase
+from robolink.system import waits
 from robolink.time import Time
 
 if TYPE_CHECKING:
@@ -231,7 +232,8 @@ class Clock:
 
     def _sleep(self, event: threading.Event, until: int) -> None:
         left = self.wait_ns(until)
-        self._base.wait_notified(event.is_set, None if left is None else self._base.steady() + left, event.wait)
+        end = None if left is None else self._base.steady() + left
+        self._base.wait_notified(event.is_set, end, lambda seconds: waits.wait(event, seconds))
 
     def sleep_for(self, rel_time: Duration, context: Context | None = None) -> bool:
         """Sleep for a duration on this clock, and return True if it has passed; see `sleep_until`.

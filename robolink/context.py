@@ -22,6 +22,7 @@ from robolink.graph import humble
 from robolink.running.defaults import get_defaults
 from robolink.running.inbox import Inbox, Sweepable
 from robolink.running.timebase import TimeBase
+from robolink.system import waits
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -251,7 +252,7 @@ class Context:
             self._tell()
         elif self.interrupted and self._teller != _thread.get_ident():
             with contextlib.suppress(queue.Empty):
-                self._told.get(timeout=TOLD_WITHIN)
+                waits.get(self._told, TOLD_WITHIN)
         self._close()
 
     def try_shutdown(self) -> None:

@@ -12,7 +12,7 @@ from robolink.clock import Clock, ROSClock
 from robolink.clock_type import ClockType
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser, InvalidHandle, ROSInterruptException
 from robolink.running.entity import NOTHING, Entity
-from robolink.system.queues import A_WHILE
+from robolink.system import waits
 from robolink.task import Future
 from robolink.text.callbacks import Place, call_instead_of_function
 from robolink.time import Time
@@ -358,8 +358,7 @@ class Rate:
         else:
             woken = threading.Event()
             tick.when_done(woken.set)
-            while not woken.wait(A_WHILE):
-                continue  # a signal that comes just before the wait begins is noticed at its end
+            waits.wait(woken)
 
     def _tick_by_clock(self, tick: Future[None]) -> None:
         """Take the timer's ticks here, until an executor that begins to spin has taken one, or the rate ends."""

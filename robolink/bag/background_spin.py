@@ -8,6 +8,7 @@ import threading
 from robolink.exceptions import ExternalShutdownException
 from robolink.executors import SingleThreadedExecutor
 from robolink.node import Node
+from robolink.system import waits
 
 
 class BackgroundSpin:
@@ -26,7 +27,7 @@ class BackgroundSpin:
     def close(self) -> None:
         """End the spinning. Safe to call twice."""
         self._executor.shutdown()
-        self._thread.join()
+        waits.join(self._thread)
 
     def __enter__(self) -> BackgroundSpin:
         return self

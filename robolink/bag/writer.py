@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from types import TracebackType
@@ -15,6 +14,7 @@ from robolink.bag.storage.base import StorageWriter, Written
 from robolink.bag.storage.opening import STORAGES, check_storage, storage_writer
 from robolink.bag.topic import BagError, BagTopic
 from robolink.exceptions import nearest
+from robolink.system import clocks
 from robolink.system.terminal import shown
 
 LARGEST_SUMMARY = 1 << 20
@@ -137,7 +137,7 @@ class BagWriter:
         """Do what is due: show readers what was written, and refresh metadata.yaml. Called often, as each 50 ms."""
         self._file.tick()
         self._look_at_summary()
-        if time.monotonic() >= self._refresh_at:
+        if clocks.monotonic() >= self._refresh_at:
             self._refresh()
 
     def flush(self) -> None:
@@ -253,7 +253,7 @@ class BagWriter:
         )
 
     def _refresh(self) -> None:
-        self._refresh_at = time.monotonic() + REFRESH
+        self._refresh_at = clocks.monotonic() + REFRESH
         write_metadata(self.path, self._metadata())
 
 

@@ -13,6 +13,7 @@ import typer
 from robolink.cli.shared.options import seconds
 from robolink.cli.shared.output import say
 from robolink.exceptions import RobolinkError
+from robolink.system import clocks
 
 app = typer.Typer(no_args_is_help=True, help="Try whether multicast passes between machines.")
 
@@ -76,10 +77,8 @@ def _join(receiver: socket.socket, group: str, port: int) -> None:
 
 
 def _awaited(receiver: socket.socket, timeout: float) -> tuple[bytes, tuple[str, int]]:
-    import time
-
-    deadline = time.monotonic() + timeout
-    while (left := deadline - time.monotonic()) > 0:
+    deadline = clocks.monotonic() + timeout
+    while (left := deadline - clocks.monotonic()) > 0:
         receiver.settimeout(min(left, _SLICE))
         try:
             data, address = receiver.recvfrom(4096)

@@ -16,7 +16,8 @@ from robolink.running.execution import ShutdownException as ShutdownException
 from robolink.running.execution import TimeoutException as TimeoutException
 from robolink.running.execution import TimeoutObject as TimeoutObject
 from robolink.running.execution import await_or_execute as await_or_execute
-from robolink.running.spinners import wait_for
+from robolink.running.spinners import limit
+from robolink.system import waits
 from robolink.task import Future
 from robolink.task import Task as Task
 from robolink.utilities import get_default_context as get_default_context
@@ -160,6 +161,6 @@ class MultiThreadedExecutor(Executor):
         """
         super().shutdown(0)
         self._threads.close(wait=False)
-        ended = wait_for(self._threads.ended, self._threads.have_ended, timeout_sec)
+        ended = waits.wait_for(self._threads.ended, self._threads.have_ended, limit(timeout_sec))
         self._threads.close(wait=wait_for_threads and ended)
         return ended

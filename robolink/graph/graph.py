@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import threading
-import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from robolink.exceptions import WireError
 from robolink.logging import get_logger
+from robolink.system import clocks, waits
 from robolink.system.terminal import shown
 from robolink.wire import (
     NO_HASH,
@@ -76,7 +76,7 @@ class Graph:
         self._settling = threading.Lock()
         self.settled = not transport.threaded
         """True once what was there before this session is known."""
-        self._begin = time.monotonic()
+        self._begin = clocks.monotonic()
         self._watch = transport.watch(graph_pattern(domain_id), self._on_news)
 
     # What comes in
@@ -199,8 +199,7 @@ class Graph:
     def wait_for(self, condition: Callable[[], bool], timeout: float | None) -> bool:
         """Wait, in real time, until `condition()` holds; look whenever something changed."""
         self._settle()
-        with self._changed:
-            return self._changed.wait_for(condition, timeout)
+        return waits.wait_for(self._changed, condition, timeout)
 
     def wake(self) -> None:
         """Wake the threads in `wait_for`, which look again."""
@@ -256,7 +255,7 @@ class Graph:
         if self.settled:
             return
         with self._settling:
-            if not self.settled and time.monotonic() - self._begin < LONG_STANDING:
+            if not self.settled and clocks.monotonic() - self._begin < LONG_STANDING:
                 # A token that is lost just now costs the wait.
                 known = set(self._readable(self._transport.tokens(graph_pattern(self._domain_id))))
                 with self._changed:

@@ -11,7 +11,7 @@ from robolink.host.scheduler import Scheduler
 from robolink.running.inbox import Inbox
 from robolink.running.ready_queue import earlier
 from robolink.running.timebase import Block, VirtualTime
-from robolink.system.queues import A_WHILE
+from robolink.system.waits import A_WHILE
 
 POLL_TAKES = 1_000_000
 """Virtual time that a poll takes, in ns, for whoever polls again and again without waiting."""

@@ -11,7 +11,6 @@ from __future__ import annotations
 import contextlib
 import itertools
 import threading
-import time
 from collections import deque
 from collections.abc import Callable
 from heapq import heappop, heappush
@@ -25,6 +24,8 @@ from robolink.host.threads import end_thread, tell_of
 from robolink.host.workers import Worker
 from robolink.running.defaults import get_defaults
 from robolink.running.timebase import VirtualTime
+from robolink.system import clocks
+from robolink.system.waits import A_WHILE
 
 PATIENCE = 60.0
 """Real seconds that a program's code may run without waiting, before `HostError` is raised."""
@@ -138,7 +139,7 @@ class Scheduler:
         """Hand on the turn from outside, and wait until it is back; Ctrl-C breaks in anywhere."""
         try:
             self._hand_to(turn)
-            while not self.outside.park(timeout=0.5):  # on Windows Ctrl-C does not break into a wait
+            while not self.outside.park(timeout=A_WHILE):  # on Windows Ctrl-C does not break into a wait
                 continue
         except BaseException:  # Ctrl-C: leave when the turn has come back
             self._call_back()
@@ -146,11 +147,11 @@ class Scheduler:
 
     def _call_back(self) -> None:
         """Take the turn back: as soon as it is handed on, or from code that does not go on."""
-        ends = time.monotonic() + INTERRUPT_PATIENCE
+        ends = clocks.monotonic() + INTERRUPT_PATIENCE
         try:
             self.fail(HostError("interrupted"))
             is_back = False
-            while not is_back and time.monotonic() < ends:
+            while not is_back and clocks.monotonic() < ends:
                 is_back = self.holder is self.outside  # looked at first: what it is resumed by comes at once
                 is_back = self.outside.park(timeout=0.1) or is_back
         finally:  # also when Ctrl-C comes once more

@@ -7,10 +7,10 @@ from it then, and it goes on beside the others until it waits in virtual time ag
 from __future__ import annotations
 
 import threading
-import time
 from typing import TYPE_CHECKING
 
 from robolink.host.call_sites import frame_of, place_of, spot_of
+from robolink.system import clocks
 
 if TYPE_CHECKING:
     from robolink.host.participants import Runner
@@ -40,7 +40,7 @@ class Watchdog(threading.Thread):
         since = still = moved = 0.0
         spot, moment = (0, 0), -1
         while not self._over.wait(LOOK):
-            now, found = time.monotonic(), self._scheduler.at_work()
+            now, found = clocks.monotonic(), self._scheduler.at_work()
             here = spot_of(found[0])
             if found != seen:
                 since = now

@@ -13,6 +13,7 @@ from contextlib import suppress
 from typing import NamedTuple, TextIO, TypeAlias
 
 from robolink.impl.logging_severity import LoggingSeverity
+from robolink.system import clocks
 from robolink.system.terminal import fit
 
 DEFAULT_FORMAT = "[{severity}] [{time}] [{name}]: {message}"
@@ -40,7 +41,7 @@ class LogOutput:
     its own lines go to the console only. A handler that raises is reported once on the console.
     """
 
-    def __init__(self, console: Handler | None, now: Callable[[], int] = time.time_ns) -> None:
+    def __init__(self, console: Handler | None, now: Callable[[], int] = clocks.now) -> None:
         self.console = console
         self.now = now
         self._handlers: tuple[Handler, ...] = ()

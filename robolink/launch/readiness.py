@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from robolink.arguments.remapping import RemapKind, parse_remap_rule, remap_name
 from robolink.exceptions import RobolinkError, WireError
 from robolink.launch.reading.entry import Entry
+from robolink.system import waits
 from robolink.system.plainfile import LONGEST_SOURCE, read_plain
 
 if TYPE_CHECKING:
@@ -183,7 +184,7 @@ def waiting(
         yield
     finally:
         watch.over.set()
-        thread.join(_LEAVING)
+        waits.join(thread, _LEAVING)
 
 
 class _Watch:

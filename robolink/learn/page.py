@@ -19,6 +19,7 @@ from robolink.learn.report import Report
 from robolink.learn.watching import EVERY, Watch
 from robolink.supervisor.monitoring.file_watch import Changes
 from robolink.supervisor.monitoring.periodic import PeriodicThread
+from robolink.system import waits
 from robolink.system.terminal import fit, shown
 from robolink.view.exercises import Operation
 from robolink.view.protocol.requests import LearnCommand
@@ -125,7 +126,7 @@ class PageExercises:
             self._news.notify_all()
         if self._checker.is_alive():
             self._open.close()
-            self._checker.join(2.0)
+            waits.join(self._checker, 2.0)
 
     # Commands
 

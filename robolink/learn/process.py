@@ -10,7 +10,6 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
@@ -20,6 +19,7 @@ from robolink.learn.mistakes import line_of
 from robolink.learn.report import Mistake
 from robolink.supervisor.processes.guardian import marked, signal_group
 from robolink.supervisor.processes.lifeline import Lifeline
+from robolink.system import clocks, waits
 from robolink.system.own_command import own_command
 from robolink.system.plainfile import read_plain
 
@@ -117,7 +117,7 @@ def _run(
                 in_time = _wait(process, longest, stop)
             finally:
                 _kill(process, lifeline.mark)
-                reader.join(1.0)
+                waits.join(reader, 1.0)
     finally:
         lifeline.close()
     return b"".join(kept)[:MOST_PRINTED].decode("utf-8", errors="replace"), in_time
@@ -125,8 +125,8 @@ def _run(
 
 def _wait(process: subprocess.Popen[bytes], longest: float, stop: threading.Event) -> bool:
     """Wait until a process ends; return False if it has to be ended."""
-    deadline = time.monotonic() + longest
-    while not stop.is_set() and time.monotonic() < deadline:
+    deadline = clocks.monotonic() + longest
+    while not stop.is_set() and clocks.monotonic() < deadline:
         with contextlib.suppress(subprocess.TimeoutExpired):
             process.wait(STOP_WITHIN)
             return True

@@ -14,6 +14,7 @@ from typing import IO, Protocol
 from robolink.host.patches.clocks import is_sleep
 from robolink.learn.mistakes import line_of
 from robolink.learn.report import Mistake
+from robolink.system import clocks
 
 LOOK = 0.05
 """Period of its looks, in seconds."""
@@ -71,16 +72,16 @@ class Watchdog(threading.Thread):
 
     def run(self) -> None:
         """Look until stopped."""
-        moment, used, since = self._moment(), time.process_time(), time.monotonic()
+        moment, used, since = self._moment(), time.process_time(), clocks.monotonic()
         self._arm()
         armed = since
         while not self._over.wait(LOOK):
-            if time.monotonic() - armed > REARM:
+            if clocks.monotonic() - armed > REARM:
                 self._arm()
-                armed = time.monotonic()
+                armed = clocks.monotonic()
             if self._moment() != moment:
-                moment, used, since = self._moment(), time.process_time(), time.monotonic()
-            elif time.process_time() - used > self._stuck or time.monotonic() - since > self._asleep:
+                moment, used, since = self._moment(), time.process_time(), clocks.monotonic()
+            elif time.process_time() - used > self._stuck or clocks.monotonic() - since > self._asleep:
                 self._found(where_stuck(self._watched.file))
                 return
 

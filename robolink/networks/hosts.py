@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from robolink.networks.asked import FIRST_PORT, ROUTER_PORT
 from robolink.networks.port_probe import SILENT, STRANGER, Port, listening
+from robolink.system import clocks
 from robolink.system.queues import get_within
 
 ANSWER_WITHIN = 1.0
@@ -108,13 +109,13 @@ def seek(host: Host, domain: int, within: float = SEEK_WITHIN, silent_within: fl
     Raises:
         UnknownHostError: for a name without an address.
     """
-    begin = time.monotonic()
+    begin = clocks.monotonic()
     deadline, patience = begin + within, ANSWER_WITHIN
     addresses = _addresses(host.name, within)
     ports, other = host.ports(domain), None
     while True:
         for address in addresses:
-            left = max(0.05, min(patience, deadline - time.monotonic()))
+            left = max(0.05, min(patience, deadline - clocks.monotonic()))
             with contextlib.suppress(OSError):  # a kind of address that this machine has not
                 found = listening(ports, left, address, first=ports[0], greet=not host.tls)
                 if right := _best(host, found, domain):
@@ -123,7 +124,7 @@ def seek(host: Host, domain: int, within: float = SEEK_WITHIN, silent_within: fl
                 if any(each.role == SILENT for each in found.values()):
                     deadline, patience = max(deadline, begin + silent_within), 2 * patience
         is_other = other is not None and other.role == STRANGER and not other.hung_up
-        if time.monotonic() + _PAUSE >= deadline or (host.port and is_other):
+        if clocks.monotonic() + _PAUSE >= deadline or (host.port and is_other):
             return other
         time.sleep(_PAUSE)
 

@@ -6,9 +6,10 @@ import contextlib
 import errno
 import selectors
 import socket
-import time
 from collections.abc import Iterable
 from typing import NamedTuple
+
+from robolink.system import clocks
 
 HOST = "127.0.0.1"
 
@@ -69,8 +70,8 @@ def listening(
             stack.callback(greeting.socket.close)
             if greeting.begun:
                 waiting.register(greeting.socket, selectors.EVENT_WRITE, greeting)
-        deadline = time.monotonic() + within
-        while waiting.get_map() and (left := deadline - time.monotonic()) > 0:
+        deadline = clocks.monotonic() + within
+        while waiting.get_map() and (left := deadline - clocks.monotonic()) > 0:
             for key, _ in waiting.select(left):
                 _advance(waiting, key.data, found, greet)
             if first in found and found[first].speaks_zenoh:

@@ -13,6 +13,7 @@ import msgspec
 from robolink.learn.process import run_apart
 from robolink.race.races import RACES, Race
 from robolink.race.result import Result
+from robolink.system import waits
 from robolink.workspace import user_workspace
 from robolink.workspace.find import VARIABLE
 
@@ -45,9 +46,10 @@ def race_all(
 
     with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
         try:
-            return list(pool.map(run, programs))
+            return [waits.result(each) for each in [pool.submit(run, program) for program in programs]]
         except BaseException:
             stop.set()
+            pool.shutdown(wait=False, cancel_futures=True)
             raise
 
 

@@ -20,7 +20,8 @@ from typing import Any, Protocol
 
 import msgspec
 
-from robolink.system.queues import A_WHILE, get_within
+from robolink.system.queues import get_within
+from robolink.system.waits import A_WHILE
 
 
 class Target(Protocol):

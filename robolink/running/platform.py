@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import _thread
 import sys
-import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 from robolink.running.inbox import Inbox, Sweeper
 from robolink.running.ready_queue import Timekeeper
 from robolink.running.timebase import SystemTime, TimeBase
+from robolink.system import clocks
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -75,7 +75,7 @@ class Platform:
         if time_base.log_clock() is not None:
             from robolink import logging
 
-            logging.set_time_source(time.time_ns)
+            logging.set_time_source(clocks.now)
 
     def make_inbox(self, *, parked: bool) -> Inbox:
         """Make the mailbox at which an executor waits; `parked` for what waits while no executor has it."""

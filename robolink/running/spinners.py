@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
-from robolink.system.queues import A_WHILE
+from robolink.system.waits import wait_for
 
 
 class Spinners:
@@ -23,7 +23,7 @@ class Spinners:
 
     def wait_for_others(self, timeout_sec: float | None) -> bool:
         """Wait until no other thread spins; False if some still do after `timeout_sec` seconds."""
-        return wait_for(self._left, lambda: {*self.threads} <= {threading.get_ident()}, timeout_sec)
+        return wait_for(self._left, lambda: {*self.threads} <= {threading.get_ident()}, limit(timeout_sec))
 
     @contextmanager
     def counting_this(self, inside: bool) -> Iterator[None]:
@@ -38,13 +38,6 @@ class Spinners:
                 self.threads.remove(thread)
 
 
-def wait_for(changed: threading.Condition, ended: Callable[[], bool], seconds: float | None) -> bool:
-    """Wait until `ended()`, which is asked whenever `changed` is notified; for ever if None or negative.
-
-    It waits by slices, so that a signal is noticed. Returns what `ended()` is at last.
-    """
-    left = float("inf") if seconds is None or seconds < 0 else seconds
-    with changed:
-        while not changed.wait_for(ended, min(left, A_WHILE)) and left > 0:
-            left -= A_WHILE
-        return ended()
+def limit(timeout_sec: float | None) -> float | None:
+    """Return the limit of a wait as rclpy spells it: a negative one is none."""
+    return None if timeout_sec is None or timeout_sec < 0 else timeout_sec

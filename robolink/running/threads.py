@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import queue
 import threading
-import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -18,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 from robolink.callback_groups import CallbackGroup
 from robolink.running.entity import Entity
 from robolink.running.inbox import Inbox
-from robolink.system.queues import A_WHILE
+from robolink.system.clocks import steady
+from robolink.system.waits import A_WHILE
 from robolink.task import Future
 
 if TYPE_CHECKING:
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 A_MOMENT = 0.001
 """Real time, in seconds, that each step of virtual time takes while a callback waits for something unknown."""
+
+_STUCK_AFTER = 2
+"""Number of waits of `A_WHILE` in which a callback may work; then it is taken for one that waits."""
 
 
 class WaitingCallback:
@@ -237,9 +240,9 @@ class CallbackThreads:
         if self._working > self._stuck:
             return self._let_work(inbox)
         if self._stuck:
-            begin = time.monotonic()
+            begin = steady()
             arrival = inbox.wait(A_MOMENT)
-            if arrival is not None or time.monotonic() - begin < A_MOMENT:
+            if arrival is not None or steady() - begin < A_MOMENT * 1e9:
                 return arrival
         with self._lock:
             moments = [each.deadline for each in self._waiting if each.idle and each.deadline is not None]
@@ -251,12 +254,14 @@ class CallbackThreads:
         return arrival
 
     def _let_work(self, inbox: Inbox) -> Any:
-        begin = time.monotonic()
-        arrival = inbox.wait(None)
-        if arrival is None and time.monotonic() - begin >= A_WHILE:
-            with self._lock:
-                self._stuck = self._working
-        return arrival
+        for _ in range(_STUCK_AFTER):
+            begin = steady()
+            arrival = inbox.wait(None)
+            if arrival is not None or steady() - begin < A_WHILE * 1e9:
+                return arrival
+        with self._lock:
+            self._stuck = self._working
+        return None
 
     # The end
 

@@ -13,8 +13,9 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
-from robolink.system import clocks
-from robolink.system.queues import A_WHILE, get_within
+from robolink.system import clocks, waits
+from robolink.system.queues import get_within
+from robolink.system.waits import A_WHILE
 
 if TYPE_CHECKING:
     import random
@@ -196,7 +197,7 @@ class VirtualTime:
 
     def take(self, source: queue.SimpleQueue[Any], until: int | None) -> Any:
         """Take the oldest of `source`; wait in real time for another thread to bring one, `until` then."""
-        return source.get() if until is None else get_within(source, (until - self._now) / 1e9)
+        return waits.get(source, None if until is None else (until - self._now) / 1e9)
 
     def take_soon(self, source: queue.SimpleQueue[Any], until: int | None) -> Any:
         """Take the oldest of `source`; wait for another thread to bring one, for A_WHILE of real time, not `until`."""

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from robolink.exceptions import SecurityError
 from robolink.security import files
+from robolink.system import clocks
 
 AUTHORITY = "sros2CA"
 """Common name of the authority of a keystore, as in SROS2."""
@@ -130,7 +131,7 @@ def _certificate(name: str, issuer: str, key: Any, signer: Any, days: float, *, 
     from cryptography import x509
     from cryptography.hazmat.primitives import hashes
 
-    now = datetime.datetime.now(datetime.timezone.utc)
+    now = datetime.datetime.fromtimestamp(clocks.time_of_day(), datetime.timezone.utc)
     begin = now - datetime.timedelta(days=1 + max(0.0, -days))  # a day early, for clocks that are behind
     limits = x509.BasicConstraints(ca=authority, path_length=1 if authority else None)
     builder = (

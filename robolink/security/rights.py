@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from robolink.security import permissions
 from robolink.security.keystore import PERMISSIONS, enclave_of
 from robolink.security.patterns import fits
 from robolink.security.permissions import Permission
+from robolink.system import clocks
 from robolink.wire import parse_key
 
 VERBS = {"publish": "publish", "subscribe": "subscribe to", "request": "call", "reply": "serve"}
@@ -44,7 +44,7 @@ class Rights:
         """Domains of permissions that hold in others alone."""
         self.turns = {each.begin for each in here if each.allows} | {each.end for each in here if each.allows}
         """Times at which a permission begins or ends to hold."""
-        now = time.time() if moment is None else moment
+        now = clocks.time_of_day() if moment is None else moment
         held = [each for each in here if each.holds_at(now)]
         self.allowed = [each for each in held if each.allows]
         self.denied = [each for each in held if not each.allows]
@@ -93,7 +93,7 @@ def load_rights(enclaves: Path, domain: int) -> tuple[dict[str, Rights], list[st
 
     An enclave whose file has a mistake has no rights, nor has one whose permissions have ended or not begun.
     """
-    now = time.time()
+    now = clocks.time_of_day()
     found: dict[str, Rights] = {}
     mistakes: list[str] = []
     for path in sorted(enclaves.rglob(PERMISSIONS)):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import re
-import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -14,6 +13,7 @@ from robolink.exceptions import SecurityError, nearest
 from robolink.security import access, files
 from robolink.security.keystore import CERTIFICATE, KEY, PERMISSIONS, ROUTER, checked_enclave, enclave_of
 from robolink.security.rights import Rights, load_rights
+from robolink.system import clocks
 from robolink.system.paths import expanded
 from robolink.wire import EndpointKind
 
@@ -143,7 +143,7 @@ def fingerprint(security: Security) -> frozenset[tuple[str, int, int]]:
         with contextlib.suppress(OSError):  # gone just now
             status = path.stat()
             found.add((str(path), status.st_mtime_ns, status.st_size))
-    now = time.time()
+    now = clocks.time_of_day()
     for rights in security.everybody.values():
         found.add((rights.enclave, sum(turn <= now for turn in rights.turns), 0))
     return frozenset(found)

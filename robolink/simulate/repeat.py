@@ -6,15 +6,16 @@ import os
 import signal
 import subprocess
 import threading
-import time
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import suppress
 
 import msgspec
 
 from robolink.simulate.result import SimulationResult
+from robolink.system import clocks
 from robolink.system.own_command import own_command
+from robolink.system.waits import A_WHILE
 
 INTERRUPTED = (130, -signal.SIGINT, 0xC000013A)
 """Exit codes of a process that Ctrl-C has ended; the last is that of Windows for one that had not begun."""
@@ -64,7 +65,7 @@ def run_seeds(
     with ThreadPoolExecutor(max_workers=workers) as pool:
         try:
             started += [pool.submit(running.run, seed, [*own_command(), *words(seed)]) for seed in seeds]
-            for each in as_completed(started):
+            for each in _as_completed(started):
                 if not (run := each.result()).interrupted:
                     runs[each] = run
                     on_done(run)
@@ -74,6 +75,14 @@ def run_seeds(
             if not isinstance(error, KeyboardInterrupt):
                 raise
     return [runs[each] for each in started if each in runs]
+
+
+def _as_completed(started: Sequence[Future[SeedRun]]) -> Iterator[Future[SeedRun]]:
+    """Yield the futures as they complete; in waits that a Ctrl-C can come between."""
+    left = set(started)
+    while left:
+        done, left = wait(left, A_WHILE, FIRST_COMPLETED)
+        yield from done
 
 
 class _Running:
@@ -106,10 +115,10 @@ class _Running:
         with self._lock:
             self._ended = True
             running = list(self._processes)
-        deadline = time.monotonic() + PATIENCE
+        deadline = clocks.monotonic() + PATIENCE
         for each in running:
             with suppress(subprocess.TimeoutExpired):
-                each.wait(max(0.0, deadline - time.monotonic()))
+                each.wait(max(0.0, deadline - clocks.monotonic()))
             each.kill()
 
 

@@ -26,6 +26,7 @@ from robolink.supervisor.reporting.dispatcher import EventDispatcher
 from robolink.supervisor.reporting.logs import RunLogs
 from robolink.supervisor.reporting.notifier import OnEvent
 from robolink.supervisor.rules import Step
+from robolink.system import clocks
 from robolink.system.queues import get_within
 
 _LEFT_BEHIND = 1.0
@@ -72,7 +73,7 @@ class Supervisor:
         patience: float = 5.0,
         logs: RunLogs | None = None,
         on_event: OnEvent | None = None,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = clocks.monotonic,
         start: Callable[[Process, Lifeline], Child] = Child,
         director: Callable[[Supervisor], Director[Process]] | None = None,
     ) -> None:
@@ -165,7 +166,7 @@ class Supervisor:
     def status(self) -> list[Status]:
         """Return the current state of each process."""
         with self._lock:
-            begin = time.time() - self._clock()
+            begin = clocks.time_of_day() - self._clock()
             return [
                 Status(name, self._pid(name), each.state, each.restarts, each.returncode, begin + each.since)
                 for name, each in self._policy.processes.items()
@@ -333,8 +334,8 @@ class Supervisor:
         """Kill the processes that still run; after an orderly end there are none."""
         for child in self._children.values():
             child.ask(Step.TERMINATE)
-        deadline = time.monotonic() + _LEFT_BEHIND
-        while any(child.is_left() for child in self._children.values()) and time.monotonic() < deadline:
+        deadline = clocks.monotonic() + _LEFT_BEHIND
+        while any(child.is_left() for child in self._children.values()) and clocks.monotonic() < deadline:
             time.sleep(0.02)
         for child in self._children.values():
             child.ask(Step.KILL)

@@ -33,6 +33,14 @@ now = _finest_now()
 steady = time.perf_counter_ns if sys.platform == "win32" else time.monotonic_ns
 """Return the monotonic time in nanoseconds, from some start."""
 
+monotonic = time.perf_counter if sys.platform == "win32" else time.monotonic
+"""Return the same time as `steady`, in seconds."""
+
+
+def time_of_day() -> float:
+    """Return the time of day, in seconds since the UNIX epoch."""
+    return now() / 1e9
+
 
 @functools.cache
 def make_waits_exact() -> None:

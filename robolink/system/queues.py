@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import queue
-import sys
 from typing import TypeVar
-
-A_WHILE = 0.1 if sys.platform == "win32" else 0.5
-"""Longest single wait, in seconds: on Windows Ctrl-C does not interrupt a wait, only between two of them."""
 
 T = TypeVar("T")
 
 
 def get_within(source: queue.SimpleQueue[T], seconds: float) -> T:
-    """Return the oldest element; waits for one at most `seconds`. Raises queue.Empty.
+    """Return the oldest element; wait for one, in one piece, for at most `seconds`. Raises queue.Empty.
 
     `source.get(timeout=...)` alone may wait for ever before Python 3.13, if the time is shorter than the call itself: a
     `get_nowait` that finds something leaves the queue's lock open; the call passes through it, works out what is left

@@ -16,6 +16,7 @@ from robolink.bag.writer import BagWriter
 from robolink.exceptions import OverwrittenError, RobolinkError, WireError
 from robolink.interfaces import find_announced
 from robolink.logging import get_logger
+from robolink.system import waits
 from robolink.wire import NO_HASH, unpack_attachment
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ class BagRecording:
         """
         self._ends.set()
         if self._thread.is_alive():
-            self._thread.join()
+            waits.join(self._thread)
         with self._lock:
             if self._metadata is None:
                 self._write()

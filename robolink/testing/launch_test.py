@@ -24,6 +24,7 @@ from robolink.exceptions import DocumentError, RobolinkError, nearest
 from robolink.launch.reading.lookup import home_of
 from robolink.launch.ros.surroundings import surroundings
 from robolink.launch.system import read_description
+from robolink.system import waits
 from robolink.testing.supervisor_thread import Launch
 from robolink.transport.free_domain import free_domain
 from robolink.utilities import try_shutdown
@@ -104,7 +105,7 @@ class LaunchTest:
         try_shutdown()
         if self._launch is not None:
             self._launch.supervisor.stop()
-            self._launch.thread.join(DOWN_WITHIN)
+            waits.join(self._launch.thread, DOWN_WITHIN)
         self._stack.close()
 
     def emit_event(self, event: Event) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 import queue
-import time
 from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
@@ -20,6 +19,7 @@ from robolink.interfaces.rcl_interfaces.srv import ListParameters
 from robolink.logging import LoggingSeverity, Record
 from robolink.node import Node
 from robolink.qos import qos_profile_rosout_default
+from robolink.system import clocks, waits
 from robolink.testing.expectations import NodeFailure, OnlyInMemoryError
 from robolink.testing.faults import Faults
 from robolink.testing.launching import entry_of
@@ -102,7 +102,7 @@ class Processes:
             self._stack = stack.pop_all()
         self.begin_ns = self.now_ns()
 
-    now_ns = staticmethod(time.time_ns)
+    now_ns = staticmethod(clocks.now)
 
     def session(self) -> Transport:
         """Open a session on the domain."""
@@ -242,12 +242,12 @@ class Processes:
 
     def run_until(self, condition: Callable[[], bool], within: float) -> bool:
         """Let real time pass until the condition holds or `within` seconds are over; True if it holds."""
-        deadline = time.monotonic() + within
+        deadline = clocks.monotonic() + within
         while True:
             self._take_exits()
             if condition():
                 return True
-            left = deadline - time.monotonic()
+            left = deadline - clocks.monotonic()
             if left <= 0:
                 return False
             self._executor.spin_once(timeout_sec=min(left, SLICE))
@@ -296,7 +296,7 @@ class Processes:
         for each in launches:
             each.supervisor.stop()
         for each in launches:
-            each.thread.join(DOWN_WITHIN)
+            waits.join(each.thread, DOWN_WITHIN)
         self._stack.close()
 
 

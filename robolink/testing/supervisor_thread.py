@@ -21,6 +21,7 @@ from robolink.launch.ros.process_stage import ProcessStage
 from robolink.supervisor import Process, Supervisor
 from robolink.supervisor.events import Event, Exited, Status
 from robolink.supervisor.rules import Rules
+from robolink.system import clocks, waits
 
 if TYPE_CHECKING:
     from robolink.launch import Entry
@@ -133,8 +134,8 @@ class Launch:
         if sys.platform != "win32":
             os.killpg(pid, signal.SIGSTOP)
         self.supervisor.stop_one(name)
-        deadline = time.monotonic() + TOLD_WITHIN
-        while self._status(name).state == "running" and time.monotonic() < deadline:
+        deadline = clocks.monotonic() + TOLD_WITHIN
+        while self._status(name).state == "running" and clocks.monotonic() < deadline:
             time.sleep(0.001)
         with suppress(ProcessLookupError):
             if sys.platform == "win32":
@@ -145,7 +146,7 @@ class Launch:
     def restart(self, name: str) -> None:
         """Start a process anew; one whose system has ended with it gets a system of its own."""
         if all(each.pid is None for each in self.supervisor.status()):
-            self.thread.join(TOLD_WITHIN)
+            waits.join(self.thread, TOLD_WITHIN)
         if self.thread.is_alive():
             self.supervisor.restart(name)
             return

@@ -13,7 +13,7 @@ from robolink.interfaces.builtin_interfaces.msg import Time as TimeMsg
 from robolink.interfaces.geometry_msgs.msg import TransformStamped
 from robolink.interfaces.tf2_msgs.action import LookupTransform
 from robolink.interfaces.tf2_msgs.msg import TF2Error
-from robolink.system.queues import A_WHILE
+from robolink.system.waits import A_WHILE
 from robolink.task import Future
 from robolink.tf2.buffer_interface import BufferInterface
 from robolink.tf2.buffer_server import CODES

@@ -12,7 +12,7 @@ from robolink.interfaces.geometry_msgs.msg import TransformStamped
 from robolink.logging import get_logger
 from robolink.running.defaults import get_defaults
 from robolink.running.timebase import SystemTime
-from robolink.system.queues import A_WHILE
+from robolink.system.waits import A_WHILE
 from robolink.task import Future
 from robolink.tf2.core import LOGGER
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import functools
-import time
 from typing import TYPE_CHECKING
 
 from robolink.exceptions import SecurityError
 from robolink.security import session
 from robolink.security.keystore import CERTIFICATE, KEY
 from robolink.security.session import Security
+from robolink.system import clocks
 from robolink.transport import certificates, secure_config
 
 if TYPE_CHECKING:
@@ -38,5 +38,5 @@ class Keys:
     def secure(self, config: zenoh.Config) -> None:
         """Close a configuration to whoever has no keys, and to everybody once the certificate has ended."""
         secure_config.secure(self.security, config)
-        if time.time() >= self.valid.end:
+        if clocks.time_of_day() >= self.valid.end:
             secure_config.isolate(config)

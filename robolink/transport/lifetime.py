@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from typing import Protocol, TypeVar
 
 from robolink.exceptions import TransportError
-from robolink.system import exit_code
+from robolink.system import clocks, exit_code, waits
 
 _Kept = TypeVar("_Kept")
 
@@ -50,7 +50,7 @@ _armed = False
 _forked = False
 _ending = False
 _deadline = 0.0
-"""End of the exit's wait, by `time.monotonic`."""
+"""End of the exit's wait, by `clocks.monotonic`."""
 
 
 def watch_over(mortal: Mortal) -> None:
@@ -83,7 +83,7 @@ def finish(work: Callable[[], object], within: float) -> None:
     except RuntimeError:  # Python 3.12 starts no threads any more at exit
         work()
         return
-    done.wait(within)  # no join: before 3.13 Python takes a thread for ended when a Ctrl-C breaks into that
+    waits.wait(done, within)  # no join: before 3.13 Python takes a thread for ended when a Ctrl-C breaks into that
 
 
 def interruptible(make: Callable[[], _Kept], undo: Callable[[_Kept], object]) -> _Kept:
@@ -184,11 +184,11 @@ def close_all() -> None:
     global _ending, _deadline
     _last.extend([*all_of(_open)])
     if not _ending:
-        _deadline = time.monotonic() + LAST_WAIT
+        _deadline = clocks.monotonic() + LAST_WAIT
     _ending = True
     with _undisturbed():
         # Before anything is closed: opening a session may take 10 s when the one that it meets is just closing.
-        while _inside - {threading.get_ident()} and time.monotonic() < _deadline:
+        while _inside - {threading.get_ident()} and clocks.monotonic() < _deadline:
             time.sleep(0.001)
         for mortal in all_of(_open):
             with contextlib.suppress(Exception):
@@ -218,10 +218,10 @@ def _wait_for_the_unfinished(deadline: float) -> None:
     # A thread that comes back from Zenoh while the interpreter ends aborts the process (Python < 3.14). So most get
     # the time that they need; what takes longer, 10 s for a frozen peer, is not back before the process is gone.
     # Where the exit code is known, the process can end without asking them.
-    soon = deadline if exit_code.noted() is None else min(deadline, time.monotonic() + OPENING_WAIT)
+    soon = deadline if exit_code.noted() is None else min(deadline, clocks.monotonic() + OPENING_WAIT)
     for thread in (*all_of(_unfinished), *all_of(_opening)):
         with contextlib.suppress(RuntimeError):  # not started: a Ctrl-C came before, or it is about to be
-            thread.join(max(0, (soon if thread in _opening else deadline) - time.monotonic()))
+            waits.join(thread, (soon if thread in _opening else deadline) - clocks.monotonic())
 
 
 def _end_if_stuck() -> None:

@@ -20,6 +20,7 @@ from robolink.networks.asked import (
     wanted,
 )
 from robolink.networks.settings import as_ros, client, settings
+from robolink.system import clocks
 from robolink.system.paths import expanded, is_file
 from robolink.system.terminal import shown
 from robolink.transport import shared_memory
@@ -176,8 +177,8 @@ def limits_wanted(asked: Wanted, environ: Mapping[str, str]) -> Limits | None:
 def await_host(session: zenoh.Session, found: Plan) -> None:
     """Wait until the host that has answered is linked, so that the first listing has its nodes; at most HOST_WITHIN."""
     sought = found.place.session if found.place else ""
-    deadline = time.monotonic() + HOST_WITHIN
-    while sought and time.monotonic() < deadline:
+    deadline = clocks.monotonic() + HOST_WITHIN
+    while sought and clocks.monotonic() < deadline:
         if any(str(each) == sought for each in session.info.peers_zid()):
             return
         time.sleep(0.002)

@@ -17,6 +17,7 @@ from typing import Protocol
 from robolink.exceptions import TransportError
 from robolink.logging import get_logger
 from robolink.security.session import AUTHORITY
+from robolink.system import clocks
 from robolink.transport.certificates import Validity
 
 LOOKS_EVERY = 1.0
@@ -103,13 +104,13 @@ class Watch:
                 logger.error(f"permissions or keys have changed, and do not count yet: {why}")
             self._told = why
             return False
-        self._told, self._has_ended = "", time.time() >= session.validity.end
+        self._told, self._has_ended = "", clocks.time_of_day() >= session.validity.end
         logger.info(f"enclave '{session.enclave}': permissions or keys have changed, and count from now on")
         return True
 
     def _judge(self, session: Renewable) -> None:
         """Warn some time before the end of the certificate, and take the session out of the others' way after it."""
-        valid, now = session.validity, time.time()
+        valid, now = session.validity, clocks.time_of_day()
         has_ended = now >= valid.end
         if has_ended != self._has_ended:
             self._has_ended = has_ended

@@ -17,6 +17,7 @@ from robolink.networks.asked import domain_id
 from robolink.networks.router import router_settings
 from robolink.security import session
 from robolink.security.session import Security
+from robolink.system import clocks
 from robolink.transport import lifetime, permission_watch, secure_config
 from robolink.transport import zenoh_declare as declare
 from robolink.transport.certificates import Validity
@@ -105,14 +106,14 @@ class Router:
     def reopen(self) -> None:
         """Go on in a new session at the same ports; raises TransportError where they are not free in time."""
         self._close_sessions()
-        deadline = time.monotonic() + REOPENS_WITHIN
+        deadline = clocks.monotonic() + REOPENS_WITHIN
         while True:
             try:
                 self.open()
                 del self._sessions[:-1]
                 return
             except zenoh.ZError as error:
-                if time.monotonic() > deadline:
+                if clocks.monotonic() > deadline:
                     raise TransportError(f"cannot listen at {' and '.join(self.listens)}: {reason(error)}") from None
             time.sleep(REOPENS_EVERY)
 

@@ -7,6 +7,8 @@ from collections.abc import Collection
 
 import zenoh
 
+from robolink.system import clocks
+
 STEP = 0.005
 """Interval at which answers are looked for, in seconds."""
 
@@ -20,13 +22,13 @@ def answering(config: zenoh.Config, sought: Collection[str], within: float) -> f
         within: Timeout of their answers, in seconds.
     """
     found = set[str]()
-    deadline = time.monotonic() + within
+    deadline = clocks.monotonic() + within
     try:
         scout = zenoh.scout(what="peer|router", config=config)
     except zenoh.ZError:  # there is no interface for it
         return frozenset()
     try:
-        while not found.issuperset(sought) and time.monotonic() < deadline:
+        while not found.issuperset(sought) and clocks.monotonic() < deadline:
             if (hello := scout.try_recv()) is None:
                 time.sleep(STEP)
             else:

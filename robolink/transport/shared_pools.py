@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import os
 import sys
-import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
 from robolink.logging import get_logger
+from robolink.system import clocks
 from robolink.transport.shared_memory import FOLDER, LARGEST_SESSION_FILE, LEAST_FREE, POOL, SUFFIX, space
 
 MOST_POOLS = 8
@@ -78,7 +78,7 @@ class PoolLimit:
         held: Callable[[], Iterable[Segment]] = held_segments,
         free: Callable[[], int] = free_space,
         remove: Callable[[str], object] = os.unlink,
-        now: Callable[[], float] = time.monotonic,
+        now: Callable[[], float] = clocks.monotonic,
     ) -> None:
         self._held, self._free, self._remove, self._now = held, free, remove, now
         # Of those that are new, the first: files of peers that the session has met already are open, too, and where

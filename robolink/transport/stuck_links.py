@@ -10,9 +10,10 @@ import errno
 import socket
 import struct
 import sys
-import time
 from collections.abc import Collection, Iterable
 from typing import NamedTuple
+
+from robolink.system import clocks
 
 PAUSE = 2.0
 """Pause of TCP in seconds that is taken for granted: opening a session again takes as long."""
@@ -121,7 +122,7 @@ class Probes:
         if place in self._begun:
             probe, begun = self._begun[place]
             code = probe.connect_ex(place)  # not select, which knows no more than 1024 open files
-            if code in _WAITS and time.monotonic() - begun < PROBE_LASTS:
+            if code in _WAITS and clocks.monotonic() - begun < PROBE_LASTS:
                 return False
             self._end(place)
             if code not in _WAITS:
@@ -129,7 +130,7 @@ class Probes:
         probe = socket.socket(socket.AF_INET6 if ":" in place[0] else socket.AF_INET, socket.SOCK_STREAM)
         probe.setblocking(False)
         if probe.connect_ex(place) in _UNDER_WAY:  # else there is no way at all, as where a cable is out
-            self._begun[place] = probe, time.monotonic()
+            self._begun[place] = probe, clocks.monotonic()
         else:
             probe.close()
         return False

@@ -22,7 +22,7 @@ from robolink.networks import refusals
 from robolink.networks.asked import FIRST_PORT, ROS_ROUTER, checked_domain
 from robolink.networks.settings import OFTEN, SOUGHT_EVERY
 from robolink.qos import DurabilityPolicy, QoSProfile, resolved
-from robolink.system import heap
+from robolink.system import clocks, heap
 from robolink.transport import addresses, certificates, lifetime, network, port_heir, port_sharing
 from robolink.transport import zenoh_calls as calls
 from robolink.transport import zenoh_declare as declare
@@ -75,11 +75,11 @@ class ZenohTransport(Transport):
         self._calls: weakref.WeakSet[calls.ZenohCall] = weakref.WeakSet()
         self._has_left = False
         with lifetime.inside:
-            before = time.time()
+            before = clocks.time_of_day()
             environ = dict(os.environ if environ is None else environ)
             self._join = functools.partial(_join, domain, network, environ, secure)
             self._session, self._claim, holds_port, self._moves, thinned = self._join()
-            self._met_at = time.monotonic() + (REUNION if holds_port else 0.0)
+            self._met_at = clocks.monotonic() + (REUNION if holds_port else 0.0)
             self._pools = PoolLimit(before)
             self.session_id = str(self._session.info.zid())
             lifetime.watch_over(self)
@@ -143,7 +143,7 @@ class ZenohTransport(Transport):
 
         A session that has just taken the rendezvous port waits for those that may still be there without one.
         """
-        time.sleep(max(0.0, self._met_at - time.monotonic()))
+        time.sleep(max(0.0, self._met_at - clocks.monotonic()))
         arrived: queue.SimpleQueue[Any] = queue.SimpleQueue()
         subscriber = self._try(pattern, declare.declare_look, pattern, arrived.put)
         try:
@@ -309,8 +309,8 @@ def _leave(claim: port_sharing.PortClaim | None, session: zenoh.Session, entitie
 
     lifetime.finish(close, CLOSE_WITHIN)
     # A daemon thread that is inside Zenoh when the interpreter ends aborts the process: let it come back first.
-    deadline = time.monotonic() + CLOSE_WITHIN  # from now on: at the exit of Python 3.12 it has just been closed here
-    while lifetime.in_use(entities) and time.monotonic() < deadline:
+    deadline = clocks.monotonic() + CLOSE_WITHIN  # from now on: at the exit of Python 3.12 it has just been closed here
+    while lifetime.in_use(entities) and clocks.monotonic() < deadline:
         time.sleep(0.001)
 
 
@@ -392,8 +392,8 @@ def _meet(port: int, open_session: Callable[[bool], zenoh.Session], within: Reac
 
 
 def _linked(session: zenoh.Session) -> bool:
-    deadline = time.monotonic() + LINK_WITHIN
-    while time.monotonic() < deadline:
+    deadline = clocks.monotonic() + LINK_WITHIN
+    while clocks.monotonic() < deadline:
         if any(str(link.dst)[4:] != ROS_ROUTER[4:] for link in session.info.links()):  # after tcp/ or tls/
             return True
         time.sleep(0.002)

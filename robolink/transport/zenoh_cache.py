@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import struct
 import threading
-import time
 from collections import deque
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import msgspec
 
+from robolink.system import clocks
 from robolink.wire import fields_of
 
 MOST_KEPT = 4096
@@ -64,7 +64,7 @@ class Cache:
         """Return what is newer than what a subscription has, in the order of its numbers."""
         with self._lock:
             kept = list(self._kept)
-        since = time.time_ns() - asked.age
+        since = clocks.now() - asked.age
         found = [(number, each) for each in kept if (number := _newer(each[1], asked, since)) is not None]
         return [each for _, each in sorted(found, key=_number)]  # threads that publish may overtake each other
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import functools
 import threading
-import time
 from collections import Counter, deque
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -15,7 +14,7 @@ import zenoh
 from robolink.exceptions import TransportClosedError, TransportError
 from robolink.logging import get_logger
 from robolink.networks.settings import LONGEST_WAIT
-from robolink.system import heap
+from robolink.system import clocks, heap
 from robolink.transport import lifetime
 from robolink.transport.base import Sample, Sink, refuse_giant
 from robolink.transport.network import reason
@@ -264,10 +263,10 @@ class ZenohOutlet(Declared):
         if len(payload) >= heap.LARGE:
             heap.keep()
         self._deliver_here(payload, attachment)
-        begin = time.monotonic()
+        begin = clocks.monotonic()
         if self._worth_a_copy(begin):
             self._send(payload, attachment)
-            if time.monotonic() - begin >= LONGEST_WAIT:
+            if clocks.monotonic() - begin >= LONGEST_WAIT:
                 self._tell_of_no_room(len(payload))
 
     def _deliver_here(self, payload: bytes, attachment: bytes) -> None:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import struct
 import threading
-import time
 from threading import get_ident
 from typing import Any
 
+from robolink.system import clocks
 from robolink.transport.base import Sample, Sink
 from robolink.wire import fields_of
 
@@ -100,7 +100,7 @@ class Mending:
         filled = self._filled.get(gid)
         if filled is not None and number <= filled:
             return True
-        if self._questions and time.monotonic() > self._until:  # nobody has told of the end
+        if self._questions and clocks.monotonic() > self._until:  # nobody has told of the end
             self._release()
         if not self._questions or self._last.get(gid, 0) == number - 1 or gid in self._gapped:
             return False
@@ -119,7 +119,7 @@ class Mending:
         """Hold back what comes behind a gap until so many times `end`, or for so many seconds at most."""
         with self._lock:
             self._questions += questions
-            self._until = time.monotonic() + within
+            self._until = clocks.monotonic() + within
 
     def take(self, messages: list[tuple[bytes, bytes]]) -> None:
         """Deliver what a publisher has sent again, which is in order, and what waits directly behind it."""

@@ -20,6 +20,7 @@ import msgspec
 import zenoh
 
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from robolink.system import clocks
 from robolink.transport import lifetime
 from robolink.transport import zenoh_declare as declare
 from robolink.transport.base import Sink
@@ -53,7 +54,7 @@ class _Question(NamedTuple):
     """Question to be asked."""
 
     due: float
-    """Time by `time.monotonic`."""
+    """Time by `clocks.monotonic`."""
     session: Any
     key: str
     mendings: list[Mending]
@@ -193,7 +194,7 @@ class Recovery:
             return sink
         mending = Mending(sink)
         with self._lock:
-            self._mendings[mending] = key, time.monotonic()
+            self._mendings[mending] = key, clocks.monotonic()
             has_watched, self._has_watched = self._has_watched, True
         if not has_watched:
             settle(_Watch(self._holdings, make(self._prefix, self._declare_watch)))
@@ -280,7 +281,7 @@ class Recovery:
         for each in mendings:
             each.begin(len(ASKS_AFTER), ASKS_AFTER[-1] + ANSWERED_WITHIN)
         if mendings:
-            now = time.monotonic()
+            now = clocks.monotonic()
             self._ask_soon([_Question(now + after, session, key, mendings) for after in ASKS_AFTER])
 
     def _ask_soon(self, questions: list[_Question]) -> None:
@@ -301,7 +302,7 @@ class Recovery:
                     self._is_asking = False
                     return
                 question = min(self._to_ask, key=lambda each: each.due)
-                if (wait := question.due - time.monotonic()) <= 0:
+                if (wait := question.due - clocks.monotonic()) <= 0:
                     self._to_ask.remove(question)
             if wait > 0:
                 time.sleep(min(wait, 0.05))  # one that is due earlier may come meanwhile
@@ -316,7 +317,7 @@ class Recovery:
         for each in mendings:
             topic, since = self._mendings.get(each) or ("", 0.0)
             if topic:
-                age = min(time.monotonic() - since, LONGEST_GONE)
+                age = min(clocks.monotonic() - since, LONGEST_GONE)
                 asked.append(Asked(topic, int(age * 1e9), each.positions()))
                 by_topic.setdefault(topic, []).append(each)
         question = msgspec.msgpack.encode(together(asked))

@@ -18,6 +18,7 @@ import zenoh
 
 from robolink.exceptions import TransportError
 from robolink.logging import get_logger
+from robolink.system import clocks
 from robolink.system.queues import get_within
 from robolink.transport import lifetime
 from robolink.transport.port_sharing import PortClaim
@@ -175,8 +176,8 @@ class Mover:
         with self._state.moving:
             if not again and self._state.addresses is not None and named and named <= self._state.addresses:
                 return
-            begin, watches = time.monotonic(), self._replace(named)
-        self._wait(begin + SETTLED_AFTER - time.monotonic())
+            begin, watches = clocks.monotonic(), self._replace(named)
+        self._wait(begin + SETTLED_AFTER - clocks.monotonic())
         for each in watches:
             each.settle()
 
@@ -227,8 +228,8 @@ class Mover:
 
     def _wait(self, seconds: float, is_enough: Callable[[], bool] = bool) -> None:
         """Wait so long at most, and no longer than until the transport has been closed."""
-        deadline = time.monotonic() + seconds
-        while time.monotonic() < deadline and not self._has_left() and not is_enough():
+        deadline = clocks.monotonic() + seconds
+        while clocks.monotonic() < deadline and not self._has_left() and not is_enough():
             time.sleep(STEP)
 
 

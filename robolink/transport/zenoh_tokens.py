@@ -5,12 +5,12 @@ from __future__ import annotations
 import functools
 import queue
 import threading
-import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import zenoh
 
+from robolink.system import clocks
 from robolink.system.queues import get_within
 from robolink.transport.zenoh_declare import close_gate
 from robolink.transport.zenoh_handles import Declared, Holdings, Made
@@ -132,10 +132,10 @@ def settled(
 ) -> set[str]:
     """Collect tokens until all peers have announced theirs and no more peers turn up."""
     changes, known = Changes(lambda token, alive: None), set[str]()
-    begin = news = time.monotonic()
+    begin = news = clocks.monotonic()
 
     def left() -> float:
-        return min(news + PATIENCE, begin + LONGEST) - time.monotonic()
+        return min(news + PATIENCE, begin + LONGEST) - clocks.monotonic()
 
     def collect(quiet: float) -> None:
         """Collect until the peers have answered, or nothing has come for `quiet` seconds."""
@@ -147,19 +147,19 @@ def settled(
                 return
             if sample is None:
                 return
-            news = time.monotonic()
+            news = clocks.monotonic()
             changes(sample)
 
     was_quiet = False
     while left() > 0:
         before = peers()
         if not before <= known:
-            news, known = time.monotonic(), known | before
+            news, known = clocks.monotonic(), known | before
         # Silence alone proves nothing: a busy peer is silent too. Its answer comes after all its tokens.
         ask(functools.partial(arrived.put, None), LONGEST)
         collect(LONGEST)
         if was_quiet and peers() == before:
             break
-        collect(max(QUIET, (time.monotonic() - begin) / 2))  # what has taken long so far may have longer gaps
+        collect(max(QUIET, (clocks.monotonic() - begin) / 2))  # what has taken long so far may have longer gaps
         was_quiet = True
     return changes.alive

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from queue import SimpleQueue
 
 from robolink.exceptions import InvalidHandle
+from robolink.system import waits
 
 MOST = 10
 """Number of jobs with one key that may wait: a short stall loses nothing."""
@@ -44,7 +45,7 @@ class Darkroom:
         thread, self._thread = self._thread, None
         if thread is not None:
             self._jobs.put(None)
-            thread.join()
+            waits.join(thread)
 
     def _work(self) -> None:
         while (found := self._jobs.get()) is not None:

@@ -15,6 +15,7 @@ from robolink.security import permissions, session
 from robolink.security.keystore import PERMISSIONS, Keystore
 from robolink.security.policy import Rule
 from robolink.security.rights import load_rights
+from robolink.system import clocks
 from robolink.transport import permission_watch
 from robolink.transport.certificates import Validity
 
@@ -144,7 +145,7 @@ def test_sessions_follow_the_end_of_anothers_permissions(store: Keystore, monkey
     assert robot.renewals == 0
     assert robot.security.everybody["/student"].allows("publish", "/a")
     later = time.time() + 2 * HOUR.total_seconds()
-    monkeypatch.setattr(time, "time", lambda: later)
+    monkeypatch.setattr(clocks, "time_of_day", lambda: later)
     assert watch.look()
     assert robot.renewals == 1
     assert not robot.security.everybody["/student"].allows("publish", "/a")

@@ -33,7 +33,7 @@ from robolink.supervisor.processes.process import Child
 from robolink.supervisor.reporting import logs
 from robolink.supervisor.rules import Step
 from robolink.system import clocks
-from robolink.system.queues import A_WHILE
+from robolink.system.waits import A_WHILE
 from robolink.transport import network
 from tests.support.commands import PATIENCE
 from tests.support.nodefiles import load_node_file

@@ -27,7 +27,7 @@ class Link:
 
 
 def outlet(link: Link, monkeypatch: pytest.MonkeyPatch) -> ZenohOutlet:
-    monkeypatch.setattr(zenoh_handles, "time", SimpleNamespace(monotonic=lambda: link.now))
+    monkeypatch.setattr(zenoh_handles, "clocks", SimpleNamespace(monotonic=lambda: link.now))
     return ZenohOutlet(Holdings(), CHATTER, Made(None, Publishers(link, link, object), lambda _: None))
 
 

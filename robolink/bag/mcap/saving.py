@@ -5,6 +5,8 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
+from robolink.system import waits
+
 
 class BackgroundSave:
     """Runs of a function on a thread, one at a time.
@@ -34,7 +36,7 @@ class BackgroundSave:
         """Wait for the run that goes on. Raises its OSError if it failed."""
         thread, self._thread = self._thread, None
         if thread is not None:
-            thread.join()
+            waits.join(thread)
         error, self._error = self._error, None
         if error is not None:
             raise error

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import struct
-import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -28,6 +27,7 @@ from robolink.bag.mcap.records import (
 )
 from robolink.bag.mcap.saving import BackgroundSave
 from robolink.bag.mcap.tail import ROOM, Create, Tail
+from robolink.system import clocks
 
 CHUNK_SIZE = 768 * 1024
 """Size of a chunk in bytes, as rosbag2 has it."""
@@ -89,7 +89,7 @@ class Writer:
         self._entries: dict[int, list[int]] = {}
         self._size, self._begun = 0, 0.0
         self._shown_size = 0
-        self._shown_at = self._saved_at = time.monotonic()
+        self._shown_at = self._saved_at = clocks.monotonic()
         self._is_saved = True
         self._summary_size = 0
         if self.path.exists():
@@ -190,11 +190,11 @@ class Writer:
         entries += (log_time, size)
         self._size = size + length + OPENING + MESSAGE_HEAD
         if not size:
-            self._begun = time.monotonic()
+            self._begun = clocks.monotonic()
 
     def tick(self) -> None:
         """Close the open chunk and show what is new, each if it is time. Raises McapError."""
-        now = time.monotonic()
+        now = clocks.monotonic()
         is_old = self._size and now - self._begun >= self._max_age
         if is_old or not self._is_saved or now - self._shown_at >= self._flush_every or self._failure:
             self._check()
@@ -247,7 +247,7 @@ class Writer:
         self._check()
         with self._guarded():
             self._close_chunk()
-            if time.monotonic() - self._shown_at >= min(self._flush_every, SHOWN_EARLY):
+            if clocks.monotonic() - self._shown_at >= min(self._flush_every, SHOWN_EARLY):
                 self._show()  # cheap now: no chunk is open
             self._keep_hole_wide()
         self.tick()
@@ -288,7 +288,7 @@ class Writer:
             self._extend(0)
             return
         self._tail.show(b"".join(packed.pieces) if packed else b"", summary, save=self._is_strict)
-        self._shown_at, self._summary_size = time.monotonic(), len(summary)
+        self._shown_at, self._summary_size = clocks.monotonic(), len(summary)
         if packed:
             self._shown_size, self._contents.changed = self._size, False
         else:
@@ -327,7 +327,7 @@ class Writer:
             self._force()
         elif self._sync_every > 0:
             self._saved_at = -math.inf
-            self._save(time.monotonic())
+            self._save(clocks.monotonic())
 
     def _finish(self) -> None:
         """Close the last chunk and write an ordinary end; all was shown before, should the disk be full now."""
@@ -376,7 +376,7 @@ class Writer:
         self._tail.begin_save()
         self._tail.save()
         self._tail.end_save()
-        self._saved_at, self._is_saved = time.monotonic(), True
+        self._saved_at, self._is_saved = clocks.monotonic(), True
 
     def _check(self) -> None:
         if self._failure is not None:

@@ -9,6 +9,7 @@ from typing import Protocol
 from robolink.clock import Clock
 from robolink.clock_type import ClockType
 from robolink.node import Node
+from robolink.system import waits
 
 Advance = Callable[[], "int | None"]
 """Function that does what is due, and returns the steady time at which to call it again; None to wait for `wake`."""
@@ -61,7 +62,7 @@ class ThreadPacer:
         self._closed = True
         self._changed.set()
         if self._thread.is_alive() and self._thread is not threading.current_thread():
-            self._thread.join()
+            waits.join(self._thread)
 
     def _run(self) -> None:
         while True:

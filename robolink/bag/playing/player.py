@@ -18,6 +18,7 @@ from robolink.exceptions import RobolinkError
 from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.node import Node
 from robolink.qos import QoSProfile, ReliabilityPolicy
+from robolink.system import waits
 from robolink.time import Time
 from robolink.time_source import CLOCK_TOPIC
 
@@ -91,7 +92,7 @@ class Player:
 
     def wait(self, timeout: float | None = None) -> bool:
         """Wait in real time, `timeout` seconds at most, until everything is played; True if it is."""
-        return self.ended.wait(timeout)
+        return waits.wait(self.ended, timeout)
 
     def close(self) -> None:
         """End the playing, the publishers and the bags. Safe to call twice."""

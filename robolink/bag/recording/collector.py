@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from robolink.bag.recording.cache import Cache
 from robolink.bag.recording.topics import Arrived, RecordedTopic, make_arrived
 from robolink.exceptions import OverwrittenError, RobolinkError, WireError
+from robolink.system import waits
 from robolink.transport.base import Sample
 from robolink.wire import Attachment, unpack_attachment
 
@@ -73,7 +74,7 @@ class Collector:
     def close(self) -> None:
         """Take what has arrived so far, and end the thread."""
         self.queue.put(None)
-        self._thread.join()
+        waits.join(self._thread)
 
     def _run(self) -> None:
         get = self.queue.get_nowait

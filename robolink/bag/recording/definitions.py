@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from robolink.bag.definition import message_definition
 from robolink.bag.recording.topics import RecordedTopic
 from robolink.exceptions import RobolinkError
+from robolink.system import waits
 from robolink.type_lookup import installed_type, type_of
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ class Definitions:
         """Look up nothing more; what waits for a node's answer is told of as unknown."""
         self._asked.put(None)
         if self._thread.ident is not None:  # it was started
-            self._thread.join()
+            waits.join(self._thread)
         with self._lock:
             waiting = [topic for topics in self._unknown.values() for topic in topics]
             self._unknown.clear()

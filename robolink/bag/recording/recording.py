@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -24,6 +23,7 @@ from robolink.graph.listening import ALL_BEST_EFFORT
 from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.message import type_hash, type_name
 from robolink.running.timed_arrivals import timed_arrival
+from robolink.system import clocks, waits
 from robolink.time_source import CLOCK_TOPIC
 from robolink.wire import DataKey, format_key
 
@@ -113,7 +113,7 @@ class Recording:
             self._context.transport.read, self._cache, self._begin if settings.use_sim_time else None
         )
         self._collector.paused = self._paused = settings.start_paused
-        self._arrival = timed_arrival(self._collector.queue.put, time.time_ns)
+        self._arrival = timed_arrival(self._collector.queue.put, clocks.now)
         self._definitions = Definitions(self._context, self._on_definition, self._news.warn)
         self._listener = Listener(node, self._selection, settings, self._arrival, self._on_topic, self._news.warn)
         self._writing: Writing | None = None
@@ -136,7 +136,7 @@ class Recording:
             if self._began:
                 raise RecordingError(f"{self.path}: a recording starts once; make another one")
             bag = self._make_bag(self.path, self.settings)
-            self._began = time.monotonic()
+            self._began = clocks.monotonic()
         self._writing = Writing(bag, self._cache, self._now, self._news.split, self._fail, self._tell_of_losses)
         self._writing.start()
         self._collector.start()
@@ -154,7 +154,7 @@ class Recording:
             writing = self._writing
             if writing is None or self._took:
                 return writing and writing.metadata
-            self._took = time.monotonic() - self._began
+            self._took = clocks.monotonic() - self._began
         self._listener.close()
         if self._clock is not None:
             self._clock.close()
@@ -176,7 +176,7 @@ class Recording:
 
     def _now(self) -> int:
         sim_time = self._collector.sim_time
-        return time.time_ns() if sim_time is None else sim_time
+        return clocks.now() if sim_time is None else sim_time
 
     # What is asked of it
 
@@ -229,7 +229,7 @@ class Recording:
     def figures(self) -> Figures:
         """Return its state."""
         writing, topics = self._writing, list(self._listener.topics.values())
-        seconds = self._took or (time.monotonic() - self._began if self._began else 0.0)
+        seconds = self._took or (clocks.monotonic() - self._began if self._began else 0.0)
         return Figures(
             self.path,
             seconds,
@@ -249,7 +249,7 @@ class Recording:
         return self._writing
 
     def _do(self, command: Callable[[], object]) -> None:
-        self._running().do(command).result(WITHIN)
+        waits.result(self._running().do(command), WITHIN)
 
     # News of its threads
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import queue
 import threading
-import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future
 from pathlib import Path
@@ -18,6 +17,7 @@ from robolink.bag.recording.cache import OVERHEAD, Cache, size_of
 from robolink.bag.recording.topics import Arrived, RecordedTopic
 from robolink.bag.topic import BagTopic
 from robolink.exceptions import RobolinkError
+from robolink.system import clocks, waits
 from robolink.wire import NO_HASH
 
 TICK = 0.05
@@ -79,7 +79,7 @@ class Writing:
         self._on_split, self._on_error, self._every_second = on_split, on_error, every_second
         self._commands: queue.SimpleQueue[tuple[Callable[[], object], Future[Any]]] = queue.SimpleQueue()
         self._has_split = self._closes = self._failed = False
-        self._second = time.monotonic()
+        self._second = clocks.monotonic()
         self._thread = threading.Thread(target=self._run, name="robolink bag writer", daemon=True)
         bag.on_split = self._note_split
 
@@ -98,7 +98,7 @@ class Writing:
         """Write what the cache has, close the bag and end the thread."""
         self._closes = True
         self._cache.wake()
-        self._thread.join()
+        waits.join(self._thread)
 
     # On the thread
 
@@ -150,8 +150,8 @@ class Writing:
         self._write(batch)
         commanded = self._obey()
         self._bag.tick()
-        if time.monotonic() - self._second >= PERIOD:
-            self._second = time.monotonic()
+        if clocks.monotonic() - self._second >= PERIOD:
+            self._second = clocks.monotonic()
             self._every_second()
         return bool(batch) or commanded
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import sqlite3
-import time
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from robolink.bag.metadata import ROS_DISTRO, BagMetadata, parse_metadata, spell
 from robolink.bag.offered_qos import profiles_or_none, text_of
 from robolink.bag.storage.base import StorageReader, StorageWriter, Written
 from robolink.bag.topic import BagError, BagMessage, BagTopic
+from robolink.system import clocks
 
 MAGIC = b"SQLite format 3\0"
 SCHEMA_VERSION = 4
@@ -151,7 +151,7 @@ class SqliteWriter(StorageWriter):
         self._size = 0
         self._counts: dict[int, int] = {}
         self._first = self._last = 0
-        self._committed = time.monotonic()
+        self._committed = clocks.monotonic()
 
     @property
     def size(self) -> int:
@@ -198,12 +198,12 @@ class SqliteWriter(StorageWriter):
 
     def tick(self) -> None:
         """Commit what was written, if it is time."""
-        if time.monotonic() - self._committed >= _COMMIT_AFTER:
+        if clocks.monotonic() - self._committed >= _COMMIT_AFTER:
             self.flush()
 
     def flush(self) -> None:
         """Commit what was written."""
-        self._committed = time.monotonic()
+        self._committed = clocks.monotonic()
         if self._database.in_transaction:
             self._run("COMMIT")
 

@@ -7,7 +7,6 @@ import math
 import signal
 import sys
 import threading
-import time
 import uuid
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -21,6 +20,7 @@ from robolink.cli.shared.session import node_of
 from robolink.context import Context
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.interfaces import find, is_named
+from robolink.system import clocks
 from robolink.system.terminal import shown
 from robolink.wire import EndpointKind
 
@@ -79,7 +79,7 @@ def run(action: str, type_: str, values: str, manner: Manner) -> int:
 
         node = node_of(context, manner.node_name)
         given = GivenRequest(node.resolve_topic_name(action), type_, values)
-        deadline = time.monotonic() + manner.timeout
+        deadline = clocks.monotonic() + manner.timeout
         chosen = _wait_for_type(context, given, manner, deadline)
         goal = message_of(chosen.Goal, values)
         client = ActionClient(node, chosen, given.name)
@@ -114,9 +114,9 @@ def _wait_for_type(context: Context, given: GivenRequest, manner: Manner, deadli
     if not _served(context, given):
         _check_early(given)
     manner.say("Waiting for an action server to become available...")
-    patience = time.monotonic() + PATIENCE
+    patience = clocks.monotonic() + PATIENCE
     while not context.graph.wait_for(lambda: _served(context, given), _SLICE):
-        now = time.monotonic()
+        now = clocks.monotonic()
         if now >= deadline:
             raise GoalError(f"gave up after {manner.timeout:g} s: {_why_absent(context, given)}")
         if now >= patience:
@@ -156,7 +156,7 @@ def _why_absent(context: Context, given: GivenRequest) -> str:
 
 def _wait_until(condition: Callable[[], bool], node: Node, deadline: float, problem: str) -> None:
     while not node.context.graph.wait_for(condition, _SLICE):
-        if time.monotonic() >= deadline:
+        if clocks.monotonic() >= deadline:
             raise GoalError(f"gave up: {problem}")
 
 
@@ -177,7 +177,7 @@ class _Sending:
         on_feedback = self._show_feedback if self._manner.feedback else None
         sent = self._client.send_goal_async(goal, on_feedback, goal_id)
         try:
-            self._spin(sent, deadline - time.monotonic())
+            self._spin(sent, deadline - clocks.monotonic())
             if not sent.done():
                 raise GoalError(f"{name} did not answer within {self._manner.timeout:g} s whether it accepts the goal")
             return self._follow(sent.result())
@@ -238,8 +238,8 @@ class _Sending:
 
     def _spin(self, future: Any, seconds: float | None = None) -> None:
         """Wait for a future; raise the error of the output if its reader goes meanwhile."""
-        before, deadline = self._unheard, math.inf if seconds is None else time.monotonic() + max(0.0, seconds)
-        while not future.done() and self._unheard is before and (left := deadline - time.monotonic()) > 0.0:
+        before, deadline = self._unheard, math.inf if seconds is None else clocks.monotonic() + max(0.0, seconds)
+        while not future.done() and self._unheard is before and (left := deadline - clocks.monotonic()) > 0.0:
             self._executor.spin_once_until_future_complete(future, None if left == math.inf else left)
         if self._unheard is not None and self._unheard is not before:
             raise self._unheard

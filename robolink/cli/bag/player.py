@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,6 +15,7 @@ from robolink.cli.shared.output import tell
 from robolink.cli.shared.session import opened
 from robolink.logging import LoggingSeverity
 from robolink.node import Node
+from robolink.system import clocks
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -84,8 +84,8 @@ class _Command:
             while not self._player.ended.is_set() and self._context.ok():
                 self._obey(read(LOOK))
                 rate = self._wish.progress_rate
-                if rate >= 0 and (not rate or time.monotonic() - shown_at >= 1 / rate):
-                    shown_at = time.monotonic()
+                if rate >= 0 and (not rate or clocks.monotonic() - shown_at >= 1 / rate):
+                    shown_at = clocks.monotonic()
                     line.show(self._progress())
                 self._tell_problems()
 

@@ -18,6 +18,7 @@ from robolink.cli.shared.output import complain, say, say_json
 from robolink.cli.shared.session import opened
 from robolink.logging import LoggingSeverity
 from robolink.node import Node
+from robolink.system import clocks
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -77,8 +78,8 @@ class _Command:
             before, shown_at = self._recording.figures(), 0.0
             while not self._is_over():
                 self._obey(read(LOOK))
-                if time.monotonic() - shown_at >= SHOW:
-                    shown_at, now = time.monotonic(), self._recording.figures()
+                if clocks.monotonic() - shown_at >= SHOW:
+                    shown_at, now = clocks.monotonic(), self._recording.figures()
                     line.show(progress(now, before))
                     before = now
 

@@ -11,6 +11,7 @@ from typing import Any
 from robolink.cli.component import asking
 from robolink.cli.shared.output import say
 from robolink.exceptions import RobolinkError
+from robolink.system import clocks
 from robolink.utilities import try_shutdown
 from robolink.workspace import find_executable, load_node
 
@@ -42,8 +43,8 @@ def run(wanted: asking.Wanted, container: str = "") -> None:
 def _load(name: str, wanted: asking.Wanted, failures: list[RobolinkError]) -> None:
     """Load the component as soon as the container is there; end the container if that fails."""
     try:
-        deadline = time.monotonic() + BEGINS_WITHIN
-        while f"/{name}" not in asking.containers() and time.monotonic() < deadline:
+        deadline = clocks.monotonic() + BEGINS_WITHIN
+        while f"/{name}" not in asking.containers() and clocks.monotonic() < deadline:
             time.sleep(0.05)
         answer = asking.load(f"/{name}", wanted)
         say(f"Loaded component {answer.unique_id} into '{name}' container node as '{answer.full_node_name}'")

@@ -5,12 +5,12 @@ from __future__ import annotations
 import collections
 import contextlib
 import queue
-import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from robolink.cli.doctor.facts import ClockOffset, Seen
 from robolink.exceptions import RobolinkError, SecurityError, WireError
+from robolink.system import clocks
 from robolink.system.queues import get_within
 from robolink.transport import connect
 from robolink.wire import (
@@ -96,9 +96,9 @@ def _listed(transport: Transport, domain: int) -> list[str]:
         # Its own domain by name: with security nobody may ask for all domains at once, which others then refuse.
         return sorted({*transport.tokens(graph_pattern()), *transport.tokens(graph_pattern(domain))})
 
-    deadline = time.monotonic() + LIST_WITHIN
+    deadline = clocks.monotonic() + LIST_WITHIN
     found = listing()
-    while time.monotonic() < deadline:
+    while clocks.monotonic() < deadline:
         before, found = found, listing()
         if found == before:
             break
@@ -111,12 +111,12 @@ def _clocks(transport: Transport, tokens: list[NodeToken | EndpointToken]) -> tu
     answers: queue.SimpleQueue[tuple[EndpointToken, int, int, Any]] = queue.SimpleQueue()
     calls = []
     for server in servers:
-        sent = time.time_ns()
+        sent = clocks.now()
         key = format_key(DataKey(server.domain, server.name, server.type_name, server.type_hash))
         attachment = pack_attachment(1, sent, gid_of(format_token(server)))
 
         def sink(arrived: Any, server: EndpointToken = server, sent: int = sent) -> None:
-            answers.put((server, sent, time.time_ns(), arrived))
+            answers.put((server, sent, clocks.now(), arrived))
 
         with contextlib.suppress(SecurityError):  # this enclave may not ask there: that clock remains unknown
             calls.append(transport.call(key, _nothing_asked(server.type_name), attachment, sink))
@@ -148,8 +148,8 @@ def _answered(
 ) -> tuple[ClockOffset, ...]:
     """Collect answers until each call has ended, or the timeout."""
     found: list[ClockOffset] = []
-    deadline = time.monotonic() + CLOCKS_WITHIN
-    while calls and (left := deadline - time.monotonic()) > 0:
+    deadline = clocks.monotonic() + CLOCKS_WITHIN
+    while calls and (left := deadline - clocks.monotonic()) > 0:
         try:
             server, sent, received, arrived = get_within(answers, left)
         except queue.Empty:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -14,6 +13,7 @@ from robolink.context import Context
 from robolink.exceptions import RobolinkError, nearest
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.sensor_msgs.msg import CompressedImage, Image
+from robolink.system import clocks
 from robolink.task import Future
 from robolink.wire import EndpointKind
 
@@ -82,18 +82,18 @@ class _Taker:
 
 def _wait_for(context: Context, name: str, timeout: float | None) -> None:
     """Wait until somebody publishes the topic. Raises NoImageError after the timeout, and KeyboardInterrupt."""
-    graph, begin, told = context.graph, time.monotonic(), False
+    graph, begin, told = context.graph, clocks.monotonic(), False
 
     def published() -> bool:
         return bool(graph.endpoints(EndpointKind.PUBLISHER, name=name)) or not context.ok()
 
     while not published():
-        spent = time.monotonic() - begin
+        spent = clocks.monotonic() - begin
         if timeout is not None and spent >= timeout:
             near = nearest(name, {each.name for each in graph.endpoints(EndpointKind.PUBLISHER)})
             raise NoImageError(f"nobody publishes {name}{near}, and {timeout:g} s have passed")
         graph.wait_for(published, 0.5 if timeout is None else min(0.5, timeout - spent))
-        if not told and time.monotonic() - begin > TOLD_AFTER:
+        if not told and clocks.monotonic() - begin > TOLD_AFTER:
             tell(f"waiting for somebody to publish {name}")
             told = True
     if not context.ok():

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from robolink.cli.shared.layout import aligned, shown_time
 from robolink.cli.shared.output import say, say_json
 from robolink.exceptions import NotFoundError
+from robolink.system import clocks
 from robolink.system.terminal import fit, shown
 from robolink.text.names import meant, the_one
 
@@ -187,8 +188,8 @@ def _stopped(launcher: Launcher, before: Status) -> str:
     from robolink.supervisor.control.client import LauncherError, LauncherGoneError
     from robolink.supervisor.rules import Step, described, is_orderly
 
-    deadline = time.monotonic() + STOPPED_WITHIN
-    while time.monotonic() < deadline:
+    deadline = clocks.monotonic() + STOPPED_WITHIN
+    while clocks.monotonic() < deadline:
         try:
             now = next(each for each in launcher.status().nodes if each.name == before.name)
         except LauncherGoneError:
@@ -242,7 +243,7 @@ def _data(launcher: Launcher, answer: Response | str) -> dict[str, Any]:
 
 def _block(launcher: Launcher, answer: Response | str) -> list[str]:
     """Return the lines of --status about a launcher."""
-    now = time.time()
+    now = clocks.time_of_day()
     if isinstance(answer, str):
         return [answer]
     rows = [["NODE", "STATE", "SINCE", "PID", "RESTARTS", "LAST EXIT"]]
@@ -304,7 +305,7 @@ def _table(nodes: Sequence[Status], usage: Mapping[str, Usage]) -> list[list[str
     whole = Usage(cpu, memory, sum(each.processes for each in usage.values()))
     rows = [["NODE", "CPU", "MEMORY", "UP", "RESTARTS", "STATE"]]
     rows.append([f"all {len(nodes)}", shown_cpu(whole.cpu), shown_memory(whole.memory), "", "", ""])
-    now = time.time()
+    now = clocks.time_of_day()
     for each in nodes:
         used = usage.get(each.name)
         figures = ["-", "-", "-"]
@@ -331,4 +332,4 @@ def _used(launcher: Launcher, answer: Response, usage: Mapping[str, Usage]) -> d
                 "processes": 0 if used is None else used.processes,
             }
         )
-    return {"at": time.time(), "launch": launcher.name, "pid": launcher.pid, "nodes": nodes}
+    return {"at": clocks.time_of_day(), "launch": launcher.name, "pid": launcher.pid, "nodes": nodes}

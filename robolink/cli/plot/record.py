@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -13,6 +12,7 @@ from robolink.cli.shared.pictures import check_picture
 from robolink.cli.shared.types import message_type
 from robolink.exceptions import RobolinkError, nearest
 from robolink.executors import SingleThreadedExecutor
+from robolink.system import clocks
 from robolink.task import Future
 from robolink.wire import EndpointKind
 
@@ -66,27 +66,27 @@ def _check_window() -> None:
 
 
 def deadline(wish: Wish) -> float | None:
-    """Return the moment (of `time.monotonic`) until which there must be a publisher; None for no limit."""
-    return None if wish.duration is None else time.monotonic() + max(wish.duration, LEAST_WAIT)
+    """Return the moment (of `clocks.monotonic`) until which there must be a publisher; None for no limit."""
+    return None if wish.duration is None else clocks.monotonic() + max(wish.duration, LEAST_WAIT)
 
 
 def wait_for(context: Context, topic: str, deadline: float | None) -> type[Any]:
     """Wait until a topic, named in full, has a publisher, and return its message class.
 
-    Raises `PlotError` if there is none until `deadline` (of `time.monotonic`), and KeyboardInterrupt.
+    Raises `PlotError` if there is none until `deadline` (of `clocks.monotonic`), and KeyboardInterrupt.
     """
-    graph, begin, told = context.graph, time.monotonic(), False
+    graph, begin, told = context.graph, clocks.monotonic(), False
 
     def published() -> bool:
         return bool(graph.endpoints(EndpointKind.PUBLISHER, name=topic)) or not context.ok()
 
     while not published():
-        left = None if deadline is None else deadline - time.monotonic()
+        left = None if deadline is None else deadline - clocks.monotonic()
         if left is not None and left <= 0:
             near = nearest(topic, {each.name for each in graph.endpoints(EndpointKind.PUBLISHER)})
             raise PlotError(f"nobody publishes {topic}{near}: see `robolink topic list`")
         graph.wait_for(published, min(0.5, left) if left is not None else 0.5)
-        if not told and time.monotonic() - begin > TOLD_AFTER:
+        if not told and clocks.monotonic() - begin > TOLD_AFTER:
             tell(f"waiting for somebody to publish {topic}")
             told = True
     if not context.ok():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ from robolink.cli.plot.record import PlotError, Wish, check, deadline, listen, s
 from robolink.cli.shared import show as fields
 from robolink.cli.shared.session import node_of, opened
 from robolink.exceptions import EncodeError
+from robolink.system import clocks
 from robolink.wire import EndpointKind
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class Curve:
             self.lacked = _without_option(error)
             return
         self.values.append(float(value[0] if isinstance(value, bytes) else value))  # ROS's byte is bytes
-        self.arrived.append(time.monotonic())
+        self.arrived.append(clocks.monotonic())
         stamp = getattr(getattr(message, "header", None), "stamp", None)
         if stamp is not None and (stamp.sec or stamp.nanosec):
             self.stamped.append(stamp.sec + stamp.nanosec * 1e-9)
@@ -91,7 +91,7 @@ def _parted(node: Node, asked: str, until: float | None) -> tuple[str, str]:
     while not published():
         if not node.context.ok():
             raise KeyboardInterrupt
-        if until is not None and time.monotonic() > until:
+        if until is not None and clocks.monotonic() > until:
             raise PlotError(f"'{asked}' names no field of a topic that is published: write TOPIC.FIELD, as in /odom.x")
         node.context.graph.wait_for(lambda: bool(published()) or not node.context.ok(), 0.5)
     topic = published()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.cli.shared import show
@@ -13,6 +12,7 @@ from robolink.cli.shared.requests import GivenRequest, message_of
 from robolink.cli.shared.session import node_of, opened
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.interfaces import find, is_named
+from robolink.system import clocks
 from robolink.system.terminal import shown
 from robolink.wire import EndpointKind
 
@@ -62,19 +62,19 @@ def run(service: str, type_: str, values: str, manner: Manner) -> None:
 
         node = node_of(context, manner.node_name)
         given = GivenRequest(node.resolve_service_name(service), type_, values)
-        deadline = time.monotonic() + manner.timeout
+        deadline = clocks.monotonic() + manner.timeout
         srv_type = _wait_for_type(context, given, manner, deadline)
         request = message_of(srv_type.Request, values)
         client = node.create_client(srv_type, given.name)
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(node)
         while True:
-            began = time.monotonic()
+            began = clocks.monotonic()
             _call(client, executor, request, manner, deadline)
             if manner.rate is None:
                 return
             _sleep(executor, began + 1.0 / manner.rate)
-            deadline = time.monotonic() + manner.timeout
+            deadline = clocks.monotonic() + manner.timeout
 
 
 def _wait_for_type(context: Context, given: GivenRequest, manner: Manner, deadline: float) -> type[Any]:
@@ -102,9 +102,9 @@ def _served(context: Context, given: GivenRequest) -> bool:
 
 
 def _wait(context: Context, given: GivenRequest, manner: Manner, deadline: float) -> None:
-    patience = time.monotonic() + PATIENCE
+    patience = clocks.monotonic() + PATIENCE
     while not context.graph.wait_for(lambda: _served(context, given) or not context.ok(), _SLICE):
-        now = time.monotonic()
+        now = clocks.monotonic()
         if now >= deadline:
             raise CallError(f"gave up after {manner.timeout:g} s: {_why_absent(context, given)}")
         if now >= patience:
@@ -129,10 +129,10 @@ def _call(client: Client, executor: Executor, request: Any, manner: Manner, dead
     if not manner.json:
         say(f"requester: making request: {request!r}\n")
     future = client.try_call_async(request)
-    _spin(executor, future, min(PATIENCE, deadline - time.monotonic()))
-    if not future.done() and time.monotonic() < deadline:
+    _spin(executor, future, min(PATIENCE, deadline - clocks.monotonic()))
+    if not future.done() and clocks.monotonic() < deadline:
         tell(f"waiting: {_server_of(executor, client)} has not answered yet")
-        _spin(executor, future, deadline - time.monotonic())
+        _spin(executor, future, deadline - clocks.monotonic())
     if not future.done():
         client.remove_pending_request(future)
         raise CallError(f"no answer within {manner.timeout:g} s from {_server_of(executor, client)}")
@@ -152,7 +152,7 @@ def _spin(executor: Executor, future: Any, seconds: float) -> None:
 def _sleep(executor: Executor, until: float) -> None:
     from robolink.task import Future
 
-    _spin(executor, Future[None](), until - time.monotonic())
+    _spin(executor, Future[None](), until - clocks.monotonic())
 
 
 def _server_of(executor: Executor, client: Client) -> str:

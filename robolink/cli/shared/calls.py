@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from robolink.cli.shared.session import node_of
 from robolink.exceptions import RobolinkError, ServiceError
 from robolink.executors import SingleThreadedExecutor
+from robolink.system import clocks
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -30,13 +30,13 @@ def call_all(
         within: Timeout of all answers, in seconds.
         no_answer: Makes the error of a service that does not answer in time.
     """
-    deadline = time.monotonic() + within
+    deadline = clocks.monotonic() + within
     with SingleThreadedExecutor(context=context) as executor:
         asker = node_of(context)
         executor.add_node(asker)
         futures = {name: asker.create_client(srv_type, name).try_call_async(each) for name, each in requests.items()}
         for future in futures.values():
-            executor.spin_until_future_complete(future, timeout_sec=max(0.0, deadline - time.monotonic()))
+            executor.spin_until_future_complete(future, timeout_sec=max(0.0, deadline - clocks.monotonic()))
             if not context.ok():
                 raise KeyboardInterrupt
         answers = {name: _answer(name, future, no_answer) for name, future in futures.items()}

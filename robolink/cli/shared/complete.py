@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from robolink.system import waits
+
 if TYPE_CHECKING:
     from robolink.graph.graph import Token
 
@@ -195,7 +197,7 @@ def announced() -> list[Token]:
     complete = threading.Event()
     # In the background, since opening a session may hang: on a network that does not answer, say.
     threading.Thread(target=_look, args=(texts, complete), name="robolink completion", daemon=True).start()
-    complete.wait(WITHIN)
+    waits.wait(complete, WITHIN)
     found = []
     for text, alive in list(texts.items()):
         with contextlib.suppress(Exception):

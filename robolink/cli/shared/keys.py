@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 
+from robolink.system import clocks
 from robolink.text.keys import split_keys
 
 Read = Callable[[float], str]
@@ -82,8 +83,8 @@ def _typed_on_windows(timeout: float) -> str:
     if sys.platform == "win32":
         import msvcrt
 
-        deadline = time.monotonic() + timeout
-        while not msvcrt.kbhit() and time.monotonic() < deadline:
+        deadline = clocks.monotonic() + timeout
+        while not msvcrt.kbhit() and clocks.monotonic() < deadline:
             time.sleep(_WINDOWS_LOOK)
         # An arrow is two: the second waits in a buffer into which `kbhit` looks for `getch`, not for `getwch`.
         while msvcrt.kbhit():

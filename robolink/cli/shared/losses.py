@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING
 
 from robolink.cli.shared.session import node_of
 from robolink.executors import SingleThreadedExecutor
 from robolink.node_parts.losses import TOPIC, Losses, losses_in
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
+from robolink.system import clocks
 from robolink.wire import EndpointKind
 
 if TYPE_CHECKING:
@@ -44,11 +44,11 @@ class ReportedLosses:
             self._listen()
         if self._executor is None:
             return {}
-        end = time.monotonic() + within
+        end = clocks.monotonic() + within
         heard = -1
-        while heard != self._heard or (self._waits_for and time.monotonic() < end):
+        while heard != self._heard or (self._waits_for and clocks.monotonic() < end):
             heard = self._heard
-            self._executor.spin_once(timeout_sec=max(0.0, end - time.monotonic()) if self._waits_for else 0.0)
+            self._executor.spin_once(timeout_sec=max(0.0, end - clocks.monotonic()) if self._waits_for else 0.0)
         return dict(self._found)
 
     def _listen(self) -> None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
-import time
 from typing import Any
+
+from robolink.system import clocks
 
 LONG = 2.0
 """Delay until a person is shown the progress, in seconds of real time."""
@@ -24,7 +25,7 @@ class Progress:
         self.shown = done
         if self._bar is not None:
             self._bar.update(self._task, completed=done)
-        elif sys.stderr is not None and sys.stderr.isatty() and time.monotonic() - self._begin > LONG:
+        elif sys.stderr is not None and sys.stderr.isatty() and clocks.monotonic() - self._begin > LONG:
             self._open()
             self.show(done)
 
@@ -43,7 +44,7 @@ class Progress:
         self._bar.start()
 
     def __enter__(self) -> Progress:
-        self._begin = time.monotonic()
+        self._begin = clocks.monotonic()
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -12,6 +11,7 @@ from robolink.cli.shared.session import node_of, opened
 from robolink.cli.shared.silence import PATIENCE
 from robolink.cli.tf.watch import NoTransformsError, Watch
 from robolink.exceptions import RobolinkError
+from robolink.system import clocks
 from robolink.task import Future
 from robolink.tf2 import listing
 from robolink.tf2.cache import LATEST
@@ -86,7 +86,7 @@ def run(source: str, target: str, wish: Wish) -> None:
 
 def _wait(watch: Watch, source: str, target: str, timeout: float | None) -> None:
     """Wait for the first transform; print after a second why there is none, again if the reason changes."""
-    begin, told = time.monotonic(), ""
+    begin, told = clocks.monotonic(), ""
     came: Future[None] = Future()
 
     def look() -> None:
@@ -95,7 +95,7 @@ def _wait(watch: Watch, source: str, target: str, timeout: float | None) -> None
 
     watch.on_news = look
     while not came.done():
-        left = math.inf if timeout is None else timeout - (time.monotonic() - begin)
+        left = math.inf if timeout is None else timeout - (clocks.monotonic() - begin)
         if left <= 0:
             raise NoTransformsError(f"gave up after {timeout:g} s: {why_not(watch, source, target)}")
         watch.listen(min(PATIENCE, left), came)
@@ -123,7 +123,7 @@ def _show(watch: Watch, source: str, target: str, *, json: bool) -> None:
     try:
         found = Found(source, target, *watch.tree.transform(source, target, LATEST, ASKER))
     except TransformException as error:  # there was one: the tree has changed
-        text = f"Failure at {time.time():.6f}\nException thrown:{error}\nThe current list of frames is:"
+        text = f"Failure at {clocks.time_of_day():.6f}\nException thrown:{error}\nThe current list of frames is:"
         say_json({"error": str(error)}) if json else say(f"{text}\n{listing.as_text(watch.tree.caches)}")
         return
     say_json(found.data()) if json else say(found.text())

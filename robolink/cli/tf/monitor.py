@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable
 from typing import Any
 
@@ -11,6 +10,7 @@ from robolink.cli.shared.output import say, say_json, tell
 from robolink.cli.shared.session import node_of, opened
 from robolink.cli.tf.echo import ASKER, why_not
 from robolink.cli.tf.watch import Seen, Watch
+from robolink.system import clocks
 from robolink.tf2.cache import LATEST
 from robolink.tf2.exceptions import TransformException
 
@@ -63,7 +63,7 @@ def _text(watch: Watch, chain: list[str] | None) -> str:
 
 def _net_delay(watch: Watch, chain: list[str]) -> str:
     stamp = watch.tree.path(chain[-1], chain[0], LATEST, ASKER)[1]
-    delay = f"{(time.time_ns() - stamp) / 1e9:.6g}" if stamp else "0 (all of it is static)"
+    delay = f"{(clocks.now() - stamp) / 1e9:.6g}" if stamp else "0 (all of it is static)"
     return f"Net delay     now = {delay}"
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from robolink.cli.shared.output import say
 from robolink.cli.tf import echo, monitor, tree
 from robolink.exceptions import RobolinkError
+from robolink.system import clocks
 from robolink.utilities import remove_ros_args
 
 ECHO_USAGE = "tf2_echo SOURCE_FRAME TARGET_FRAME [RATE]"
@@ -53,7 +54,7 @@ def view_frames() -> None:
     say(f"Listening to tf data for {wait:g} seconds...")
     graph = Path(f"{name}.gv")
     links = list(tree.listened(wait).links.values())
-    graph.write_text(tree.graph(links, time.time_ns()) + "\n", encoding="utf-8")
+    graph.write_text(tree.graph(links, clocks.now()) + "\n", encoding="utf-8")
     program = shutil.which("dot")
     if program is None:
         say(f"{graph} has the graph; a PDF needs Graphviz: dot -Tpdf {graph} -o {name}.pdf")

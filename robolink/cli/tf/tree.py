@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import sys
-import time
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from robolink.cli.shared.output import say, say_json
 from robolink.cli.shared.session import node_of, opened
 from robolink.cli.tf.watch import TOPICS, NoTransformsError, Seen, Watch
+from robolink.system import clocks
 from robolink.system.terminal import shown
 from robolink.tf2.listing import Frame, as_dot
 
@@ -38,7 +38,7 @@ class Node(NamedTuple):
 def run(wait: float, topics: tuple[str, str], form: str) -> None:
     """Listen, then show the tree as ``text``, ``json`` or ``dot``. Raises NoTransformsError if nothing comes."""
     watch = listened(wait, topics)
-    links, now = list(watch.links.values()), time.time_ns()
+    links, now = list(watch.links.values()), clocks.now()
     found = nodes(links, now)
     wrong = [*problems(found, links), *refusals(watch.refused)]
     if form == "json":

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -14,6 +13,7 @@ from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.node import Node
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.subscription import MessageInfo, Subscription
+from robolink.system import clocks
 from robolink.task import Future
 from robolink.tf2.core import CACHE_TIME, nanoseconds
 from robolink.tf2.rigid import Rigid
@@ -94,8 +94,8 @@ class Watch:
 
     def await_names(self, patience: float) -> None:
         """Record on until all senders are known by name, for `patience` seconds at most."""
-        deadline = time.monotonic() + patience
-        while self._nameless and time.monotonic() < deadline:
+        deadline = clocks.monotonic() + patience
+        while self._nameless and clocks.monotonic() < deadline:
             self.listen(0.05)
 
     def why_nothing(self) -> str:
@@ -107,7 +107,7 @@ class Watch:
 
     def _taker(self, static: bool) -> Callable[[TFMessage, MessageInfo], None]:
         def take(message: TFMessage, info: MessageInfo) -> None:
-            sender, now = self._name(info["sender"]), time.time_ns()  # type: ignore[typeddict-item]
+            sender, now = self._name(info["sender"]), clocks.now()  # type: ignore[typeddict-item]
             for each in message.transforms:
                 self._note(each, sender, static, now)
             if self.on_news is not None:

@@ -8,11 +8,12 @@ those that a launcher has started are known by name.
 from __future__ import annotations
 
 import contextlib
-import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import psutil
+
+from robolink.system import clocks
 
 if TYPE_CHECKING:
     from robolink.transport.reach import Link
@@ -108,7 +109,7 @@ class Processes:
             sessions: Full names of the nodes of each session.
         """
         here = frozenset(sessions)
-        missing, now = here - self._pids.keys(), time.monotonic()
+        missing, now = here - self._pids.keys(), clocks.monotonic()
         if missing and (here != self._seen or now - self._looked > LOOK_AGAIN):
             self._seen, self._looked = here, now
             self._pids = self._found(sessions)

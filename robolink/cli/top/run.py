@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import sys
-import time
 
 from robolink.cli.shared.keys import keys
 from robolink.cli.shared.output import say, say_json
@@ -12,6 +11,7 @@ from robolink.cli.shared.session import node_of, opened
 from robolink.cli.top.measuring import Meter
 from robolink.cli.top.screen import Screen, show
 from robolink.cli.top.table import View, chosen, data, lines
+from robolink.system import clocks
 
 
 def top(view: View, every: float, *, once: bool, json: bool, with_traffic: bool) -> None:
@@ -31,15 +31,15 @@ def top(view: View, every: float, *, once: bool, json: bool, with_traffic: bool)
                 show(Screen(view, domain), meter.look, every, read, lambda: not context.ok())
             return
         meter.look()
-        due = time.monotonic()
+        due = clocks.monotonic()
         while True:
             due += every
-            condition(lambda: not context.ok(), max(0.0, due - time.monotonic()))
+            condition(lambda: not context.ok(), max(0.0, due - clocks.monotonic()))
             if not context.ok():
                 return
             shown = chosen(meter.look(), view)
             if json:
-                say_json({"at": time.time(), "domain": domain, **data(shown)})
+                say_json({"at": clocks.time_of_day(), "domain": domain, **data(shown)})
             else:
                 say("\n".join(lines(shown, domain)))
             if once:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import shutil
 import sys
-import time
 from collections.abc import Callable, Sequence
 
 from robolink.cli.shared.keys import Read
@@ -25,6 +24,7 @@ from robolink.cli.top.table import (
     summary,
     topic_cells,
 )
+from robolink.system import clocks
 from robolink.system.terminal import fit
 
 ENTER, LEAVE = "\x1b[?1049h\x1b[?25l", "\x1b[?25h\x1b[?1049l"
@@ -135,7 +135,7 @@ def show(screen: Screen, look: Callable[[], Shown], every: float, read: Read, is
         os.system("")  # switches the console to ANSI control sequences
     sys.stdout.write(ENTER)
     try:
-        shown, due, before = look(), time.monotonic() + min(0.3, every), ""
+        shown, due, before = look(), clocks.monotonic() + min(0.3, every), ""
         while not screen.is_done and not is_over():
             columns, rows = shutil.get_terminal_size()
             text = screen.text(shown, columns, rows)
@@ -143,10 +143,10 @@ def show(screen: Screen, look: Callable[[], Shown], every: float, read: Read, is
                 sys.stdout.write(text)
                 sys.stdout.flush()
                 before = text
-            if key := read(min(SLICE, max(0.0, due - time.monotonic()))):
+            if key := read(min(SLICE, max(0.0, due - clocks.monotonic()))):
                 screen.press(key)
-            elif time.monotonic() >= due:
-                due = time.monotonic() + every
+            elif clocks.monotonic() >= due:
+                due = clocks.monotonic() + every
                 shown = shown if screen.is_paused else look()
     finally:
         sys.stdout.write(LEAVE)

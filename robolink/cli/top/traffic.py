@@ -16,7 +16,7 @@ from robolink.exceptions import RobolinkError, TransportClosedError
 from robolink.graph.graph import EVERY
 from robolink.graph.listening import ALL_BEST_EFFORT, keys_of, listen
 from robolink.running.timed_arrivals import timed_arrival
-from robolink.system import clocks
+from robolink.system import clocks, waits
 from robolink.wire import EndpointKind, EndpointToken, is_attachment, unpack_attachment
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ class Traffic:
         for each in self._handles:
             each.close()
         self._queue.put(None)
-        self._thread.join(1.0)
+        waits.join(self._thread, 1.0)
 
     def _on_publisher(self, gid: bytes, token: EndpointToken, alive: bool) -> None:
         keys = keys_of(token) - self._heard

@@ -8,14 +8,13 @@ from __future__ import annotations
 import functools
 import queue
 import threading
-import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import RobolinkError
 from robolink.graph.listening import ALL_BEST_EFFORT, keys_of, listen
 from robolink.running.timed_arrivals import timed_arrival
-from robolink.system import clocks
+from robolink.system import clocks, waits
 from robolink.transport.base import Handle
 from robolink.wire import EndpointKind, EndpointToken
 
@@ -56,14 +55,14 @@ class Arrivals:
                 self._subscribe(publisher, keys, self._listeners[publisher.name](publisher))
 
     def wait(self, until: float) -> None:
-        """Wait until a time of `time.monotonic`, and follow meanwhile. Raises KeyboardInterrupt if the context ends."""
+        """Wait until a time of `monotonic`, and follow meanwhile. Raises KeyboardInterrupt if the context ends."""
         graph, context = self._context.graph, self._context
 
         def stirred() -> bool:
             return self._error is not None or not context.ok() or bool(self._unheard())
 
         while True:
-            left = until - time.monotonic()
+            left = until - clocks.monotonic()
             if left > 0:
                 graph.wait_for(stirred, left)
             if not context.ok():
@@ -77,7 +76,7 @@ class Arrivals:
         for each in self._declared:
             each.close()
         self._queue.put(None)
-        self._thread.join(1.0)
+        waits.join(self._thread, 1.0)
 
     def _unheard(self) -> list[EndpointToken]:
         graph = self._context.graph

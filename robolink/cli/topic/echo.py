@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,6 +18,7 @@ from robolink.exceptions import RobolinkError
 from robolink.executors import SingleThreadedExecutor
 from robolink.message import type_hash
 from robolink.subscription import MessageInfo
+from robolink.system import clocks
 from robolink.task import Future
 from robolink.wire import EndpointKind
 
@@ -76,14 +76,14 @@ class Wish(NamedTuple):
 
 def run(topic: str, wish: Wish, form: Format) -> None:
     """Show what is published on a topic; one message if `once`, else until Ctrl-C or the timeout."""
-    begin = time.monotonic()
+    begin = clocks.monotonic()
     with opened() as context:
         node = node_of(context, wish.node_name)
         name = node.resolve_topic_name(topic)
         told = wish.type_name == "" and _wait_for_topic(context, name, wish.timeout)
         msg_type = message_type(context, name, wish.type_name)
         passes = _passes(msg_type, form, wish.filter)
-        left = None if wish.timeout is None else max(wish.timeout - (time.monotonic() - begin), 0.0)
+        left = None if wish.timeout is None else max(wish.timeout - (clocks.monotonic() - begin), 0.0)
         if not _Echo(node, name, msg_type, wish, form, passes).run(left, told) and wish.timeout is not None:
             raise NothingCameError(f"no message on {name} within {wish.timeout:g} s")
 
@@ -121,7 +121,7 @@ class _Echo:
 
     def run(self, timeout: float | None, told: bool) -> int:
         """Show messages until the end, and return how many were shown."""
-        end = None if timeout is None else time.monotonic() + timeout
+        end = None if timeout is None else clocks.monotonic() + timeout
         # Why nothing comes is told here, in this command's words.
         events = SubscriptionEventCallbacks(message_lost=self.on_lost, use_default_callbacks=False)
         self.node.create_subscription(
@@ -134,7 +134,7 @@ class _Echo:
                 executor.spin_until_future_complete(self.first, timeout_sec=patience)
                 if not self.first.done() and patience == PATIENCE:
                     tell(silence.why_silent(self.node.context, self.name, self.wanted()))
-            left = None if end is None else max(end - time.monotonic(), 0.0)
+            left = None if end is None else max(end - clocks.monotonic(), 0.0)
             executor.spin_until_future_complete(self.done, timeout_sec=left)
         if self.done.done():
             self.done.result()
@@ -171,13 +171,13 @@ class _Echo:
 
 def _wait_for_topic(context: Context, name: str, timeout: float | None) -> bool:
     """Wait until the topic has an endpoint; return True if the reason for the wait was printed."""
-    begin, told = time.monotonic(), False
+    begin, told = clocks.monotonic(), False
 
     def known() -> bool:
         return bool(context.graph.endpoints(EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION, name=name))
 
     while not known():
-        spent = time.monotonic() - begin
+        spent = clocks.monotonic() - begin
         if timeout is not None and spent >= timeout:
             raise NothingCameError(f"nobody publishes {name}: its type is not known, and {timeout:g} s have passed")
         if not context.ok():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -83,7 +82,7 @@ def delay(topic: str, flags: Flags) -> None:
     """Print the delay from the stamp in the header to the arrival of messages."""
     with opened() as context:
         meter = Meter(lambda publisher, window: _delayed(context, publisher, window), [], _delay, _no_figures("delay"))
-        _measure(context, [topic], flags, meter, clock=time.time_ns)
+        _measure(context, [topic], flags, meter, clock=clocks.now)
 
 
 def _measure(
@@ -111,7 +110,7 @@ def _measure(
 
 
 def _report(context: Context, arrivals: Arrivals, windows: dict[str, rates.Window], meter: Meter, flags: Flags) -> None:
-    begin, rounds = time.monotonic(), 0
+    begin, rounds = clocks.monotonic(), 0
     explained = False
     while True:
         rounds += 1

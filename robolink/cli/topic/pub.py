@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import re
 import sys
-import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -18,6 +17,7 @@ from robolink.documents.yamlfile import parse
 from robolink.event_handler import PublisherEventCallbacks
 from robolink.exceptions import DocumentError, RobolinkError, nearest
 from robolink.executors import Executor, SingleThreadedExecutor
+from robolink.system import clocks
 from robolink.system.terminal import shown
 from robolink.task import Future
 from robolink.wire import EndpointKind
@@ -132,19 +132,19 @@ def _wait(executor: Executor, publisher: Publisher[Any], count: int, longest: fl
 
     A new peer may first ask this node for its type, so it has to spin.
     """
-    end = None if longest is None else time.monotonic() + longest
+    end = None if longest is None else clocks.monotonic() + longest
     while publisher.get_subscription_count() < count:
-        if end is not None and time.monotonic() >= end:
+        if end is not None and clocks.monotonic() >= end:
             found = publisher.get_subscription_count()
             raise MatchTimeoutError(
                 f"timed out waiting for subscribers: expected {count}, but there are only {found} of"
                 f" {publisher.topic_name} with type {publisher.msg_type.__ros_type__}"
             )
         say(f"Waiting for at least {count} matching subscription(s)...")
-        told = time.monotonic()
+        told = clocks.monotonic()
         until = told + 1.0 if end is None else min(end, told + 1.0)
-        while publisher.get_subscription_count() < count and time.monotonic() < until:
-            executor.spin_once(timeout_sec=max(0.0, until - time.monotonic()))
+        while publisher.get_subscription_count() < count and clocks.monotonic() < until:
+            executor.spin_once(timeout_sec=max(0.0, until - clocks.monotonic()))
 
 
 def _loop(node: Node, executor: Executor, publisher: Publisher[Any], messages: list[Stamped], wish: Wish) -> None:

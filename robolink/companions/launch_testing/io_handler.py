@@ -10,6 +10,7 @@ from robolink.companions.launch.actions.processes import ExecuteLocal
 from robolink.companions.launch.events.process import ProcessIO
 from robolink.companions.launch_testing.asserts import Process, assertInStdout
 from robolink.companions.launch_testing.util import NoMatchingProcessException, resolveProcesses
+from robolink.system import waits
 
 __all__ = ["ActiveIoHandler", "IoHandler"]
 
@@ -65,8 +66,7 @@ class ActiveIoHandler(IoHandler):
             condition: The condition; it is asked again whenever something was written.
             timeout: Longest wait in seconds; None has no limit.
         """
-        with self._changed:
-            return self._changed.wait_for(condition, timeout)
+        return waits.wait_for(self._changed, condition, timeout)
 
     def assertWaitFor(self, expected_output: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N802 - ROS 2's name
         """Raise AssertionError unless an output comes in time.

@@ -9,6 +9,7 @@ from typing import Any
 from robolink.companions.launch.actions.processes import ExecuteLocal
 from robolink.companions.launch.events.process import ProcessExited, RunningProcessEvent
 from robolink.companions.launch_testing.util import NoMatchingProcessException, name_of, resolveProcesses
+from robolink.system import waits
 
 __all__ = ["ActiveProcInfoHandler", "ProcInfoHandler"]
 
@@ -66,8 +67,7 @@ class ActiveProcInfoHandler(ProcInfoHandler):
             condition: The condition; it is asked again whenever a process has started or ended.
             timeout: Longest wait in seconds; None has no limit.
         """
-        with self._changed:
-            return self._changed.wait_for(condition, timeout)
+        return waits.wait_for(self._changed, condition, timeout)
 
     def assertWaitForStartup(  # noqa: N802 - ROS 2's name
         self, process: ExecuteLocal | str | None, cmd_args: Any = None, *, timeout: float = 10

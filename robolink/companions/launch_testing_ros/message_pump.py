@@ -7,6 +7,7 @@ import threading
 from robolink.context import Context
 from robolink.executors import SingleThreadedExecutor
 from robolink.node import Node
+from robolink.system import waits
 
 _ENDS_WITHIN = 5.0
 """Timeout of its end, in s."""
@@ -32,8 +33,7 @@ class MessagePump:
     def stop(self) -> None:
         """Spin no more. Raises TimeoutError if a callback does not end."""
         self._is_over.set()
-        self._thread.join(_ENDS_WITHIN)
-        if self._thread.is_alive():
+        if not waits.join(self._thread, _ENDS_WITHIN):
             raise TimeoutError("a callback of the node does not end")
 
     def _run(self) -> None:

@@ -13,6 +13,7 @@ from robolink.context import Context
 from robolink.exceptions import ExternalShutdownException
 from robolink.executors import SingleThreadedExecutor
 from robolink.node import Node
+from robolink.system import waits
 
 
 class WaitForTopics:
@@ -53,12 +54,12 @@ class WaitForTopics:
             self._is_subscribed = True
             for name, kind in self.topic_tuples:
                 self._node.create_subscription(kind, name, self._hear(name), 10)
-        return self._all_came.wait(self.timeout)
+        return waits.wait(self._all_came, self.timeout)
 
     def shutdown(self) -> None:
         """Leave the network."""
         self._context.try_shutdown()
-        self._thread.join()
+        waits.join(self._thread)
 
     def topics_received(self) -> set[str]:
         """Return the topics that have got a message."""

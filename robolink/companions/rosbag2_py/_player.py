@@ -18,6 +18,7 @@ from robolink.companions.rosbag2_py._session import LOOK, Session, level_of
 from robolink.companions.rosbag2_py._storage import StorageOptions
 from robolink.logging import LoggingSeverity
 from robolink.qos import QoSProfile
+from robolink.system import waits
 
 
 class ServiceRequestsSource(IntEnum):
@@ -162,7 +163,7 @@ class Player:
 
     def wait_for_playback_to_start(self, timeout: float = -1.0) -> bool:
         """Wait until `play` was called, `timeout` seconds at most (for ever below 0); True if it was."""
-        return self._playing.started.wait(timeout if timeout >= 0 else None)
+        return waits.wait(self._playing.started, timeout if timeout >= 0 else None)
 
     def wait_for_playback_to_finish(self, timeout: float = -1.0) -> bool:
         """Wait until all is played, `timeout` seconds at most (for ever below 0); True if it is."""

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import argparse
 import sys
-import time
 
 import robolink
 from robolink.counterparts.nav2_map_server.map_files import FORMATS, MODES, Saving
 from robolink.counterparts.nav2_map_server.map_saver_server import declare_saving, save_topic, saving_of
 from robolink.counterparts.program import own_words
 from robolink.node import Node
+from robolink.system import clocks
 
 
 def main(args: list[str] | None = None) -> int:
@@ -22,7 +22,7 @@ def main(args: list[str] | None = None) -> int:
     with robolink.init(args=args):
         node = Node("map_saver")
         declare_saving(node)
-        defaults = saving_of(node, words.f or f"map_{int(time.time())}")
+        defaults = saving_of(node, words.f or f"map_{int(clocks.time_of_day())}")
         wanted = Saving(
             defaults.path,
             words.fmt,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robolink.exceptions import RobolinkError
 from robolink.launch.ros.stage import NODE
+from robolink.system import waits
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -79,4 +80,4 @@ class NodeThread:
         """Leave the network."""
         if self._thread is not None and self._node is not None:
             self._node.context.try_shutdown()
-            self._thread.join(_LEAVING)
+            waits.join(self._thread, _LEAVING)

@@ -16,6 +16,7 @@ from robolink.supervisor.control.registry import (
     runtime_folder,
     unregister,
 )
+from robolink.system import clocks
 from robolink.system.terminal import shown
 
 ANSWER_WITHIN = 3.0
@@ -96,7 +97,7 @@ class Launcher:
         seconds = ANSWER_WITHIN if within is None else within
         try:
             with connect(self._registration.address, seconds) as connection:
-                peer = Connection(connection, self._registration.key, time.monotonic() + seconds)
+                peer = Connection(connection, self._registration.key, clocks.monotonic() + seconds)
                 peer.be_greeted()
                 yield peer
         except LauncherError:
@@ -109,9 +110,9 @@ class Launcher:
 
     def _has_gone(self, *, soon: bool) -> bool:
         """True if it no longer runs, with `soon` after a moment: a killed one hangs up before it is gone."""
-        deadline = time.monotonic() + (_VANISHES_WITHIN if soon else 0.0)
+        deadline = clocks.monotonic() + (_VANISHES_WITHIN if soon else 0.0)
         while self.is_there():
-            if time.monotonic() >= deadline:
+            if clocks.monotonic() >= deadline:
                 return False
             time.sleep(0.02)
         return True

@@ -16,6 +16,7 @@ import msgspec
 
 from robolink.exceptions import RobolinkError
 from robolink.supervisor.events import Status
+from robolink.system import clocks
 
 LONGEST_QUESTION = 1 << 16
 LONGEST_ANSWER = 1 << 24
@@ -50,7 +51,7 @@ class ProtocolError(RobolinkError, ConnectionError):
 
 
 class Connection:
-    """One end of a connection, usable until `deadline` (of `time.monotonic`)."""
+    """One end of a connection, usable until `deadline` (of `clocks.monotonic`)."""
 
     def __init__(self, connection: socket.socket, key: str, deadline: float) -> None:
         self._socket = connection
@@ -84,7 +85,7 @@ class Connection:
 
     def ends_within(self, seconds: float) -> bool:
         """Wait until the peer closes the connection or is gone; return True if it did in this time."""
-        self._deadline = time.monotonic() + seconds
+        self._deadline = clocks.monotonic() + seconds
         try:
             self._receive(0)
         except TimeoutError:
@@ -133,7 +134,7 @@ class Connection:
             raise TimeoutError(_LATE) from None
 
     def _left(self) -> float:
-        left = self._deadline - time.monotonic()
+        left = self._deadline - clocks.monotonic()
         if left <= 0:
             raise TimeoutError(_LATE)
         return left
@@ -173,11 +174,11 @@ def connect(address: str | int, seconds: float) -> socket.socket:
     if AF_UNIX is None:
         raise FileNotFoundError(f"{address}: this system has no such sockets")
     connection = socket.socket(AF_UNIX, socket.SOCK_STREAM)
-    deadline = time.monotonic() + seconds
+    deadline = clocks.monotonic() + seconds
     try:
         connection.settimeout(seconds)
         while not _is_connected(connection, address):
-            if time.monotonic() >= deadline:
+            if clocks.monotonic() >= deadline:
                 raise TimeoutError(_LATE)
             time.sleep(0.02)
     except BaseException:

@@ -7,13 +7,13 @@ import os
 import stat
 import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import msgspec
 
 from robolink.exceptions import RobolinkError
+from robolink.system import clocks
 
 LONGEST_FOLDER = 70
 """Longest path of the folder, in characters: a socket's path must stay below 104 on macOS, 108 on Linux."""
@@ -147,7 +147,7 @@ def _age(place: Path) -> float:
             times.append(each.lstat().st_mtime)
         except OSError:
             continue
-    return time.time() - max(times) if times else 0.0
+    return clocks.time_of_day() - max(times) if times else 0.0
 
 
 def has_process(pid: int) -> bool:

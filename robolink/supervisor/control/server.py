@@ -6,7 +6,6 @@ import contextlib
 import os
 import socket
 import threading
-import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -24,6 +23,7 @@ from robolink.supervisor.control.registry import (
     unregister,
 )
 from robolink.supervisor.events import Status
+from robolink.system import clocks, waits
 
 PATIENCE = 3.0
 """Timeout of a client's request and of taking its response, in seconds."""
@@ -109,7 +109,7 @@ class Control:
             for client in self._clients:
                 with contextlib.suppress(OSError):
                     client.shutdown(socket.SHUT_RDWR)
-        self._thread.join(1.0)
+        waits.join(self._thread, 1.0)
         for client in self._waiting_for_our_end:
             client.close()
 
@@ -143,7 +143,7 @@ class Control:
     def _serve(self, client: socket.socket) -> None:
         stays = False
         try:
-            peer = Connection(client, self._key, time.monotonic() + self._patience)
+            peer = Connection(client, self._key, clocks.monotonic() + self._patience)
             peer.greet()
             request = peer.hear()
             peer.answer(self._answer(request))
@@ -199,7 +199,7 @@ class _Listener:
         try:
             if AF_UNIX is not None:
                 self._place.with_suffix(".sock").chmod(0o600)
-            register(self._place, Registration(os.getpid(), name, file, self._address, key, time.time()))
+            register(self._place, Registration(os.getpid(), name, file, self._address, key, clocks.time_of_day()))
         except BaseException:
             self.socket.close()
             unregister(self._place)

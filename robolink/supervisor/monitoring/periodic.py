@@ -6,6 +6,8 @@ import threading
 from types import TracebackType
 from typing import TypeVar
 
+from robolink.system import waits
+
 ThreadT = TypeVar("ThreadT", bound="PeriodicThread")
 
 
@@ -29,7 +31,7 @@ class PeriodicThread:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._closed.set()
-        self._thread.join(1.0)
+        waits.join(self._thread, 1.0)
 
     def _work(self) -> None:
         pause = self._first

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
@@ -12,6 +11,7 @@ import psutil
 
 from robolink.supervisor.events import Status
 from robolink.supervisor.monitoring.periodic import PeriodicThread
+from robolink.system import clocks
 
 _SHOWN = 6
 """Most processes that are named in a line of figures."""
@@ -50,7 +50,7 @@ class Meter:
     def __init__(
         self,
         look: Callable[[Iterable[int]], Look] | None = None,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = clocks.monotonic,
     ) -> None:
         self._look = look or look_at_groups
         self._clock = clock

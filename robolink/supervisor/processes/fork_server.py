@@ -22,13 +22,13 @@ import struct
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import IO, NamedTuple
 
 from robolink.supervisor.processes.lifeline import VARIABLE, Lifeline
 from robolink.supervisor.processes.process_title import ProcessTitle
+from robolink.system import clocks
 
 PATIENCE = 30.0
 """Longest wait for an answer, in seconds: the first comes when all is imported. Then processes start without it."""
@@ -152,12 +152,12 @@ class ForkServer:
 
     def _await(self, connection: socket.socket) -> None:
         """Wait until the server answers, or has gone; raises ForkServerError when that takes too long."""
-        begun = time.monotonic()
+        begun = clocks.monotonic()
         with selectors.DefaultSelector() as selector:
             selector.register(connection, selectors.EVENT_READ)
             while not selector.select(_SLICE):
                 patience = PATIENCE_AT_END if self.is_asked_to_end() else PATIENCE
-                if time.monotonic() - begun > patience:
+                if clocks.monotonic() - begun > patience:
                     raise ForkServerError("the server does not answer")
 
     def _begin(self, environ: Mapping[str, str]) -> socket.socket:

@@ -22,6 +22,7 @@ from robolink.supervisor.processes.guardian import is_alive, signal_group
 from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.supervisor.processes.terminal import Terminal
 from robolink.supervisor.rules import Rules, Step
+from robolink.system import clocks
 
 _LONGEST_LINE = 1 << 20
 """Longest line, in bytes; a longer one is printed in pieces."""
@@ -188,9 +189,9 @@ def _why(error: OSError | ValueError, program: str) -> str:
 def _end_rest(group: int) -> None:
     """Stop the rest of the group of a process that has just ended; until then its id cannot be reused."""
     if sys.platform != "win32" and signal_group(group, signal.SIGTERM):
-        deadline = time.monotonic() + _LEFT_BEHIND
+        deadline = clocks.monotonic() + _LEFT_BEHIND
         while is_alive(group):
-            if time.monotonic() > deadline:
+            if clocks.monotonic() > deadline:
                 signal_group(group, signal.SIGKILL)
                 return
             time.sleep(0.02)

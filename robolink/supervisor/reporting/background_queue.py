@@ -9,6 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
+from robolink.system import waits
+
 MOST_WAITING = 512_000
 """Capacity of the queue in bytes, plus one item; then the process that prints blocks (backpressure)."""
 _NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
@@ -72,7 +74,7 @@ class BackgroundQueue(Generic[ThingT]):
     def close(self, timeout: float) -> None:
         """Deliver what waits, for at most `timeout` seconds; later items are dropped."""
         self._end()
-        self._thread.join(timeout)
+        waits.join(self._thread, timeout)
 
     def _end(self) -> None:
         with self._changed:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Collection, Sequence
 from typing import TextIO
 
@@ -15,6 +14,7 @@ from robolink.supervisor.reporting.notifier import Notifier, OnEvent
 from robolink.supervisor.reporting.printer import Printer, complain
 from robolink.supervisor.reporting.summary import Summary
 from robolink.supervisor.rules import described, is_orderly
+from robolink.system import clocks
 
 
 class EventDispatcher:
@@ -130,4 +130,4 @@ class EventDispatcher:
 
     def _happened(self, event: Callable[[float], Event]) -> None:
         if self._notifier is not None:
-            self._notifier.put(event(time.time()))
+            self._notifier.put(event(clocks.time_of_day()))

@@ -20,6 +20,8 @@ from io import FileIO
 from pathlib import Path
 from typing import BinaryIO
 
+from robolink.system import clocks
+
 KEPT_RUNS = 30
 LARGEST = 50_000_000
 """Size in bytes at which a file is rotated to NAME.log.old: a process has twice as much at most."""
@@ -94,7 +96,7 @@ class RunLogs:
 
     def say(self, text: str) -> None:
         """Write `text` as a line of the launcher's own."""
-        now = time.time()
+        now = clocks.time_of_day()
         stamp = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(now)) + f".{int(now % 1 * 1000):03}"
         self._write(self._own, f"{stamp} {text}\n".encode(errors="replace"))
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import time
 from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from robolink.logging import get_logger
+from robolink.system import clocks
 from robolink.view.channels import LARGEST, Channel, ServiceEntry, Source
 from robolink.view.exercises import Exercises
 from robolink.view.protocol import answers
@@ -68,7 +68,7 @@ class Hub:
 
     def now(self) -> float:
         """Return the time of a steady clock, in seconds."""
-        return time.monotonic()
+        return clocks.monotonic()
 
     def join(self, client: Client) -> None:
         """Greet a client, and serve it from now on."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
 import psutil
 
+from robolink.system import clocks
 from robolink.view.channels import Channel, Source
 from robolink.view.protocol import answers
 from robolink.view.server.listener import Listener
@@ -32,7 +32,7 @@ class Statistics:
         clock: Function that returns the time of a steady clock, in seconds.
     """
 
-    def __init__(self, source: Source, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, source: Source, clock: Callable[[], float] = clocks.monotonic) -> None:
         self._source, self._clock = source, clock
         self._resting: dict[int, int] = {}
         """Intervals that are left until a channel is received again, by its id."""
@@ -88,7 +88,7 @@ class Statistics:
         """
         if not self._followers:
             return
-        now, wall = self._clock(), time.time_ns()
+        now, wall = self._clock(), clocks.now()
         topics = [self._topic(each, now, wall) for each in self._source.channels.values()]
         server = {"clients": clients, "cpu": self._process.cpu_percent() / 100, "dropped": dropped}
         text = answers.text("statistics", topics=topics, server=server)

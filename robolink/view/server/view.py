@@ -10,7 +10,6 @@ import logging
 import secrets
 import socket
 import threading
-import time
 import weakref
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import quote, urlsplit
@@ -22,6 +21,7 @@ from websockets.http11 import Request, Response
 from websockets.protocol import State
 
 from robolink.exceptions import RobolinkError
+from robolink.system import clocks, waits
 from robolink.view.channels import Source
 from robolink.view.exercises import Exercises
 from robolink.view.protocol.subprotocols import SUBPROTOCOLS
@@ -101,7 +101,7 @@ class View:
     def start(self) -> View:
         """Start, and return once clients can connect. Raises ViewError if it cannot listen."""
         self._thread.start()
-        self._ready.wait(STARTED_WITHIN)
+        waits.wait(self._ready, STARTED_WITHIN)
         if self._error is not None:
             raise self._error
         return self
@@ -113,7 +113,7 @@ class View:
             with contextlib.suppress(RuntimeError):
                 loop.call_soon_threadsafe(self._end.set)
         if self._thread.is_alive():
-            self._thread.join(3.0)
+            waits.join(self._thread, 3.0)
 
     def __enter__(self) -> View:
         return self.start()
@@ -270,9 +270,9 @@ class View:
     async def _receive(self, connection: ServerConnection, client: Client) -> None:
         count, spent = 0, 0.0
         async for message in connection:
-            begin = time.monotonic()
+            begin = clocks.monotonic()
             client.receive(message)
-            spent += time.monotonic() - begin
+            spent += clocks.monotonic() - begin
             count += 1
             if count >= AT_ONCE or spent > BUSY_FOR:  # a flood: what is read from memory never waits
                 await asyncio.sleep(max(0.02 if count >= AT_ONCE else 0.0, spent))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-import time
 from collections.abc import Container, Iterable
 from typing import Any
 
@@ -17,6 +16,7 @@ from robolink.bag.selection import EVERYTHING
 from robolink.bag.topic import BagMessage, BagTopic
 from robolink.exceptions import RobolinkError
 from robolink.interfaces import find_announced
+from robolink.system import clocks
 from robolink.view.channels import Audience, Channel, Kept, ServiceEntry
 from robolink.view.protocol import answers
 from robolink.view.protocol.requests import PlaybackControl
@@ -87,7 +87,7 @@ class BagSource:
         self._by_name: dict[str, Channel] = {}
         for topic in self._scenes.topics.values():
             self._add(topic)
-        self._then, self._clock, self._is_late = time.monotonic_ns(), 0, False
+        self._then, self._clock, self._is_late = clocks.steady(), 0, False
         self._playback = Playback(self._scenes, self._deliver, lambda: self._clock, PlaySettings(start_paused=True))
         self._playback.begin()
         self._begun = False
@@ -134,7 +134,7 @@ class BagSource:
 
     def sweep(self) -> None:
         """Play on, as far as time has gone on."""
-        moment = time.monotonic_ns()
+        moment = clocks.steady()
         spent, self._then = min(moment - self._then, LONGEST_STEP), moment
         if self._state() != PLAYING:
             return
@@ -153,7 +153,7 @@ class BagSource:
             due = self._playback.advance()
             if due is None or due > self._clock:
                 return True
-            if time.monotonic_ns() > deadline:
+            if clocks.steady() > deadline:
                 return False
 
     def _deliver(self, message: BagMessage, at: int) -> None:

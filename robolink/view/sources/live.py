@@ -12,7 +12,6 @@ import contextlib
 import itertools
 import queue
 import struct
-import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -21,6 +20,7 @@ from robolink.exceptions import RobolinkError
 from robolink.graph.graph import EVERY
 from robolink.node import Node
 from robolink.running.timed_arrivals import timed_arrival
+from robolink.system import clocks
 from robolink.time_source import CLOCK_TOPIC
 from robolink.topic_or_service_is_hidden import topic_or_service_is_hidden
 from robolink.transport.base import Handle
@@ -58,7 +58,7 @@ class LiveSource:
         self.types = Types(self.context)
         self._numbers = itertools.count(1)
         self._arrived: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        self._arrival = timed_arrival(self._arrived.put, time.time_ns)
+        self._arrival = timed_arrival(self._arrived.put, clocks.now)
         self._listening: dict[int, Listening] = {}
         self._postponed: dict[int, Channel] = {}
         self._spent = 0.0
@@ -244,7 +244,7 @@ class LiveSource:
 
     def time(self) -> int:
         """Return the time of the system, in ns: that of /clock where there is one."""
-        return self._clock or time.time_ns()
+        return self._clock or clocks.now()
 
     def _follow_clock(self) -> None:
         channel = self.channel_of(CLOCK_TOPIC)
@@ -279,10 +279,10 @@ class LiveSource:
             self._listen_now(channel)
 
     def _listen_now(self, channel: Channel) -> None:
-        begin = time.monotonic()
+        begin = clocks.monotonic()
         made = self._listening[channel.id] = Listening(self.node._owner_, channel, self._arrival)
         made.follow(self._ends.get((channel.topic, _TOPIC), {}))
-        self._spent += time.monotonic() - begin
+        self._spent += clocks.monotonic() - begin
 
     def leave(self, channel: Channel) -> None:
         """Receive it no longer."""

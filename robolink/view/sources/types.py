@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
@@ -12,6 +11,7 @@ from robolink.bag.definition import message_definition
 from robolink.context import Context
 from robolink.exceptions import RobolinkError
 from robolink.message import Service
+from robolink.system import clocks
 from robolink.type_lookup import type_of
 from robolink.view.channels import Shown
 from robolink.wire import EndpointToken
@@ -44,7 +44,7 @@ class Types:
     def get(self, end: EndpointToken) -> Halves | str | None:
         """Return the schemas of an endpoint's type, or why there are none; None if it was not looked up yet."""
         key = (end.type_name, end.type_hash)
-        now = time.monotonic()
+        now = clocks.monotonic()
         if now - self._failed.get(key, now) >= PATIENCE:
             return None
         return self._shown.get(key)
@@ -79,7 +79,7 @@ class Types:
             self._failed.pop(key, None)
         else:
             self._shown[key] = str(error) if isinstance(error, RobolinkError) else f"{key[0]}: {error!r}"
-            self._failed[key] = time.monotonic()
+            self._failed[key] = clocks.monotonic()
         for then in self._waiting.pop(key):
             then()
 

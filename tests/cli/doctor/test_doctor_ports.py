@@ -79,7 +79,7 @@ def test_a_busy_machine_has_its_time_to_say_hello(monkeypatch: pytest.MonkeyPatc
 
     clock = {"now": 0.0}
     monkeypatch.setattr(port_probe, "_Greeting", Late)
-    monkeypatch.setattr(port_probe, "time", SimpleNamespace(monotonic=lambda: clock["now"]))
+    monkeypatch.setattr(port_probe, "clocks", SimpleNamespace(monotonic=lambda: clock["now"]))
     with stranger(says=b"") as port:
         assert listening([port], within=PATIENCE)[port].role == STRANGER
 

@@ -186,7 +186,7 @@ def test_an_empty_bag_is_shown_and_over(tmp_path: Path) -> None:
 
 def test_a_bag_that_reads_slowly_plays_slowly_and_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     now = [0]
-    monkeypatch.setattr("robolink.view.sources.bag.time", SimpleNamespace(monotonic_ns=lambda: now[0]))
+    monkeypatch.setattr("robolink.view.sources.bag.clocks", SimpleNamespace(steady=lambda: now[0]))
     with bag_of(tmp_path / "bag", *((CHATTER, second, str(second)) for second in range(5))) as bag:
         source, watched, heard = BagSource(bag), Watched(), list[bytes]()
         source.begin(watched)  # type: ignore[arg-type]
