@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 from robolink.exceptions import RobolinkError, TransportClosedError
 from robolink.graph.type_mismatch import Disagreements
 from robolink.logging import get_logger
-from robolink.message import type_hash, type_name
+from robolink.message import import_numpy_for, type_hash, type_name
 from robolink.message.description import has_buffer_fields
 from robolink.qos import QoSProfile
 from robolink.running.ports import ContextLike
@@ -59,6 +59,7 @@ class Endpoint:
     def __init__(self, owner: Owner, kind: EndpointKind, name: str, ros_type: type[Any], qos: QoSProfile) -> None:
         self.owner, self.context, self.name, self.qos = owner, owner.context, name, qos
         self.domain_id = owner.context.get_domain_id()
+        import_numpy_for(ros_type)
         self.type_name = type_name(ros_type)
         self.type_hash = NO_HASH if owner.context.speaks_humble else type_hash(ros_type)
         self.key = format_key(DataKey(self.domain_id, name, self.type_name, self.type_hash))

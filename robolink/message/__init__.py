@@ -26,6 +26,7 @@ from robolink.message.base import Message, message_type
 from robolink.message.cdr import decode, decoder, encode, encoder
 from robolink.message.convert import from_builtins, to_builtins
 from robolink.message.description import describe, type_hash, type_name
+from robolink.message.numbers import import_numpy_for
 from robolink.message.service import Service, service_type
 
 __all__ = [
@@ -48,6 +49,7 @@ __all__ = [
     "float32",
     "float64",
     "from_builtins",
+    "import_numpy_for",
     "int8",
     "int16",
     "int32",

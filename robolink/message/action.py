@@ -13,7 +13,7 @@ class Fibonacci(Action):
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
 import msgspec
 
@@ -21,7 +21,7 @@ from robolink.exceptions import MessageError
 from robolink.message.annotations import boolean, int8
 from robolink.message.base import Message, MessageMeta
 from robolink.message.description import TypeDescription, combine
-from robolink.message.service import Service
+from robolink.message.service import Service, name_part
 
 PARTS = ("Goal", "Result", "Feedback")
 """Names of the three message classes of an action."""
@@ -123,7 +123,11 @@ class Action:
                 raise MessageError(f"action {cls.__name__}: {part} must be a class inside it, got {found.__ros_type__}")
         cls.__ros_type__ = cls.Goal.__ros_type__.removesuffix("_Goal").replace("/msg/", "/action/")
         for part in PARTS:
-            cls.__dict__[part].__ros_type__ = f"{cls.__ros_type__}_{part}"
+            name_part(cls, cls.__dict__[part], part)
+
+    def __new__(cls) -> NoReturn:
+        """Refuse to make one: an action is its three messages, and rclpy's class cannot be instantiated either."""
+        raise NotImplementedError(f"an action cannot be instantiated: make a {cls.__name__}.Goal()")
 
     @classmethod
     def describe(cls) -> TypeDescription:

@@ -53,7 +53,7 @@ class Size(msgspec.Struct, frozen=True):
 
 
 class AtMost(msgspec.Struct, frozen=True):
-    """Mark of a sequence of at most `length` elements, a string of bytes, or a wstring of UTF-16 units."""
+    """Mark of a sequence of at most `length` elements, or of a string of at most so many characters."""
 
     length: int
 
@@ -101,7 +101,7 @@ class FieldType(msgspec.Struct, frozen=True):
     message: type[Any] | None = None
     """Class of a nested message; any class here, since `base.Message` is made of field types."""
     string_bound: int = 0
-    """Largest length of a bounded string (in bytes) or wstring (in characters); 0 is unbounded."""
+    """Largest length of a bounded string or wstring in characters, as rclpy counts; 0 is unbounded."""
     shape: str = "one"
     """Shape: ``one``, ``array`` (fixed size), ``bounded`` or ``sequence``."""
     size: int = 0

@@ -3,6 +3,9 @@
 The wire is XCDR1 as ROS 2 has it: four bytes of encapsulation header, then each primitive aligned to its own size,
 counted from the byte after the header. Neighbouring primitives are packed by one `struct.Struct`. Behind a string or
 a sequence the alignment is only known at run time, so there is one such Struct for each of the eight phases.
+
+What a type needs is read, and bytes behind it are ignored, as every reader of ROS 2 does: its own writers leave there
+what their estimate of the size was too much (a JointState has 8 bytes more, a ParameterEvent up to 88).
 """
 
 from __future__ import annotations
@@ -20,8 +23,6 @@ from robolink.message.cdr_writer import WriterSource
 from robolink.message.check import explain
 
 LITTLE, BIG = b"\x00\x01\x00\x00", b"\x00\x00"
-TRAILING = 3
-"""Upper bound of the padding behind a message in bytes: some writers fill up to a multiple of four."""
 
 
 @once_per_type
@@ -51,7 +52,6 @@ def _reader(cls: type[Message], order: str, other: Callable[[bytes], Any]) -> Ca
     source = ReaderSource(cls, order)
     names = {
         **source.constants,
-        "TRAILING": TRAILING,
         "other": other,
         "fail": functools.partial(_decode_error, cls),
     }

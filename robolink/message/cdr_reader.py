@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import codecs
 import struct
 import sys
 from array import array
+from collections.abc import Callable
 from typing import Any
 
 from robolink.exceptions import MessageError
 from robolink.message.annotations import FieldType
-from robolink.message.base import Message
+from robolink.message.base import Message, maker
 from robolink.message.cdr_layout import CODES, SIZES, Lines, padded, phases
 from robolink.message.numbers import DTYPES
 
@@ -22,19 +24,17 @@ class ReaderSource:
 
     def __init__(self, cls: type[Message], order: str) -> None:
         self.out = Lines()
+        self.makers: dict[type[Message], Callable[..., Any]] = {}
         self.constants: dict[str, Any] = self.out.constants
         self.constants.update(MessageError=MessageError)
         self.order = order
         self.swap = (order == "<") != (sys.byteorder == "little")
         self.at: int | None = 4
-        self.fixed = _is_fixed(cls)
         self.headed = False
         """True once the first run of primitives has read the encapsulation header along with it."""
         self.run: list[tuple[str, str]] = []
         made = self._message(cls)
         self._flush()
-        if not self.fixed:
-            self._end("end - i")
         self.out.add(f"return {made}")
 
     def text(self) -> str:
@@ -50,7 +50,11 @@ class ReaderSource:
         if not cls.__ros_fields__:
             self.run.append(("B", self.out.fresh("_")))
         parts = [self._field(kind) for kind in cls.__ros_fields__.values()]  # by position: twice as fast as by name
-        return f"{self.out.constant('C', cls)}({', '.join(parts)})"
+        return f"{self.out.constant('C', self._maker(cls))}({', '.join(parts)})"
+
+    def _maker(self, cls: type[Message]) -> Callable[..., Any]:
+        """Return the function that makes such a message, the same one each time."""
+        return self.makers.setdefault(cls, maker(cls))
 
     def _field(self, kind: FieldType) -> str:
         if kind.shape != "one":
@@ -71,15 +75,15 @@ class ReaderSource:
         wide = kind.base == "wstring"
         self._span(f"{count} * 4" if wide else count)
         if wide:
+            codecs.lookup("utf-16-le")  # a module, which a callback would import otherwise
             self.constants["narrow"] = narrow
             self.out.add(f"{name} = narrow(data[i:j], {self.order!r}); i = j")
-        else:  # as rclpy, what is no UTF-8 is replaced, not refused
-            self.out.add(f"try: {name} = data[i:j - 1].decode() if {count} else ''")
-            self.out.add(f"except UnicodeDecodeError: {name} = data[i:j - 1].decode('utf-8', 'replace')")
+        else:  # as rclpy: what is no UTF-8 is replaced, a NUL ends the text, and the last one may be missing
+            text = f"{name} = data[i:j].decode({{}}).partition('\\0')[0]"
+            self.out.add(f"try: {text.format('')}")
+            self.out.add(f"except UnicodeDecodeError: {text.format(repr('utf-8') + ', ' + repr('replace'))}")
             self.out.add("i = j")
-        if kind.string_bound:
-            self.out.add(f"if {count} > {kind.string_bound + (not wide)}: raise MessageError('over the bound')")
-        return name
+        return name  # of any length: ROS 2 checks the bound of a string neither when it writes nor when it reads
 
     def _sequence(self, kind: FieldType) -> str:
         count = str(kind.size)
@@ -158,23 +162,12 @@ class ReaderSource:
         return name
 
     def _first(self, codes: list[str], names: str) -> None:
-        """Read the header and the first run at once, a message of fixed size in one call."""
+        """Read the header and the first run at once, which is all of a message of fixed size."""
         body = padded(codes, 0, self.order)
         reader = struct.Struct(f"{self.order}H2x{body.format[1:]}")
         self.headed, self.at = True, reader.size
-        whole, part = self.out.constant("W", reader.unpack), self.out.constant("U", reader.unpack_from)
-        self.constants["StructError"] = struct.error
-        if self.fixed:
-            self.out.add(f"try: head, {names}, = {whole}(data)")
-            self.out.add("except StructError:")
-            self.out.depth += 1
-            self._end(f"len(data) - {self.at}")
-        self.out.add(f"head, {names}, = {part}(data)")
-        self.out.depth = 2
+        self.out.add(f"head, {names}, = {self.out.constant('U', reader.unpack_from)}(data)")
         self.out.add(f"if head != {256 if self.order == '<' else 0}: return other(data)")
-
-    def _end(self, left: str) -> None:
-        self.out.add(f"if {left} > TRAILING: raise MessageError('more bytes than the type has')")
 
     def _here(self) -> None:
         """From here the index is only known at run time, in ``i``."""
@@ -197,16 +190,6 @@ class ReaderSource:
             structs = phases(codes, self.order, shift=4)
             table = self.out.constant("T", tuple((each.unpack_from, each.size) for each in structs))
             self.out.add(f"unpack, n = {table}[i & 7]; {names}, = unpack(data, i); i += n")
-
-
-def _is_fixed(cls: type[Message]) -> bool:
-    """True if all messages of the class have the same size, all of it primitives."""
-    return all(
-        kind.shape == "one"
-        and kind.base not in ("string", "wstring")
-        and (kind.message is None or _is_fixed(kind.message))
-        for kind in cls.__ros_fields__.values()
-    )
 
 
 def narrow(units: bytes, order: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import keyword
 import struct
 from array import array
@@ -83,18 +84,18 @@ class WriterSource:
         self.run.append((CODES[base], value))
 
     def _string(self, kind: FieldType, value: str) -> None:
-        name = self.out.fresh("s")
+        name, text = self.out.fresh("s"), self.out.fresh("t")
+        self.out.add(f"{text} = {value}")
+        self._bounded(f"len({text})", kind.string_bound)
         if kind.base == "wstring":
-            self.out.add(f"{name} = wide({value})")
+            codecs.lookup("utf-16-le")  # a module, which a callback would import otherwise
+            self.out.add(f"{name} = wide({text})")
             self.constants["wide"] = wide
             self.run.append(("I", f"len({name}) >> 2"))
-            self._bounded(f"len({name}) >> 2", kind.string_bound)
-            self._flush()
-            self._chunk(name, f"len({name})")
-            return
-        self.out.add(f"{name} = {value}.encode() + b'\\0'")
-        self._bounded(f"len({name}) - 1", kind.string_bound)
-        self.run.append(("I", f"len({name})"))
+        else:  # in ROS 2 a NUL ends the text
+            self.out.add(f"if '\\0' in {text}: {text} = {text}.partition('\\0')[0]")
+            self.out.add(f"{name} = {text}.encode() + b'\\0'")
+            self.run.append(("I", f"len({name})"))
         self._flush()
         self._chunk(name, f"len({name})")
 

@@ -64,15 +64,13 @@ def _wrong_string(kind: FieldType, value: Any, path: str) -> Iterator[str]:
     if not isinstance(value, str):
         yield _expected(path, kind.base, value)
         return
-    wide = kind.base == "wstring"
     try:
-        length = len(value.encode("utf-16-le")) // 2 if wide else len(value.encode())
+        value.encode()
     except UnicodeEncodeError:
         yield f"{path}: {value!r:.60} is not valid Unicode"
         return
-    if kind.string_bound and length > kind.string_bound:
-        what = "16-bit characters" if wide else "bytes"
-        yield f"{path}: expected at most {kind.string_bound} {what}, got {length}"
+    if kind.string_bound and len(value) > kind.string_bound:
+        yield f"{path}: expected at most {kind.string_bound} characters, got {len(value)}"
 
 
 def _expected(path: str, what: str, value: Any) -> str:

@@ -28,6 +28,8 @@ LARGEST = 2**32 - 1
 
 ELEMENT_LINE = re.compile(r"(?P<type>[^\s#]+)(?P<gap>\s*)(?P<name>[^\s=#]*)\s*(?P<rest>.*)")
 TYPE = re.compile(r"(?P<base>[^\[\]<]+)(?:<=(?P<bound>[^\[\]]*))?(?:\[(?P<limit><=)?(?P<size>[^\[\]]*)\])?")
+COUNT = re.compile(r"\+?[0-9](?:_?[0-9]){0,9}")
+"""What Python's int reads of a size, as rosidl does: ``+3`` and ``1_000`` too."""
 VALUE = re.compile(rf"(?P<value>{literals.QUOTED}|\[(?:[^\"'#\]]|{literals.QUOTED})*\])\s*(?:#.*)?")
 NO_TEXT = re.compile("[\0\ud800-\udfff]")
 MEANT = {
@@ -270,7 +272,7 @@ def field_type(text: str, package: str) -> FieldType:
 
 
 def _count(digits: str, text: str) -> int:
-    if re.fullmatch(r"[0-9]{1,10}", digits) and 0 < int(digits) <= LARGEST:
+    if COUNT.fullmatch(digits) and 0 < int(digits) <= LARGEST:
         return int(digits)
     raise MessageError(f"'{shown(text)}': a size or bound is a whole number from 1 to {LARGEST}")
 

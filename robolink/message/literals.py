@@ -1,7 +1,6 @@
 r"""Parser and writer of constants and defaults in .msg files: ``0x1F``, ``true``, ``"two\nlines"``, ``[1, 2]``.
 
-rosidl's reading is followed, with two leniencies: a ``#`` or ``=`` within quotes belongs to the string, and a string's
-bound counts what the wire counts (bytes; UTF-16 units of a wstring).
+rosidl's reading is followed, with one leniency: a ``#`` or ``=`` within quotes belongs to the string.
 """
 
 from __future__ import annotations
@@ -17,7 +16,10 @@ from robolink.message.annotations import NUMERIC, FieldType
 from robolink.system.terminal import quoted, shown
 
 INTEGER = re.compile(r"[+-]?(?:[0-9](?:_?[0-9])*|0[xX](?:_?[0-9a-fA-F])+|0[oO](?:_?[0-7])+|0[bB](?:_?[01])+)")
-FLOAT = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf|infinity|nan)", re.IGNORECASE)
+DIGITS = "[0-9](?:_?[0-9])*"
+FLOAT = re.compile(
+    rf"[+-]?(?:(?:{DIGITS}\.?(?:{DIGITS})?|\.{DIGITS})(?:e[+-]?{DIGITS})?|inf|infinity|nan)", re.IGNORECASE
+)
 QUOTED = r"\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*'"
 ELEMENT = re.compile(rf"\s*((?:{QUOTED})\s*|[^,\"'\s][^,]*)(?:,|\Z)", re.DOTALL)
 ESCAPE = re.compile(r"""\\(?:([ntvbrfa\\?'"])|([0-7]{1,3})|x([0-9a-fA-F]{1,2})|u([0-9a-fA-F]{4})|U([0-9a-fA-F]{8}))""")
@@ -89,11 +91,8 @@ def _integer(base: str, text: str) -> int:
 def checked(kind: FieldType, value: Any) -> Any:
     """Return a single value if it fits its type. Raises ValueError."""
     if kind.base in ("string", "wstring"):
-        wide = kind.base == "wstring"
-        length = len(value.encode("utf-16-le")) // 2 if wide else len(value.encode())
-        if kind.string_bound and length > kind.string_bound:
-            what = "UTF-16 units" if wide else "bytes"
-            raise ValueError(f"'{shown(value)}' has {length} {what}; {kind} takes {kind.string_bound}")
+        if kind.string_bound and len(value) > kind.string_bound:
+            raise ValueError(f"'{shown(value)}' has {len(value)} characters; {kind} takes {kind.string_bound}")
         return value
     code = NUMERIC.get(kind.base, "B")
     try:

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from typing import Any
 
 from robolink.exceptions import EncodeError
-from robolink.message.annotations import FieldType
+from robolink.message.annotations import FieldType, once_per_type
 
 DTYPES = {
     "b": "int8",
@@ -28,6 +28,28 @@ DTYPES = {
     "d": "float64",
 }
 """numpy's type names by type code of `array`."""
+
+
+@once_per_type
+def has_fixed_numbers(cls: type[Any]) -> bool:
+    """True if a message of the class `cls`, or one inside it, has a fixed number of numbers: a numpy array."""
+    return any(
+        (kind.shape == "array" and kind.code is not None)
+        or (kind.message is not None and has_fixed_numbers(kind.message))
+        for kind in cls.__ros_fields__.values()
+    )
+
+
+def import_numpy_for(cls: type[Any]) -> None:
+    """Import numpy if messages of the class `cls`, or those of a service, need it.
+
+    Endpoints call this when they are made: the import takes 0.1 to 0.7 s, which would stop all timers if the first
+    message did it within a callback. It is not done with the package, since most programs never make such a message.
+    """
+    parts = (cls,) if hasattr(cls, "__ros_fields__") else (cls.Request, cls.Response)
+    if any(map(has_fixed_numbers, parts)):
+        import numpy  # noqa: F401 - for what comes
+
 
 _settling = threading.RLock()
 """Lock under which a view becomes an array, so that two threads that ask at once get the same one. Freed by a fork."""
@@ -47,7 +69,7 @@ class Numbers:
         self.store: Callable[[Any, Any], None] = member.__set__
         self.kind, self.code = kind, kind.code or "d"
         self.shape = (kind.size,)
-        self.where = f"{cls.__name__}.{name}"
+        self.where = f"{cls.__ros_type__.rpartition('/')[2]}.{name}"
 
     def __get__(self, message: Any, owner: type | None = None) -> Any:
         if message is None:
@@ -86,17 +108,17 @@ class Numbers:
         if type(value) is array and value.typecode == self.code:
             return value
         try:
-            if type(value) is memoryview and value.format == self.code and value.c_contiguous:
+            if type(value) is memoryview and value.format == self.code and value.ndim == 1 and value.c_contiguous:
                 return self._filled(value)  # `array` itself would take it number by number
             if type(value) is memoryview or hasattr(value, "__array_interface__"):
-                return self._filled(_as_numpy(value, self.code))  # of any shape and byte order
+                return self._filled(_as_numpy(_in_a_row(value), self.code))
             return array(self.code, value)
         except (TypeError, ValueError, OverflowError) as error:
             raise EncodeError(f"{self.where}: expected {self.kind}, got {_shown(value)} ({error})") from None
 
     def _filled(self, numbers: Any) -> Any:
         made, view = array(self.code), memoryview(numbers)
-        if view.nbytes:  # what is empty has no other shape
+        if view.nbytes:  # else it may have a shape that cannot be cast
             made.frombytes(view.cast("B"))
         return made
 
@@ -125,10 +147,10 @@ class FixedNumbers(Numbers):
             found = _as_numpy(value, self.code)
         except (TypeError, ValueError, OverflowError) as error:
             raise EncodeError(f"{self.where}: expected {self.kind}, got {_shown(value)} ({error})") from None
-        if found.shape != self.shape:
+        if found.size != self.shape[0]:
             raise EncodeError(f"{self.where}: expected {self.kind}, got {found.size} elements")
         self.dtype = found.dtype
-        return found
+        return found.reshape(self.shape)  # a covariance is often given as a matrix: row by row
 
 
 def _as_numpy(value: Any, code: str) -> Any:
@@ -151,10 +173,20 @@ def _as_numpy(value: Any, code: str) -> Any:
     return np.ascontiguousarray(given.astype(dtype))
 
 
+def _in_a_row(value: Any) -> Any:
+    """Return an array of one dimension. Raises TypeError for another one, which in ROS 2 fits no sequence either."""
+    import numpy as np
+
+    shape = np.shape(value)
+    if len(shape) == 1 or 0 in shape:
+        return value
+    raise TypeError(f"an array of the shape {shape}: give its elements in a row, x.ravel()")
+
+
 def _are_uint64(values: Any) -> bool:
     return all(isinstance(each, int) and 0 <= each < 1 << 64 for each in values)
 
 
 def _shown(value: Any) -> str:
-    text = repr(value)
+    text = " ".join(repr(value).split())
     return text if len(text) <= 60 else text[:57] + "..."

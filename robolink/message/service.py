@@ -11,7 +11,7 @@ class SetBool(Service):
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NoReturn
 
 from robolink.exceptions import MessageError
 from robolink.message.annotations import AtMost, Sequence
@@ -43,7 +43,14 @@ def _event_type(service: type[Service]) -> type[Message]:
         "__annotations__": annotations,
     }
     made: type[Message] = MessageMeta("Event", (Message,), body, type_name=f"{service.__ros_type__}_Event")
+    name_part(service, made, "Event")
     return made
+
+
+def name_part(whole: Any, cls: Any, part: str) -> None:
+    """Name the class `cls` of a part of a service or an action as rosidl does: ``SetBool_Request``."""
+    cls.__ros_type__ = f"{whole.__ros_type__}_{part}"
+    cls.__name__ = f"{whole.__name__}_{part}"
 
 
 class Service:
@@ -75,8 +82,12 @@ class Service:
         if not request_name.endswith("_Request"):
             raise MessageError(f"service {cls.__name__}: Request must be a class inside it, got {request_name}")
         cls.__ros_type__ = request_name.removesuffix("_Request").replace("/msg/", "/srv/")
-        cls.Request.__ros_type__ = f"{cls.__ros_type__}_Request"
-        cls.Response.__ros_type__ = f"{cls.__ros_type__}_Response"
+        for part in ("Request", "Response"):
+            name_part(cls, cls.__dict__[part], part)
+
+    def __new__(cls) -> NoReturn:
+        """Refuse to make one: a service is its two messages, and rclpy's class cannot be instantiated either."""
+        raise NotImplementedError(f"a service cannot be instantiated: make a {cls.__name__}.Request()")
 
     @classmethod
     def describe(cls) -> TypeDescription:

@@ -6,6 +6,7 @@ The names are those of ROS 2's IDL mapping (https://design.ros2.org/articles/leg
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import msgspec
@@ -14,6 +15,10 @@ from robolink.message.annotations import FieldType
 
 IDL_NAMES = {"bool": "boolean", "byte": "octet", "char": "uint8", "float32": "float", "float64": "double"}
 """rosidl's names of the primitives where they differ from the .msg file's."""
+
+
+KIND = re.compile("/(msg|srv|action)/")
+"""Middle part of a type name, which rosidl leaves out."""
 
 
 class BasicType(msgspec.Struct, frozen=True):
@@ -38,7 +43,7 @@ class UnboundedString(msgspec.Struct, frozen=True):
 
 
 class BoundedString(msgspec.Struct, frozen=True):
-    """Type of a string of at most `maximum_size` bytes."""
+    """Type of a string of at most `maximum_size` characters."""
 
     maximum_size: int
 
@@ -48,7 +53,7 @@ class UnboundedWString(msgspec.Struct, frozen=True):
 
 
 class BoundedWString(msgspec.Struct, frozen=True):
-    """Type of a wstring of at most `maximum_size` UTF-16 units."""
+    """Type of a wstring of at most `maximum_size` characters."""
 
     maximum_size: int
 
@@ -80,6 +85,16 @@ class SlotTypes:
         return tuple(slot_type(kind) for kind in owner.__ros_fields__.values())
 
 
+class FieldTypes:
+    """Descriptor `_fields_and_field_types` of a message class, the types by name, made when it is asked for.
+
+    The name is private in ROS 2 too, but makers of schemas read it.
+    """
+
+    def __get__(self, message: Any, owner: Any) -> dict[str, str]:
+        return {name: idl_name(kind) for name, kind in owner.__ros_fields__.items()}
+
+
 def slot_type(kind: FieldType) -> Any:
     """Return the object that describes a field."""
     element = _element(kind)
@@ -103,7 +118,7 @@ def _element(kind: FieldType) -> Any:
 
 def idl_name(kind: FieldType) -> str:
     """Return a field's type as a text: ``sequence<float>``, ``double[36]``, ``string<10>``, ``geometry_msgs/Point``."""
-    element = IDL_NAMES.get(kind.base, kind.base.replace("/msg/", "/"))
+    element = IDL_NAMES.get(kind.base, KIND.sub("/", kind.base))
     if kind.string_bound:
         element += f"<{kind.string_bound}>"
     if kind.shape == "one":

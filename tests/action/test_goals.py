@@ -173,7 +173,7 @@ def test_a_callback_that_returns_no_result_is_told_of(
     serve(execute)
     answer = done(executor, accepted(executor, client).get_result_async())
     assert (answer.status, list(answer.result.sequence)) == (SUCCEEDED, [])
-    assert "returned no result: expected Result, got" in log_lines[-1].message
+    assert "returned no result: expected Fibonacci_Result, got" in log_lines[-1].message
 
 
 def test_what_cannot_happen_to_a_goal_is_refused(
