@@ -1,0 +1,50 @@
+"""When spin_until_future_complete returns, and what it raises."""
+
+import threading
+import time
+
+import rclpy
+from probe import say, show, took
+from rclpy.task import Future
+
+rclpy.init()
+n = rclpy.create_node("n6")
+f = Future()
+took("timeout", rclpy.spin_until_future_complete, n, f, timeout_sec=0.3)
+show("future", lambda: (f.done(), f.cancelled(), f.result(), f.exception()))
+took("zero", rclpy.spin_until_future_complete, n, f, timeout_sec=0)
+f.set_result(5)
+took("done already", rclpy.spin_until_future_complete, n, f)
+f = Future()
+n.create_timer(0.2, lambda: f.set_result(1) if not f.done() else None)
+took("done by timer", rclpy.spin_until_future_complete, n, f)
+say(f.result())
+f = Future()
+threading.Timer(0.3, lambda: f.set_result(2)).start()
+took("done by thread", rclpy.spin_until_future_complete, n, f)
+say(f.result())
+f = Future()
+f.set_exception(ValueError("x"))
+show("exception", lambda: rclpy.spin_until_future_complete(n, f))
+show("result", lambda: f.result())
+f = Future()
+f.cancel()
+took("cancelled", rclpy.spin_until_future_complete, n, f, timeout_sec=0.3)
+show("res", lambda: f.result())
+show("not a future", lambda: rclpy.spin_until_future_complete(n, 3, timeout_sec=0.1))
+show("None", lambda: rclpy.spin_until_future_complete(n, None, timeout_sec=0.1))
+ex = rclpy.get_global_executor()
+show("returns", lambda: ex.spin_until_future_complete(f, 0.1))
+f = Future()
+took("ex", lambda: ex.spin_until_future_complete(f, timeout_sec=0.3))
+took("ex once", lambda: ex.spin_once_until_future_complete(f, timeout_sec=0.3))
+k = n.create_timer(0.1, lambda: (_ for _ in ()).throw(RuntimeError("in timer")))
+f = Future()
+show("callback raises", lambda: rclpy.spin_until_future_complete(n, f, timeout_sec=1))
+k.destroy()
+threading.Timer(0.3, rclpy.shutdown).start()
+took("shutdown in between", lambda: rclpy.spin_until_future_complete(n, f, timeout_sec=3))
+say(rclpy.ok())
+took("after shutdown", lambda: rclpy.spin_until_future_complete(n, f, timeout_sec=0.5))
+took("spin after shutdown", lambda: rclpy.spin(n))
+took("spin_once after shutdown", lambda: rclpy.spin_once(n, timeout_sec=0.5))
