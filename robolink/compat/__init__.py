@@ -27,6 +27,7 @@ from __future__ import annotations
 import os
 import sys
 
+from robolink.compat.child_processes import hand_on
 from robolink.compat.maker import MAKER, has_rclpy, hidden
 from robolink.compat.opencv import prepare_opencv
 from robolink.compat.workspace_types import workspace_types
@@ -64,6 +65,7 @@ def activate(mode: str = AUTO) -> bool:
     FINDER.hides = hidden
     FINDER.add(workspace_types, first=True)
     FINDER.add(MAKER)
+    hand_on(mode)
     return True
 
 

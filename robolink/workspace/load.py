@@ -128,10 +128,13 @@ def load_module(path: Path) -> ModuleType:
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module  # msgspec looks here for what annotations mean
+    # Pickle imports a module's name, and `import a.b` gives the module a: so a path up to its first dot is one, too.
+    sys.modules.setdefault(name.partition(".")[0], module)
     try:
         spec.loader.exec_module(module)
     except BaseException:
-        del sys.modules[name]
+        for each in [each for each, found in sys.modules.items() if found is module]:
+            del sys.modules[each]
         raise
     return module
 
