@@ -20,7 +20,7 @@ from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, encoder, service_type
 from robolink.qos import QoSProfile
-from robolink.running.entity import NOTHING, Entity
+from robolink.running.entity import CLIENT, NOTHING, Entity
 from robolink.running.inbox import Inbox
 from robolink.service_introspection import ServiceEnd
 from robolink.service_introspection import ServiceIntrospectionState as ServiceIntrospectionState
@@ -74,9 +74,9 @@ class Client(ServiceEnd):
         callback_group: Group of the client.
     """
 
+    rank = CLIENT
     serves = quick = True
     is_gated = False  # an answer only completes a future, and the callback that waits for it may keep its group busy
-    gives_way = True  # as in rclpy: whoever spins until the answer is there has also seen what had arrived by then
 
     def __init__(
         self,

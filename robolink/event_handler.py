@@ -194,10 +194,10 @@ class EventHandler(Entity):
         if queue is not None:
             queue.post(self)
 
-    def attach(self, executor: Loop, queued: int = 0) -> None:
+    def attach(self, executor: Loop, has_turn: bool = False) -> None:
         """Belong to this executor; what happened before counts."""
-        super().attach(executor, queued)
-        if self._happened and not queued:
+        super().attach(executor, has_turn)
+        if self._happened and not has_turn:
             executor._queue_.post(self)
 
     def take(self) -> Any:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup
-from robolink.running.entity import NOTHING, Entity
+from robolink.running.entity import GUARD_CONDITION, NOTHING, Entity
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -21,6 +21,8 @@ class GuardCondition(Entity):
         callback_group: Group of the callback; None is none, so that it may run at any time.
         context: Context, as in rclpy; that of its executor counts.
     """
+
+    rank = GUARD_CONDITION
 
     def __init__(
         self,
@@ -41,10 +43,10 @@ class GuardCondition(Entity):
         if queue is not None:
             queue.post(self)
 
-    def attach(self, executor: Loop, queued: int = 0) -> None:
+    def attach(self, executor: Loop, has_turn: bool = False) -> None:
         """Belong to this executor; an earlier trigger counts."""
-        super().attach(executor, queued)
-        if self._triggered and not queued:
+        super().attach(executor, has_turn)
+        if self._triggered and not has_turn:
             executor._queue_.post(self)
 
     def take(self) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import weakref
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
@@ -52,6 +53,8 @@ from robolink.wire import NodeToken
 if TYPE_CHECKING:
     from robolink.executors import Executor
     from robolink.qos_overriding_options import QoSOverridingOptions
+
+_number = itertools.count(1).__next__
 
 HIDDEN_NODE_PREFIX = "_"
 """First character of the names of nodes that tools do not list."""
@@ -147,8 +150,9 @@ class Node(NodeParameters, NodeCreation):
         self._executor_: weakref.ReferenceType[Executor] | None = None
         self._is_parked_ = False
         """True while that executor keeps the entities only for the next spin, and the node belongs to none."""
-        self._queued_: list[Entity] = []
-        """Entities that were ready when the last executor let go of this node, in order."""
+        self._number_ = _number()
+        self._turns_: list[Entity] = []
+        """Entities whose turn was still to come when the last executor removed this node, in order."""
         self._rosout_: Publisher[Log] | None = None  # none of the user's: `publishers` does not list it
         self._init_entities_()
         self._default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()

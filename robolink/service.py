@@ -15,6 +15,7 @@ from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, encoder, service_type
 from robolink.qos import QoSProfile
+from robolink.running.entity import SERVICE
 from robolink.service_introspection import ServiceEnd
 from robolink.service_introspection import ServiceIntrospectionState as ServiceIntrospectionState
 from robolink.text.callbacks import named
@@ -51,6 +52,7 @@ class Service(ServiceEnd):
         qos_profile: Quality of service.
     """
 
+    rank = SERVICE
     serves = True
     CALLBACK_TAKES: ClassVar[tuple[str, ...]] = ("request", "response")
     """Names of the arguments of a callback, for errors about it."""

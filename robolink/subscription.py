@@ -23,7 +23,7 @@ from robolink.message import Message, decoder, message_type
 from robolink.qos import HistoryPolicy, QoSProfile, resolved
 from robolink.running.backlog import Backlog, Gaps, Sequence
 from robolink.running.callback_arguments import takes_arguments
-from robolink.running.entity import ANY_TIME, Receiver
+from robolink.running.entity import ANY_TIME, SUBSCRIPTION, Receiver
 from robolink.running.inbox import Inbox
 from robolink.system.terminal import shown
 from robolink.text.callbacks import wanted
@@ -34,9 +34,6 @@ if TYPE_CHECKING:
     from robolink.running.ports import Loop
 
 MsgT = TypeVar("MsgT", bound=Message)
-
-MANY_QUEUED = 100
-"""Number of waiting messages of a KEEP_ALL subscription from which on it is overloaded: it drops none to tell by."""
 
 _LOST = {QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST}
 
@@ -71,6 +68,7 @@ class Subscription(Receiver, Generic[MsgT]):
         event_callbacks: Callbacks for events; None only warns of publishers with another type.
     """
 
+    rank = SUBSCRIPTION
     straight = True
 
     class CallbackType(Enum):
@@ -160,13 +158,10 @@ class Subscription(Receiver, Generic[MsgT]):
                 self._check_order(backlog, error.attachment)
                 self.lose(backlog.warnings.append)
                 return
-        waiting, queue = self.mailbox.waiting, self._queue_
         self._check_order(backlog, arrived.attachment)
-        waiting.append(arrived)
-        if queue is not None:
-            queue.ready.append(self)
-            if len(waiting) == MANY_QUEUED:
-                self.take_turns()
+        self.mailbox.waiting.append(arrived)
+        if not self.listed:
+            self.become_ready()
 
     def _check_order(self, backlog: Backlog, attachment: bytes) -> None:
         try:  # this is run once a message: `contextlib.suppress` is three calls
@@ -180,16 +175,14 @@ class Subscription(Receiver, Generic[MsgT]):
         tell_handlers(self.event_handlers, _LOST, total=missing)
         self._tell_loss()
 
-    def attach(self, executor: Loop, queued: int = 0) -> None:
+    def attach(self, executor: Loop, has_turn: bool = False) -> None:
         """Belong to this executor; the node tells others what was dropped while there was none."""
-        super().attach(executor, queued)
+        super().attach(executor, has_turn)
         if self.dropped:
             self._tell_loss()
 
     def overflowed(self) -> None:
-        """Leave turns to the other callbacks of the executor, and let the node tell others of the loss."""
-        if not self.gives_way:
-            self.take_turns()
+        """Let the node tell others of the loss."""
         self._tell_loss()
 
     def _tell_loss(self) -> None:

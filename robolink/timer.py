@@ -11,7 +11,7 @@ from robolink.callback_groups import CallbackGroup
 from robolink.clock import Clock, ROSClock
 from robolink.clock_type import ClockType
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser, InvalidHandle, ROSInterruptException
-from robolink.running.entity import NOTHING, Entity
+from robolink.running.entity import NOTHING, TIMER, Entity
 from robolink.system import waits
 from robolink.task import Future
 from robolink.text.callbacks import Place, call_instead_of_function
@@ -62,6 +62,7 @@ class Timer(Entity):
         TypeError: if the callback cannot be called.
     """
 
+    rank = TIMER
     CALLBACK_TAKES: ClassVar[tuple[str, ...]] = ()
     """Names of the arguments of a callback, for errors about it."""
 
@@ -102,12 +103,12 @@ class Timer(Entity):
         self._callback = callback
         self._info_name = None if callback is None else _info_parameter(callback)
 
-    def attach(self, executor: Loop, queued: int = 0) -> None:
+    def attach(self, executor: Loop, has_turn: bool = False) -> None:
         """Belong to this executor, which calls the timer when it is due."""
-        super().attach(executor, queued)
+        super().attach(executor, has_turn)
         if isinstance(self.clock, ROSClock):
             self.clock.watch(self)
-        if not queued:
+        if not has_turn:
             self.reschedule()
 
     def detach(self) -> None:

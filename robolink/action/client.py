@@ -21,7 +21,7 @@ from robolink.interfaces.action_msgs.srv import CancelGoal
 from robolink.interfaces.unique_identifier_msgs.msg import UUID
 from robolink.message import action_type as checked_action_type
 from robolink.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
-from robolink.running.entity import NOTHING, Entity
+from robolink.running.entity import Entity, next_number
 from robolink.subscription import MessageInfo, Subscription
 from robolink.task import Future
 from robolink.waitable import Waitable
@@ -75,6 +75,7 @@ class ActionClient(Waitable):
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
         self._lately_ended: dict[bytes, int] = {}  # and when they did, in nanoseconds
         self._statuses: dict[bytes, int] = {}
+        self._lane = next_number()
         self._parts: list[Client | Subscription[Any]] = []
         try:
             self._declare_topics(feedback_sub_qos_profile, status_sub_qos_profile)
@@ -102,13 +103,14 @@ class ActionClient(Waitable):
         name = self._node.resolve_topic_name(graph.part_name(self._action_name, part))
         made = Subscription(self._node._owner_, msg_type, name, callback, self.callback_group, qos)
         made.serves = True  # feedback goes on while a callback waits for a result
+        made.lane = self._lane
         self._parts.append(made)
         return made
 
     def _client(self, part: str, srv_type: type[Any], qos: QoSProfile) -> Client:
         name = self._node.resolve_service_name(graph.part_name(self._action_name, part))
         made = Client(self._node._owner_, srv_type, name, qos, self.callback_group)
-        made.gives_way = False  # a goal is accepted before its feedback comes, and that comes before its result
+        made.lane = self._lane  # a goal is accepted before its feedback comes, and that comes before its result
         self._parts.append(made)
         return made
 
@@ -266,9 +268,7 @@ class ActionClient(Waitable):
             future.set_executor(self._node.executor)  # there may not have been one before
             error = response.exception()
             if error is None:
-                self._feedback.gives_way = True
                 _complete(future, answered, response.result())
-                self._release_feedback()
             elif (reason := failed(error)) is not None:
                 future.set_exception(reason)
 
@@ -301,14 +301,6 @@ class ActionClient(Waitable):
                 handle._status = status
                 if status in ENDED:
                     self._goal_handles.pop(key, None)
-
-    def _release_feedback(self) -> None:
-        """Let feedback come once those have had their turn who waited for the answer that has just come."""
-        executor = self._node.executor
-        if executor is None:
-            self._feedback.gives_way = False
-        else:
-            executor._queue_.post(_Release(self._feedback))
 
     def _stop_feedback(self, goal_id: UUID) -> None:
         """Drop a feedback callback, though not at once: what was sent before the result may still wait its turn."""
@@ -354,21 +346,6 @@ class ActionClient(Waitable):
         for part in self._parts:
             part.destroy()
         self._node.remove_waitable(self)
-
-
-class _Release(Entity):
-    """Marker in the ready queue: a subscription gives way until it is reached."""
-
-    serves = True
-
-    def __init__(self, subscription: Subscription[Any]) -> None:
-        super().__init__()
-        self._subscription = subscription
-
-    def take(self) -> Any:
-        """Let the subscription give way no longer; there is nothing to execute."""
-        self._subscription.gives_way = False
-        return NOTHING
 
 
 def _complete(future: Future[Any], function: Callable[[Any], Any], value: Any) -> None:

@@ -30,7 +30,7 @@ from robolink.message import Message, encode
 from robolink.message import action_type as checked_action_type
 from robolink.publisher import Publisher
 from robolink.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
-from robolink.running.entity import Entity
+from robolink.running.entity import Entity, next_number
 from robolink.service import RequestHeader
 from robolink.text.tracebacks import formatted
 from robolink.waitable import Waitable
@@ -135,7 +135,9 @@ class ActionServer(Waitable):
         self._goal_handles: dict[bytes, ServerGoalHandle] = {}
         self._encoded = Statuses()
         self._destroyed = False
+        self._lane = next_number()
         self._executions = Executions(self._execute_goal)
+        self._executions.lane = self._lane
         self._results = Results(self._answer_result, self._forget, result_timeout, self.callback_group, node)
         self._parts: list[Publisher[Any] | LateService] = []
         try:
@@ -166,6 +168,7 @@ class ActionServer(Waitable):
     def _service(self, part: str, srv_type: type[Any], callback: Callable[..., Any], qos: QoSProfile) -> LateService:
         name = self._node.resolve_service_name(graph.part_name(self._action_name, part))
         made = LateService(self._node._owner_, srv_type, name, callback, self.callback_group, qos)
+        made.lane = self._lane  # a goal comes before it is cancelled
         self._parts.append(made)
         return made
 

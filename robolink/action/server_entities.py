@@ -57,10 +57,10 @@ class Executions(Entity):
         if queue is not None:
             queue.post(self)
 
-    def attach(self, executor: Loop, queued: int = 0) -> None:
+    def attach(self, executor: Loop, has_turn: bool = False) -> None:
         """Attach to an executor; what is due is ready there."""
-        super().attach(executor, queued)
-        executor._queue_.ready.extend([self] * (len(self._due) - queued))
+        super().attach(executor, has_turn)
+        executor._queue_.ready.extend([self] * (len(self._due) - has_turn))
 
     def take(self) -> Any:
         """Return the oldest execution that is due."""

@@ -1,4 +1,4 @@
-"""Executors: event loops that wait, and run callbacks in the order in which they became ready."""
+"""Executors: event loops that wait, and run what is ready, in rounds in which each entity has one turn."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ if TYPE_CHECKING:
 
 
 class SingleThreadedExecutor(Executor):
-    """Executor that runs one callback after the other, in the thread that called `spin`, in the order of readiness.
+    """Executor that runs one callback after the other, in the thread that called `spin`.
+
+    It gives turns as rclpy's does: to tasks, and then in rounds to waitables, and node by node to the timers that are
+    due, to one message of each subscription, to guard conditions, clients and services. In an overload nobody starves.
 
     Args:
         context: Context whose end ends the spinning; None is the default one.

@@ -13,8 +13,7 @@ from typing import Any, cast
 from robolink.executors import SingleThreadedExecutor
 from robolink.host.participants import CALLBACKS, HostedInbox, Job, ProgramLike, Runner
 from robolink.running.defaults import here
-from robolink.running.entity import NOTHING, Entity
-from robolink.running.ready_queue import reserve
+from robolink.running.entity import Entity
 from robolink.running.waiting import POLL_NS
 
 
@@ -26,7 +25,6 @@ class HostDriver:
         self.inbox = cast(HostedInbox, executor.inbox)
         self._executor, self._context = executor, executor.context
         self._queue, self._run = executor._queue_, executor.run
-        self._ready, self._blocked = self._queue.ready, self._queue.blocked
         self._queue.timekeeper = self
         self._queue.schedule = self.schedule  # type: ignore[method-assign] # in place of a method that would only call it
         self._defaults, self._env = program.defaults, program.env
@@ -56,9 +54,9 @@ class HostDriver:
         due = self._host_time._now + left if time is self._host_time else time.on_base(time.steady() + left)
         heappush(self._heap, (due, CALLBACKS, self._next_serial(), timer.version, timer))
 
-    def postpone(self, entity: Entity) -> None:
-        """Make an entity ready again in a moment."""
-        self._scheduler.at(self._scheduler.time.now() + POLL_NS, Job(self.program, lambda: self._queue.post(entity)))
+    def postpone(self, task: Entity) -> None:
+        """Run the next part of a task in a moment."""
+        self._scheduler.at(self._scheduler.time.now() + POLL_NS, Job(self.program, lambda: self._queue.post(task)))
 
     # Being spun
 
@@ -117,26 +115,17 @@ class HostDriver:
             here.defaults = self._defaults
             if self._view.env is not self._env:
                 self._view.show(self.program)
-        if self._blocked or self._queue.pollables:
-            self._look_around()
-        ready = self._ready
-        while ready:  # as `ReadyQueue.take` does, without its lock: nobody else runs
-            entity = ready.popleft()
-            group = entity.gate
-            acquire = group._acquire_
-            if not (reserve(group, entity) if acquire is None else acquire(False)):
-                self._blocked.append(entity)
-            elif (taken := entity.take()) is not NOTHING:
-                break
-            else:
-                group.ending_execution(entity)
-        else:
+        queue = self._queue
+        if queue.pollables:
+            queue.poll()
+        found = queue.take()
+        if found is None:
             self._check_end()
             return
-        inbox, run = self.inbox, self._run
+        inbox = self.inbox
         inbox.is_free, self._stepper = False, runner
         try:
-            run(entity, taken)
+            self._run(*found)
         except BaseException as error:  # noqa: BLE001 - whoever spins meets it
             self._stepper = None
             self._end(error)
@@ -146,13 +135,8 @@ class HostDriver:
             self._end()
             return
         inbox.is_free = self.is_lent
-        if not inbox.queued and (ready or self._blocked):
+        if not inbox.queued and (queue.ready or queue.turns or queue.blocked):
             inbox.wake()
-
-    def _look_around(self) -> None:
-        """Ask the polled entities, and let what its group kept back try again."""
-        self._queue.poll()
-        self._queue.unblock()
 
     def _check_end(self) -> None:
         """Let the spinning thread go if, with nothing ready, it is to end."""

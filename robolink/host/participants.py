@@ -341,8 +341,8 @@ def _straight_sink(target: Any, place: _Place, schedule: Callable[[HostedInbox],
         if len(waiting) == depth:
             mailbox.dropped += 1
             target.overflowed()
-        elif (queue := target._queue_) is not None:
-            queue.ready.append(target)
+        elif not target.listed:
+            target.become_ready()
         keep(content)
         inbox = place.inbox
         if inbox is not None:

@@ -345,15 +345,22 @@ class Scheduler:
                 if type(thing) is Wait or type(thing) is Job:
                     self.due.append(thing)
                     return None
-                return self._turn_of_timer(thing._queue_, thing)
+                return self._turn_of_timer(thing._queue_, thing, time_ns)
         self._nothing_to_come()
         return None
 
-    def _turn_of_timer(self, queue: Any, timer: Any) -> Any:
-        """Return the turn of a timer that is due, if it is known."""
+    def _turn_of_timer(self, queue: Any, timer: Any, time_ns: int) -> Any:
+        """Return the turn of a timer that is due, if it is known; what is due there next joins it in one round."""
         if queue is None:
             return None
         queue.ready.append(timer)
+        heap = self.heap
+        while heap and heap[0][0] == time_ns:
+            other = heap[0][4]
+            if type(other) is Wait or type(other) is Job or other._queue_ is not queue:
+                break
+            if heappop(heap)[3] == other.version:
+                queue.ready.append(other)
         inbox = queue.inbox
         if inbox.is_free:
             return inbox

@@ -34,7 +34,8 @@ class DeadlockWarning:
 
         def look() -> bool:
             with self._queue.lock:
-                waiting = [] if self._has_warned else [each for each in self._queue.blocked if is_held_here(each)]
+                kept = () if self._has_warned else (*self._queue.blocked, *self._queue.ready)
+                waiting = [each for each in kept if is_held_here(each)]
             held = next((each for each in waiting if stop is None or self._is_asked_here(each.origin)), None)
             if held is not None:
                 self._has_warned = True

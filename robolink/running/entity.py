@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import weakref
 from typing import TYPE_CHECKING, Any
 
@@ -10,12 +11,18 @@ from robolink.callback_groups import CallbackGroup, ReentrantCallbackGroup
 from robolink.running.destroyable import Destroyable
 from robolink.running.inbox import Inbox, Mailbox
 from robolink.running.ready_queue import NOTHING as NOTHING
-from robolink.running.ready_queue import ReadyQueue
+from robolink.running.ready_queue import OTHER, TASK, WAITABLE, Place, ReadyQueue
 
 if TYPE_CHECKING:
     from robolink.running.ports import ContextLike, Loop, NodeLike
 
 ANY_TIME = ReentrantCallbackGroup()
+
+TIMER, SUBSCRIPTION, GUARD_CONDITION, CLIENT, SERVICE = range(5)
+"""Ranks of the kinds of entities: the order in which those of one node have their turns in a round, as in rclpy."""
+
+next_number = itertools.count(1).__next__
+"""Returns the number of an entity, or of a waitable of several, in the order in which they are made."""
 
 
 class Entity(Destroyable):
@@ -33,6 +40,15 @@ class Entity(Destroyable):
     is_gated = True
     """False if its group need not be waited for."""
 
+    rank: int | None = None
+    """Rank of its kind; None for what comes before all these, as waitables do."""
+
+    lane = 0
+    """Number of the waitable that it is a part of; these have one turn together in each round, in order of arrival."""
+
+    place: Place = (TASK, 0, 0, 0)
+    """Place in each round of its executor."""
+
     gate: CallbackGroup = ANY_TIME
     """Group that decides when it may run: its callback group if it `is_gated`. Executors read it for each callback."""
 
@@ -42,6 +58,7 @@ class Entity(Destroyable):
         self._queue_: ReadyQueue[Any] | None = None
         """Ready queue of its executor."""
         self._node: weakref.ReferenceType[NodeLike] | None = None
+        self._number = next_number()
         if callback_group is not None:
             callback_group.add_entity(self)
 
@@ -75,8 +92,14 @@ class Entity(Destroyable):
         node = self.node
         return None if node is None else node.context
 
-    def attach(self, executor: Loop, queued: int = 0) -> None:
-        """Belong to this `executor` from now on; it is `queued` times in its ready queue already."""
+    def attach(self, executor: Loop, has_turn: bool = False) -> None:
+        """Belong to this `executor` from now on; `has_turn`: it has a turn in the present round already."""
+        node = self.node
+        number = 0 if node is None else node._number_
+        if self.rank is None or self.lane:
+            self.place = WAITABLE, number, 0, self.lane or self._number
+        else:
+            self.place = OTHER, number, self.rank, self._number
         self.executor, self._queue_ = executor, executor._queue_
 
     def detach(self) -> None:
@@ -102,10 +125,10 @@ class PolledEntity(Entity):
         """True if there is something to execute; called by the thread that spins."""
         raise NotImplementedError
 
-    def attach(self, executor: Loop, queued: int = 0) -> None:
+    def attach(self, executor: Loop, has_turn: bool = False) -> None:
         """Belong to this executor, which polls it."""
-        super().attach(executor, queued)
-        self.waits = queued > 0
+        super().attach(executor, has_turn)
+        self.waits = has_turn
         executor._queue_.add_pollable(self)
 
     def detach(self) -> None:
@@ -127,27 +150,22 @@ class Receiver(Entity):
 
     straight = False
 
-    gives_way = False
-    """True if what arrives waits until all else that is ready has had its turn."""
-
     def __init__(self, parking: Inbox, depth: int, callback_group: CallbackGroup | None = None) -> None:
         super().__init__(callback_group)
         self._parking = parking
         self.mailbox = Mailbox(depth)
         self.sink: functools.partial[Any] = parking.sink(self)
-        self._gave_way = 0
-        self._takes_turns = False
-        self._void = self._unlisted = 0
-        """Number of its turns in the ready queue that stand for nothing, and of waiting arrivals without a turn."""
+        self.listed = False
+        """True while it is among what is ready, or its turn is still to come; never for the parts of a waitable."""
 
-    def attach(self, executor: Loop, queued: int = 0) -> None:
+    def attach(self, executor: Loop, has_turn: bool = False) -> None:
         """Belong to this `executor`, which holds its lock: what arrives goes to its inbox, what waited is ready."""
-        queue = executor._queue_
-        self._move(self._parking, queue.inbox)
-        super().attach(executor, queued)
-        waiting = len(self.mailbox)
-        self._void, self._unlisted = max(0, queued - waiting) if self._takes_turns else 0, 0
-        queue.ready.extend([self] * (waiting - queued))
+        self._move(self._parking, executor._queue_.inbox)
+        super().attach(executor, has_turn)
+        self.listed = has_turn and not self.lane
+        for _ in range(len(self.mailbox) - has_turn):
+            if not self.listed:
+                self.become_ready()
 
     def detach(self) -> None:
         """Belong to no executor: what arrives waits in the context's inbox."""
@@ -168,7 +186,7 @@ class Receiver(Entity):
         inbox.take_over(self.sink)
 
     def deliver(self, arrived: Any) -> None:
-        """Keep what `arrived`, and make it ready once more if that is one more than before."""
+        """Keep what `arrived`, and be ready from then on."""
         mailbox = self.mailbox
         if mailbox.depth:
             if not mailbox.put(arrived):
@@ -176,46 +194,27 @@ class Receiver(Entity):
                 return
         else:
             mailbox.waiting.append(arrived)
-        if self._queue_ is not None:
-            self._queue_.ready.append(self)
+        if not self.listed:
+            self.become_ready()
+
+    def become_ready(self) -> None:
+        """Have a turn in the next round; as a part of a waitable, one turn more."""
+        queue = self._queue_
+        if queue is None:
+            return
+        self.listed = not self.lane
+        queue.ready.append(self)
 
     def overflowed(self) -> None:
         """Note, under the inbox's lock, that the oldest of what waited was dropped for what has arrived."""
 
     def take(self) -> Any:
-        """Return the oldest of what waits, or NOTHING."""
-        waiting = self.mailbox.waiting
-        if self.gives_way:
-            queue = self._queue_
-            if queue is not None and queue.ready and self._gave_way < len(waiting):
-                self._gave_way += 1
-                queue.ready.append(self)
-                return NOTHING
-        if self._gave_way:
-            self._gave_way -= 1
-        return waiting.popleft() if waiting else NOTHING
-
-    def take_turns(self) -> None:
-        """Note an overload, under the inbox's lock: until nothing waits, run once for each turn of all others.
-
-        Otherwise all that waits here, ten slow callbacks say, would come before a heartbeat that arrives now.
-        """
-        if not self._takes_turns:
-            self._takes_turns, self._void, self._unlisted = True, 0, 0
-            self.take = self._take_in_turn  # type: ignore[method-assign] # it costs the others nothing
-
-    def _take_in_turn(self) -> Any:
-        """Return the oldest of what waits, or NOTHING; what waits behind it has a single turn, after all others."""
-        if self._void:
-            self._void -= 1
-            return NOTHING
+        """Return the oldest of what waits, or NOTHING; what waits behind it has its turn in the next round."""
         waiting, queue = self.mailbox.waiting, self._queue_
-        others = len(waiting) - 1 - self._unlisted
         taken = waiting.popleft() if waiting else NOTHING
-        if waiting and queue is not None:
-            self._void, self._unlisted = others, len(waiting) - 1
-            queue.ready.append(self)
-        else:
-            self._takes_turns = False
-            del self.take
+        if self.listed:
+            if waiting and queue is not None:
+                queue.ready.append(self)
+            else:
+                self.listed = False
         return taken

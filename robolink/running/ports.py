@@ -70,6 +70,9 @@ class ContextLike(Protocol):
 class NodeLike(Protocol):
     """Node as seen by the entities it owns."""
 
+    _number_: int
+    """Number in the order in which nodes were made: of several in an executor, the older has its turns first."""
+
     @property
     def context(self) -> ContextLike:
         """The context that it lives in."""
@@ -81,8 +84,8 @@ class NodeLike(Protocol):
 class SpunNode(NodeLike, OverriddenNode, Protocol):
     """Node as seen by the executor that runs its callbacks."""
 
-    _queued_: list[Any]
-    """Entities that were ready when the last executor removed the node, in order."""
+    _turns_: list[Any]
+    """Entities whose turn was still to come when the last executor removed the node, in order."""
 
     _is_parked_: bool
     """True while its entities are attached to an executor, but it belongs to none."""

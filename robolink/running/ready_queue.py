@@ -1,15 +1,20 @@
-"""Ready queue of an executor: the entities that are ready, in order, and the timers by their deadlines.
+"""Ready queue of an executor: the entities that are ready, which have their turns in rounds, and timers by deadline.
 
-An executor has one, takes from it and runs what it took; entities put themselves in, from any thread.
+An executor has one, takes from it and runs what it took; entities put themselves in, from any thread. As in rclpy, a
+round gives each entity that is ready at its beginning one turn, in the order of their places: waitables, then of one
+node after the other timers, subscriptions, guard conditions, clients and services. Tasks are run between two rounds. So
+what waits behind one slow callback keeps nobody else waiting for longer than a round. Who is kept back by its callback
+group keeps its turn, before all who become ready later: in rclpy the first of a group may keep the others from theirs.
 """
 
 from __future__ import annotations
 
 import heapq
 import itertools
+import operator
 from collections import deque
 from collections.abc import Callable, Collection
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeAlias, TypeVar
 
 from robolink.callback_groups import CallbackGroup
 from robolink.running.inbox import Inbox
@@ -18,12 +23,28 @@ NOTHING: Any = object()
 """Result of `take` when there is nothing to do after all."""
 
 
+Place: TypeAlias = tuple[int, int, int, int]
+"""Place of an entity in a round: TASK, WAITABLE or OTHER, its node's number, the rank of its kind, its own number."""
+
+TASK, WAITABLE, OTHER = range(3)
+
+_place = operator.attrgetter("place")
+
+
 class Runnable(Protocol):
     """Entity as seen by the queue that it waits in."""
 
     @property
     def gate(self) -> CallbackGroup:
         """The group that decides when it may run."""
+
+    @property
+    def place(self) -> Place:
+        """Its place in each round."""
+
+    @property
+    def lane(self) -> int:
+        """Number of the waitable whose parts have one turn together in each round; 0 for an entity on its own."""
 
     def take(self) -> Any:
         """Return what is to be executed, or NOTHING; called under the inbox's lock."""
@@ -63,18 +84,26 @@ EntityT = TypeVar("EntityT", bound=Runnable)
 
 
 class ReadyQueue(Generic[EntityT]):
-    """Ready entities in the order in which they became so, those their group holds back, and timers by deadline."""
+    """Ready entities, which have their turns in rounds, those their group holds back, and timers by deadline."""
 
     def __init__(self, inbox: Inbox, steady: Callable[[], int]) -> None:
         self.inbox = inbox
         """Where arrivals wait until they are delivered; whoever waits for work waits here."""
         self.lock = inbox.lock
+        self.turns: deque[EntityT] = deque()
+        """Entities whose turn is still to come in this round, in order."""
         self.ready: deque[EntityT] = deque()
-        """Entities that are ready; any thread may append."""
+        """Entities and tasks that have become ready since the round began; any thread may append."""
         self.blocked: deque[EntityT] = deque()
-        """Entities that were ready, before all those in `ready`, when their callback group kept them back."""
+        """Entities whose turn came while their callback group was busy: they go first when something is taken next."""
+        self.unsorted = 0
+        """Index in `blocked` of the first entity of the rounds in which nothing could be taken: they count as one."""
+        self.took = False
+        """True if something was taken in this round."""
+        self.ran_tasks = False
+        """True if tasks were the last to have turns."""
         self.postponed: deque[EntityT] = deque()
-        """Entities to be made ready again in a moment."""
+        """Tasks to be run again in a moment."""
         self.pollables: list[Any] = []
         """The polled entities: each is asked before each look at what is ready."""
         self.timers: list[tuple[int, int, int, Scheduled]] = []
@@ -95,12 +124,12 @@ class ReadyQueue(Generic[EntityT]):
         self.ready.append(entity)
         self.inbox.wake()
 
-    def postpone(self, entity: EntityT) -> None:
-        """Make an entity ready again in a moment."""
+    def postpone(self, task: EntityT) -> None:
+        """Run the next part of a task in a moment."""
         if self.timekeeper is not None:
-            self.timekeeper.postpone(entity)
+            self.timekeeper.postpone(task)
             return
-        self.postponed.append(entity)
+        self.postponed.append(task)
         self.inbox.wake()
 
     def schedule(self, timer: Scheduled, left: int) -> None:
@@ -121,12 +150,13 @@ class ReadyQueue(Generic[EntityT]):
         self.pollables = [each for each in self.pollables if each is not entity]
 
     def withdraw(self, entities: Collection[EntityT]) -> list[EntityT]:
-        """Take out these entities, however often each is in, and return them in order."""
+        """Take out these entities, and return those whose turn was still to come in this round, in order."""
         self.unblock()
         withdrawn: list[EntityT] = []
-        for _ in range(len(self.ready)):  # in place, since other threads may append
-            entity = self.ready.popleft()
-            (withdrawn if entity in entities else self.ready).append(entity)
+        for waiting, removed in ((self.turns, withdrawn), (self.ready, list[EntityT]())):
+            for _ in range(len(waiting)):  # in place, since other threads may append
+                entity = waiting.popleft()
+                (removed if entity in entities else waiting).append(entity)
         return withdrawn
 
     # What becomes ready
@@ -158,35 +188,74 @@ class ReadyQueue(Generic[EntityT]):
                     return due
         return None
 
+    # Rounds
+
+    def begin(self, wanted: Callable[[EntityT], bool] | None = None) -> bool:
+        """Give turns to the tasks or, when they have had theirs, begin a round. False if there is nothing to do."""
+        if self.took:
+            self.unsorted, self.took = len(self.blocked), False
+        ready = self.ready
+        batch = [ready.popleft() for _ in range(len(ready))]  # one by one, since other threads may append
+        batch.sort(key=_place)
+        if batch and batch[0].place[0] < OTHER:
+            batch = self._apart(batch, wanted)
+        else:
+            self.ran_tasks = False
+        self.turns.extend(batch)
+        return bool(batch)
+
+    def _apart(self, batch: list[EntityT], wanted: Callable[[EntityT], bool] | None) -> list[EntityT]:
+        """Return those of a sorted batch with tasks or waitables that have their turns now, and put back the others."""
+        tasks = [each for each in batch if each.place[0] == TASK]
+        others = batch[len(tasks) :]
+        if tasks and not self.ran_tasks:
+            turns, left = tasks, others
+        else:
+            turns, left = _with_one_part_each(others, wanted)
+            if turns:
+                left = [*tasks, *left]
+            else:
+                turns = tasks
+        self.ran_tasks = turns is tasks
+        self.ready.extendleft(reversed(left))
+        return turns
+
     # Taking
 
     def take(self, wanted: Callable[[EntityT], bool] | None = None) -> tuple[EntityT, Any] | None:
-        """Take the first entity that is ready and whose group lets it run, with what it is to execute."""
+        """Take the entity whose turn it is and whose group lets it run, with what it is to execute."""
         with self.lock:
             if self.blocked:
                 self.unblock()
-            while self.ready:
-                entity = self.ready.popleft()
+            turns, ready, blocked = self.turns, self.ready, self.blocked
+            while turns or (len(ready) == 1 and not blocked) or self.begin(wanted):
+                if turns:
+                    entity = turns.popleft()
+                else:  # a round of one, as usual
+                    entity, self.ran_tasks, self.took, self.unsorted = ready.popleft(), False, False, 0
                 group = entity.gate
                 if (wanted is not None and not wanted(entity)) or not (
                     group._acquire_(False) if group._acquire_ else reserve(group, entity)
                 ):
-                    self.blocked.append(entity)
+                    blocked.append(entity)
                     continue
                 taken = entity.take()
                 if taken is not NOTHING:
+                    self.took = True
                     return entity, taken
                 group.ending_execution(entity)
         return None
 
     def take_at_once(self, arrival: Any, wanted: Callable[[EntityT], bool] | None = None) -> tuple[EntityT, Any] | None:
-        """Take what arrived for an entity for which nothing waits; else deliver it, and it waits its turn."""
+        """Take what arrived for an entity if nothing else waits; else deliver it, and it waits its turn."""
         target = arrival.target
         if target.straight and wanted is None:
             with self.lock:
-                if target._queue_ is self and not self.ready and not target.mailbox.waiting:
+                if not (self.ready or self.turns or target.mailbox.waiting):
                     group = target.gate
-                    if group._acquire_(False) if group._acquire_ else reserve(group, target):
+                    if target._queue_ is self and (
+                        group._acquire_(False) if group._acquire_ else reserve(group, target)
+                    ):
                         return target, arrival.content
         self.inbox.deliver(arrival)
         return None
@@ -194,12 +263,30 @@ class ReadyQueue(Generic[EntityT]):
     def has_blocked(self) -> bool:
         """True if something ready waits for its callback group."""
         with self.lock:
-            return bool(self.blocked)
+            return bool(self.blocked or self.ready)
 
     def unblock(self) -> None:
-        """Put what was blocked back to the front."""
-        self.ready.extendleft(reversed(self.blocked))
+        """Let what was blocked try again, before all others."""
+        blocked = [*self.blocked]
         self.blocked.clear()
+        blocked[self.unsorted :] = sorted(blocked[self.unsorted :], key=_place)
+        self.turns.extendleft(reversed(blocked))
+
+
+def _with_one_part_each(
+    batch: list[EntityT], wanted: Callable[[EntityT], bool] | None
+) -> tuple[list[EntityT], list[EntityT]]:
+    """Return a sorted batch with the first part of each waitable that may run now, and the other parts."""
+    turns, left, lane = list[EntityT](), list[EntityT](), 0
+    for each in batch:
+        if not each.lane:
+            turns.append(each)
+        elif each.lane != lane and (wanted is None or wanted(each)) and each.gate.can_execute(each):
+            lane = each.lane
+            turns.append(each)
+        else:
+            left.append(each)
+    return turns, left
 
 
 def reserve(group: CallbackGroup, entity: Any) -> bool:

@@ -44,14 +44,14 @@ class SpunNodes:
             self._members = None
             self.added.append(node)
             node._belong_to_(executor)
-            queued, node._queued_ = node._queued_, []
-            self._queue.ready.extend(queued)
+            turns, node._turns_ = node._turns_, []
             for entity in node._entities_():
-                entity.attach(executor, queued.count(entity))
+                entity.attach(executor, entity in turns)
+            self._queue.turns.extend(turns)
         return True
 
     def remove(self, node: SpunNode) -> bool:
-        """Detach the entities of a node; False if it is not here. What is ready keeps its turn until it is added."""
+        """Detach the entities of a node; False if it is not here. A turn still to come comes once the node is added."""
         with self._queue.lock:
             if node in self.added:
                 self.added.remove(node)
@@ -65,13 +65,13 @@ class SpunNodes:
         return False
 
     def _detach(self, entities: Collection[Entity]) -> list[Entity]:
-        """Detach these entities, and return those that were ready, in order."""
+        """Detach these entities, and return those whose turn was still to come, in order."""
         for entity in entities:
             entity.detach()
         return self._queue.withdraw(set(entities))
 
     def _let_go(self, node: SpunNode) -> None:
-        node._queued_ = self._detach(node._entities_())
+        node._turns_ = self._detach(node._entities_())
         node._is_parked_ = False
         node._belong_to_(None)
 

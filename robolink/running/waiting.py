@@ -63,7 +63,7 @@ class Waiting:
             if queue.pollables:
                 queue.poll()
             next_timer = queue.collect_due() if queue.timers else None
-            if queue.ready or queue.blocked:
+            if queue.ready or queue.turns or queue.blocked:
                 taken = self.take(wanted)
                 if taken is not None:
                     return taken

@@ -162,6 +162,7 @@ def test_feedback_and_results_of_strangers_harm_nobody(
     nobody = GoalStatus(goal_info=GoalInfo(goal_id=numbered(7)), status=99)
     status.publish(GoalStatusArray(status_list=[nobody, nobody]))
     status.publish(b"")
+    spin_for(executor, 0.1)
     heard: list[Any] = []
     handle = accepted(executor, client, 2, feedback_callback=heard.append)
     assert done(executor, handle.get_result_async()).status == SUCCEEDED
