@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import importlib.util
 import sys
 from collections.abc import Callable
@@ -43,7 +44,7 @@ def load_node(source: NodeSource, *, script: ScriptMaker | None = None) -> Runna
 
     The content of a file is decided in this order: the attribute asked for; a script, with a `__main__` guard or with
     statements that run a node as the file is read, which is run as Python runs it; a function `main`; its only Node
-    class; a script without any of these, which is run too.
+    class; a script without any of these, which is run too, whatever other classes it has.
 
     Args:
         source: Source of the node, as `find_node` returns it.
@@ -72,7 +73,12 @@ def load_node(source: NodeSource, *, script: ScriptMaker | None = None) -> Runna
             return script(source, lambda: _reach_all(source))
         return _script(source, path)
     module = _loaded(source)
-    return module.main if _defines(tree, "FunctionDef", "main") else _only_node(module, path)
+    if _defines(tree, "FunctionDef", "main"):
+        main: Runnable = module.main
+        return main
+    if _does_something(tree) and not _own_nodes(module):  # its classes could have been nodes, by their bases
+        return lambda: None
+    return _only_node(module, path)
 
 
 def _in_package(source: NodeSource, path: Path, tree: ast.Module) -> NodeSource:
@@ -177,8 +183,11 @@ def _parse(path: Path) -> ast.Module:
 
 def _is_script(tree: ast.Module) -> bool:
     """True if a file is run as Python runs it, not asked for what it defines."""
-    is_plain = not _defines(tree, "ClassDef") and not _defines(tree, "FunctionDef", "main")
-    return _has_guard(tree) or _acts(tree) or is_plain
+    if _has_guard(tree) or _acts(tree):
+        return True
+    if _defines(tree, "FunctionDef", "main"):
+        return False
+    return not _defines(tree, "ClassDef") or (_does_something(tree) and not _may_define_nodes(tree))
 
 
 def _has_guard(tree: ast.Module) -> bool:
@@ -200,6 +209,40 @@ def _acts(tree: ast.Module) -> bool:
         if called & RUNNING or (isinstance(statement, ast.Expr) and called & own):
             return True
     return False
+
+
+def _does_something(tree: ast.Module) -> bool:
+    """True if statements outside of functions and classes call something, but for values of names: these prepare."""
+    import ast
+
+    acting = (ast.Expr, ast.If, ast.For, ast.While, ast.With, ast.Try)
+    own = {each.name for each in tree.body if isinstance(each, ast.ClassDef)}
+    for statement in tree.body:
+        called = {_last_name(each.func) for each in ast.walk(statement) if isinstance(each, ast.Call)}
+        if called and (isinstance(statement, acting) or (isinstance(statement, ast.Assign) and called & own)):
+            return True
+    return False
+
+
+def _may_define_nodes(tree: ast.Module) -> bool:
+    """True if a class of a file may be a node: one of its bases is neither Python's nor a class that cannot be one."""
+    import ast
+
+    harmless = set(vars(builtins))
+    for each in tree.body:
+        if isinstance(each, ast.ImportFrom) and each.module and _is_pythons(each.module):
+            harmless |= {name.asname or name.name for name in each.names}
+        elif isinstance(each, ast.Import):
+            harmless |= {name.asname or name.name for name in each.names if _is_pythons(name.name)}
+        elif isinstance(each, ast.ClassDef):
+            if not {ast.unparse(base).partition(".")[0].partition("[")[0] for base in each.bases} <= harmless:
+                return True
+            harmless.add(each.name)
+    return False
+
+
+def _is_pythons(module: str) -> bool:
+    return module.partition(".")[0] in sys.stdlib_module_names
 
 
 def _defines(tree: ast.Module, kind: str, name: str | None = None) -> bool:
@@ -300,7 +343,7 @@ def _checked(found: Any, spec: str) -> Runnable:
 
 def _only_node(module: ModuleType, path: Path) -> Runnable:
     """Return the only Node class that a module itself defines (one that others of them extend does not count)."""
-    own = [each for each in vars(module).values() if _is_node(each) and each.__module__ == module.__name__]
+    own = _own_nodes(module)
     last = [each for each in own if not any(other is not each and issubclass(other, each) for other in own)]
     if not last:
         raise NodeLoadError(f"{path} holds no node: {_lack(module)}")
@@ -309,6 +352,10 @@ def _only_node(module: ModuleType, path: Path) -> Runnable:
         raise NodeLoadError(f"{path} holds {len(last)} nodes: say which, {choices}")
     found: type[Node] = last[0]
     return found
+
+
+def _own_nodes(module: ModuleType) -> list[type[Node]]:
+    return [each for each in vars(module).values() if _is_node(each) and each.__module__ == module.__name__]
 
 
 def _lack(module: ModuleType) -> str:

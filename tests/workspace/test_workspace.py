@@ -251,6 +251,28 @@ def test_a_script_that_acts_as_it_is_read_is_run_once(
     assert capsys.readouterr().out == "ran\n"
 
 
+@pytest.mark.parametrize(
+    "bases",
+    ["", "(object)", "(Exception)", "(dict[str, int])", "(Enum)", "(enum.Enum)", "(NamedTuple)", "(Path)"],
+)
+def test_a_plain_script_with_a_class_is_run_as_python_runs_it(
+    bases: str, write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    imports = "import enum\nfrom enum import Enum\nfrom pathlib import Path\nfrom typing import NamedTuple\n"
+    run = loaded(write("a.py", f"{imports}class A{bases}: pass\nclass B(A): pass\nb = str(A)\nprint(__name__)\n"))
+    assert capsys.readouterr().out == ""
+    run()
+    assert capsys.readouterr().out == "__main__\n"
+
+
+def test_a_script_whose_class_could_have_been_a_node_has_run_to_its_end(
+    write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = "import msgspec\nclass A(msgspec.Struct): pass\nprint('ran')\n"
+    assert loaded(write("a.py", text))() is None
+    assert capsys.readouterr().out == "ran\n"
+
+
 def test_what_a_file_only_prepares_makes_it_no_script(write: Write) -> None:
     text = "import logging\ndef made(): return 3\nlogging.getLogger('x').setLevel(30)\nCOUNT = made()\n"
     assert issubclass(loaded(write("a.py", NODE + text)), Node)
