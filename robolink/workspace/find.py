@@ -2,9 +2,10 @@
 
 A workspace is a folder with two of `nodes/`, `configs/` and `interfaces/`, or a ROS 2 one: a folder whose `src/` holds
 packages, or, where there is neither, a clone of a repository with packages, a lone package, or a folder of some. A name
-is looked up (1) as a path, (2) in the nearest workspace: the one asked for, `ROBOLINK_WORKSPACE`, or the working
-directory's or a parent's (if it can be trusted: `trust`), (3) among the entry points `robolink.nodes` of installed
-packages, (4) in the workspace that comes with robolink. `_` and `-` in names are the same.
+is looked up (1) as a path, (2) in the nearest workspace: the one requested, `ROBOLINK_WORKSPACE`, the working
+directory's or a parent's (if it can be trusted: `trust`), or the one whose `install/setup.bash` was sourced last, (3)
+among the entry points `robolink.nodes` of installed packages, (4) in the workspace that comes with robolink. `_` and
+`-` in names are the same.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from robolink.exceptions import NotFoundError, nearest
 from robolink.system.paths import expanded, is_file
 from robolink.workspace.built_in import built_in_workspace
 from robolink.workspace.counterparts import COUNTERPARTS, executable_of, lacking_executable
+from robolink.workspace.installed import COLCON
 from robolink.workspace.packages import (
     BUILT_IN,
     PARTS,
@@ -210,20 +212,27 @@ def list_faults(*, workspace: Folder = None) -> list[Path]:
 
 
 def user_workspace(workspace: Folder = None) -> Path | None:
-    """Return the user's workspace: `workspace` if given, else that of ROBOLINK_WORKSPACE, else the nearest; or None.
+    """Return the user's workspace: `workspace`, else that of ROBOLINK_WORKSPACE, the nearest, the sourced one, or None.
 
     Raises `NotFoundError` if one is named that is no folder.
     """
     asked = workspace or os.environ.get(VARIABLE)
     if not asked:
-        try:
-            return workspace_of(Path.cwd())
-        except FileNotFoundError:  # the working directory has been deleted
-            return None
+        here = None
+        with contextlib.suppress(FileNotFoundError):  # the working directory has been deleted
+            here = workspace_of(Path.cwd())
+        return here or _sourced_workspace()
     folder = expanded(asked)
     if not folder.is_dir():
         raise NotFoundError("workspace folder", str(asked))
     return folder.resolve()
+
+
+def _sourced_workspace() -> Path | None:
+    """Return the workspace whose `install/setup.bash` was sourced last; None if there is none."""
+    first = os.environ.get(COLCON, "").partition(os.pathsep)[0]
+    folder = Path(first).parent
+    return folder.resolve() if first and _is_workspace(folder) else None
 
 
 def workspace_of(path: Path) -> Path | None:

@@ -24,6 +24,7 @@ REASONS = {
     "needs a robot",
     "needs a world of Webots",
     "needs other machines",
+    "writes commands beside robolink's",
 }
 """Why blocks are not run, over all pages."""
 

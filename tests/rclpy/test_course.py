@@ -12,8 +12,6 @@ import math
 import os
 import re
 import shlex
-import subprocess
-import sys
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -261,10 +259,3 @@ def test_the_webots_controller_turns_the_motors_of_its_world(scenes: Mapping[str
     driver.end()
     ends_quietly(controller)
     robot.wait(lambda each: each.speed < 0.001)
-
-
-@pytest.mark.parametrize("text", PLAIN, ids=[f"program {number + 1}" for number in range(len(PLAIN))])
-def test_the_programs_without_ros_run(text: str) -> None:
-    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, encoding="utf-8", check=False)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout

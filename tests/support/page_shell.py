@@ -19,10 +19,12 @@ from tests.support.commands import ROBOLINK
 SETTING = re.compile(r"([A-Za-z_]\w*)=(.*)", re.DOTALL)
 PROGRAMS = {
     "robolink": ROBOLINK,
+    "ros2": ROBOLINK,
+    "colcon": (sys.executable, "-c", "import sys; from robolink.cli.shim.colcon import main; sys.exit(main())"),
     "python": (sys.executable,),
     "pytest": (sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-p", "no:xdist"),
 }
-"""Programs that pages start: those of the test."""
+"""Programs that pages start: those of the test, ros2 and colcon as `robolink shim` makes them."""
 
 
 class Shell:
@@ -52,6 +54,10 @@ class Shell:
         match words:
             case ["cd", folder]:
                 self.folder = (self.folder / folder).resolve(strict=True)
+            case ["mkdir", *_, folder]:
+                (self.folder / folder).mkdir(parents=True)
+            case ["source", file]:
+                assert (self.folder / file).is_file(), f"no {file}"  # what it sets is known in this folder, anyway
             case ["export", *settings] if settings:
                 self.variables.update(_setting(each) for each in settings)
             case [".", file]:

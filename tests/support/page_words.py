@@ -28,7 +28,7 @@ GO_ON_OF_A_NOUN = ("echo", "hz", "record", "pub", "monitor", "show")
 def goes_on(words: list[str]) -> bool:
     """Return True if a command runs until Ctrl-C."""
     words = without_settings(words)
-    if words[:1] != ["robolink"] or "--help" in words:
+    if words[0] not in ("robolink", "ros2") or "--help" in words:
         return False
     words = without_network(words[1:])
     if words[:2] in (["bag", "play"], ["interface", "show"]):

@@ -130,6 +130,8 @@ def found(command: NodeCommand, workspace: str | None) -> tuple[NodeSource, list
     if command.before > 0:
         source = executable_of(name, words[0], folder)
         if source is not None:
+            if folder is not None and (folder / "setup.py").is_file() and source.module and not source.attribute:
+                _tell_of_unnamed(source)
             return source, words[1:]
     try:
         return find_node(name, workspace=workspace), words
@@ -142,6 +144,12 @@ def found(command: NodeCommand, workspace: str | None) -> tuple[NodeSource, list
         if error is None:
             raise
         raise error from None
+
+
+def _tell_of_unnamed(source: NodeSource) -> None:
+    """Warn of a program that is found by its file alone: on a robot, `ros2 run` knows only what setup.py names."""
+    entry = f"'{source.name} = {source.module}:main'"
+    complain(f"setup.py does not name '{source.name}', so ROS 2 will not find it: add {entry} to its console_scripts")
 
 
 def _lacking(name: str, asked: str, folder: Path | None, workspace: str | None) -> RobolinkError | None:

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from robolink.cli.shared.output import complain, say
 from robolink.exceptions import NotFoundError, RobolinkError
+from robolink.workspace.installed import COLCON
 from robolink.workspace.packages import IGNORE, source_packages
 
 SETUPS = ("setup.bash", "setup.sh", "setup.zsh", "local_setup.bash", "local_setup.sh", "local_setup.zsh")
-"""Files that people source after a build; here they do nothing."""
+"""Files that people source after a build; here they say where the workspace is."""
 SELECTING = ("--packages-select", "--packages-up-to")
 """Options that name packages."""
 
 _USAGE = "colcon build | colcon list | colcon test"
-_NOTE = "# Made by robolink's colcon: robolink finds the packages in src/, so that there is nothing to set up.\n"
+_NOTE = "# Made by robolink's colcon: robolink finds the packages in src/, from any folder once this is sourced.\n"
+_SETUP = _NOTE + "export {variable}={folder}${{{variable}:+:${variable}}}\n"
 
 
 def main(args: Sequence[str] | None = None) -> int:
@@ -64,14 +67,21 @@ def _selected(words: Sequence[str]) -> list[str]:
 
 
 def _write_setups(folder: Path) -> None:
-    """Write files that do nothing when they are sourced, unless something was built before."""
-    if folder.exists() and not (folder / SETUPS[0]).exists():
+    """Write files that name the workspace when they are sourced, unless something was built before."""
+    if folder.exists() and not _is_ours(folder / SETUPS[0]):
         return
     folder.mkdir(exist_ok=True)
     (folder / IGNORE[0]).touch()
+    text = _SETUP.format(variable=COLCON, folder=shlex.quote(str(folder.absolute())))
     for name in SETUPS:
-        if not (folder / name).exists():
-            (folder / name).write_text(_NOTE, encoding="utf-8")
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+def _is_ours(setup: Path) -> bool:
+    try:
+        return setup.read_bytes().startswith(b"# Made by robolink's colcon")
+    except OSError:
+        return False
 
 
 def _list() -> int:

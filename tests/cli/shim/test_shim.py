@@ -10,7 +10,9 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.main import main
+from robolink.cli.running_nodes import runner
 from robolink.cli.shim import colcon, launch_test
+from robolink.workspace import find_package
 from tests.support.ros_tree import write_package
 
 Captured = pytest.CaptureFixture[str]
@@ -133,3 +135,25 @@ def test_launch_test_leads_to_pytest(tmp_path: Path, capsys: Captured, monkeypat
     assert capsys.readouterr().out.startswith("launch_test FILE [NAME:=VALUE]...")
     assert launch_test.main(["gone.py"]) == 2
     assert capsys.readouterr().err.startswith("robolink: there is no Python file among 'gone.py': launch_test FILE")
+
+
+def test_a_sourced_workspace_is_known_in_every_folder(
+    ws: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    assert colcon.main(["build"]) == 0
+    setup = (ws / "install/setup.bash").read_text(encoding="utf-8")
+    assert f"export COLCON_PREFIX_PATH={ws / 'install'}${{COLCON_PREFIX_PATH:+:" in setup
+    monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
+    assert find_package("pkg_one") is None
+    monkeypatch.setenv("COLCON_PREFIX_PATH", os.pathsep.join([str(ws / "install"), "/opt/ros/underlay"]))
+    assert find_package("pkg_one") == ws / "src/pkg_one"
+    capsys.readouterr()
+    runner.found(runner.NodeCommand("pkg_one", ["a"], 1), None)
+    said = "setup.py does not name 'a', so ROS 2 will not find it: add 'a = pkg_one.a:main' to its console_scripts"
+    assert capsys.readouterr().err == f"robolink: {said}\n"
+    write_package(Path("src"), "pkg_mine", {"b.py": ""}, "b = pkg_mine.b:main")
+    assert (find_package("pkg_one"), find_package("pkg_mine")) == (None, Path("src/pkg_mine").resolve())
+    runner.found(runner.NodeCommand("pkg_mine", ["b"], 1), None)
+    assert capsys.readouterr().err == ""
+    monkeypatch.setenv("COLCON_PREFIX_PATH", str(ws / "gone/install"))
+    assert find_package("pkg_one") is None
