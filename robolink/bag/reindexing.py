@@ -11,6 +11,7 @@ from robolink.bag import mcap
 from robolink.bag.folder import storage_files
 from robolink.bag.metadata import FILE_NAME, BagMetadata, read_metadata, write_metadata
 from robolink.bag.reader import open_bag
+from robolink.bag.storage.sqlite import SqliteReader, SqliteWriter
 from robolink.bag.topic import BagError
 
 _END, _PART = 32 << 20, 64 << 10
@@ -74,7 +75,7 @@ def _mend(path: Path, tell: Told) -> None:
     if head.startswith(b"\x89MCAP"):
         _mend_mcap(path, tell)
     elif head.startswith(b"SQLite format 3\0"):
-        _mend_sqlite(path)
+        _mend_sqlite(path, tell)
 
 
 def _mend_mcap(path: Path, tell: Told) -> None:
@@ -100,9 +101,37 @@ def _has_hole(path: Path) -> bool:
         return any(not any(part) for part in iter(lambda: file.read(_PART), b""))
 
 
-def _mend_sqlite(path: Path) -> None:
-    """Let sqlite3 finish what the log of a killed writer holds."""
-    if not any(path.with_name(path.name + each).exists() for each in ("-wal", "-journal")):
+def _mend_sqlite(path: Path, tell: Told) -> None:
+    """Let sqlite3 finish what the log of a killed writer holds, and make a damaged file whole from what can be read."""
+    if any(path.with_name(path.name + each).exists() for each in ("-wal", "-journal")):
+        with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(path)) as database:
+            database.execute("PRAGMA journal_mode = DELETE")
+    try:
+        reader = SqliteReader(path)
+    except BagError as error:
+        tell(str(error))
         return
-    with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(path)) as database:
-        database.execute("PRAGMA journal_mode = DELETE")
+    with contextlib.closing(reader):
+        reader.counts()  # reads all of it
+        if not reader.is_damaged:
+            return
+        partial = path.with_name(f".{path.name}.partial")
+        partial.unlink(missing_ok=True)
+        _copy(reader, partial)
+        for problem in reader.problems:
+            tell(problem)
+    kept = path.with_name(f"{path.name}.damaged")
+    path.replace(kept)
+    partial.replace(path)
+    tell(f"{path} is whole again; the damaged file is {kept.name}")
+
+
+def _copy(reader: SqliteReader, target: Path) -> None:
+    """Write what can be read of a file into another."""
+    writer = SqliteWriter(target)
+    try:
+        numbers = {each.name: writer.add_topic(each) for each in reader.topics}
+        for each in reader.messages(None, None, None):
+            writer.write(numbers[each.topic], each.log_time, each.publish_time, 0, each.data)
+    finally:
+        writer.close(reader.metadata)

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import os
+import shutil
 import sqlite3
+import tempfile
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -12,6 +15,7 @@ from typing import Any
 from robolink.bag.metadata import ROS_DISTRO, BagMetadata, parse_metadata, spell_metadata
 from robolink.bag.offered_qos import profiles_or_none, text_of
 from robolink.bag.storage.base import StorageReader, StorageWriter, Written
+from robolink.bag.storage.sqlite_salvage import Salvage, allow_cut, whole_pages
 from robolink.bag.topic import BagError, BagMessage, BagTopic
 from robolink.system import clocks
 
@@ -34,44 +38,84 @@ _COMMIT_AFTER = 0.25
 
 
 class SqliteReader(StorageReader):
-    """Reader of a .db3 file. Raises BagError if it is no database of a bag, or a damaged one."""
+    """Reader of a .db3 file; of a damaged one it reads what can be read.
+
+    Raises:
+        BagError: if it is not a database of a bag, or none whose topics can be read.
+    """
 
     identifier = "sqlite3"
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
         self._strange = 0
-        self._database = _opened(path)
+        self._damage = ""
+        self._salvaged: Salvage | None = None
+        self._opened = contextlib.ExitStack()
         try:
-            self._read_summary()
+            database = contextlib.closing(_opened(self._without_cut_page(path), path))
+            self._database = self._opened.enter_context(database)
+            with self._errors():
+                self._read_topics()
+                try:
+                    self._read_summary()
+                except sqlite3.DatabaseError as error:
+                    self._salvage(error)
         except BagError:
             self.close()
             raise
 
+    def _without_cut_page(self, path: Path) -> Path:
+        """Return a file, or a copy of one that was cut, without the page of which only a part is left."""
+        try:
+            size = whole_pages(path)
+            if not size:
+                return path
+            folder = self._opened.enter_context(tempfile.TemporaryDirectory(prefix="robolink-bag-"))
+            copy = Path(shutil.copyfile(path, Path(folder) / path.name))
+            os.truncate(copy, size)
+        except OSError as error:
+            raise BagError(f"{path} cannot be read: {error.strerror}") from None
+        return copy
+
+    @property
+    def is_damaged(self) -> bool:
+        """True if only a part of the messages could be read, as far as it was tried."""
+        return self._salvaged is not None
+
+    def _salvage(self, error: sqlite3.Error) -> Salvage:
+        """Find what of a damaged file can be read, and take its times."""
+        if self._salvaged is None:
+            self._damage, self._salvaged = str(error), Salvage(self._database)
+            self.message_count = len(self._salvaged)
+            self.start_time, self.end_time = self._salvaged.start_time, self._salvaged.end_time
+        return self._salvaged
+
+    def _read_topics(self) -> None:
+        """Read what the file says before its messages."""
+        columns = {row[1] for row in self._database.execute("PRAGMA table_info(topics)")}
+        tables = {row[0] for row in self._database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
+        if not {"topics", "messages"} <= tables:
+            raise BagError(f"{self.path} is a sqlite3 database, but no bag: it lacks the tables topics and messages")
+        definitions = self._definitions() if "message_definitions" in tables else {}
+        query = ", ".join(_column(columns, name) for name in _COLUMNS)
+        rows = self._database.execute(f"SELECT id, {query} FROM topics ORDER BY id").fetchall()
+        self._ids = [row[0] for row in rows]
+        self.topics = [_topic(row, definitions) for row in rows]
+        self.metadata = self._metadata() if "metadata" in tables else None
+
     def _read_summary(self) -> None:
-        with self._errors():
-            columns = {row[1] for row in self._database.execute("PRAGMA table_info(topics)")}
-            tables = {row[0] for row in self._database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
-            if not {"topics", "messages"} <= tables:
-                raise BagError(
-                    f"{self.path} is a sqlite3 database, but no bag: it lacks the tables topics and messages"
-                )
-            definitions = self._definitions() if "message_definitions" in tables else {}
-            query = ", ".join(_column(columns, name) for name in _COLUMNS)
-            rows = self._database.execute(f"SELECT id, {query} FROM topics ORDER BY id").fetchall()
-            self._ids = [row[0] for row in rows]
-            self.topics = [_topic(row, definitions) for row in rows]
-            self.message_count = self._number("SELECT MAX(id) FROM messages")
-            self.start_time, self.end_time = self._time("MIN"), self._time("MAX")
-            self.metadata = self._metadata() if "metadata" in tables else None
+        """Read the number of messages and their times, which the ends of table and index have."""
+        self.message_count = self._number("SELECT MAX(id) FROM messages")
+        self.start_time, self.end_time = self._time("MIN"), self._time("MAX")
 
     def _definitions(self) -> dict[str, tuple[str, str]]:
         query = "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
         return {str(row[0]): (str(row[1]), str(row[2])) for row in self._database.execute(query)}
 
     def _metadata(self) -> BagMetadata | None:
-        row = self._database.execute("SELECT metadata FROM metadata ORDER BY id DESC LIMIT 1").fetchone()
-        with contextlib.suppress(BagError):  # a copy: what counts is metadata.yaml, and the messages
+        with contextlib.suppress(BagError, sqlite3.DatabaseError):  # a copy: what counts is metadata.yaml, and messages
+            row = self._database.execute("SELECT metadata FROM metadata ORDER BY id DESC LIMIT 1").fetchone()
             return parse_metadata(str(row[0])) if row else None
         return None
 
@@ -87,13 +131,19 @@ class SqliteReader(StorageReader):
 
     @property
     def problems(self) -> list[str]:
-        """One line if rows were found that have no time, or no bytes."""
-        return [f"{self.path}: {self._strange} rows are no messages: they are left out"] if self._strange else []
+        """Lines for damage that was found, and for rows that have no time, or no bytes."""
+        damage = f"{self.path} is damaged ({self._damage}): {self.message_count} messages of it can be read"
+        strange = f"{self.path}: {self._strange} rows are no messages: they are left out"
+        return ([damage] if self._damage else []) + ([strange] if self._strange else [])
 
     def counts(self) -> list[int]:
         """Return the number of messages of each of `topics`, which reads the whole file."""
+        query = "SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id"
         with self._errors():
-            found = dict(self._database.execute("SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id"))
+            try:
+                found = self._salvaged.counts() if self._salvaged else dict(self._database.execute(query))
+            except sqlite3.DatabaseError as error:
+                found = self._salvage(error).counts()
         return [int(found.get(each, 0)) for each in self._ids]
 
     def messages(
@@ -112,20 +162,28 @@ class SqliteReader(StorageReader):
             f"SELECT topic_id, timestamp, data FROM messages WHERE {' AND '.join(conditions)}"
             f" ORDER BY timestamp {order}, id {order}"
         )
-        strange = 0
+        strange, given = 0, 0
         with self._errors():
-            for id_, stamp, data in self._database.execute(query, values):
-                if (name := wanted.get(id_)) is None:
-                    continue
-                if type(data) is bytes and type(stamp) is int:
-                    yield BagMessage(name, data, stamp, stamp)
-                else:
-                    strange += 1
-                    self._strange = max(self._strange, strange)
+            try:
+                for id_, stamp, data in self._database.execute(query, values) if self._salvaged is None else ():
+                    if (name := wanted.get(id_)) is None:
+                        continue
+                    if type(data) is bytes and type(stamp) is int:
+                        yield BagMessage(name, data, stamp, stamp)
+                        given += 1
+                    else:
+                        strange += 1
+                        self._strange = max(self._strange, strange)
+            except sqlite3.DatabaseError as error:
+                self._salvage(error)
+            if self._salvaged is not None:
+                rest = self._salvaged.rows(wanted, start, end, reverse=reverse)
+                for id_, stamp, data in itertools.islice(rest, given, None):  # in the same order as those before
+                    yield BagMessage(wanted[id_], data, stamp, stamp)
 
     def close(self) -> None:
         """Close the database."""
-        self._database.close()
+        self._opened.close()
 
     @contextlib.contextmanager
     def _errors(self) -> Iterator[None]:
@@ -259,14 +317,18 @@ def _topic(row: tuple[Any, ...], definitions: dict[str, tuple[str, str]]) -> Bag
     return BagTopic(name, type_name, format_, type_hash, profiles_or_none(qos), text, encoding if text else "ros2msg")
 
 
-def _opened(path: Path) -> sqlite3.Connection:
-    """Open a database to read, also one on a disk that is read-only or beside the log of a writer that was killed."""
+def _opened(path: Path, named: Path) -> sqlite3.Connection:
+    """Open a database to read, also one on a disk that is read-only or beside the log of a writer that was killed.
+
+    `named` is the file's name in errors.
+    """
     last = ""
     for way in ("mode=ro", "immutable=1"):
         database = None
         try:
             database = sqlite3.connect(f"{path.resolve().as_uri()}?{way}", uri=True, check_same_thread=False)
             database.text_factory = _text
+            allow_cut(database)
             database.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()
         except sqlite3.Error as error:
             if database is not None:
@@ -274,7 +336,7 @@ def _opened(path: Path) -> sqlite3.Connection:
             last = str(error)
         else:
             return database
-    raise BagError(f"{path} is damaged: {last}")
+    raise BagError(f"{named} is damaged: {last}")
 
 
 def _text(raw: bytes) -> str:
