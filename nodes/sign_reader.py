@@ -21,7 +21,7 @@ import numpy.typing as npt
 from robolink import Parameter
 from robolink.companions.cv_bridge import CvBridge
 from robolink.control.image_controller import ImageController
-from robolink.geometry.plane import Speeds, clipped, pose_of, wrapped
+from robolink.geometry.plane import Speeds, clipped, is_finite, pose_of, wrapped
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
@@ -148,8 +148,11 @@ class SignReader(ImageController):
         self.focal = float(info.k[0])
 
     def on_odom(self, odometry: Odometry) -> None:
-        """Take over the heading; the first one is that of the road."""
-        self.heading = pose_of(odometry.pose.pose).theta
+        """Take over the heading, unless it is not finite; the first one is that of the road."""
+        pose = pose_of(odometry.pose.pose)
+        if not is_finite(pose):
+            return
+        self.heading = pose.theta
         if self.road is None:
             self.road = self.heading
 

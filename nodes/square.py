@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import robolink
 from robolink import Future, Node, Parameter
 from robolink.exceptions import ExternalShutdownException, RobolinkError
-from robolink.geometry.plane import Pose, Speeds, clipped, placed_on, pose_of, seen_from
+from robolink.geometry.plane import Pose, Speeds, clipped, is_finite, placed_on, pose_of, seen_from
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
@@ -93,7 +93,7 @@ class Square(Node):
         """Send the next command."""
         pose, stamp = pose_of(odometry.pose.pose), odometry.header.stamp
         now = stamp.sec * 10**9 + stamp.nanosec
-        if self.done.done() or not all(map(math.isfinite, pose)):
+        if self.done.done() or not is_finite(pose):
             return
         if self.start is None:
             self.start, self.stamp, self.nearer_at = pose, now, now

@@ -21,7 +21,7 @@ from robolink import Parameter, Time
 from robolink.companions.cv_bridge import CvBridge
 from robolink.control.approach import Limits, decide, left_to
 from robolink.control.image_controller import ImageController
-from robolink.geometry.plane import Pose, Speeds, clipped, pose_of, seen_from, wrapped
+from robolink.geometry.plane import Pose, Speeds, clipped, is_finite, pose_of, seen_from, wrapped
 from robolink.image import ImageError
 from robolink.interfaces.geometry_msgs.msg import PointStamped, Twist, Vector3Stamped
 from robolink.interfaces.nav_msgs.msg import Odometry
@@ -178,12 +178,14 @@ class TagDocker(ImageController):
         self.forget()
 
     def on_camera_info(self, info: CameraInfo) -> None:
-        """Take over the camera's calibration."""
-        self.camera = info
+        """Take over the camera's calibration, unless it is not finite."""
+        if all(map(math.isfinite, (*info.k, *info.d))):
+            self.camera = info
 
     def on_odom(self, odometry: Odometry) -> None:
-        """Take over where the robot is."""
-        self.odometry = odometry
+        """Take over where the robot is, unless that is not finite."""
+        if is_finite(pose_of(odometry.pose.pose)):
+            self.odometry = odometry
 
     def forget(self) -> None:
         """Forget the tag: the robot may be elsewhere."""
@@ -226,7 +228,7 @@ class TagDocker(ImageController):
         assert self.odometry is not None
         fixed, camera = self.odometry.header.frame_id, message.header.frame_id
         try:
-            when = Time.from_msg(message.header.stamp)
+            when = stamp_of(message)
             if not self.buffer.can_transform(fixed, camera, when):
                 when = Time()  # the last that is known
             way = self.buffer.lookup_transform(fixed, camera, when)
@@ -280,6 +282,14 @@ class TagDocker(ImageController):
             if self.phase is Phase.DOCKED:
                 self.enter(Phase.DOCKING)
         return speeds
+
+
+def stamp_of(message: Image) -> Time:
+    """Return the time of an image. Raises ImageError for one before 1970."""
+    try:
+        return Time.from_msg(message.header.stamp)
+    except ValueError as error:
+        raise ImageError(f"an image is of no time that there is: {error}") from None
 
 
 def on_set(parameters: list[Parameter[Any]]) -> SetParametersResult:

@@ -98,7 +98,8 @@ class Walk:
         A step is as long as legs make it, `longest` metres at most; a velocity that only turns is a step on the spot.
         """
         vx, vy = velocity.linear.x, velocity.linear.y
-        facing = self.heading + math.degrees(velocity.angular.z * seconds)
+        turned = math.remainder(velocity.angular.z, math.tau / seconds) * seconds  # degrees of the largest are infinite
+        facing = self.heading + math.degrees(turned)
         aside = math.degrees(math.atan2(vy, vx))
         self.take_step(self.heading + aside, min(longest, math.hypot(vx, vy) * seconds))
         self.heading = math.remainder(facing, 360.0)

@@ -88,7 +88,12 @@ class TimeSource:
 
     def clock_callback(self, msg: ClockMsg) -> None:
         """Set the clocks to the time of `msg`, a message of /clock."""
-        time = Time.from_msg(msg.clock)
+        try:
+            time = Time.from_msg(msg.clock)
+        except ValueError as error:  # rclpy raises here, and whoever publishes one such message ends every node
+            if self._node is not None:
+                self._node.get_logger().warning(f"a time on {CLOCK_TOPIC} is ignored: {error}", once=True)
+            return
         self._last = time
         for clock in self._clocks:
             clock.set_ros_time_override(time)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from typing import Any
 
 from robolink.exceptions import RobolinkError
@@ -46,10 +47,18 @@ class SensorController(Node):
     def command(self, twist: Twist, words: str) -> None:
         """Publish a command, log its reason at most every two seconds, and wind up the watchdog.
 
+        A command with NaN or infinity, as sensors with such values lead to, stops the robot instead, with a warning.
+
         Args:
             twist: The command.
             words: The reason, for people.
         """
+        speeds = (twist.linear.x, twist.linear.y, twist.linear.z, twist.angular.x, twist.angular.y, twist.angular.z)
+        if not all(map(math.isfinite, speeds)):
+            self.get_logger().warning(f"{self.topic} leads to no finite speeds: the robot stands", once=True)
+            self.stop()
+            self.wind_up()
+            return
         self.is_driving = True
         self.cmd_vel.publish(twist)
         self.get_logger().info(words, throttle_duration_sec=2.0)

@@ -1,4 +1,4 @@
-"""Main function of a counterpart's node: reads the command line, spins the node, and ends in good order; and pauses."""
+"""Main function of a node of this room: reads the command line, spins the node, ends in good order; small helps."""
 
 from __future__ import annotations
 
@@ -47,6 +47,15 @@ def spin_times(make: Callable[[], Node], count: int) -> None:
 def own_words(args: list[str] | None = None) -> list[str]:
     """Return a program's own arguments, without its name and without those for ROS; `args` as in `spin_program`."""
     return remove_ros_args(sys.argv if args is None else args)[1:]
+
+
+def wrapped_int64(value: int) -> int:
+    """Return an integer wrapped to 64 signed bits.
+
+    >>> wrapped_int64(2**63)
+    -9223372036854775808
+    """
+    return (value + 2**63) % 2**64 - 2**63
 
 
 async def pause(node: Node, seconds: float, group: CallbackGroup) -> None:

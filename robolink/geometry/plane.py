@@ -75,10 +75,19 @@ class PoseMessage(Protocol):
 
 
 def pose_of(message: PoseMessage) -> Pose:
-    """Return the pose in the plane of `message`, a geometry_msgs/msg/Pose; its quaternion need not have length 1."""
+    """Return the pose in the plane of `message`, a geometry_msgs/msg/Pose; its quaternion need not have length 1.
+
+    What is not finite in the message is not finite in the pose: the heading is NaN then.
+    """
     place, q = message.position, message.orientation
-    theta = math.atan2(2.0 * (q.w * q.z + q.x * q.y), q.w**2 + q.x**2 - q.y**2 - q.z**2)
-    return Pose(place.x, place.y, theta)
+    largest = max(map(abs, (q.x, q.y, q.z, q.w))) or 1.0
+    x, y, z, w = q.x / largest, q.y / largest, q.z / largest, q.w / largest  # their squares neither overflow nor vanish
+    return Pose(place.x, place.y, math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z))
+
+
+def is_finite(pose: Pose) -> bool:
+    """Return True if a robot can be there: no number of the pose is NaN or infinite."""
+    return all(map(math.isfinite, pose))
 
 
 def placed_on(base: Pose, pose: Pose) -> Pose:

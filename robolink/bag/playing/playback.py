@@ -177,14 +177,19 @@ class Playback:
         """Deliver the next message, while it pauses; False if it does not pause, or has come to the end."""
         return self.burst(1) == 1
 
-    def burst(self, count: int) -> int:
-        """Deliver messages as fast as possible, while it pauses; all that are left for 0. Return their number."""
+    def burst(self, count: int, *, around: bool = True) -> int:
+        """Deliver messages as fast as possible, while it pauses, and return their number.
+
+        Args:
+            count: Number of messages; 0 is all up to the end of this round.
+            around: False ends at the end of this round, too; else a player that loops begins again.
+        """
         done = 0
         while not count or done < count:
             with self._lock:
                 if self.is_over or not self._paused:
                     break
-                if self._next is None and not (count and self._round_ends()):
+                if self._next is None and not (count and around and self._round_ends()):
                     break
                 if self._next is None:
                     break

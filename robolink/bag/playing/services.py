@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from robolink.bag.playing.playback import TURN
 from robolink.bag.playing.settings import PlayError
+from robolink.callback_groups import ReentrantCallbackGroup
 from robolink.interfaces.rosbag2_interfaces.srv import (
     Burst,
     GetRate,
@@ -18,10 +20,14 @@ from robolink.interfaces.rosbag2_interfaces.srv import (
     Stop,
     TogglePaused,
 )
+from robolink.task import Future
 
 if TYPE_CHECKING:
     from robolink.bag.playing.playback import Playback
     from robolink.node import Node
+
+BREAK = 0.001
+"""Seconds between two turns of a burst."""
 
 
 class PlayerServices:
@@ -37,18 +43,19 @@ class PlayerServices:
 
     def __init__(self, node: Node, playback: Playback) -> None:
         self._node, self._playback = node, playback
+        group = self._group = ReentrantCallbackGroup()  # a long burst keeps none of the others waiting
         self._made = [
-            node.create_service(Play, "~/play", self._play),
-            node.create_service(Pause, "~/pause", self._pause),
-            node.create_service(Resume, "~/resume", self._resume),
-            node.create_service(TogglePaused, "~/toggle_paused", self._toggle),
-            node.create_service(IsPaused, "~/is_paused", self._is_paused),
-            node.create_service(PlayNext, "~/play_next", self._play_next),
-            node.create_service(Burst, "~/burst", self._burst),
-            node.create_service(Seek, "~/seek", self._seek),
-            node.create_service(SetRate, "~/set_rate", self._set_rate),
-            node.create_service(GetRate, "~/get_rate", self._get_rate),
-            node.create_service(Stop, "~/stop", self._stop),
+            node.create_service(Play, "~/play", self._play, callback_group=group),
+            node.create_service(Pause, "~/pause", self._pause, callback_group=group),
+            node.create_service(Resume, "~/resume", self._resume, callback_group=group),
+            node.create_service(TogglePaused, "~/toggle_paused", self._toggle, callback_group=group),
+            node.create_service(IsPaused, "~/is_paused", self._is_paused, callback_group=group),
+            node.create_service(PlayNext, "~/play_next", self._play_next, callback_group=group),
+            node.create_service(Burst, "~/burst", self._burst, callback_group=group),
+            node.create_service(Seek, "~/seek", self._seek, callback_group=group),
+            node.create_service(SetRate, "~/set_rate", self._set_rate, callback_group=group),
+            node.create_service(GetRate, "~/get_rate", self._get_rate, callback_group=group),
+            node.create_service(Stop, "~/stop", self._stop, callback_group=group),
         ]
 
     def destroy(self) -> None:
@@ -86,9 +93,27 @@ class PlayerServices:
         response.success = self._playback.play_next()
         return response
 
-    def _burst(self, request: Any, response: Any) -> Any:
-        response.actually_burst = self._playback.burst(request.num_messages)
+    async def _burst(self, request: Any, response: Any) -> Any:
+        """Deliver messages turn by turn, so that other services and Ctrl-C get theirs: a loop may never end."""
+        wanted, done = request.num_messages, 0
+        while not wanted or done < wanted:
+            turn = min(TURN, wanted - done) if wanted else TURN
+            delivered = self._playback.burst(turn, around=bool(wanted))
+            done += delivered
+            if delivered < turn or not self._node.context.ok():
+                break
+            await self._pause_for_others()
+        response.actually_burst = done
         return response
+
+    async def _pause_for_others(self) -> None:
+        """Let a millisecond pass, in which the executor serves others."""
+        over: Future[None] = Future()
+        timer = self._node.create_timer(BREAK, lambda: over.set_result(None), callback_group=self._group)
+        try:
+            await over
+        finally:
+            self._node.destroy_timer(timer)
 
     def _seek(self, request: Any, response: Any) -> Any:
         response.success = self._playback.seek(_nanoseconds(request.time))

@@ -79,5 +79,6 @@ class DiagnosedPublisher(TopicDiagnostic):
 
     def publish(self, message: Any) -> None:
         """Publish a `message`, and note its stamp."""
-        self.tick(Time.from_msg(message.header.stamp))
+        stamp = message.header.stamp
+        self.tick(Time.from_msg(stamp) if stamp.sec >= 0 else stamp.sec + stamp.nanosec / 1e9)  # no Time is before 1970
         self.publisher.publish(message)

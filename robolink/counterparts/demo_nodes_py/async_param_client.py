@@ -7,6 +7,7 @@ from typing import Any
 
 import robolink
 from robolink.exceptions import ExternalShutdownException, RobolinkError
+from robolink.interfaces.rcl_interfaces.msg import ParameterValue
 from robolink.node import Node
 from robolink.parameter import Parameter, parameter_value_to_python
 from robolink.parameter_client import AsyncParameterClient
@@ -38,22 +39,22 @@ class _Demo:
             self.log(f"    - {name}")
         self.log("Getting parameters:")
         values = self.result(self.client.get_parameters(list(GIVEN))).values
-        for name, value in zip(GIVEN, values, strict=True):
-            self.log(f"    - {name}: {parameter_value_to_python(value)}")
+        for name, value in zip(GIVEN, values, strict=False):
+            self.log(f"    - {name}: {shown(value)}")
         self.set("Loading parameters: ", LOADED)
         self.delete()
 
     def set(self, title: str, values: dict[str, Any]) -> None:
         self.log(title)
         given = [Parameter(name, value=value) for name, value in values.items()]
-        for name, each in zip(values, self.result(self.client.set_parameters(given)).results, strict=True):
+        for name, each in zip(values, self.result(self.client.set_parameters(given)).results, strict=False):
             self.log(f"    {name}:")
             self.log(f"        successful: {each.successful}")
 
     def delete(self) -> None:
         self.log("Deleting parameters: ")
         names = ["other_int_parameter", "other_string_parameter", "string_parameter"]
-        for name, each in zip(names, self.result(self.client.delete_parameters(names)).results, strict=True):
+        for name, each in zip(names, self.result(self.client.delete_parameters(names)).results, strict=False):
             self.log(f"    {name}:")
             self.log(f"        successful: {each.successful}")
             self.log(f"        reason: {each.reason}")
@@ -64,6 +65,14 @@ class _Demo:
     def result(self, future: Future[Any]) -> Any:
         robolink.spin_until_future_complete(self.node, future)
         return future.result()
+
+
+def shown(value: ParameterValue) -> str:
+    """Return a parameter's value in words; whoever answers may say that it is of no type that there is."""
+    try:
+        return str(parameter_value_to_python(value))
+    except RuntimeError as error:
+        return str(error)
 
 
 def main(args: list[str] | None = None) -> None:

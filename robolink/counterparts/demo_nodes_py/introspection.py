@@ -10,6 +10,7 @@ from typing import Any
 
 import robolink
 from robolink.client import Client
+from robolink.counterparts.program import wrapped_int64
 from robolink.exceptions import ExternalShutdownException
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.example_interfaces.srv import AddTwoInts
@@ -60,8 +61,8 @@ class IntrospectionService(Observed):
         self.configure_by("service_configure_introspection", made)
 
     def on_request(self, request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
-        """Add."""
-        response.sum = request.a + request.b
+        """Add; a sum beyond 64 bits wraps, as in C++."""
+        response.sum = wrapped_int64(request.a + request.b)
         self.get_logger().info(f"Incoming request\na: {request.a} b: {request.b}")
         return response
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from robolink.exceptions import DecodeError
 from robolink.interfaces.std_msgs.msg import String
 from robolink.node import Node
 from robolink.serialization import deserialize_message
@@ -19,4 +20,7 @@ class SerializedListener(Node):
     def on_bytes(self, payload: bytes) -> None:
         """Log a message as bytes and as text."""
         self.get_logger().info(f'I heard: "{payload!r}"')
-        self.get_logger().info(f"I heard: [{deserialize_message(payload, String).data}]")
+        try:
+            self.get_logger().info(f"I heard: [{deserialize_message(payload, String).data}]")
+        except DecodeError as error:
+            self.get_logger().warning(f"these bytes are not a String: {error}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from robolink.counterparts.program import wrapped_int64
 from robolink.interfaces.example_interfaces.srv import AddTwoInts
 from robolink.node import Node
 
@@ -16,7 +17,7 @@ class MinimalService(Node):
         self.create_service(AddTwoInts, "add_two_ints", self.on_request)
 
     def on_request(self, request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
-        """Add."""
-        response.sum = request.a + request.b
+        """Add; a sum beyond 64 bits wraps, as in C++."""
+        response.sum = wrapped_int64(request.a + request.b)
         self.get_logger().info(f"Incoming request\na: {request.a} b: {request.b}")
         return response

@@ -51,6 +51,9 @@ class ShowImage(Node):
         except RobolinkError as error:
             self.get_logger().error(f"it cannot be shown: {error}")
             return
+        if not picture.size:
+            self.get_logger().error(f"it cannot be shown: it has {message.width} x {message.height} pixels")
+            return
         self._cv2.imshow(self._title, picture)
         self._cv2.waitKey(1)
 

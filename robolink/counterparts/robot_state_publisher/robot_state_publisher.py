@@ -5,6 +5,7 @@ robolink run robot_state_publisher robot_state_publisher robot.urdf
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -118,7 +119,12 @@ class RobotStatePublisher(Node):
         if len(state.name) != len(state.position):
             self._tell_of_invalid(state)
             return
-        now, stamp = self.get_clock().now().nanoseconds, Time.from_msg(state.header.stamp)
+        try:
+            stamp = Time.from_msg(state.header.stamp)
+        except ValueError as error:  # rclcpp's publisher ends here
+            self.get_logger().warning(f"Robot state publisher ignored a JointState message: {error}", once=True)
+            return
+        now = self.get_clock().now().nanoseconds
         if self._called > now:
             self.get_logger().warning("Moved backwards in time, re-publishing joint transforms!")
             self._published.clear()
@@ -129,9 +135,15 @@ class RobotStatePublisher(Node):
         if self._robot is None or not (due or self.get_parameter("ignore_timestamp").value):
             return
         found = positions(self._robot, dict(zip(state.name, state.position, strict=True)))
+        if odd := [name for name, position in found.items() if not math.isfinite(position)]:
+            self.get_logger().warning(f"Robot state publisher ignored positions that are not finite: {odd}", once=True)
         moving = ((self._robot.joints.get(name), position) for name, position in found.items())
         self._broadcaster.sendTransform(
-            [self._transform(each, position, stamp) for each, position in moving if each is not None and each.moves]
+            [
+                self._transform(each, position, stamp)
+                for each, position in moving
+                if each is not None and each.moves and math.isfinite(position)
+            ]
         )
         self._published.update(dict.fromkeys(state.name, stamp.nanoseconds))
 

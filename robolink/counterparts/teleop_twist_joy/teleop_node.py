@@ -5,6 +5,7 @@ robolink run teleop_twist_joy teleop_node --ros-args -p enable_button:=4 -p axis
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from robolink.counterparts.program import spin_program
@@ -92,9 +93,10 @@ class TeleopTwistJoy(Node):
 
     def _speed(self, joy: Joy, group: str, name: str, suffix: str) -> float:
         axis = self._value(f"axis_{group}.{name}")
-        return (
-            float(joy.axes[axis] * self._value(f"scale_{group}{suffix}.{name}")) if 0 <= axis < len(joy.axes) else 0.0
-        )
+        if not 0 <= axis < len(joy.axes):
+            return 0.0
+        speed = float(joy.axes[axis] * self._value(f"scale_{group}{suffix}.{name}"))
+        return speed if math.isfinite(speed) else 0.0  # a robot must not be told to drive with NaN
 
     def _publish(self, twist: Twist) -> None:
         if self._kind is Twist:

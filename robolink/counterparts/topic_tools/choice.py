@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from robolink.exceptions import InvalidTopicNameException
 from robolink.node import Node
 
 NONE = "__none"
@@ -43,19 +44,23 @@ class Choice:
         """Return the topic of this name, which may be spelled in another way."""
         if not topic:
             return None
-        full = self.node.resolve_topic_name(topic)
+        try:
+            full = self.node.resolve_topic_name(topic)
+        except InvalidTopicNameException:
+            return None
         return next((each for each in self.topics if self.node.resolve_topic_name(each) == full), None)
 
     def add(self, request: Any, response: Any) -> Any:
         """Add a topic."""
-        topic = request.topic
+        topic, wrong = request.topic, self._fault(request.topic)
         self._say(f"trying to add {topic} to {self.name}")
         if topic == NONE:
             self._warn(f"failed to add topic {topic} to {self.name}, because it's reserved for special use")
+        elif wrong:
+            self._warn(f"failed to add topic {topic!r} to {self.name}: {wrong}")
         elif topic in self.topics:
             self._warn(f"tried to add a topic that {self.name} was already listening to: [{topic}]")
         else:
-            self.node.resolve_topic_name(topic)
             self.topics.append(topic)
             self._say(f"added {topic} to {self.name}")
             response.success = True
@@ -92,6 +97,14 @@ class Choice:
         self.selected, response.success = request.topic, True
         self._on_select(self.selected)
         return response
+
+    def _fault(self, topic: str) -> str:
+        """Return the reason why a text is not a name of a topic; '' if it is one."""
+        try:
+            self.node.resolve_topic_name(topic)
+        except InvalidTopicNameException as error:
+            return str(error).partition("\n")[0]
+        return ""
 
     def _say(self, text: str) -> None:
         self.node.get_logger().info(text)

@@ -55,10 +55,10 @@ class Conversion(TopicTool):
         """Convert a message, and publish the other one; log why that fails."""
         if self.source is None or self.sink is None:
             return
-        message = deserialize_message(payload, self.source.message_class)
         try:
+            message = deserialize_message(payload, self.source.message_class)
             self.sink.publish(self._convert(message, self._class))
-        except Exception as error:  # noqa: BLE001 - expressions raise whatever they want
+        except Exception as error:  # noqa: BLE001 - expressions raise whatever they want; bytes may be cut
             self._tell(f"a message cannot be converted: {type(error).__name__}: {' '.join(str(error).split())[:300]}")
 
 

@@ -24,7 +24,10 @@ class FramePublisher(Node):
         self.create_subscription(Pose, f"/{self.turtle}/pose", self.on_pose, 1)
 
     def on_pose(self, pose: Pose) -> None:
-        """Publish the transform of a pose."""
+        """Publish the transform of a pose, unless it is not finite."""
+        if not all(map(math.isfinite, (pose.x, pose.y, pose.theta))):
+            self.get_logger().warning("ignored a pose that is not finite", once=True)
+            return
         transform = TransformStamped(child_frame_id=self.turtle)
         transform.header.frame_id, transform.header.stamp = WORLD, self.get_clock().now().to_msg()
         moved, turned = transform.transform.translation, transform.transform.rotation

@@ -70,8 +70,11 @@ class DrawSquare(Node):
         self.create_timer(PERIOD, self.on_timer, clock=steady)
 
     def on_pose(self, pose: Pose) -> None:
-        """Note the newest pose."""
-        self.pose = pose
+        """Note the newest pose, unless it is not finite."""
+        if all(map(math.isfinite, (pose.x, pose.y, pose.theta))):
+            self.pose = pose
+        else:
+            self.get_logger().warning("ignored a pose that is not finite", once=True)
 
     def on_timer(self) -> None:
         """Reset turtlesim first, then drive on."""

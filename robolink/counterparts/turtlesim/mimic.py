@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from robolink import Node
@@ -19,7 +20,10 @@ class Mimic(Node):
         self.create_subscription(Pose, "input/pose", self.on_pose, DEPTH)
 
     def on_pose(self, pose: Pose) -> None:
-        """Command the speeds of the pose."""
+        """Command the speeds of the pose, unless they are not finite."""
+        if not (math.isfinite(pose.linear_velocity) and math.isfinite(pose.angular_velocity)):
+            self.get_logger().warning("ignored a pose whose speeds are not finite", once=True)
+            return
         twist = Twist()
         twist.linear.x, twist.angular.z = pose.linear_velocity, pose.angular_velocity
         self.cmd_vel.publish(twist)
