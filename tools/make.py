@@ -12,6 +12,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 from typing import Dict, List, NamedTuple, Tuple
 
@@ -20,6 +21,9 @@ NEWEST = 20
 """As far as this Python's younger sisters are looked for: 3.20."""
 EDITABLE_SINCE = (21, 3)
 """The pip that can install a pyproject.toml as editable; the first Pythons 3.10 brought an older one."""
+
+NO_WHEELS = {"win32": "32-bit Windows", "win-arm32": "Windows on ARM", "win-arm64": "Windows on ARM"}
+"""Systems, as Python names them, without wheels of Zenoh, pymunk or OpenCV. Windows on ARM runs Python for x64."""
 
 ROOT = Path(__file__).resolve().parent.parent
 USAGE = "usage: python tools/make.py demo | test | docs"
@@ -114,6 +118,10 @@ def lacking(name: str, other: str) -> str:
         advice = "here is a newer one: " + other.format(name, found) if found else "install one from python.org"
         wanted = "{}.{}".format(*OLDEST)
         return "robolink needs Python {} or newer, and {} is {}; {}".format(wanted, sys.executable, this, advice)
+    if sysconfig.get_platform() in NO_WHEELS:
+        return "this Python ({}) is for {}, for which libraries that robolink needs have no wheels; {}".format(
+            sys.executable, NO_WHEELS[sysconfig.get_platform()], "install the 64-bit (x64) Python from python.org"
+        )
     try:
         __import__("ensurepip"), __import__("venv")
     except ImportError:
@@ -140,8 +148,17 @@ def steps(name: str, venv: Path) -> List[Tuple[str, List[str]]]:
         if tuple(int(each) for each in ensurepip.version().split(".")[:2]) < EDITABLE_SINCE:
             made.append(("installing a newer pip", [*pip, "--upgrade", "pip"]))
     stage = STAGES[name]
-    made.append((stage.words, [*pip, "--editable", stage.wanted]))
+    made.append((stage.words, [*pip, *([] if reads_paths_by_locale() else ["--editable"]), stage.wanted]))
     return made
+
+
+def reads_paths_by_locale() -> bool:
+    """Return whether this Python would not find an editable installation of this clone.
+
+    Its place stands in a `.pth` file in UTF-8, which Windows' Python before 3.13 reads in the country's own letters.
+    What is run from here, as all commands of this file, finds the clone itself all the same.
+    """
+    return sys.platform == "win32" and sys.version_info < (3, 13) and any(ord(each) > 127 for each in str(ROOT))
 
 
 def venv_command(venv: Path) -> List[str]:

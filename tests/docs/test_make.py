@@ -124,6 +124,45 @@ def test_an_old_pip_that_installs_nothing_editable_is_replaced_first(
     assert [each[-2:] for each in noted[1:]] == [["--upgrade", "pip"], ["--editable", "."]]
 
 
+@pytest.mark.parametrize(
+    ("platform", "version", "folder", "is_editable"),
+    [
+        ("win32", (3, 12, 1), "josé", False),
+        ("win32", (3, 13, 0), "josé", True),
+        ("win32", (3, 12, 1), "jose", True),
+        ("linux", (3, 12, 1), "josé", True),
+    ],
+)
+def test_a_clone_whose_path_python_would_misread_is_installed_as_a_copy(
+    make: ModuleType,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    platform: str,
+    version: tuple[int, ...],
+    folder: str,
+    is_editable: bool,
+) -> None:
+    monkeypatch.setattr(make, "ROOT", Path("C:/Users", folder, "robolink"))
+    monkeypatch.setattr("ensurepip.version", lambda: "24.0")
+    with monkeypatch.context() as patch:
+        patch.setattr(sys, "platform", platform)
+        patch.setattr(sys, "version_info", version)
+        [*_, (_, command)] = make.steps("demo", tmp_path)
+    assert (command[-2:] == ["--editable", "."]) == is_editable
+    assert command[-1] == "."
+
+
+@pytest.mark.parametrize("platform", ["win32", "win-arm64"])
+def test_a_python_without_wheels_is_told_which_one_to_install(
+    make: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: Captured, platform: str
+) -> None:
+    monkeypatch.setattr("sysconfig.get_platform", lambda: platform)
+    assert make.main(["--venv", str(tmp_path), "install-demo"]) == 1
+    assert "no wheels; install the 64-bit (x64) Python from python.org" in capsys.readouterr().err
+    monkeypatch.setattr("sysconfig.get_platform", lambda: "win-amd64")
+    assert make.lacking("demo", "{}") == ""
+
+
 def test_what_does_not_install_is_not_run(
     make: ModuleType, commands: Callable[..., Commands], tmp_path: Path, capsys: Captured
 ) -> None:
