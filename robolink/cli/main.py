@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import codecs
 import contextlib
+import importlib
 import io
 import os
 import sys
 from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.cli.launching.hashing import begin_steadily
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
 COMPLETION = "_ROBOLINK_COMPLETE"
 """Environment variable by which a shell asks for completions."""
 
+OTHER_NAMES = {"colcon": "robolink.cli.shim.colcon", "launch_test": "robolink.cli.shim.launch_test"}
+"""Modules whose `main` runs in place of this one where a copy of the command has such a name, as on Windows."""
+
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run a command and return the exit code: 1 after an error, 2 after wrong usage, 130 after Ctrl-C.
@@ -34,6 +39,10 @@ def main(args: Sequence[str] | None = None) -> int:
     """
     given = sys.argv[1:] if args is None else list(args)
     if args is None:
+        name = Path(sys.argv[0]).name.removesuffix(".exe")
+        if name in OTHER_NAMES:
+            code: int = importlib.import_module(OTHER_NAMES[name]).main(given)
+            return code
         try:
             if not os.environ.get(COMPLETION):
                 begin_steadily(given)

@@ -7,15 +7,12 @@ from typing import Annotated
 
 import typer
 
+from robolink.cli.main import OTHER_NAMES
 from robolink.cli.shared.output import say, tell
 
 app = typer.Typer(help="Write a second command, ros2, colcon or launch_test, that leads to robolink.")
 
-TARGETS = {
-    "ros2": "robolink.cli.main",
-    "colcon": "robolink.cli.shim.colcon",
-    "launch_test": "robolink.cli.shim.launch_test",
-}
+TARGETS = {"ros2": "robolink.cli.main", **OTHER_NAMES}
 """Modules whose `main` the commands call."""
 
 

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+import io
 import os
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
 
 from robolink.cli.main import main
 from robolink.cli.running_nodes import runner
-from robolink.cli.shim import colcon, launch_test
+from robolink.cli.shim import colcon, launch_test, writing
 from robolink.workspace import find_package
 from tests.support.ros_tree import write_package
 
 Captured = pytest.CaptureFixture[str]
-SUFFIX = ".cmd" if sys.platform == "win32" else ""
+SUFFIX = ".exe" if sys.platform == "win32" else ""
 
 
 @pytest.fixture
@@ -69,7 +71,7 @@ def test_a_real_one_is_left_alone_unless_that_is_asked_for(
         assert "was not made by 'robolink shim': it stays" in capsys.readouterr().err
     assert real.read_text() == "#!/bin/sh\n"
     assert shim("ros2", "--force", folder=folder) == 0
-    assert "robolink" in (folder / f"ros2{SUFFIX}").read_text()
+    assert b"robolink" in (folder / f"ros2{SUFFIX}").read_bytes()
 
 
 def test_what_cannot_be_written_is_one_line(tmp_path: Path, capsys: Captured) -> None:
@@ -78,6 +80,80 @@ def test_what_cannot_be_written_is_one_line(tmp_path: Path, capsys: Captured) ->
     first, second = capsys.readouterr().err.splitlines()
     assert "cannot be written: No such file" in first
     assert "'rosdep' is none of ros2, colcon" in second
+
+
+# --- Windows ----------------------------------------------------------------------------------------------------------
+
+MAIN = """import re
+import sys
+from robolink.cli.main import main
+if __name__ == '__main__':
+    sys.argv[0] = re.sub(r'(-script\\.pyw|\\.exe)?$', '', sys.argv[0])
+    sys.exit(main())
+"""
+"""The program in a launcher of pip's."""
+
+
+def launcher(path: Path, program: str) -> None:
+    """Write a launcher as pip does: a program of Windows, the Python to start, and an archive with what that runs."""
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w") as archive:
+        archive.writestr("__main__.py", program)
+    path.write_bytes(b"MZ" + bytes(1000) + f'#!"{sys.executable}"\r\n'.encode() + content.getvalue())
+
+
+@pytest.fixture
+def windows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A home with an accent, whose folder of commands has robolink's launcher."""
+    scripts = tmp_path / "José" / "Scripts"
+    scripts.mkdir(parents=True)
+    launcher(scripts / "robolink.exe", MAIN)
+    monkeypatch.setattr(sys, "platform", "win32")
+    monkeypatch.setattr(sys, "argv", [str(scripts / "robolink"), "shim"])
+    monkeypatch.setenv("PATH", str(scripts))
+    return scripts
+
+
+@pytest.mark.processes
+def test_on_windows_a_command_is_a_copy_of_robolinks_launcher(windows: Path, capsys: Captured) -> None:
+    """So it starts from a home with accents, ends at Ctrl-C as robolink does, and Git Bash finds it."""
+    (windows / "ros2.cmd").write_text(f"@rem {writing.MARK} ros2'")
+    for name in ("ros2", "colcon", "launch_test"):
+        assert shim(name, folder=windows) == 0
+        assert (windows / f"{name}.exe").read_bytes() == (windows / "robolink.exe").read_bytes()
+    assert not (windows / "ros2.cmd").exists()
+    capsys.readouterr()
+
+    def run(name: str, *words: str) -> tuple[int, str]:
+        command = [sys.executable, str(windows / f"{name}.exe"), *words]  # what the launcher does
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        return done.returncode, (done.stdout + done.stderr).strip()
+
+    code, said = run("ros2", "tpic")
+    assert (code, "did you mean 'topic'?" in said) == (2, True)
+    assert run("colcon", "graph")[1].startswith("robolink: colcon graph is not here")
+    assert run("launch_test")[1].startswith("launch_test FILE")
+    assert shim("ros2", "--remove", folder=windows) == 0
+    assert not (windows / "ros2.exe").exists()
+
+
+def test_a_launcher_of_others_stays(windows: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+    launcher(windows / "ros2.exe", "from ros2cli.cli import main")
+    real = (windows / "ros2.exe").read_bytes()
+    assert shim("ros2", folder=windows) == 1
+    assert "is a real ros2, which this one would replace" in capsys.readouterr().err
+    assert shim("ros2", "--remove", folder=windows) == 1
+    assert (windows / "ros2.exe").read_bytes() == real
+    (windows / "robolink.exe").unlink()
+    monkeypatch.setattr(writing, "scripts_folder", lambda: windows)
+    assert shim("colcon", folder=windows) == 1
+    assert "nor on the PATH: pip makes it" in capsys.readouterr().err
+
+
+def test_windows_has_one_folder_by_many_spellings(windows: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", os.pathsep.join(["/other", f'"{str(windows).upper()}/"']))
+    assert writing.is_on_path(windows)
+    assert not writing.is_on_path(windows / "x")
 
 
 # --- colcon -----------------------------------------------------------------------------------------------------------
