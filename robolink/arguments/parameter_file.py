@@ -98,6 +98,8 @@ class _Reader:
 
     def pattern(self, key: yaml.Node, path: tuple[str, ...]) -> str:
         """Join the keys above `ros__parameters`; each token must be a name, '*' or '**'."""
+        if len(path[-1]) > 1 and path[-1].endswith("/"):
+            raise self.error(key, f"'{path[-1]}' above {PARAMETERS_KEY} ends with a slash, which ROS 2 refuses")
         pattern = "/" + "/".join(part.strip("/") for part in path if part != "/")
         for token in pattern[1:].split("/"):
             problem = find_problem(token, NODE_NAME_RULES)

@@ -21,6 +21,7 @@ from robolink.impl.log_output import output
 from robolink.launch.shared_process import Member
 from robolink.running.defaults import get_defaults
 from robolink.running.timebase import TimeBase
+from robolink.system.variables import Variables
 from robolink.transport.base import Transport
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.workspace import find_node
@@ -66,7 +67,7 @@ class Host:
         """Callbacks, each called with a program that has ended, in whatever way."""
         self._clock = clock or (lambda name, time: time)
         self._begin = self.time.steady()
-        self._environments: dict[tuple[tuple[str, str], ...], dict[str, str]] = {}
+        self._environments: dict[tuple[tuple[str, str | None], ...], dict[str, str | None]] = {}
         self._random = random.getstate()
         self._stamps = output.now
         self._kept = ExitStack()
@@ -95,7 +96,7 @@ class Host:
 
     # Programs
 
-    def start(self, name: str, members: Sequence[Member], *, env: Mapping[str, str] | None = None) -> Program:
+    def start(self, name: str, members: Sequence[Member], *, env: Variables | None = None) -> Program:
         """Start a program, called `name`, of some nodes, or of one script; give it.
 
         It begins at once, and goes on as the host runs. Raises NotFoundError for a node that there is not, and
@@ -147,7 +148,7 @@ class Host:
         names = (name if number == 1 else f"{name}_{number}" for number in range(1, len(self.programs) + 2))
         return next(each for each in names if each not in self.programs)
 
-    def _start(self, name: str, parts: Sequence[Part], env: Mapping[str, str]) -> Program:
+    def _start(self, name: str, parts: Sequence[Part], env: Variables) -> Program:
         self._check_open()
         before = self.programs.get(name)
         if before is not None and not before.is_over:
@@ -217,7 +218,7 @@ class Host:
         self._begin_program(program)
         return program
 
-    def shared(self, env: dict[str, str]) -> dict[str, str]:
+    def shared(self, env: dict[str, str | None]) -> dict[str, str | None]:
         """Return an environment that is equal to this one: the same for all programs that have the same."""
         return self._environments.setdefault(tuple(sorted(env.items())), env)
 

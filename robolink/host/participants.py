@@ -59,7 +59,7 @@ class ProgramLike(Protocol):
 
     name: str
     argv: list[str]
-    env: dict[str, str]
+    env: dict[str, str | None]
     time: TimeBase
     chance: random.Random
     """Generator of its entropy."""
@@ -105,7 +105,7 @@ class ViewLike(Protocol):
     """View of the process that is shown to the program whose turn it is."""
 
     shown: ProgramLike | None
-    env: dict[str, str]
+    env: dict[str, str | None]
 
     def show(self, program: ProgramLike | None) -> None:
         """Show what is this program's, or the process's own."""

@@ -26,6 +26,7 @@ from robolink.host.patches.entropy import stream
 from robolink.host.platform import HostedPlatform, abandon
 from robolink.logging import get_logger, set_logger_level
 from robolink.running.defaults import Defaults
+from robolink.system.variables import Variables
 from robolink.text.suggestions import LackingNameError
 from robolink.text.tracebacks import formatted
 from robolink.workspace import VARIABLE, NodeSource, workspace_of
@@ -52,7 +53,7 @@ class ProgramHost(HostLike, Protocol):
     """Values by parameter, for nodes that declare it and have no other."""
     pace: Pace
 
-    def shared(self, env: dict[str, str]) -> dict[str, str]:
+    def shared(self, env: dict[str, str | None]) -> dict[str, str | None]:
         """Return an environment that is equal to this one: the same for all programs that have the same."""
 
     def note_exit(self, program: Program) -> None:
@@ -89,9 +90,7 @@ class Program:
     `error` is the exception that ended it, `returncode` what its process would have given; both None until then.
     """
 
-    def __init__(
-        self, host: ProgramHost, name: str, parts: Sequence[Part], env: Mapping[str, str], time: TimeBase
-    ) -> None:
+    def __init__(self, host: ProgramHost, name: str, parts: Sequence[Part], env: Variables, time: TimeBase) -> None:
         home = parts[0].home
         self.host, self.name, self.parts, self.time = host, name, parts, time
         self.chance = stream(host.seed, name)

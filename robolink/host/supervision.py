@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
@@ -19,6 +19,7 @@ from robolink.running.defaults import get_defaults
 from robolink.supervisor.director import Add, Director, Request, Signal, Stop, Tell
 from robolink.supervisor.policy import Action, Ask, Policy, Say, Start
 from robolink.supervisor.rules import Step, described, is_orderly
+from robolink.system.variables import Variables
 from robolink.transport.memory import MemoryTransport
 from robolink.wire import graph_pattern
 
@@ -80,7 +81,7 @@ class Supervision:
         direct: Direct | None = None,
         on_added: Callable[[Launched], object] = lambda launched: None,
         on_failure: Callable[[str], object] = lambda reason: None,
-        env: Mapping[str, str] | None = None,
+        env: Variables | None = None,
     ) -> None:
         self.host = host
         programs = [each for each in launched if each.members]

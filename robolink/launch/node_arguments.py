@@ -32,7 +32,7 @@ def _for_ros(node: NodeToStart) -> Iterator[str]:
         yield from ("--enclave", node.enclave)
 
 
-def environment(entry: Entry) -> dict[str, str]:
-    """Return the variables that are added to a node's environment: its workspace, and those of the file."""
+def environment(entry: Entry) -> dict[str, str | None]:
+    """Return the changes of a node's environment: its workspace, and the variables of the file."""
     home = {} if entry.home is None else {VARIABLE: str(entry.home)}
     return {**home, **entry.node.env}

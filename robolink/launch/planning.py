@@ -19,6 +19,7 @@ from robolink.networks.asked import NETWORK
 from robolink.supervisor import Process
 from robolink.supervisor.rules import Restarts, Rules
 from robolink.system.own_command import own_command
+from robolink.system.variables import Variables
 from robolink.workspace import Folder, own_process_needed
 
 _ROOM = 16_000
@@ -45,8 +46,8 @@ class Launched:
     members: tuple[Member, ...]
     command: tuple[str, ...]
     """The command and its arguments; empty where there are members."""
-    env: Mapping[str, str]
-    """Variables that are added to the environment."""
+    env: Variables
+    """Variables that are added to the environment; None takes one out."""
     rules: Rules
     held_by: tuple[Awaited, ...]
     """Nodes, topics and services that must be announced before it is started."""

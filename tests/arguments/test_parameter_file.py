@@ -246,3 +246,8 @@ def test_many_wildcards_are_matched_at_once() -> None:
     assert not Override(pattern, "x", 1).is_for("/a" * 120 + "/b")
     assert Override(pattern, "x", 1).is_for("/a" * 120)
     assert time.process_time() - begin < 1
+
+
+def test_a_node_s_name_ends_without_a_slash() -> None:
+    with pytest.raises(ParameterFileError, match="'/n/' above ros__parameters ends with a slash, which ROS 2 refuses"):
+        values("/n/: {ros__parameters: {x: 1}}")

@@ -4,10 +4,10 @@ To record anew, after a change of the descriptions or for another version of ROS
 
     python -m tests.support.launch_descriptions REAL_PYTHON [NAME...]
 
-REAL_PYTHON is that of an environment in which `import launch_ros, launch_xml, launch_yaml, rclpy` works, sourced or made by
-pip: `ros-rclpy ros-rmw-fastrtps-cpp ros-rmw-implementation ros-std-msgs ros-lifecycle-msgs ros-ament-index-python
-osrf-pycommon lark pyyaml packaging`, then the folders launch, launch_xml, launch_yaml of ros2/launch and launch_ros of
-ros2/launch_ros with `--no-deps`. It starts real processes, one description after the other, in three minutes.
+REAL_PYTHON is that of an environment in which `import launch_ros, launch_xml, launch_yaml, rclpy` works, sourced or
+made by pip: `ros-rclpy ros-rmw-fastrtps-cpp ros-rmw-implementation ros-std-msgs ros-lifecycle-msgs osrf-pycommon
+ros-ament-index-python lark pyyaml packaging`, then the folders launch, launch_xml, launch_yaml of ros2/launch and
+launch_ros of ros2/launch_ros with `--no-deps`. It starts real processes, one description after the other, in minutes.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Description:
     @property
     def given(self) -> dict[str, str]:
         """The launch arguments by name."""
-        return dict(each.split(":=", 1) for each in self.arguments)  # type: ignore[misc]
+        return dict(each.split(":=", 1) for each in self.arguments)
 
     def write(self, folder: Path) -> Path:
         """Write it into a folder as a launch file, and return its path."""
@@ -104,7 +104,7 @@ def _record(python: str, names: list[str]) -> None:
         for each in descriptions():
             if not names or each.name in names:
                 known[each.name] = _run(each, folder, python)
-                print(each.name, json.dumps(known[each.name])[:200], flush=True)
+                sys.stdout.write(f"{each.name} {json.dumps(known[each.name])[:200]}\n")
     lines = (f"{json.dumps(name)}: {json.dumps(known[name], sort_keys=True)}" for name in sorted(known))
     RECORDED.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
 
@@ -125,7 +125,11 @@ def _run(description: Description, folder: Path, python: str) -> dict[str, Any]:
     shown, result = folder / "shown", folder / "result"
     for each in (shown, result):
         each.unlink(missing_ok=True)
-    prefixes = [folder / "prefix", Path(python).parent.parent, *os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)]
+    prefixes = [
+        folder / "prefix",
+        Path(python).parent.parent,
+        *os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep),
+    ]
     env = {
         **os.environ,
         **INHERITED,
@@ -135,7 +139,8 @@ def _run(description: Description, folder: Path, python: str) -> dict[str, Any]:
         "SHOWN": str(shown),
         "RESULT": str(result),
     }
-    words = ["timeout", "-s", "KILL", "60", python, DATA / "run_real.py", description.write(folder), *description.arguments]
+    path = description.write(folder)
+    words = ["timeout", "-s", "KILL", "60", python, str(DATA / "run_real.py"), str(path), *description.arguments]
     subprocess.run(words, env=env, cwd=folder, capture_output=True, check=False)
     nodes = [json.loads(each) for each in shown.read_text().splitlines()] if shown.exists() else []
     found = json.loads(result.read_text()) if result.exists() else {"exit": None, "said": [], "error": "never ended"}

@@ -352,11 +352,11 @@ class LaunchContext:
         self.environment.clear()
         self.environment.update(self._first_environment)
 
-    def changed_environment(self) -> dict[str, str]:
-        """Return the variables that differ from those of the launcher; one that was removed is empty."""
+    def changed_environment(self) -> dict[str, str | None]:
+        """Return the variables that differ from those of the launcher, None for one that was removed."""
         first = self._first_environment
-        changed = {name: each for name, each in self.environment.items() if first.get(name) != each}
-        return {**changed, **{name: "" for name in first if name not in self.environment}}
+        gone: dict[str, str | None] = {name: None for name in first if name not in self.environment}
+        return {**{name: each for name, each in self.environment.items() if first.get(name) != each}, **gone}
 
     def register_event_handler(self, event_handler: BaseEventHandler, append: bool = False) -> None:
         """Add `event_handler`, before those that are there, or behind them with `append`."""

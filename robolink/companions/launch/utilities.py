@@ -7,10 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from robolink.arguments.parameter_file import parse_parameter_value
 from robolink.companions.launch.bases import LaunchArgumentError, LaunchError, Substitution, entities_in
-from robolink.exceptions import DocumentError
-from robolink.system.terminal import shown
 
 if TYPE_CHECKING:
     from robolink.companions.launch.bases import LaunchContext, SomeSubstitutionsType
@@ -34,7 +31,6 @@ __all__ = [
     "normalize_to_list_of_substitutions",
     "perform_substitutions",
     "performed",
-    "typed",
 ]
 
 
@@ -102,15 +98,6 @@ def is_true(context: LaunchContext, subs: SomeSubstitutionsType | bool) -> bool:
     if text not in (*TRUE, *FALSE):
         raise LaunchError(f"expected true, false, 1 or 0, got '{text}'")
     return text in TRUE
-
-
-def typed(text: str) -> Any:
-    """Return the value that `text` spells in YAML, as ROS 2 reads parameters; raises LaunchError if it spells none."""
-    try:
-        return parse_parameter_value(text, "") if text.strip() else text
-    except DocumentError as error:
-        hint = "ParameterValue(..., value_type=str) keeps it a text"
-        raise LaunchError(f"'{shown(text, 60)}' is no parameter's value: {error.message}; {hint}") from None
 
 
 def ensure_argument_type(argument: Any, types: Any, argument_name: str, caller: str | None = None) -> None:

@@ -7,17 +7,17 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from robolink.companions.launch import actions
-from robolink.companions.launch.bases import Action, Condition, LaunchDescriptionEntity, Substitution
-from robolink.companions.launch.conditions import IfCondition, UnlessCondition
+from robolink.companions.launch.bases import Action, LaunchDescriptionEntity, LaunchError, Substitution
 from robolink.companions.launch.launch_description import LaunchDescription
+from robolink.companions.launch.typed_values import truth_of
 from robolink.companions.launch_frontend.entity import Entity
 from robolink.companions.launch_frontend.nodes import NODES
-from robolink.companions.launch_frontend.parameters import value_of
 from robolink.companions.launch_frontend.processes import PROCESS, executable, pairs
 from robolink.companions.launch_frontend.xml_reader import read_xml
 from robolink.companions.launch_frontend.yaml_reader import read_yaml
 from robolink.companions.launch_ros import actions as ros
 from robolink.exceptions import nearest
+from robolink.system.terminal import shown
 
 Build: TypeAlias = "Callable[[Entity], Action]"
 
@@ -25,10 +25,12 @@ Build: TypeAlias = "Callable[[Entity], Action]"
 def parse(path: Path) -> LaunchDescription:
     """Return the description in an XML or YAML file, `path`. Raises DocumentError with its line."""
     top = read_yaml(path) if path.suffix in (".yaml", ".yml") else read_xml(path)
-    for name in top.attributes:
-        if name not in ("version", "deprecated"):
-            raise top.error(f"no attribute is called '{name}'{nearest(name, ('version', 'deprecated'))}")
-    return LaunchDescription(built(top.children), deprecated_reason=top.texts("deprecated"))
+    ignored = [each for each in top.attributes if each not in ("version", "deprecated")]
+    notes = [
+        f"{path.name}:{top.place.line}: launch has no attribute '{shown(each)}': it is ignored" for each in ignored
+    ]
+    said = [actions.LogInfo(msg=each) for each in notes]
+    return LaunchDescription([*said, *built(top.children)], deprecated_reason=top.texts("deprecated"))
 
 
 def built(entities: Iterable[Entity]) -> list[LaunchDescriptionEntity]:
@@ -40,30 +42,23 @@ def _action(entity: Entity) -> Action:
     builders = {**BUILDERS, **NODES}
     if entity.name not in builders:
         raise entity.error(f"there is no such element{nearest(entity.name, builders)}")
+    condition = entity.condition()
     action = builders[entity.name](entity)
     action.place = entity.place
-    condition = _condition(entity)
     if condition is not None:
         action._condition = condition
     return action
 
 
-def _condition(entity: Entity) -> Condition | None:
-    wanted, unwanted = entity.optional("if"), entity.optional("unless")
-    if wanted is not None and unwanted is not None:
-        raise entity.error("it has 'if' and 'unless': one of them is enough")
-    if wanted is not None:
-        return IfCondition(wanted)
-    return None if unwanted is None else UnlessCondition(unwanted)
-
-
 def _arg(entity: Entity) -> Action:
     entity.check(("name", "default", "description"), ("choice",))
+    for each in entity.inside("choice"):
+        each.check(("value",))
     choices = [each.plain("value") for each in entity.inside("choice")]
     return actions.DeclareLaunchArgument(
         entity.plain("name"),
         default_value=entity.optional("default"),
-        description=entity.texts("description"),
+        description=entity.plain("description") if "description" in entity.attributes else None,
         choices=choices or None,
     )
 
@@ -82,7 +77,7 @@ def _include(entity: Entity) -> Action:
 
 
 def _group(entity: Entity) -> Action:
-    _only_attributes(entity, ("scoped", "forwarding", "launch-prefix"))
+    _only_attributes(entity, ("scoped", "forwarding"))
     inside = [each for each in entity.children if each.name != "keep"]
     kept = pairs(entity, "keep", "name", "value")
     return actions.GroupAction(
@@ -94,8 +89,8 @@ def _group(entity: Entity) -> Action:
 
 
 def _timer(entity: Entity) -> Action:
-    _only_attributes(entity, ("period",))
-    return actions.TimerAction(period=entity.needed("period"), actions=built(entity.children))
+    _only_attributes(entity, ("period", "cancel_on_shutdown"))
+    return actions.TimerAction(period=entity.needed("period", float), actions=built(entity.children))
 
 
 def _log(entity: Entity) -> Action:
@@ -111,7 +106,9 @@ def _shutdown(entity: Entity) -> Action:
 def _append_env(entity: Entity) -> Action:
     entity.check(("name", "value", "prepend", "separator"))
     more: dict[str, Any] = {
-        each: entity.optional(each) for each in ("prepend", "separator") if each in entity.attributes
+        each: entity.optional(each, *kinds)
+        for each, kinds in (("prepend", [bool]), ("separator", []))
+        if each in entity.attributes
     }
     return actions.AppendEnvironmentVariable(entity.needed("name"), entity.needed("value"), **more)
 
@@ -126,19 +123,16 @@ def _with(make: Callable[..., Action], *names: str) -> Build:
     return build
 
 
-def _set_parameter(entity: Entity) -> Action:
-    entity.check(("name", "value", "value-sep", "value_sep", "type"))
-    return ros.SetParameter(entity.needed("name"), value_of(entity))
-
-
 def _set_use_sim_time(entity: Entity) -> Action:
+    """Build it as in Python: there ROS 2 hands a list of substitutions to rclpy, which refuses it."""
     entity.check(("value",))
-    return ros.SetParameter("use_sim_time", value_of(entity))
+    text = entity.texts("value", bool)
+    return ros.SetUseSimTime(text == "true")
 
 
 def _push_namespace(entity: Entity) -> Action:
-    entity.check(("namespace", "ns"))
-    return ros.PushROSNamespace(entity.needed("ns" if "ns" in entity.attributes else "namespace"))
+    entity.check(("namespace",))
+    return ros.PushROSNamespace(entity.needed("namespace"))
 
 
 def _executable(entity: Entity) -> Action:
@@ -146,14 +140,15 @@ def _executable(entity: Entity) -> Action:
     cmd: list[list[Substitution]] = [*entity.words("cmd"), *entity.words("args")]
     if not cmd:
         raise entity.error("'cmd' is missing")
-    return actions.ExecuteProcess(cmd=cmd, shell=entity.texts("shell") in ("true", "True", "1"), **executable(entity))
+    return actions.ExecuteProcess(cmd=cmd, shell=_flag(entity, "shell", False), **executable(entity))
 
 
-def _flag(entity: Entity, name: str) -> bool:
-    text = entity.texts(name)
-    if text is not None and text.lower() not in ("true", "false", "1", "0"):
-        raise entity.error(f"'{name}' is true or false, got '{text:.40}'")
-    return text is None or text.lower() in ("true", "1")
+def _flag(entity: Entity, name: str, default: bool = True) -> bool:
+    text = entity.texts(name, bool)
+    try:
+        return default if text is None else truth_of(text)
+    except LaunchError as error:
+        raise entity.error(f"'{name}': {error}") from None
 
 
 def _only_attributes(entity: Entity, names: tuple[str, ...]) -> None:
@@ -178,7 +173,7 @@ BUILDERS: dict[str, Build] = {
     "ros_timer": _timer,
     "set_env": _with(actions.SetEnvironmentVariable, "name", "value"),
     "set_launch_configuration": _let,
-    "set_parameter": _set_parameter,
+    "set_parameter": _with(ros.SetParameter, "name", "value"),
     "set_parameters_from_file": _with(ros.SetParametersFromFile, "filename"),
     "set_remap": _with(ros.SetRemap, "from", "to"),
     "set_ros_log_dir": _with(ros.SetROSLogDir, "new_log_dir"),

@@ -6,14 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 from robolink.companions.launch.bases import Action, Substitution
-from robolink.companions.launch.conditions import IfCondition, UnlessCondition
 from robolink.companions.launch_frontend.entity import Entity
-from robolink.companions.launch_frontend.parameters import parameters_in, value_of
+from robolink.companions.launch_frontend.parameters import parameters_in
 from robolink.companions.launch_frontend.processes import PROCESS, executable
 from robolink.companions.launch_ros import actions as ros
 from robolink.companions.launch_ros.descriptions import ComposableNode
 
-NODE = ("pkg", "exec", "name", "namespace", "ns", "exec_name", "args", "ros_args", "node-name", *PROCESS)
+NODE = ("pkg", "exec", "name", "namespace", "exec_name", "args", "ros_args", *PROCESS)
 """Attributes of a node."""
 INSIDE = ("param", "remap", "env")
 """Elements inside of a node."""
@@ -41,8 +40,7 @@ def _remappings(entity: Entity) -> list[tuple[list[Substitution], list[Substitut
 
 
 def _named(entity: Entity) -> dict[str, Any]:
-    namespace = entity.optional("namespace")
-    return {"name": entity.optional("name"), "namespace": entity.optional("ns") if namespace is None else namespace}
+    return {"name": entity.optional("name"), "namespace": entity.optional("namespace")}
 
 
 def _node(entity: Entity) -> Action:
@@ -53,7 +51,7 @@ def _node(entity: Entity) -> Action:
 def _lifecycle_node(entity: Entity) -> Action:
     entity.check((*NODE, "autostart"), INSIDE)
     named = {name: value or "" for name, value in _named(entity).items()}
-    return ros.LifecycleNode(**named, autostart=entity.optional("autostart") or False, **_settings(entity))
+    return ros.LifecycleNode(**named, autostart=entity.optional("autostart", bool) or False, **_settings(entity))
 
 
 def _container(entity: Entity) -> Action:
@@ -74,15 +72,17 @@ def _composed(entity: Entity) -> list[ComposableNode]:
 
 
 def _composable(entity: Entity) -> ComposableNode:
-    entity.check(("pkg", "plugin", "name", "namespace", "ns"), ("param", "remap", "extra_arg"))
-    wanted, unwanted = entity.optional("if"), entity.optional("unless")
+    condition = entity.condition()
+    entity.check(("pkg", "plugin", "name", "namespace"), ("param", "remap", "extra_arg"))
+    for each in entity.inside("extra_arg"):
+        each.check(("name", "value"))
     made = ComposableNode(
         package=entity.needed("pkg"),
         plugin=entity.needed("plugin"),
         parameters=parameters_in(entity),
         remappings=_remappings(entity),
-        extra_arguments=[{each.plain("name"): value_of(each)} for each in entity.inside("extra_arg")],
-        condition=IfCondition(wanted) if wanted is not None else UnlessCondition(unwanted) if unwanted else None,
+        extra_arguments=[{tuple(each.needed("name")): each.needed("value")} for each in entity.inside("extra_arg")],
+        condition=condition,
         **_named(entity),
     )
     made.place = entity.place

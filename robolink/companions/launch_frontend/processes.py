@@ -11,12 +11,10 @@ PROCESS = (
     "cwd",
     "name",
     "launch-prefix",
-    "launch_prefix",
     "output",
     "respawn",
     "respawn_delay",
     "respawn_max_retries",
-    "required",
     "on_exit",
     "sigterm_timeout",
     "sigkill_timeout",
@@ -32,14 +30,14 @@ def executable(entity: Entity, name: str = "name") -> dict[str, Any]:
         entity: The element.
         name: Attribute with the name for people.
     """
-    prefix = entity.optional("launch-prefix") or entity.optional("launch_prefix")
+    prefix = entity.optional("launch-prefix")
     found: dict[str, Any] = {
         "name": entity.optional(name),
         "cwd": entity.optional("cwd"),
         "prefix": prefix,
         "additional_env": pairs(entity, "env", "name", "value") or None,
-        "respawn": entity.optional("respawn") or False,
-        "respawn_delay": entity.optional("respawn_delay"),
+        "respawn": entity.optional("respawn", bool) or False,
+        "respawn_delay": entity.optional("respawn_delay", float),
         "respawn_max_retries": _retries(entity),
         "on_exit": _on_exit(entity),
     }
@@ -63,7 +61,7 @@ def pairs(entity: Entity, tag: str, name: str, value: str) -> dict[Any, Any]:
 
 
 def _retries(entity: Entity) -> int:
-    text = entity.texts("respawn_max_retries")
+    text = entity.texts("respawn_max_retries", int)
     try:
         return -1 if text is None else int(text)
     except ValueError:
@@ -72,7 +70,7 @@ def _retries(entity: Entity) -> int:
 
 def _on_exit(entity: Entity) -> Shutdown | None:
     """Return the end of the launch, for a process whose end is that of the launch."""
-    said, required = entity.texts("on_exit"), entity.texts("required")
+    said = entity.texts("on_exit")
     if said not in (None, "shutdown"):
         raise entity.error(f"'on_exit' is shutdown, got '{said:.40}'")
-    return Shutdown(reason="it was required") if said or required in ("true", "True", "1") else None
+    return Shutdown(reason="it was required") if said else None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from robolink.companions.launch_frontend.entity import Entity, Text
+from robolink.companions.launch_frontend.entity import Entity
 from robolink.exceptions import DocumentError
 
 _TAGS = {"rosparam": "<rosparam> is <param from=...> in a node"}
@@ -52,7 +52,7 @@ def _changed(top: Entity) -> Iterable[str]:
         yield _TAGS.get(each.name, "")
         yield from (_ATTRIBUTES.get((each.name, name), "") for name in each.attributes)
         for value in each.attributes.values():
-            text = value.text if isinstance(value, Text) else ""
+            text = value if isinstance(value, str) else ""
             yield from (words for begin, words in _TEXTS.items() if begin in text)
     if any(each.name == "param" for each in top.children):
         yield "<param> stands in its <node>"

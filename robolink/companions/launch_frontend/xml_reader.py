@@ -6,7 +6,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from robolink.companions.launch.bases import Place
-from robolink.companions.launch_frontend.entity import Entity, Text
+from robolink.companions.launch_frontend.entity import Entity
 from robolink.companions.launch_frontend.ros1 import refuse_ros1
 from robolink.exceptions import DocumentError
 from robolink.system.plainfile import read_plain
@@ -53,7 +53,7 @@ class _Reader:
 
     def _begin(self, tag: str, attributes: dict[str, str]) -> None:
         line = self.parser.CurrentLineNumber
-        entity = Entity(tag, Place(self._file, line), {name: Text(text) for name, text in attributes.items()})
+        entity = Entity(tag, Place(self._file, line), dict(attributes))
         self._count += 1
         if len(self._open) >= DEEPEST or self._count > MOST:
             raise DocumentError(f"nested over {DEEPEST} deep, or more than {MOST:,} elements", self._file, line)

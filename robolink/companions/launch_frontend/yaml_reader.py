@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import yaml
 
 from robolink.companions.launch.bases import Place
-from robolink.companions.launch_frontend.entity import Entity, Text, Value
+from robolink.companions.launch_frontend.entity import Entity
 from robolink.documents import yamltext
 from robolink.documents.yamlfile import read_text
 from robolink.exceptions import DocumentError
 from robolink.system.terminal import shown
 
-LISTED = ("arg", "let", "param", "remap", "env", "choice", "composable_node", "extra_arg", "children")
+LISTED = ("arg", "let", "param", "remap", "env", "choice", "composable_node", "extra_arg", "keep", "children")
 """Keys whose list holds elements, not values."""
 HOLDERS = ("launch", "group", "timer", "ros_timer")
 """Elements whose list holds actions."""
@@ -35,7 +36,7 @@ def read_yaml(path: Path) -> Entity:
 
 def _element(tag: str, node: yaml.Node, file: str) -> Entity:
     """Return the element that stands under a key: a mapping of attributes, or a list of actions."""
-    entity = Entity(tag, Place(file, node.start_mark.line + 1))
+    entity = Entity(tag, Place(file, node.start_mark.line + 1), is_typed=True)
     if isinstance(node, yaml.SequenceNode) and entity.name in HOLDERS:
         entity.children = _actions(node, file)
     elif isinstance(node, yaml.MappingNode):
@@ -49,7 +50,8 @@ def _element(tag: str, node: yaml.Node, file: str) -> Entity:
 
 
 def _add(entity: Entity, key: str, node: yaml.Node, file: str) -> None:
-    if key.replace("-", "_") in LISTED and isinstance(node, yaml.SequenceNode):
+    is_held = key != "children" or entity.name in HOLDERS
+    if key.replace("-", "_") in LISTED and isinstance(node, yaml.SequenceNode) and is_held:
         if key == "children":
             entity.children += _actions(node, file)
         else:
@@ -71,10 +73,16 @@ def _actions(node: yaml.SequenceNode, file: str) -> list[Entity]:
     return found
 
 
-def _value(node: yaml.Node, file: str) -> Value:
-    if isinstance(node, yaml.ScalarNode):
-        return Text(str(node.value), is_plain=node.style is None)
+def _value(node: yaml.Node, file: str) -> Any:
+    """Return what YAML reads: a scalar, or a list of them."""
     if isinstance(node, yaml.SequenceNode):
         return [_value(each, file) for each in node.value]
     line = node.start_mark.line + 1
-    raise DocumentError(f"a value is a text, a number or a list, got a mapping: {shown(str(node.tag))}", file, line)
+    if not isinstance(node, yaml.ScalarNode):
+        raise DocumentError(f"a value is a text, a number or a list, got a mapping: {shown(str(node.tag))}", file, line)
+    if node.style is not None:
+        return str(node.value)
+    try:
+        return yaml.safe_load(node.value)
+    except (yaml.YAMLError, ValueError):
+        return str(node.value)

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
+import base64
 import os
 import typing
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from robolink.companions.launch.bases import LaunchContext, LaunchError, SomeSubstitutionsType, Substitution
+from robolink.companions.launch.bases import LaunchContext, LaunchError, SomeSubstitutionsType
+from robolink.companions.launch.typed_values import SCALARS, boolean, checked, coerced, item_type, value_in
 from robolink.companions.launch.utilities import (
-    FALSE,
-    TRUE,
     LaunchArgumentError,
     is_substitution,
-    is_true,
     normalize_to_list_of_substitutions,
     perform_substitutions,
     performed,
-    typed,
 )
 from robolink.system.terminal import shown
 
@@ -28,15 +26,14 @@ __all__ = [
     "ParameterValue",
 ]
 
-_PLAIN = (bool, int, float, str, bytes)
-
 
 class ParameterValue:
     """Value of a parameter, of a type.
 
     Args:
         value: A plain value, a list, or substitutions.
-        value_type: `str`, `int`, `float`, `bool` or a list of one, `List[int]`; None reads the text as YAML.
+        value_type: `str`, `int`, `float`, `bool` or a list of one, `List[int]`; None reads the text of substitutions as
+            YAML, and takes plain values as they are.
     """
 
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
@@ -44,39 +41,29 @@ class ParameterValue:
 
     def evaluate(self, context: LaunchContext) -> Any:
         """Return the plain value, with the values of `context`. Raises LaunchError."""
-        if isinstance(self.value, (list, tuple)) and not is_substitution(self.value):
-            return [self._one(context, each, typing.get_args(self.value_type)[:1]) for each in self.value]
-        return self._one(context, self.value, (self.value_type,))
-
-    def _one(self, context: LaunchContext, value: Any, type_: Sequence[Any]) -> Any:
-        wanted = type_[0] if type_ else None
-        if is_substitution(value) or isinstance(value, (str, os.PathLike)):
+        value, wanted = self.value, self.value_type
+        if isinstance(value, SCALARS):
+            return _instance(value, wanted)
+        if is_substitution(value):
             return coerced(performed(context, value), wanted)
-        return value if wanted is None else coerced(str(value), wanted)
+        if not isinstance(value, Sequence) or isinstance(value, bytes):
+            raise LaunchArgumentError(f"a parameter is a plain value, a list or substitutions, got {_kind(value)}")
+        inner = item_type(wanted)
+        if wanted is not None and inner is None:
+            raise LaunchArgumentError(f"expected {wanted.__name__}, got a list")
+        found = [
+            _instance(each, inner) if isinstance(each, SCALARS) else coerced(performed(context, each), inner)
+            for each in value
+        ]
+        return _uniform(found, found)
 
 
-def coerced(text: str, wanted: Any) -> Any:
-    """Return `text` as a value of the type `wanted`, None for whatever YAML reads. Raises LaunchError."""
-    if wanted is None:
-        return typed(text)
-    if wanted is str:
-        return text
-    if typing.get_origin(wanted) in (list, Sequence) or wanted is list:
-        inner = typing.get_args(wanted)[:1]
-        value = typed(text)
-        if not isinstance(value, (list, tuple)):
-            raise LaunchError(f"expected a list, got '{shown(text)}'")
-        return [each if not inner else coerced(str(each), inner[0]) for each in value]
-    try:
-        if wanted is bool:
-            return {**dict.fromkeys(TRUE, True), **dict.fromkeys(FALSE, False)}[text.strip().lower()]
-        return {int: int, float: float}[wanted](text)
-    except KeyError:
-        if wanted is bool:
-            raise LaunchError(f"expected true or false, got '{shown(text)}'") from None
-        raise LaunchArgumentError(f"value_type is str, int, float, bool or a list of one, got {wanted}") from None
-    except ValueError:
-        raise LaunchError(f"expected {wanted.__name__}, got '{shown(text)}'") from None
+def _instance(value: Any, wanted: Any) -> Any:
+    """Return a plain `value` that is of the type `wanted`, None for any. Raises LaunchArgumentError otherwise."""
+    if wanted is None or (wanted in SCALARS and isinstance(value, wanted)):
+        return value
+    name = wanted.__name__ if isinstance(wanted, type) and not typing.get_args(wanted) else wanted
+    raise LaunchArgumentError(f"value_type is {name}, and {value!r} is a {type(value).__name__}")
 
 
 class Parameter:
@@ -121,7 +108,7 @@ class ParameterFile:
 
         Raises LaunchError, also for a file that cannot be read.
         """
-        if not is_true(context, self.allow_substs):
+        if not boolean(context, self.allow_substs):
             return None
         from robolink.companions.launch.frontend import parse_substitution
 
@@ -156,25 +143,44 @@ def evaluated(parameters: Mapping[Any, Any], context: LaunchContext) -> Iterator
 def plain(value: Any, context: LaunchContext) -> Any:
     """Return the plain value of a parameter, `value`, with the values of `context`.
 
-    A text stays one. Substitutions are performed and read as YAML, also a list of them and texts, which is joined; a
-    list of lists is a list of such texts.
+    A text stays one. Substitutions are performed and read as YAML, also a list of them and texts, which is joined; in a
+    list of lists each is such a text, and a list of several types is one of texts that YAML reads.
     """
     if isinstance(value, ParameterValue):
         return value.evaluate(context)
-    if isinstance(value, Substitution) or is_substitution(value):
-        return typed(performed(context, value))
-    if isinstance(value, os.PathLike):
-        return os.fspath(value)
-    if isinstance(value, _PLAIN):
+    if is_substitution(value):
+        return _filled(coerced(performed(context, value), None))
+    if isinstance(value, bytes):
+        return base64.encodebytes(value).decode()
+    if isinstance(value, SCALARS):
         return value
-    if isinstance(value, Sequence):
-        return _uniform([plain(each, context) for each in value])
-    if hasattr(value, "tolist"):  # numpy's
-        return value.tolist()
-    raise LaunchArgumentError(f"a parameter is a plain value, a list or substitutions, got {type(value).__name__}")
+    if not isinstance(value, Sequence):
+        hint = ": write str(...)" if isinstance(value, os.PathLike) else ""
+        raise LaunchArgumentError(f"a parameter is a plain value, a list or substitutions, got {_kind(value)}{hint}")
+    kinds = {type(each) for each in value}
+    if kinds == {int, float}:
+        return [float(each) for each in value]
+    if kinds and kinds <= set(SCALARS):
+        return _uniform(list(value), value)
+    return _filled(_uniform([_item(each, context) for each in value], value))
 
 
-def _uniform(values: list[Any]) -> list[Any]:
-    kinds = {type(each) for each in values}
-    convert: Callable[[Any], Any] | None = float if kinds == {int, float} else None
-    return values if convert is None else [convert(each) for each in values]
+def _item(value: Any, context: LaunchContext) -> Any:
+    """Return an item of a list: a plain value, or what YAML reads of a text with substitutions."""
+    return value if isinstance(value, SCALARS) else value_in(performed(context, value))
+
+
+def _filled(value: Any) -> Any:
+    """Return a `value`, unless it is an empty list: its type is unknown. Raises LaunchError."""
+    if isinstance(value, list) and not value:
+        raise LaunchError("an empty list has no type, and ROS 2 takes none: leave the parameter out")
+    return value
+
+
+def _uniform(found: list[Any], said: object) -> list[Any]:
+    checked(found, said)
+    return found
+
+
+def _kind(value: object) -> str:
+    return type(value).__name__

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from robolink.host.participants import ProgramLike
+from robolink.system.variables import set_environment
 
 
 class ProcessView:
@@ -19,7 +18,7 @@ class ProcessView:
         self._main, self._argv, self._stdin = sys.modules["__main__"], sys.argv, sys.stdin
         self._no_stdin = Path(os.devnull).open(encoding="utf-8")  # noqa: SIM115 - closed with the host
         self._environment: dict[str, str | None] = {}
-        self.env: dict[str, str] = {}
+        self.env: dict[str, str | None] = {}
         """Variables added to the process's environment."""
 
     def show(self, program: ProgramLike | None) -> None:
@@ -33,25 +32,16 @@ class ProcessView:
         sys.modules["__main__"] = program.main_module or self._main
         self._set(program.env)
 
-    def _set(self, env: dict[str, str]) -> None:
+    def _set(self, env: dict[str, str | None]) -> None:
         if env == self.env:
             self.env = env
             return
         self.env = env
         set_environment(self._environment)
         self._environment = {name: os.environ.get(name) for name in env}
-        os.environ.update(env)
+        set_environment(env)
 
     def close(self) -> None:
         """Show what is the process's, for good."""
         self.show(None)
         self._no_stdin.close()
-
-
-def set_environment(values: Mapping[str, Any]) -> None:
-    """Set variables of the environment; None takes one out."""
-    for name, value in values.items():
-        if value is None:
-            os.environ.pop(name, None)
-        else:
-            os.environ[name] = value

@@ -13,6 +13,7 @@ from robolink.networks.asked import domain_id
 from robolink.security import session
 from robolink.security.rights import Rights
 from robolink.security.session import Security
+from robolink.system.variables import environment_with
 from robolink.wire import EndpointKind
 
 
@@ -45,7 +46,7 @@ def enclave_notes(entries: Sequence[Entry]) -> Iterator[str]:
     yield from unprotected(entries, os.environ)
     named = [each for each in entries if each.node.enclave]
     for each in named:
-        environ = {**os.environ, **each.node.env}
+        environ = environment_with(each.node.env)
         override = environ.get(session.OVERRIDE)
         try:
             if not session.is_on(environ):
@@ -58,7 +59,7 @@ def enclave_notes(entries: Sequence[Entry]) -> Iterator[str]:
 
 def _asked(entry: Entry) -> tuple[tuple[str, str], ...]:
     """Return what decides about the security of a node: the variables, and the enclave that counts."""
-    environ = {**os.environ, **entry.node.env}
+    environ = environment_with(entry.node.env)
     chosen = {name: value for name, value in environ.items() if name.startswith("ROS_")}
     return tuple(sorted({**chosen, session.OVERRIDE: chosen.get(session.OVERRIDE) or entry.node.enclave}.items()))
 

@@ -19,7 +19,7 @@ class NodeToStart(msgspec.Struct, frozen=True):
 
     The fields are those of `NodeDescription`. Names in `start_after` are full names, and `process` has its namespace
     in front. Two more are for ROS 2's launch files: words before the command line, as those of a debugger, `prefix`;
-    and the working directory, `cwd`, '' for the launcher's.
+    and the working directory, `cwd`, '' for the launcher's. A variable that is None in `env` is taken out.
     """
 
     node: str = ""
@@ -29,7 +29,7 @@ class NodeToStart(msgspec.Struct, frozen=True):
     parameters: dict[str, Any] = {}
     remappings: dict[str, str] = {}
     args: list[str] = []
-    env: dict[str, str] = {}
+    env: dict[str, str | None] = {}
     interactive: bool = False
     process: str = ""
     start_after: tuple[StartAfter, ...] = ()

@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 from robolink.arguments.remapping import parse_remap_rule
 from robolink.companions.launch.actions import ExecuteLocal, Shutdown
 from robolink.companions.launch.bases import LaunchContext, LaunchError, Place, Substitution
-from robolink.companions.launch.utilities import is_true, performed
+from robolink.companions.launch.typed_values import boolean
+from robolink.companions.launch.utilities import performed
 from robolink.companions.launch_ros.actions import Node
 from robolink.companions.launch_ros.actions.scope import NAMESPACE, REMAPS, joined
 from robolink.exceptions import DocumentError, NameValidationException
@@ -130,9 +131,12 @@ class EntryMaker:
         if name:
             _check(validate_node_name, name)
         place, source = wanted.place, wanted.program.source
-        own = parameters_of(
-            wanted.parameters, wanted.full_name, bool(name), context, lambda text: self.say(f"{placed(place)}{text}")
-        )
+
+        def say(text: str) -> None:
+            self.say(f"{placed(place)}{text}")
+
+        is_full = bool(name and namespace)
+        own = parameters_of(wanted.parameters, wanted.full_name, bool(name), context, say, is_full=is_full)
         of_ros, *others = words
         extra = [*own.words, *of_ros]
         node = NodeToStart(
@@ -328,8 +332,8 @@ def _remappings(given: Iterable[Any], context: LaunchContext) -> dict[str, str]:
     return found
 
 
-def _environment(action: ExecuteLocal, context: LaunchContext) -> dict[str, str]:
-    """Return the variables of a process that differ from the launcher's own."""
+def _environment(action: ExecuteLocal, context: LaunchContext) -> dict[str, str | None]:
+    """Return the variables of a process that differ from the launcher's own, None for one that it lacks."""
     described = action.process_description
     changed = context.changed_environment()
     for given in (described.env, described.additional_env):
@@ -339,7 +343,7 @@ def _environment(action: ExecuteLocal, context: LaunchContext) -> dict[str, str]
 
 
 def _respawn(action: ExecuteLocal, context: LaunchContext) -> Respawn:
-    if not is_true(context, action.respawn):
+    if not boolean(context, action.respawn):
         return Respawn(when="never")
     text = "0" if action.respawn_delay is None else "".join(texts_of([action.respawn_delay], context))
     try:

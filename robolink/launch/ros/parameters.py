@@ -11,6 +11,7 @@ from robolink.arguments.overrides import Override
 from robolink.arguments.parameter_file import parse_parameter_file, parse_parameter_value, read_parameter_file
 from robolink.companions.ament_index.packages import package_not_here
 from robolink.companions.launch.bases import LaunchContext, LaunchError
+from robolink.companions.launch.typed_values import read_otherwise
 from robolink.companions.launch.utilities import performed
 from robolink.companions.launch_ros.actions.scope import PARAMETERS
 from robolink.companions.launch_ros.parameter_descriptions import Parameter, ParameterFile, evaluated
@@ -34,69 +35,103 @@ class Parameters(NamedTuple):
 
 
 def parameters_of(
-    parameters: Iterable[Any], full_name: str, is_named: bool, context: LaunchContext, say: Say
+    parameters: Iterable[Any], full_name: str, is_named: bool, context: LaunchContext, say: Say, *, is_full: bool = True
 ) -> Parameters:
-    """Return the parameters of a node; later ones win, and its own win over those of SetParameter.
+    """Return the parameters of a node as rcl chooses them.
+
+    All are given for a pattern of node names: mappings for the node itself or, unless its name is known in full, for
+    every node; those of SetParameter and `Parameter`s for every node; those of files as the sections say. The patterns
+    count in the order in which they first come, and within each the later value wins.
 
     Args:
         parameters: What the action has: mappings, files, `Parameter`s.
         full_name: Full name of the node.
         is_named: True if the launch file names it, so that the sections of files can be chosen here.
         context: The context with whose values they are performed.
-        say: Called with a line about each file that is not there.
+        say: Called with a line about each file that is not there, and each value that ROS 2 reads otherwise.
+        is_full: True if the launch file gives it a name and a namespace.
 
     Raises:
         LaunchError: for a value that no parameter can have.
         DocumentError: with the place in a parameter file.
     """
-    found = Parameters({}, frozenset(), [], [])
-    wide: set[str] = set()
-    around = context.launch_configurations.get(PARAMETERS, [])
-    for each in around:
-        is_pair = isinstance(each, tuple)
-        given = [each] if is_pair else _of_file(Path(each), None, full_name, is_named, found, say)
-        wide.update(name for name, _ in given)
-        _add(found, given)
+    gathered = _Gathered(full_name, is_named, say)
+    for each in context.launch_configurations.get(PARAMETERS, []):
+        if isinstance(each, tuple):
+            gathered.add([Override(_EVERY, *each)])
+        else:
+            gathered.add_file(Path(each), None)
+    wide = set(gathered.values())
+    own = full_name if is_named and is_full else _EVERY
     for each in parameters:
-        given = _given(each, full_name, is_named, context, found, say)
-        _add(found, given)
-        wide.difference_update(name for name, _ in given)
-    return found._replace(wide=frozenset(wide))
+        if isinstance(each, Mapping):
+            found = [Override(own, name, value) for name, value in evaluated(each, context)]
+            gathered.add(found, warn=True)
+        elif isinstance(each, Parameter):
+            found = [Override(_EVERY, *each.evaluate(context))]
+            gathered.add(found, warn=True)
+        else:
+            file = each if isinstance(each, ParameterFile) else ParameterFile(each)
+            found = gathered.add_file(file.evaluate(context), file.substituted(context))
+        wide.difference_update(each.name for each in found)
+    return Parameters(gathered.values(), frozenset(wide), gathered.words, gathered.files)
 
 
-def _add(found: Parameters, given: Iterable[tuple[str, Any]]) -> None:
-    for name, value in given:
-        found.values.pop(name, None)
-        found.values[name] = _checked(name, value)
+class _Gathered:
+    """Parameters of one node, in the order in which they come.
 
+    Args:
+        full_name: Full name of the node.
+        is_named: True if the launch file names it.
+        say: Called with lines for people.
+    """
 
-def _given(
-    said: Any, full_name: str, is_named: bool, context: LaunchContext, found: Parameters, say: Say
-) -> list[tuple[str, Any]]:
-    """Return the pairs that one element of a node's parameters stands for."""
-    if isinstance(said, Mapping):
-        return list(evaluated(said, context))
-    if isinstance(said, Parameter):
-        return [said.evaluate(context)]
-    file = said if isinstance(said, ParameterFile) else ParameterFile(said)
-    return _of_file(file.evaluate(context), file.substituted(context), full_name, is_named, found, say)
+    def __init__(self, full_name: str, is_named: bool, say: Say) -> None:
+        self._name, self._is_named, self._say = full_name, is_named, say
+        self._by_pattern: dict[str, dict[str, Any]] = {}
+        self.words: list[str] = []
+        self.files: list[Path] = []
 
+    def values(self) -> dict[str, Any]:
+        """Return the values of the node."""
+        found: dict[str, Any] = {}
+        for values in self._by_pattern.values():
+            for name, value in values.items():
+                found.pop(name, None)
+                found[name] = value
+        return found
 
-def _of_file(
-    path: Path, text: str | None, full_name: str, is_named: bool, found: Parameters, say: Say
-) -> list[tuple[str, Any]]:
-    """Return what a file has for a node; of one without a name, leave the choice to the node where there is any."""
-    overrides = _read(path, text, say)
-    if overrides is None:
+    def add(self, found: Iterable[Override], *, warn: bool = False) -> None:
+        """Add those of `found` that are for the node; `warn` tells of texts that a node of ROS 2 reads otherwise."""
+        for each in found:
+            if each.is_for(self._name):
+                values = self._by_pattern.setdefault(each.pattern, {})
+                values.pop(each.name, None)
+                values[each.name] = _checked(each.name, each.value)
+                if warn:
+                    self._warn(each.name, each.value)
+
+    def _warn(self, name: str, value: Any) -> None:
+        for text, read in read_otherwise(value).items():
+            self._say(f"parameter '{shown(name)}': ROS 2 hands the text '{shown(text)}' over as {read!r}")
+
+    def add_file(self, path: Path, text: str | None) -> list[Override]:
+        """Add a file, whose text is `text` if it is known, or leave it to a nameless node; return what was added."""
+        overrides = _read(path, text, self._say)
+        if overrides is None:
+            return []
+        self.files.append(path)
+        if self._is_named or text is not None or all(each.pattern in ("/**", "/*") for each in overrides):
+            self.add(overrides)
+            return [each for each in overrides if each.is_for(self._name)]
+        for name, value in self.values().items():  # what was given before comes before the file
+            self.words.extend(("-p", f"{name}:={spell(value)}"))
+        self._by_pattern.clear()
+        self.words.extend(("--params-file", os.fspath(path)))
         return []
-    found.files.append(path)
-    if is_named or text is not None or all(each.pattern in ("/**", "/*") for each in overrides):
-        return [(each.name, each.value) for each in overrides if each.is_for(full_name)]
-    for name, value in found.values.items():  # what was given before must not win over the file
-        found.words.extend(("-p", f"{name}:={spell(value)}"))
-    found.values.clear()
-    found.words.extend(("--params-file", os.fspath(path)))
-    return []
+
+
+_EVERY = "/**"
 
 
 def _read(path: Path, text: str | None, say: Say) -> list[Override] | None:

@@ -29,6 +29,7 @@ from typing import IO, NamedTuple
 from robolink.supervisor.processes.lifeline import VARIABLE, Lifeline
 from robolink.supervisor.processes.process_title import ProcessTitle
 from robolink.system import clocks
+from robolink.system.variables import Variables, set_environment
 
 PATIENCE = 30.0
 """Longest wait for an answer, in seconds: the first comes when all is imported. Then processes start without it."""
@@ -93,13 +94,13 @@ class ForkServer:
         self.is_asked_to_end: Callable[[], bool] = lambda: False
         """Set by the supervisor: returns True once the user asks for the end."""
 
-    def can_become(self, argv: Sequence[str], env: Mapping[str, str]) -> bool:
+    def can_become(self, argv: Sequence[str], env: Variables) -> bool:
         """True if a process with this command line, and these further variables, can be forked from the server."""
         begins = list(argv[: len(self._command)]) == self._command
         return begins and self._variables.issuperset(env) and not self._has_failed
 
     def fork(
-        self, argv: Sequence[str], env: Mapping[str, str], stdin: int, lifeline: Lifeline, whole_env: Mapping[str, str]
+        self, argv: Sequence[str], env: Variables, stdin: int, lifeline: Lifeline, whole_env: Mapping[str, str]
     ) -> Forked | None:
         """Start a process in a session of its own; None if the server cannot, now and from then on.
 
@@ -113,7 +114,7 @@ class ForkServer:
             return None
 
     def _fork(
-        self, argv: list[str], env: dict[str, str], stdin: int, lifeline: Lifeline, whole_env: Mapping[str, str]
+        self, argv: list[str], env: dict[str, str | None], stdin: int, lifeline: Lifeline, whole_env: Mapping[str, str]
     ) -> Forked:
         if sys.platform != "linux":
             raise ForkServerError(NOT_HERE)
@@ -220,7 +221,7 @@ def serve(descriptor: int) -> list[str]:
 class _Request(NamedTuple):
     argv: list[str]
     words: list[str]
-    env: dict[str, str]
+    env: dict[str, str | None]
     mark: str
 
 
@@ -277,7 +278,7 @@ def _become(request: _Request, descriptors: Sequence[int], title: ProcessTitle) 
         os.dup2(theirs, standard)
     for each in {stdin, stdout, go} - {*_DEFAULT_STANDARD}:
         os.close(each)
-    os.environ.update(request.env)
+    set_environment(request.env)
     os.environ[VARIABLE] = f"{lifeline}:{request.mark}"
     sys.orig_argv[:] = request.argv
     title.write(request.argv)

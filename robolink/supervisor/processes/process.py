@@ -10,7 +10,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -23,6 +23,7 @@ from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.supervisor.processes.terminal import Terminal
 from robolink.supervisor.rules import Rules, Step
 from robolink.system import clocks
+from robolink.system.variables import Variables, environment_with
 
 _LONGEST_LINE = 1 << 20
 """Longest line, in bytes; a longer one is printed in pieces."""
@@ -43,7 +44,7 @@ class Process:
     Args:
         name: Unique name, shown before its lines.
         argv: The command and its arguments.
-        env: Variables that are added to this process's environment.
+        env: Variables that are added to this process's environment; None takes one out.
         cwd: Its working directory; None for this process's.
         interactive: True if it reads this process's standard input; the others read `input`.
         input: Bytes on its standard input.
@@ -55,7 +56,7 @@ class Process:
 
     name: str
     argv: Sequence[str]
-    env: Mapping[str, str] = field(default_factory=dict)
+    env: Variables = field(default_factory=dict)
     cwd: str | os.PathLike[str] | None = None
     interactive: bool = False
     input: bytes = b""
@@ -155,7 +156,7 @@ def _started(process: Process, stdin: IO[bytes] | int | None, lifeline: Lifeline
     variables, options = lifeline.options()
     return subprocess.Popen(
         list(process.argv),
-        env={**_plain_output(), **process.env, **variables},
+        env=environment_with({**process.env, **variables}, _plain_output()),
         cwd=process.cwd,
         stdin=stdin,
         stdout=subprocess.PIPE,

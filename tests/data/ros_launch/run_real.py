@@ -1,9 +1,10 @@
-"""Run one launch file with ROS 2's own launch: `python run_real.py FILE NAME:=VALUE...`; prints JSON of what it said."""
+"""Runs one launch file with ROS 2's own launch, `python run_real.py FILE NAME:=VALUE...`; JSON goes to $RESULT."""
 
 import json
 import logging
 import os
 import sys
+from pathlib import Path
 from unittest.mock import MagicMock
 
 try:
@@ -41,7 +42,7 @@ def main():
     include = IncludeLaunchDescription(AnyLaunchDescriptionSource(path), launch_arguments=given)
     service.include_launch_description(launch.LaunchDescription([include]))
     code = service.run()
-    with open(os.environ["RESULT"], "w") as file:
+    with Path(os.environ["RESULT"]).open("w") as file:
         json.dump({"exit": code, "said": heard.said, "error": (heard.errors or [""])[-1]}, file)
 
 

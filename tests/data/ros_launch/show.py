@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Program of the descriptions' nodes: appends what it was given, as one line of JSON, to the file in $SHOWN, and ends."""
+"""Program of the descriptions' nodes: appends what it was given, as a line of JSON, to the file $SHOWN, and ends."""
 
 import json
 import os
 import sys
+from pathlib import Path
 
 import rclpy
 from rclpy.node import Node
@@ -34,7 +35,7 @@ def seen(words):
 
 if __name__ == "__main__":
     line = json.dumps(seen(sys.argv), sort_keys=True, default=str)
-    with open(os.environ["SHOWN"], "a") as file:
+    with Path(os.environ["SHOWN"]).open("a") as file:
         file.write(line + "\n")
     if "stay" in sys.argv:
         import signal

@@ -130,7 +130,7 @@ def test_values_have_the_types_that_are_asked_for(package: Path) -> None:
         Node(package="bot", executable="talker", parameters=[{
             "text": ParameterValue("12", value_type=str), "number": TextSubstitution(text="12"),
             "real": ParameterValue(LaunchConfiguration("x", default="1"), value_type=float),
-            "list": ParameterValue("[1, 2]", value_type=list[int]), "plain": "12",
+            "list": ParameterValue(TextSubstitution(text="[1, 2]"), value_type=list[int]), "plain": "12",
             "flag": ["tr", TextSubstitution(text="ue")],
             ("joined", "_name"): True}]),
         """,

@@ -10,7 +10,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from robolink.cli.main import main
-from robolink.companions.launch_frontend.entity import split
+from robolink.companions.launch.frontend.parse_substitution import parse_substitution
+from robolink.companions.launch_frontend.entity import words_of
 from robolink.exceptions import DocumentError
 from robolink.interfaces.std_msgs.msg import String
 from robolink.launch.reading.kinds import is_of_ros
@@ -30,7 +31,7 @@ XML = """<?xml version="1.0"?>
     <push-ros-namespace namespace="g"/>
     <set_remap from="other" to="/else"/>
     <node pkg="bot" exec="talker" name="one" namespace="in" output="screen"
-          args="--fast '$(var word) x'" respawn="true">
+          args="--fast $(var word)x" respawn="true">
       <param name="word" value="$(var word)"/>
       <param name="n" value="5"/>
       <param name="text" value="5" type="str"/>
@@ -61,7 +62,7 @@ launch:
       exec: talker
       name: one
       namespace: in
-      args: "--fast '$(var word) x'"
+      args: "--fast $(var word)x"
       respawn: true
       output: screen
       param:
@@ -76,7 +77,7 @@ launch:
 - node:
     pkg: bot
     exec: once
-    unless: false
+    unless: "false"
     on_exit: shutdown
 - executable: {cmd: ros2 topic list, name: lister}
 - node: {pkg: controller_manager, exec: spawner}
@@ -98,7 +99,7 @@ def test_both_say_the_same(package: Path, text: str, name: str) -> None:
     (package / "config" / "p.yaml").write_text("/**: {ros__parameters: {period: 2.0}}\n")
     system = load(package, text, name, word="ho")
     one, once, lister = system.entries
-    assert (one.name, one.node.args) == ("g/in/one", ["--fast", "ho x"])
+    assert (one.name, one.node.args) == ("g/in/one", ["--fast", "hox"])
     assert one.node.parameters == {
         "word": "ho", "n": 5, "text": "5", "arm.gain": 1.5, "arm.list": [1, 2], "period": 2.0,
     }  # fmt: skip
@@ -251,8 +252,15 @@ def test_the_kind_of_a_yaml_file_shows_in_its_first_key(tmp_path: Path, text: st
 
 
 def test_words_of_a_command_line() -> None:
-    assert split("a 'b c' \"d e\"f $(eval 'x' + ( 1 )) ''") == ["a", "b c", "d ef", "$(eval 'x' + ( 1 ))", ""]
-    assert split("  ") == []
+    def words(text: str) -> list[str]:
+        parts = [words_of(parse_substitution(text))]
+        return ["".join(getattr(one, "text", "$") for one in each) for each in parts[0]]
+
+    assert words("a 'b c' \"d e\"f $(var x) ''") == ["a", "b c", "d ef", "$", ""]
+    assert words("$(var x)$(var y) p$(var x)q\\ r") == ["$$", "p$q", "r"]
+    assert words("  ") == []
+    with pytest.raises(ValueError, match="closing quotation"):
+        words("'$(var x) b'")
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -6,7 +6,8 @@ import os
 from typing import Any
 
 from robolink.companions.launch.bases import Action, LaunchContext, SomeSubstitutionsType
-from robolink.companions.launch.utilities import is_true, normalize_to_list_of_substitutions, perform_substitutions
+from robolink.companions.launch.typed_values import boolean
+from robolink.companions.launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 
 _WHICH = "environment"
 
@@ -60,7 +61,7 @@ class AppendEnvironmentVariable(Action):
             perform_substitutions(context, each) for each in (self.name, self.value, self.separator)
         )
         before = context.environment.get(name, "")
-        parts = [value, before] if is_true(context, self.prepend) else [before, value]
+        parts = [value, before] if boolean(context, self.prepend) else [before, value]
         context.environment[name] = between.join(filter(None, parts))
 
 

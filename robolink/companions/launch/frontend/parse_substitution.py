@@ -1,11 +1,12 @@
 """Parser of the substitutions in XML and YAML launch files, and in parameter files: `$(var speed)`.
 
 A text is plain up to `$(`. Inside stand a name and its arguments, parted by blanks; an argument may be in single or
-double quotes and may hold further substitutions. `\\$` is a dollar sign.
+double quotes and may hold further substitutions. A backslash makes the letter behind it plain, and goes.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
@@ -14,6 +15,7 @@ from robolink.companions.launch.utilities import TextSubstitution
 from robolink.exceptions import nearest
 from robolink.system.terminal import shown
 
+_ESCAPE = re.compile(r"\\(.)")
 DEEPEST = 50
 """Deepest nesting of substitutions."""
 Argument: TypeAlias = "list[Substitution]"
@@ -28,6 +30,11 @@ def parse_substitution(string: str) -> list[Substitution]:
     if "$(" not in string and "\\" not in string:
         return [TextSubstitution(text=string)]
     return _Reader(string).text()
+
+
+def unescaped(text: str) -> str:
+    """Return a `text` without its backslashes: each stands for the letter behind it."""
+    return _ESCAPE.sub(r"\1", text)
 
 
 class _Reader:
@@ -45,7 +52,7 @@ class _Reader:
             if self._text.startswith("$(", self._at):
                 _flush(plain, found)
                 found.append(self._substitution())
-            elif here == "\\" and self._text[self._at + 1 : self._at + 2] in ("$", "\\", "'", '"', "(", ")"):
+            elif here == "\\" and self._escapes(end):
                 plain.append(self._text[self._at + 1])
                 self._at += 2
             elif here == quote or here in end or (end and here.isspace()):
@@ -55,6 +62,11 @@ class _Reader:
                 self._at += 1
         _flush(plain, found)
         return found
+
+    def _escapes(self, end: str) -> bool:
+        """True if the backslash here stands before a letter; without quotes a blank ends an argument in any case."""
+        after = self._text[self._at + 1 : self._at + 2]
+        return after not in ("", "\n") and not (end and after.isspace())
 
     def _substitution(self) -> Substitution:
         begin, self._at = self._at, self._at + 2

@@ -7,11 +7,11 @@ from typing import Any
 
 from robolink.companions.launch.bases import LaunchContext, SomeSubstitutionsType, Substitution
 from robolink.companions.launch.substitutions.failure import SubstitutionFailure
+from robolink.companions.launch.typed_values import boolean
 from robolink.companions.launch.utilities import (
     FALSE,
     TRUE,
     is_substitution,
-    is_true,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
@@ -29,7 +29,7 @@ class NotSubstitution(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""
-        return _spelled(not is_true(context, self.value))
+        return _spelled(not boolean(context, self.value))
 
 
 class AllSubstitution(Substitution):
@@ -44,7 +44,7 @@ class AllSubstitution(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""
-        return _spelled(all(is_true(context, each) for each in self.args))
+        return _spelled(all(boolean(context, each) for each in self.args))
 
 
 class AnySubstitution(AllSubstitution):
@@ -52,7 +52,7 @@ class AnySubstitution(AllSubstitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""
-        return _spelled(any(is_true(context, each) for each in self.args))
+        return _spelled(any(boolean(context, each) for each in self.args))
 
 
 class AndSubstitution(AllSubstitution):
@@ -134,7 +134,7 @@ class IfElseSubstitution(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return the text that counts."""
-        return perform_substitutions(context, self.if_value if is_true(context, self.condition) else self.else_value)
+        return perform_substitutions(context, self.if_value if boolean(context, self.condition) else self.else_value)
 
 
 def _spelled(value: bool) -> str:

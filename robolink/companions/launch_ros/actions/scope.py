@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from robolink.arguments.parameter_file import parse_parameter_value
 from robolink.companions.launch.actions import SetEnvironmentVariable, TimerAction
-from robolink.companions.launch.bases import Action, LaunchContext, SomeSubstitutionsType
+from robolink.companions.launch.bases import Action, LaunchContext, LaunchError, SomeSubstitutionsType
 from robolink.companions.launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from robolink.companions.launch_ros.parameter_descriptions import plain
+from robolink.exceptions import DocumentError
+from robolink.system.terminal import shown
 
 NAMESPACE, REMAPS, PARAMETERS = "ros_namespace", "ros_remaps", "global_params"
 """Launch configurations in which they are kept, as in ROS 2."""
@@ -71,6 +74,8 @@ class SetRemap(Action):
 class SetParameter(Action):
     """Set a parameter of the nodes behind this; their own parameters count more.
 
+    ROS 2 passes it as `-p NAME:=VALUE`, so that rcl reads a text as it reads that of a command line: "1" is a number.
+
     Args:
         name: Its name.
         value: Its value, as in a node's parameters.
@@ -83,12 +88,27 @@ class SetParameter(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Set it in `context`."""
-        pair = perform_substitutions(context, self.name), plain(self.value, context)
-        context.launch_configurations[PARAMETERS] = [*context.launch_configurations.get(PARAMETERS, []), pair]
+        name, value = perform_substitutions(context, self.name), plain(self.value, context)
+        if isinstance(value, str):
+            value = _read(name, value)
+        elif isinstance(value, list):
+            context.said.append(
+                f"SetParameter '{shown(name)}': a list arrives in ROS 2 as the text \"{shown(str(tuple(value)))}\": "
+                "give it to the nodes as one of their parameters"
+            )
+        context.launch_configurations[PARAMETERS] = [*context.launch_configurations.get(PARAMETERS, []), (name, value)]
 
 
-class SetUseSimTime(SetParameter):
-    """Let the nodes behind this use the time of /clock.
+def _read(name: str, text: str) -> Any:
+    """Return what rcl reads of a parameter's text behind `-p`. Raises LaunchError."""
+    try:
+        return parse_parameter_value(text, "")
+    except DocumentError as error:
+        raise LaunchError(f"parameter '{shown(name)}': '{shown(text)}' cannot be set so: {error.message}") from None
+
+
+class SetUseSimTime(Action):
+    """Set the parameter `use_sim_time` of the launcher's own node, and of no other, as in ROS 2.
 
     Args:
         value: True for the time of /clock.
@@ -96,7 +116,14 @@ class SetUseSimTime(SetParameter):
     """
 
     def __init__(self, value: bool, **kwargs: Any) -> None:
-        super().__init__("use_sim_time", value, **kwargs)
+        super().__init__(**kwargs)
+        self.value = value
+
+    def execute(self, context: LaunchContext) -> None:
+        """Tell in `context` what it is not: robolink's launcher has a node without timers."""
+        context.said.append(
+            "SetUseSimTime sets the clock of the launcher, and that of no node: SetParameter('use_sim_time', True) does"
+        )
 
 
 class SetParametersFromFile(Action):
