@@ -19,6 +19,10 @@ Out = Annotated[
 Duration = Annotated[
     float | None, seconds("--duration", "Draw after so many seconds of listening; without it, after Ctrl-C.")
 ]
+Recording = Annotated[
+    Path | None,
+    typer.Option("--bag", metavar="FOLDER|FILE", help="Draw what this bag recorded, instead of listening."),
+]
 World = Annotated[
     str,
     typer.Option(
@@ -33,35 +37,43 @@ World = Annotated[
 @app.command("odom")
 def plot_odometry(
     topics: Annotated[
-        list[str],
-        typer.Argument(metavar="TOPIC...", help="Such as /odom /ground_truth.", autocompletion=complete.topic_names),
-    ],
+        list[str] | None,
+        typer.Argument(
+            metavar="TOPIC...",
+            help="Such as /odom /ground_truth; of a bag by default all.",
+            autocompletion=complete.topic_names,
+        ),
+    ] = None,
     out: Out = None,
     duration: Duration = None,
     world: World = "",
+    bag: Recording = None,
 ) -> None:
     """Draw the way of whatever messages say where something is: Odometry, PoseStamped and the like."""
     from robolink.cli.plot import record, trajectories
 
-    trajectories.run(topics, trajectories.POSES, world, record.Wish(out, duration))
+    trajectories.run(topics or [], trajectories.POSES, world, record.Wish(out, duration, bag))
 
 
 @app.command("path")
 def plot_path(
     topics: Annotated[
-        list[str],
+        list[str] | None,
         typer.Argument(
-            metavar="TOPIC...", help="Of nav_msgs/msg/Path, such as /plan.", autocompletion=complete.topic_names
+            metavar="TOPIC...",
+            help="Of nav_msgs/msg/Path, such as /plan; of a bag by default all.",
+            autocompletion=complete.topic_names,
         ),
-    ],
+    ] = None,
     out: Out = None,
     duration: Duration = None,
     world: World = "",
+    bag: Recording = None,
 ) -> None:
     """Draw the paths that were published last, over the world."""
     from robolink.cli.plot import record, trajectories
 
-    trajectories.run(topics, trajectories.PATHS, world, record.Wish(out, duration))
+    trajectories.run(topics or [], trajectories.PATHS, world, record.Wish(out, duration, bag))
 
 
 @app.command("topic")
@@ -76,8 +88,9 @@ def plot_topic(
     ],
     out: Out = None,
     duration: Duration = None,
+    bag: Recording = None,
 ) -> None:
     """Draw values over time."""
     from robolink.cli.plot import record, values
 
-    values.run(fields, record.Wish(out, duration))
+    values.run(fields, record.Wish(out, duration, bag))

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from robolink.bag.metadata import FILE_NAME as METADATA
+from robolink.bag.storage.opening import ENDINGS
 from robolink.cli.shared.matching_qos import matching_qos
 from robolink.cli.shared.output import tell
 from robolink.cli.shared.pictures import check_picture
@@ -35,10 +37,14 @@ class PlotError(RobolinkError, ValueError):
 
 
 class Wish(NamedTuple):
-    """Options of a plot: the picture's file (None: a window), and the seconds to listen (None: until Ctrl-C)."""
+    """Options of a plot: the picture's file (None: a window), the seconds to listen (None: until Ctrl-C), and a bag.
+
+    With a bag nothing is listened to.
+    """
 
     out: Path | None = None
     duration: float | None = None
+    bag: Path | None = None
 
 
 def check(wish: Wish) -> None:
@@ -80,6 +86,8 @@ def wait_for(context: Context, topic: str, deadline: float | None) -> type[Any]:
     def published() -> bool:
         return bool(graph.endpoints(EndpointKind.PUBLISHER, name=topic)) or not context.ok()
 
+    if not published():
+        refuse_bag(topic)
     while not published():
         left = None if deadline is None else deadline - clocks.monotonic()
         if left is not None and left <= 0:
@@ -92,6 +100,13 @@ def wait_for(context: Context, topic: str, deadline: float | None) -> type[Any]:
     if not context.ok():
         raise KeyboardInterrupt
     return message_type(context, topic)
+
+
+def refuse_bag(topic: str) -> None:
+    """Raise PlotError for a topic that nobody publishes and that is a bag in this folder: it was meant by that."""
+    path = Path(topic.lstrip("/"))
+    if (path / METADATA).is_file() or (path.is_file() and path.name.endswith(ENDINGS)):
+        raise PlotError(f"nobody publishes {topic}, and '{path}' is a bag: write --bag {path}")
 
 
 def listen(node: Node, topics: Mapping[str, tuple[type[Any], Callable[[Any], Any]]], duration: float | None) -> None:

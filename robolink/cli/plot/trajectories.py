@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from robolink.cli.plot.record import PlotError, Wish, check, deadline, listen, show, wait_for
@@ -15,6 +17,7 @@ from robolink.exceptions import RobolinkError
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from robolink.cli.plot.recorded import Recorded
     from robolink.node import Node
     from robolink.sim import WorldDescription
 
@@ -61,7 +64,7 @@ class Way:
         self.topic, self.kind = topic, kind
         self.points: list[Point] = []
 
-    def take(self, message: Any) -> None:
+    def take(self, message: Any, _: float = 0.0) -> None:
         """Add the points of a message."""
         new = self.kind.points(message)
         self.points = new if self.kind.replaces else self.points + new if len(new) != 1 else self._with(new[0])
@@ -73,8 +76,13 @@ class Way:
 
 
 def run(topics: list[str], kind: Kind, world: str, wish: Wish) -> None:
-    """Listen, and draw the trajectories."""
+    """Listen, or read the bag, and draw the trajectories."""
     check(wish)
+    if wish.bag is not None:
+        _run_bag(topics, kind, world, wish, wish.bag)
+        return
+    if not topics:
+        raise PlotError("name the topics to draw, such as /odom, or a bag: --bag FOLDER")
     with opened() as context:
         node = node_of(context)
         until = deadline(wish)
@@ -85,6 +93,31 @@ def run(topics: list[str], kind: Kind, world: str, wish: Wish) -> None:
     if not any(way.points for way in ways.values()):
         raise PlotError(f"nothing was heard on {', '.join(ways)}")
     _draw(ways.values(), description, wish)
+
+
+def _run_bag(topics: list[str], kind: Kind, world: str, wish: Wish, bag: Path) -> None:
+    """Draw what a bag has: the topics that are named, or all that say where something is."""
+    from robolink.cli.plot.recorded import recorded
+
+    with recorded(bag) as source:
+        names = [source.name_of(each) for each in dict.fromkeys(topics)] or _all_fitting(source, kind)
+        ways = {name: Way(name, kind) for name in names}
+        source.hear({name: (_fitting(source.type_of(name), name, kind), ways[name].take) for name in ways})
+    if not any(way.points for way in ways.values()):
+        found = f"no message on {', '.join(ways)} has a place" if ways else f"no topic has {kind.expected}"
+        raise PlotError(f"{bag}: nothing to draw: {found}")
+    description = None if world in ("", NO_WORLD) else _world_named(world)
+    _draw(ways.values(), description, wish)
+
+
+def _all_fitting(source: Recorded, kind: Kind) -> list[str]:
+    """Return the names of the topics whose messages are of this kind of trajectory."""
+    found = []
+    for name in source.topics:
+        with contextlib.suppress(PlotError):
+            _fitting(source.type_of(name), name, kind)
+            found.append(name)
+    return found
 
 
 def _fitting(msg_type: type[Any], topic: str, kind: Kind) -> type[Any]:
@@ -103,18 +136,22 @@ def _world(node: Node, asked: str) -> WorldDescription | None:
     name = "" if asked == NO_WORLD else asked or _simulated(node)
     if not name:
         return None
-    from robolink.documents.foreign import warnings_to
-    from robolink.sim import load_world
-    from robolink.workspace import find_world
-
     try:
-        with warnings_to(lambda line: tell(f"robolink: {line}")):
-            return load_world(find_world(name))
+        return _world_named(name)
     except RobolinkError as error:
         if asked:
             raise
         tell(f"robolink: drawn without the world: {error}")
         return None
+
+
+def _world_named(name: str) -> WorldDescription:
+    from robolink.documents.foreign import warnings_to
+    from robolink.sim import load_world
+    from robolink.workspace import find_world
+
+    with warnings_to(lambda line: tell(f"robolink: {line}")):
+        return load_world(find_world(name))
 
 
 def _simulated(node: Node) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.cli.plot.record import PlotError, Wish, check, deadline, listen, show, wait_for
@@ -13,6 +14,7 @@ from robolink.system import clocks
 from robolink.wire import EndpointKind
 
 if TYPE_CHECKING:
+    from robolink.cli.plot.recorded import Recorded
     from robolink.context import Context
     from robolink.node import Node
 
@@ -35,23 +37,35 @@ class Curve:
         """Name of the curve: topic and field, as they were given."""
         return f"{self.topic}.{self.field}"
 
-    def take(self, message: Any) -> None:
-        """Add a message's value; one that lacks it, as a shorter sequence does, is left out."""
+    def take(self, message: Any, arrived: float | None = None) -> None:
+        """Add a message's value; one that lacks it, as a shorter sequence does, is left out.
+
+        `arrived` is the time in seconds at which it came; None is now.
+        """
         try:
             value = fields.field_of(message, self.field)
         except EncodeError as error:
             self.lacked = _without_option(error)
             return
         self.values.append(float(value[0] if isinstance(value, bytes) else value))  # ROS's byte is bytes
-        self.arrived.append(clocks.monotonic())
+        self.arrived.append(clocks.monotonic() if arrived is None else arrived)
         stamp = getattr(getattr(message, "header", None), "stamp", None)
         if stamp is not None and (stamp.sec or stamp.nanosec):
             self.stamped.append(stamp.sec + stamp.nanosec * 1e-9)
 
 
 def run(asked: list[str], wish: Wish) -> None:
-    """Listen, and draw the values."""
+    """Listen, or read the bag, and draw the values."""
     check(wish)
+    curves = _from_network(asked, wish) if wish.bag is None else _from_bag(asked, wish.bag)
+    if not any(curve.values for curve in curves):
+        lacked = next((curve.lacked for curve in curves if curve.lacked), "")
+        raise PlotError(lacked or f"nothing was heard on {', '.join({curve.topic: None for curve in curves})}")
+    _draw([curve for curve in curves if curve.values], wish)
+
+
+def _from_network(asked: list[str], wish: Wish) -> list[Curve]:
+    """Return the curves of what is published until the time is over."""
     with opened() as context:
         node = node_of(context)
         until = deadline(wish)
@@ -60,18 +74,46 @@ def run(asked: list[str], wish: Wish) -> None:
         for curve in curves:
             _check_number(types[curve.topic], curve)
         listen(node, {topic: (types[topic], _all_of(topic, curves)) for topic in types}, wish.duration)
-    if not any(curve.values for curve in curves):
-        lacked = next((curve.lacked for curve in curves if curve.lacked), "")
-        raise PlotError(lacked or f"nothing was heard on {', '.join(types)}")
-    _draw([curve for curve in curves if curve.values], wish)
+    return curves
 
 
-def _all_of(topic: str, curves: Iterable[Curve]) -> Callable[[Any], None]:
+def _from_bag(asked: list[str], bag: Path) -> list[Curve]:
+    """Return the curves of a recording."""
+    from robolink.cli.plot.recorded import recorded
+
+    with recorded(bag) as source:
+        curves = [Curve(*_parted_in(source, each)) for each in dict.fromkeys(asked)]
+        types = {curve.topic: source.type_of(curve.topic) for curve in curves}
+        for curve in curves:
+            _check_number(types[curve.topic], curve)
+        source.hear({topic: (types[topic], _all_of(topic, curves)) for topic in types})
+    return curves
+
+
+def _parted_in(source: Recorded, asked: str) -> tuple[str, str]:
+    """Split `/odom.pose.x` or `/odom/pose/x` into topic and field: the topic is the longest name in the bag."""
+    if "." in asked:
+        topic, _, field = asked.partition(".")
+        return source.name_of(topic), field
+    name, bracket, rest = asked.partition("[")
+    parts = name.strip("/").split("/")
+    topic = next((each for each in _prefixes(parts) if each in source.topics), "")
+    if not topic:
+        raise PlotError(f"'{asked}' names no field of a topic in the bag: write TOPIC.FIELD, as in /odom.x")
+    return topic, ".".join(parts[topic.count("/") :]) + bracket + rest
+
+
+def _prefixes(parts: list[str]) -> list[str]:
+    """Return the names of topics that a name may begin with, the longest first."""
+    return ["/" + "/".join(parts[:count]) for count in range(len(parts) - 1, 0, -1)]
+
+
+def _all_of(topic: str, curves: Iterable[Curve]) -> Callable[..., None]:
     own = [curve for curve in curves if curve.topic == topic]
 
-    def take(message: Any) -> None:
+    def take(message: Any, arrived: float | None = None) -> None:
         for curve in own:
-            curve.take(message)
+            curve.take(message, arrived)
 
     return take
 
@@ -83,7 +125,7 @@ def _parted(node: Node, asked: str, until: float | None) -> tuple[str, str]:
         return node.resolve_topic_name(topic), field
     parts = node.resolve_topic_name(asked.split("[")[0]).strip("/").split("/")
     rest = asked[asked.index("[") :] if "[" in asked else ""
-    prefixes = ["/" + "/".join(parts[:count]) for count in range(len(parts) - 1, 0, -1)]
+    prefixes = _prefixes(parts)
 
     def published() -> str:
         return next((each for each in prefixes if _is_published(node.context, each)), "")

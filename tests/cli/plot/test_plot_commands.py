@@ -15,6 +15,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink import Node
+from robolink.bag.definition import message_definition
+from robolink.bag.topic import BagTopic
+from robolink.bag.writer import BagWriter
 from robolink.cli.main import main
 from robolink.cli.plot import record, trajectories, values
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticStatus
@@ -24,7 +27,9 @@ from robolink.interfaces.nav_msgs.msg import Path as PathMessage
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.std_msgs.msg import Bool, Float64, String
 from robolink.interfaces.turtlesim.msg import Pose as TurtlePose
+from robolink.message import type_hash, type_name
 from robolink.parameter import Parameter
+from robolink.serialization import serialize_message
 from tests.support.seen_by_commands import a_node_that_commands_see, latch, made, spinning
 
 Captured = pytest.CaptureFixture[str]
@@ -311,3 +316,69 @@ def test_other_nodes_called_world_do_no_harm(node: Node, tmp_path: Path, drawn: 
         patch.setattr(trajectories, "ANSWER_WITHIN", 0.05)
         assert plot("odom", "/lab/odom", "--out", tmp_path / "a.png") == 0
     assert len(drawn) == 1
+
+
+# --- bags -----------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def lap(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A bag of an odometry, a pose and a number, with one message that is broken."""
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    monkeypatch.chdir(tmp_path)
+    with BagWriter(tmp_path / "lap") as writer:
+        numbers = {
+            name: writer.add_topic(
+                BagTopic(name, type_name(kind), "cdr", type_hash(kind), (), message_definition(kind))
+            )
+            for name, kind in (("/odom", Odometry), ("/arm/goal", PoseStamped), ("/speed", Float64))
+        }
+        for second in range(5):
+            stamp = second * 10**9
+            writer.write(numbers["/odom"], stamp, stamp, second, serialize_message(odometry(second, 0.0)))
+            writer.write(numbers["/arm/goal"], stamp, stamp, second, serialize_message(pose(0.0, 2.0 * second)))
+            writer.write(numbers["/speed"], stamp, stamp, second, serialize_message(Float64(data=second / 2)))
+        writer.write(numbers["/odom"], 5 * 10**9, 0, 5, b"\0\1\0\0\x07")
+    return tmp_path / "lap"
+
+
+def test_a_bags_trajectories_are_drawn(lap: Path, drawn: list[Any], capsys: Captured) -> None:
+    assert main(["plot", "odom", "--bag", "lap", "--out", "way.png"]) == 0
+    assert [each.get_label() for each in drawn[-1].lines[::3]] == ["/odom: 4.00 m", "/arm/goal: 8.00 m"]
+    assert "/odom: " in (told := capsys.readouterr().err)
+    assert "it is left out" in told
+    assert main(["plot", "odom", "odom", "--bag", "lap", "--world", "empty", "--out", "way.png"]) == 0
+    assert [each.get_text() for each in drawn[-1].get_legend().get_texts()] == ["/odom: 4.00 m"]
+    assert Path("way.png").read_bytes().startswith(PNG)
+
+
+@pytest.mark.parametrize("asked", ["speed.data", "/speed/data"])
+def test_a_bags_values_are_drawn_over_the_times_at_which_they_came(lap: Path, drawn: list[Any], asked: str) -> None:
+    assert main(["plot", "topic", asked, "--bag", "lap", "--out", "speed.png"]) == 0
+    (curve,) = drawn[-1].lines
+    assert list(curve.get_xdata()) == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert list(curve.get_ydata()) == [0.0, 0.5, 1.0, 1.5, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ("odom odm --bag lap", "lap has no topic /odm (did you mean '/odom'?); it has /odom, /arm/goal, /speed"),
+        ("odom speed --bag lap", "/speed is of std_msgs/msg/Float64: expected one with a position"),
+        ("path --bag lap", "lap: nothing to draw: no topic has a list of poses"),
+        ("topic speed.dat --bag lap", "no field 'dat'"),
+        ("topic /spd/data --bag lap", "'/spd/data' names no field of a topic in the bag"),
+        ("odom --bag nowhere", "no bag 'nowhere'"),
+        ("odom", "name the topics to draw, such as /odom, or a bag: --bag FOLDER"),
+    ],
+)
+def test_what_a_bag_lacks_is_told(lap: Path, capsys: Captured, arguments: str, told: str) -> None:
+    assert main(["plot", *arguments.split(), "--out", "x.png"]) == 1
+    assert told in capsys.readouterr().err
+
+
+def test_a_bag_that_is_named_as_a_topic_is_told_at_once(
+    lap: Path, node: Node, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert main(["plot", "odom", "lap", "--out", "x.png"]) == 1
+    assert "nobody publishes /lap, and 'lap' is a bag: write --bag lap" in capsys.readouterr().err
