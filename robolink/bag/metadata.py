@@ -28,8 +28,6 @@ VERSION = 8
 """Version that is written."""
 OLDEST, NEWEST = 1, 9
 """Versions of the format that are known; a newer one is read as far as it is the same."""
-ROS_DISTRO = "jazzy"
-"""Distribution that a bag says it comes from where ROS_DISTRO is not set: Foxglove's readers look types up by it."""
 
 _KEY = "rosbag2_bagfile_information"
 _TRIES = 20

@@ -9,13 +9,14 @@ from types import TracebackType
 from typing import NamedTuple
 
 from robolink.bag import zstd
-from robolink.bag.metadata import ROS_DISTRO, BagMetadata, FileInformation, metadata_of, write_metadata
+from robolink.bag.metadata import BagMetadata, FileInformation, metadata_of, write_metadata
 from robolink.bag.storage.base import StorageWriter, Written
 from robolink.bag.storage.opening import STORAGES, check_storage, storage_writer
 from robolink.bag.topic import BagError, BagTopic
 from robolink.exceptions import nearest
 from robolink.system import clocks
 from robolink.system.terminal import shown
+from robolink.system.variables import ROS_DISTRO
 
 LARGEST_SUMMARY = 1 << 20
 """Size of a file's index, in bytes, at which a new file begins: the index is written again with each flush."""

@@ -10,6 +10,8 @@ sensor_msgs_py, cv_bridge, image_geometry, diagnostic_updater, rosidl_runtime_py
 nav2_common.launch, nav2_simple_commander (its robot_navigator and utils), launch, launch_ros, launch_testing,
 launch_testing_ros and webots_ros2_driver (WebotsController, and what launch files start).
 
+ROS_DISTRO, ROS_VERSION and ROS_PYTHON_VERSION are set as a sourced ROS 2 sets them, where they are not.
+
 Types of a workspace's own `.msg`, `.srv` and `.action` files can be imported, too: of the workspace in which the file
 lies that imports them, or of the user's.
 
@@ -18,8 +20,8 @@ real rclpy is installed, the import above leaves all of them alone. `robolink ru
 run a program wants it on robolink's network, and has `ros2 run` and `python` for the other; a real rclpy is hidden
 from that one process. The variable ROBOLINK_COMPAT, or `activate`, decides otherwise: `always` takes robolink's in
 any case, `never` none, `auto` is the rule of the import. A file of the user's own that has one of these names
-(a `tf_transformations.py` beside the script) is found before robolink's; rclpy, launch and launch_ros are never taken
-from there: a checkout of their repositories in a folder is none that is installed.
+(a `tf_transformations.py` beside the script) is found before robolink's; those that cannot run from a folder, such as
+rclpy, launch, tf2_py and webots_ros2_driver, are never taken from there: a checkout is none that is installed.
 """
 
 from __future__ import annotations
@@ -32,6 +34,7 @@ from robolink.compat.maker import MAKER, has_rclpy, hidden
 from robolink.compat.opencv import prepare_opencv
 from robolink.compat.workspace_types import workspace_types
 from robolink.exceptions import RobolinkError
+from robolink.system.variables import set_ros_version
 from robolink.workspace.modules import FINDER
 
 VARIABLE = "ROBOLINK_COMPAT"
@@ -62,6 +65,7 @@ def activate(mode: str = AUTO) -> bool:
         raise CompatError(f"rclpy has been imported from {place} before: import robolink.compat earlier")
     if mode == NEVER or (mode == AUTO and (is_foreign or has_rclpy())):
         return False
+    set_ros_version()
     FINDER.hides = hidden
     FINDER.add(workspace_types, first=True)
     FINDER.add(MAKER)

@@ -25,9 +25,14 @@ TOPS = frozenset({*MESSAGES, *(name for name in ROOMS if "." not in name)})
 ALIKE = 0.85
 """Similarity from 0 to 1, as `closest` computes it, above which an unknown name is a misspelt one of ROS 2's."""
 PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
-NEVER_A_CHECKOUT = frozenset({"rclpy", "launch", "launch_ros"})
-"""Names that a folder of the user's own does not take: a clone of their repositories in a workspace cannot run here,
-and many a package has a folder `launch/`."""
+NEVER_A_CHECKOUT = frozenset(
+    {
+        *("cv_bridge", "launch", "launch_ros", "launch_testing", "launch_testing_ros", "launch_xml", "launch_yaml"),
+        *("rclpy", "rosbag2_py", "rosidl_runtime_py", "tf2_py", "webots_ros2_driver"),
+    }
+)
+"""Names that a folder of the user's own does not take: a clone of their repositories in a workspace cannot run here (it
+needs compiled modules, classes of the others, or Webots), and many a package has a folder `launch/`."""
 
 
 def hidden(fullname: str) -> bool:

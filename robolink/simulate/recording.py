@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.bag.definition import message_definition
-from robolink.bag.metadata import ROS_DISTRO
 from robolink.bag.topic import BagTopic
 from robolink.bag.writer import BagWriter
 from robolink.exceptions import NotFoundError, RobolinkError
@@ -22,6 +21,7 @@ from robolink.interfaces.rcl_interfaces.msg import Log
 from robolink.message import decoder, encode, type_hash, type_name
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.simulate.robots import worlds_of
+from robolink.system.variables import ROS_DISTRO
 from robolink.transport.base import NumberingOutlet
 from robolink.wire import NO_HASH, DataKey, parse_key, unpack_attachment
 

@@ -8,6 +8,14 @@ from typing import TypeAlias
 
 Variables: TypeAlias = "Mapping[str, str | None]"
 """Variables that are set in an environment, or with None taken out of it."""
+ROS_DISTRO = "jazzy"
+"""Distribution of ROS 2 that programs see, and that a bag says it comes from, where ROS_DISTRO is not set."""
+
+
+def set_ros_version() -> None:
+    """Set what a sourced ROS 2 sets, where it is not set: launch files and nodes choose types and files by it."""
+    for name, value in {"ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3", "ROS_DISTRO": ROS_DISTRO}.items():
+        os.environ.setdefault(name, value)
 
 
 def environment_with(changes: Variables, environ: Mapping[str, str] | None = None) -> dict[str, str]:

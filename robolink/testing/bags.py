@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.bag.definition import message_definition
-from robolink.bag.metadata import ROS_DISTRO
 from robolink.bag.topic import BagError, BagTopic
 from robolink.bag.writer import BagWriter
 from robolink.exceptions import OverwrittenError, RobolinkError, WireError
 from robolink.interfaces import find_announced
 from robolink.logging import get_logger
 from robolink.system import waits
+from robolink.system.variables import ROS_DISTRO
 from robolink.wire import NO_HASH, unpack_attachment
 
 if TYPE_CHECKING:

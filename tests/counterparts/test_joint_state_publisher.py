@@ -13,6 +13,7 @@ from robolink.counterparts.urdf import Mimic, parse_urdf
 from robolink.exceptions import RobolinkError
 from robolink.interfaces.sensor_msgs.msg import JointState
 from robolink.interfaces.std_msgs.msg import String
+from robolink.parameter import Parameter
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.testing import System
 from tests.support.urdfs import ARM, joint, robot
@@ -40,6 +41,12 @@ def test_it_takes_the_robot_of_the_robot_state_publisher(system: System) -> None
     assert not state.effort
     found = system.expect("/tf")
     assert {each.child_frame_id for each in found.transforms} == {"upper", "slide", "left_finger", "right_finger"}
+
+
+def test_the_list_of_sources_is_one_of_texts(system: System) -> None:
+    node = system.start(JointStatePublisher)
+    sources = node.get_parameter("source_list")
+    assert (sources.type_, sources.value) == (Parameter.Type.STRING_ARRAY, [])
 
 
 def test_ten_messages_a_second_or_as_many_as_asked(system: System) -> None:

@@ -12,12 +12,13 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from robolink.bag.metadata import ROS_DISTRO, BagMetadata, parse_metadata, spell_metadata
+from robolink.bag.metadata import BagMetadata, parse_metadata, spell_metadata
 from robolink.bag.offered_qos import profiles_or_none, text_of
 from robolink.bag.storage.base import StorageReader, StorageWriter, Written
 from robolink.bag.storage.sqlite_salvage import Salvage, allow_cut, whole_pages
 from robolink.bag.topic import BagError, BagMessage, BagTopic
 from robolink.system import clocks
+from robolink.system.variables import ROS_DISTRO
 
 MAGIC = b"SQLite format 3\0"
 SCHEMA_VERSION = 4

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 
 import typer
 
@@ -23,6 +24,7 @@ def launch_words(ctx: typer.Context, incomplete: str) -> list[str]:
             return complete.offered(names_for(words, complete.WITHIN), incomplete)
         from robolink.launch.system import arguments_of
 
-        names = [each.name for each in arguments_of(find_launch(words[0], workspace=workspace))]
+        with contextlib.redirect_stdout(io.StringIO()):  # a launch file may print
+            names = [each.name for each in arguments_of(find_launch(words[0], workspace=workspace))]
         return [f"{each}:=" for each in complete.offered(names, incomplete)]
     return []

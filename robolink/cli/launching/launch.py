@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext, redirect_stdout
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
@@ -177,10 +178,18 @@ def _ask(ctx: typer.Context, words: Sequence[str], options: Options, status: boo
         ctx.fail("ask what? stop [NAME] [NODE] or restart [NAME] NODE, with the names that --status shows")
 
 
+def _prints_apart(is_apart: bool) -> AbstractContextManager[object]:
+    """Return a context in which what a launch file prints goes to standard error, where the output is for machines."""
+    import sys
+
+    return redirect_stdout(sys.stderr) if is_apart else nullcontext()
+
+
 def _show_arguments(asked: LaunchFile, as_json: bool, workspace: str | None) -> None:
     from robolink.launch.system import arguments_of
 
-    found = arguments_of(asked.path, workspace=workspace)
+    with _prints_apart(as_json):
+        found = arguments_of(asked.path, workspace=workspace)
     if as_json:
         import msgspec
 
@@ -203,7 +212,8 @@ def _validate(asked: LaunchFile, options: Options) -> int:
     from robolink.launch.looking.validate import Report, found, validate
     from robolink.launch.system import read_system_with_mistakes
 
-    system, mistakes = read_system_with_mistakes(asked.path, asked.given, workspace=options.workspace)
+    with _prints_apart(options.json):
+        system, mistakes = read_system_with_mistakes(asked.path, asked.given, workspace=options.workspace)
     report = Report(mistakes, ["no node was looked into: that comes when its file is right"])
     if not mistakes:
         report = validate(system.entries)
@@ -228,7 +238,8 @@ def _draw(asked: LaunchFile, options: Options, format_: str) -> None:
     from robolink.launch.looking.look import looks_of
     from robolink.launch.system import read_system
 
-    entries, notes, _ = read_system(asked.path, asked.given, workspace=options.workspace, foresee=True)
+    with _prints_apart(True):
+        entries, notes, _ = read_system(asked.path, asked.given, workspace=options.workspace, foresee=True)
     for note in notes:
         tell(f"robolink: {note}")
     looks = looks_of(entries)
@@ -244,7 +255,8 @@ def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
     from robolink.supervisor import watch_lifeline
 
     watch_lifeline()  # a launcher that another one launched ends with it
-    entries, notes, direct = read_system(asked.path, asked.given, workspace=options.workspace)
+    with _prints_apart(options.json):
+        entries, notes, direct = read_system(asked.path, asked.given, workspace=options.workspace)
     if not entries and direct is None:
         return _nothing(asked, notes)
     from robolink.launch.command import launch

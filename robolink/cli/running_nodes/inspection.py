@@ -26,6 +26,7 @@ from robolink.exceptions import (
 )
 from robolink.launch.looking.look import End, Job, Look, Request
 from robolink.running.timebase import VirtualTime
+from robolink.system.variables import set_environment
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.utilities import set_default_context
 from robolink.wire import EndpointToken, NodeToken, graph_pattern, parse_token
@@ -80,7 +81,7 @@ class _Inspection:
         limit.daemon = True
         limit.start()
         before = dict(os.environ)
-        os.environ.update(self._job.env)
+        set_environment(self._job.env)
         try:
             self._start_with_what_it_takes()
         except (Exception, SystemExit, KeyboardInterrupt) as error:  # noqa: BLE001 - it is anybody's code

@@ -58,7 +58,7 @@ class JointStatePublisher(Node):
 
     def _set_up(self, description: str) -> None:
         rate = self._declare("rate", 10, "messages a second, in Hz")
-        sources = self._declare("source_list", list[str](), "topics of JointState whose values are taken over")
+        sources = self._declare_sources()
         self._declare("publish_default_positions", True, "publish positions, where no source says any")
         self._declare("publish_default_velocities", False, "publish velocities of 0, where no source says any")
         self._declare("publish_default_efforts", False, "publish efforts of 0, where no source says any")
@@ -78,6 +78,14 @@ class JointStatePublisher(Node):
             raise UsageError(f"rate: expected a number of Hz from above 0 to {FASTEST:g}, got {rate!r}")
         self.create_timer(1.0 / rate, self.on_timer)
         self.add_post_set_parameters_callback(self._on_parameters)
+
+    def _declare_sources(self) -> Any:
+        """Declare the one parameter whose default has no type of its own: an empty list of texts."""
+        name, kind = "source_list", Parameter.Type.STRING_ARRAY
+        if not self.has_parameter(name):
+            self.declare_parameter(name, kind, described("topics of JointState whose values are taken over"))
+            self.set_parameters([Parameter(name, kind, [])])
+        return self.get_parameter(name).value
 
     def _declare(self, name: str, default: Any, description: str) -> Any:
         if not self.has_parameter(name):

@@ -43,11 +43,11 @@ class LookError(RobolinkError, ValueError):
 
 
 class Job(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """A node to inspect: its `find_node` spec, its program's arguments, and its environment."""
+    """A node to inspect: its `find_node` spec, its program's arguments, and changes of its environment."""
 
     node: str
     args: list[str]
-    env: dict[str, str] = {}
+    env: dict[str, str | None] = {}
 
 
 class End(msgspec.Struct, frozen=True, order=True):

@@ -78,7 +78,19 @@ def _unseen(entry: Entry, looks: Mapping[str, Look]) -> str:
     look = looks.get(entry.name)
     if look is None:
         return "it is a command"
-    return look.unseen or (look.error if entry.node.interactive else "")
+    if look.unseen or (look.error and not _has_own_terminal(entry)):
+        return look.unseen
+    return look.error or ("" if look.nodes else "it makes no node")
+
+
+def _has_own_terminal(entry: Entry) -> bool:
+    """True if a program is to read keys, which nobody can do here: from the terminal, or in that of its prefix."""
+    return entry.node.interactive or bool(entry.node.prefix)
+
+
+def _is_checked(look: Look) -> bool:
+    """True if what is given to a program is known to arrive: others, such as viewers, make no node here."""
+    return _is_known(look) and bool(look.nodes)
 
 
 def _is_known(look: Look) -> bool:
@@ -89,7 +101,7 @@ def _is_known(look: Look) -> bool:
 def _load_errors(entries: Iterable[Entry], looks: Mapping[str, Look]) -> Iterator[DocumentError]:
     for each in entries:
         look = looks.get(each.name)
-        if look is not None and look.error and not each.node.interactive:
+        if look is not None and look.error and not _has_own_terminal(each):
             yield each.error(["node"], f"'{each.name}' cannot be started: {look.error}")
 
 
@@ -100,7 +112,7 @@ def _parameter_errors(entry: Entry, look: Look) -> Iterator[DocumentError]:
     for name in entry.node.parameters:
         if name in look.refused:
             yield entry.error(["parameters", name], look.refused[name])
-        elif name not in look.declared and name not in entry.wide and entry.source is not None and _is_known(look):
+        elif name not in look.declared and name not in entry.wide and entry.source is not None and _is_checked(look):
             reason = f"'{entry.name}' declares no parameter '{name}'{nearest(name, look.declared)}"
             yield entry.error(["parameters", name], reason, key=True)
 
@@ -110,7 +122,8 @@ def _wide_errors(entries: Sequence[Entry], looks: Mapping[str, Look]) -> Iterato
     for wide in sorted({name for each in entries for name in each.wide}):
         concerned = [each for each in entries if wide in each.wide]
         seen = [looks.get(each.name, Look(unseen="a command")) for each in concerned]
-        if all(map(_is_known, seen)) and not any(wide in each.declared for each in seen):
+        seen = [each for each in seen if each.nodes or not _is_known(each)]
+        if seen and all(map(_is_known, seen)) and not any(wide in each.declared for each in seen):
             declared = {name for each in seen for name in each.declared}
             reason = f"no node that gets it declares a parameter '{wide}'{nearest(wide, declared)}"
             yield concerned[0].error(["parameters", wide], reason, key=True)
@@ -128,7 +141,7 @@ def _remapping_errors(entries: Iterable[Entry], looks: Mapping[str, Look]) -> It
         for match, replacement in each.node.remappings.items():
             said = each.error(["remappings", match], "", key=True)
             place = (said.file, said.line, said.column)
-            if look is None or not _is_known(look) or _renames(f"{match}:={replacement}", look):
+            if look is None or not _is_checked(look) or _renames(f"{match}:={replacement}", look):
                 useful.add(place)
                 continue
             names = {end.name for end in look.ends} | {end.name.rpartition("/")[2] for end in look.ends}

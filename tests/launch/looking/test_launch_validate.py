@@ -214,6 +214,21 @@ groups:
     ]
 
 
+def test_what_makes_no_node_is_noted_and_nothing_is_wanted_of_it(home: Path) -> None:
+    """A viewer such as rviz2 has the parameters of every node in ROS 2, and is only told of here."""
+    text = """
+groups:
+- parameters: {use_sim_time: true}
+  nodes:
+  - {node: talker, parameters: {fixed: map}, remappings: {a: b}}
+  - {node: talker, name: second}
+"""
+    report = judge(home, text, talker=Look(), second=Look(["/second"], [], ["use_sim_time"]))
+    assert report == ([], ["talker was not looked into: it makes no node"])
+    report = judge(home, text.replace("sim", "smi"), talker=Look(), second=Look(["/second"], [], ["use_sim_time"]))
+    assert "declares a parameter 'use_smi_time' (did you mean 'use_sim_time'?)" in texts(home, report)[0]
+
+
 def test_copies_are_wrong_once(home: Path) -> None:
     text = "nodes:\n- {node: talker, count: 3, name: 't{i}', remappings: {no: x}}"
     report = judge(home, text, **{f"t{number}": Look([f"/t{number}"]) for number in range(3)})

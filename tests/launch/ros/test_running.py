@@ -13,7 +13,7 @@ from robolink.cli.main import main
 from robolink.interfaces.std_msgs.msg import String
 from robolink.testing import System
 from tests.support.launched_systems import said
-from tests.support.ros_launch import write
+from tests.support.ros_launch import TALKER, write
 
 SYSTEM = """
 DeclareLaunchArgument("word", default_value=["hel", "lo"], description="The word."),
@@ -29,6 +29,40 @@ def test_arguments_are_shown(package: Path, capsys: pytest.CaptureFixture[str]) 
     assert (code, err) == (0, "")
     assert out == "word  The word. (default: hello)\nmore  (default: a; one of a, b)\n"
     assert json.loads(said(capsys, "bot", "bot", "-s", "--json")[1])[0]["default"] == "hello"
+
+
+def test_what_a_file_prints_is_apart_from_what_a_machine_reads(
+    package: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write(package, "print('read')\ndef generate_launch_description():\n    return LaunchDescription([])")
+    assert said(capsys, str(path), "-s", "--json") == (0, "[]\n", "read\n")
+    code, out, err = said(capsys, str(path), "--validate", "--json")
+    assert (code, json.loads(out)["mistakes"], err) == (0, [], "read\n")
+    assert said(capsys, str(path), "-s")[1].startswith("read\n")
+
+
+def test_the_version_of_ros_is_set_for_files_and_nodes(package: Path, system: System) -> None:
+    text = TALKER.replace(".value))", '.value + os.environ["ROS_DISTRO"]))')
+    (package / "bot" / "talker.py").write_text(f"import os\n{text}")
+    read = write(
+        package,
+        """
+        import os
+        def generate_launch_description():
+            word = ["v", EnvironmentVariable("ROS_VERSION"), os.environ["ROS_PYTHON_VERSION"]]
+            return LaunchDescription([Node(package="bot", executable="talker", parameters=[{"word": word}])])
+        """,
+    )
+    system.launch(read)
+    assert system.expect("/chatter", type=String).data == "v23jazzy"
+
+
+@pytest.mark.processes
+def test_a_program_with_the_terminal_of_its_prefix_is_noted(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    action = 'Node(package="teleop_twist_keyboard", executable="teleop_twist_keyboard", prefix="env")'
+    code, out, err = said(capsys, str(write(package, action)), "--validate")
+    assert code == 0, out
+    assert "was not looked into: teleop_twist_keyboard reads keys from a terminal" in err
 
 
 @pytest.mark.processes
