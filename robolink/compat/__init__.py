@@ -28,6 +28,7 @@ from __future__ import annotations
 
 import os
 import sys
+from pathlib import Path
 
 from robolink.compat.child_processes import hand_on
 from robolink.compat.maker import MAKER, has_rclpy, hidden
@@ -69,8 +70,25 @@ def activate(mode: str = AUTO) -> bool:
     FINDER.hides = hidden
     FINDER.add(workspace_types, first=True)
     FINDER.add(MAKER)
-    hand_on(mode)
+    hand_on(enter_child, mode)
     return True
+
+
+def enter_child(mode: str, with_opencv: bool, files: list[str]) -> None:
+    """Take the names in a new process of `multiprocessing`, and load the files that its parent has loaded.
+
+    Args:
+        mode: Mode of `activate`.
+        with_opencv: True prepares OpenCV, too.
+        files: Paths, which are the names of the files' modules; functions and classes of these may be pickled.
+    """
+    if activate(mode) and with_opencv:
+        prepare_opencv()
+    if files:
+        from robolink.workspace.load import load_module
+
+        for each in files:
+            load_module(Path(each))
 
 
 def is_active() -> bool:

@@ -9,21 +9,29 @@ from __future__ import annotations
 
 import functools
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, TypeAlias
 
-from robolink.compat.opencv import prepare_opencv
 from robolink.workspace.modules import FINDER, Fill
+
+Enter: TypeAlias = Callable[[str, bool, list[str]], None]
+"""Function that takes the names in a mode, prepares OpenCV if it shall, and loads files by their paths."""
 
 _ENTRY = "robolink names"
 
 
-def hand_on(mode: str) -> None:
-    """Take ROS 2's names, in this mode, into all processes that are started from now on."""
+def hand_on(enter: Enter, mode: str) -> None:
+    """Take ROS 2's names into all processes that are started from now on.
+
+    Args:
+        enter: Function that a new process calls before anything else, by its module's name.
+        mode: Its first argument.
+    """
     changes: dict[str, Fill] = {
-        "multiprocessing.spawn": functools.partial(_change_spawn, mode),
-        "multiprocessing.forkserver": _change_forkserver,
+        "multiprocessing.spawn": functools.partial(_change_spawn, enter, mode),
+        "multiprocessing.forkserver": functools.partial(_change_forkserver, enter.__module__),
     }
     for name, change in changes.items():
         FINDER.change(name, change)
@@ -34,45 +42,28 @@ def hand_on(mode: str) -> None:
 class _Names:
     """Entry of what is pickled for a new process: it is unpickled before all that needs these names."""
 
-    def __init__(self, mode: str) -> None:
-        self._mode = mode
+    def __init__(self, enter: Enter, mode: str) -> None:
+        self._enter, self._mode = enter, mode
 
     def __reduce__(self) -> tuple[Any, ...]:
         loaded = [name for name in list(sys.modules) if name.endswith(".py") and Path(name).is_absolute()]
-        return enter, (self._mode, "cv2" in FINDER.changes, loaded)
+        return self._enter, (self._mode, "cv2" in FINDER.changes, loaded)
 
 
-def enter(mode: str, with_opencv: bool, files: list[str]) -> None:
-    """Take the names in a new process, and load the files that its parent has loaded by their paths.
-
-    Args:
-        mode: Mode of `robolink.compat.activate`.
-        with_opencv: True prepares OpenCV, too.
-        files: Paths, which are the names of their modules; of these is what is pickled.
-    """
-    from robolink import compat
-    from robolink.workspace.load import load_module
-
-    if compat.activate(mode) and with_opencv:
-        prepare_opencv()
-    for each in files:
-        load_module(Path(each))
-
-
-def _change_spawn(mode: str, spawn: ModuleType) -> None:
+def _change_spawn(enter: Enter, mode: str, spawn: ModuleType) -> None:
     real = spawn.get_preparation_data
     if hasattr(real, "__wrapped__"):
         return
 
     @functools.wraps(real)
     def get_preparation_data(name: str) -> dict[str, Any]:
-        return {_ENTRY: _Names(mode), **real(name)}
+        return {_ENTRY: _Names(enter, mode), **real(name)}
 
     spawn.get_preparation_data = get_preparation_data  # type: ignore[attr-defined]
 
 
-def _change_forkserver(forkserver: ModuleType) -> None:
-    """Have the server from which processes are forked import this, and not the program's file, which it could not."""
+def _change_forkserver(ours: str, forkserver: ModuleType) -> None:
+    """Have the server from which processes are forked import ours, and not the program's file, which it could not."""
     server = forkserver._forkserver
     if server._preload_modules == ["__main__"]:  # else the program wants it otherwise
-        server.set_forkserver_preload([__name__])
+        server.set_forkserver_preload([ours])

@@ -15,11 +15,8 @@ import msgspec
 
 from robolink.learn.process import TRACE
 from robolink.learn.report import Mistake
-from robolink.learn.watchdog import STUCK, Watchdog, Watched
+from robolink.learn.watchdog import MOST_MEMORY, STUCK, Watchdog, Watched, memory_of_this_process
 from robolink.supervisor.processes.lifeline import watch_lifeline
-
-MOST_MEMORY = 4 * 2**30
-"""Most bytes of address space that a program may have."""
 
 SLOW = 10.0
 """Least time without progress, as a multiple of the processor time that this process took to begin."""
@@ -54,7 +51,10 @@ class Child:
         """
         trace = self._answer.with_name(TRACE).open("w", encoding="ascii")
         stuck = max(STUCK, SLOW * time.process_time())  # on a slow machine all takes longer
-        self._watchdog = Watchdog(watched, lambda mistake: self._end(so_far(mistake)), stuck=stuck, trace=trace)
+        memory = None if sys.platform == "linux" else memory_of_this_process()
+        self._watchdog = Watchdog(
+            watched, lambda mistake: self._end(so_far(mistake)), stuck=stuck, trace=trace, memory=memory
+        )
         self._watchdog.start()
 
     def end(self, answer: msgspec.Struct) -> NoReturn:
@@ -76,7 +76,10 @@ class Child:
 
 
 def _limit_memory() -> None:
-    """Let this process have `MOST_MEMORY` at most, where the system can limit it: more is a MemoryError."""
+    """Let this process have `MOST_MEMORY` at most, where the system limits it (Linux): more is a MemoryError.
+
+    Elsewhere the watchdog looks.
+    """
     if sys.platform == "linux":
         import resource
 

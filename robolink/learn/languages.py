@@ -118,6 +118,10 @@ _WORDS: dict[str, tuple[str, str]] = {
         "your program is stuck: is there a loop that never ends or never waits?",
         "seu programa está preso: há um laço que nunca termina ou nunca espera?",
     ),
+    "too large": (
+        "your program needs more than {text} of memory: is there a list that grows without end?",
+        "seu programa precisa de mais de {text} de memória: há uma lista que cresce sem fim?",
+    ),
     "asleep": (
         "your program sleeps at line {line} (time.sleep): while it sleeps, no callback runs",
         "seu programa dorme na linha {line} (time.sleep): enquanto dorme, nenhum callback roda",

@@ -100,6 +100,7 @@ def _run(
     kept: list[bytes] = []
     try:
         variables, options = lifeline.options()
+        since = clocks.time_of_day()
         with subprocess.Popen(
             command,
             cwd=work,
@@ -116,7 +117,7 @@ def _run(
                 reader.start()
                 in_time = _wait(process, longest, stop)
             finally:
-                _kill(process, lifeline.mark)
+                _kill(process, lifeline.mark, since)
                 waits.join(reader, 1.0)
     finally:
         lifeline.close()
@@ -143,8 +144,10 @@ def _keep(stream: IO[bytes], kept: list[bytes]) -> None:
                 left -= len(part)
 
 
-def _kill(process: subprocess.Popen[bytes], mark: str) -> None:
+def _kill(process: subprocess.Popen[bytes], mark: str, since: float) -> None:
     """End a process and all that it has started, in other sessions too where the system shows environments (Linux)."""
+    if sys.platform != "linux":
+        kill_descendants(process.pid, since)
     if sys.platform == "win32":
         with contextlib.suppress(OSError):
             process.kill()
@@ -152,6 +155,29 @@ def _kill(process: subprocess.Popen[bytes], mark: str) -> None:
     signal_group(process.pid, signal.SIGKILL)
     for group in marked(mark):
         signal_group(group, signal.SIGKILL)
+
+
+def kill_descendants(pid: int, since: float) -> None:
+    """End what a process has started, and what that has started in turn: else it would keep the output open.
+
+    On Windows these are found as well when the process has ended: who is left keeps the number of its parent.
+
+    Args:
+        pid: Number of the process.
+        since: Time of day, in seconds, at which it began: what is older had a parent that had this number before.
+    """
+    import psutil
+
+    parents: dict[int, list[psutil.Process]] = {}
+    for each in psutil.process_iter(["ppid", "create_time"]):
+        if (each.info["create_time"] or 0.0) >= since:
+            parents.setdefault(each.info["ppid"], []).append(each)
+    found = list(parents.get(pid, ()))
+    for each in found:  # it grows meanwhile
+        found += (child for child in parents.get(each.pid, ()) if child not in found)
+    for each in found:
+        with contextlib.suppress(psutil.Error, OSError):
+            each.kill()
 
 
 def _content(path: Path) -> bytes:

@@ -15,6 +15,7 @@ Kind = Literal[
     "stuck",
     "stuck somewhere",
     "asleep",
+    "too large",
     "input",
     "ended",
     "ended all",

@@ -26,6 +26,9 @@ ASLEEP = 20.0
 """Seconds of real time without any progress: the program waits for something that does not come."""
 
 
+MOST_MEMORY = 4 * 2**30
+"""Most bytes of memory that a program may have."""
+
 FROZEN = 10.0
 """Seconds of real time in which code in C (`9**9**9`) may let no other thread run, this one neither."""
 
@@ -54,6 +57,7 @@ class Watchdog(threading.Thread):
         stuck: Seconds of a processor.
         asleep: Seconds of real time.
         trace: File for the trace of a process in which this thread cannot run any more; None lets it stand for ever.
+        memory: Returns the bytes of memory that the process has; None where the system limits them.
     """
 
     def __init__(
@@ -64,10 +68,11 @@ class Watchdog(threading.Thread):
         stuck: float = STUCK,
         asleep: float = ASLEEP,
         trace: IO[str] | None = None,
+        memory: Callable[[], int] | None = None,
     ) -> None:
         super().__init__(name="robolink learn's watchdog", daemon=True)
         self._watched, self._found, self._trace = watched, found, trace
-        self._stuck, self._asleep = stuck, asleep
+        self._stuck, self._asleep, self._memory = stuck, asleep, memory
         self._over = threading.Event()
 
     def run(self) -> None:
@@ -84,6 +89,9 @@ class Watchdog(threading.Thread):
             elif time.process_time() - used > self._stuck or clocks.monotonic() - since > self._asleep:
                 self._found(where_stuck(self._watched.file))
                 return
+            if self._memory is not None and self._memory() > MOST_MEMORY:
+                self._found(Mistake("too large", f"{MOST_MEMORY >> 30} GB"))
+                return
 
     def _moment(self) -> tuple[int, int]:
         seconds, sentences = self._watched.moment()
@@ -97,6 +105,19 @@ class Watchdog(threading.Thread):
     def stop(self) -> None:
         """Stop the watchdog."""
         self._over.set()
+
+
+def memory_of_this_process() -> Callable[[], int]:
+    """Return a function that returns the bytes of memory of this process; on Windows the reserved ones, too."""
+    import psutil
+
+    process = psutil.Process()
+
+    def memory() -> int:
+        found = process.memory_info()
+        return int(getattr(found, "private", found.rss))
+
+    return memory
 
 
 def where_stuck(file: Path) -> Mistake:

@@ -14,6 +14,7 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robolink.system import clocks
 from robolink.transport.reach import address_of, host_of, mode_of, port_of, read
 
 if TYPE_CHECKING:
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 _STREAMS = ("tcp", "tls", "ws")
 _IN_USE = {errno.EADDRINUSE} | ({errno.EACCES} if sys.platform == "win32" else set())
 """Error numbers of a port that is in use."""
+LISTENS_WITHIN = 10.0
+"""Time in seconds in which a process listens on the port that it has claimed; it takes a few milliseconds."""
+
 _DELETE_ON_CLOSE: int = getattr(os, "O_TEMPORARY", 0)  # Windows has it
 _ANYWHERE = {"0.0.0.0": "127.0.0.1", "::": "[::1]", "*": "127.0.0.1"}
 
@@ -102,9 +106,26 @@ class PortClaim:
         import tempfile  # late: it costs every node's start a few ms, and only Windows wants it
 
         self.path = Path(folder or tempfile.gettempdir()) / f"robolink-{port}.lock"
+        self._open()
+        if self._file < 0 and self._is_left_behind(port):
+            with contextlib.suppress(OSError):
+                self.path.unlink()
+            self._open()
+        return self._file >= 0
+
+    def _open(self) -> None:
         with contextlib.suppress(OSError):
             self._file = os.open(self.path, os.O_CREAT | os.O_EXCL | os.O_RDWR | _DELETE_ON_CLOSE)
-        return self._file >= 0
+
+    def _is_left_behind(self, port: int) -> bool:
+        """True if the lock has outlived its process, as after a power cut: nobody listens, and none is about to."""
+        try:
+            age = clocks.time_of_day() - self.path.stat().st_mtime
+        except OSError:
+            return False
+        return not 0.0 <= age < LISTENS_WITHIN and not any(
+            is_taken(f"tcp/{each}:{port}") for each in _ANYWHERE.values()
+        )
 
     def release(self) -> None:
         """Release the port for another session. Safe to call twice."""

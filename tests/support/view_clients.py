@@ -153,7 +153,7 @@ class Shown:
         self.context = self.new_context()
         self.node = Node("robot", context=self.context)
         self.source = LiveSource(Node("_view", context=self.new_context(), start_parameter_services=False))
-        self.view = View(self.source, Settings(port=0, **settings), exercises)
+        self.view = View(self.source, Settings(**{"port": 0, **settings}), exercises)
 
     def new_context(self) -> Context:
         context = Context(transport=MemoryTransport(bus=self.bus))

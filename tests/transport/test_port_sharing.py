@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import socket
 import subprocess
 import sys
@@ -146,6 +147,30 @@ def test_only_one_process_holds_the_port_on_windows(tmp_path: Path) -> None:
     third = claim()
     assert third.granted
     third.release()
+
+
+def test_a_lock_that_has_outlived_its_process_gives_way_where_nobody_listens(tmp_path: Path) -> None:
+    """After a power cut Windows still has it."""
+    with socket.socket() as busy:
+        busy.bind(("127.0.0.1", 0))
+        busy.listen()
+        port = busy.getsockname()[1]
+        lock = tmp_path / f"robolink-{port}.lock"
+        lock.touch()
+
+        def is_granted() -> bool:
+            claim = port_sharing.PortClaim(port, platform="win32", folder=str(tmp_path))
+            claim.release()
+            return claim.granted
+
+        os.utime(lock, (1, 1))
+        assert not is_granted()  # somebody listens
+        busy.close()
+        os.utime(lock)
+        assert not is_granted()  # its process may be about to
+        os.utime(lock, (1, 1))
+        assert is_granted()
+    assert not lock.exists()
 
 
 def test_elsewhere_nothing_needs_to_be_held(tmp_path: Path) -> None:

@@ -62,11 +62,20 @@ def _begin_anew(command: Sequence[str], environ: Mapping[str, str]) -> None:
     """Replace this process by another; go on as this one if that fails."""
     try:
         if sys.platform == "win32":
-            os._exit(stand_in_for(command, environ))
+            os._exit(as_signed(stand_in_for(command, environ)))
         else:
             _become(command, environ)
     except OSError:
         return
+
+
+def as_signed(code: int) -> int:
+    """Return an exit code as `os._exit` takes it: Windows has codes of 32 bits, 0xC0000005 for a crash, Python an int.
+
+    >>> as_signed(0xC0000005), as_signed(1)
+    (-1073741819, 1)
+    """
+    return code - 2**32 if code >= 2**31 else code
 
 
 def _become(command: Sequence[str], environ: Mapping[str, str]) -> None:

@@ -9,6 +9,7 @@ import http
 import logging
 import secrets
 import socket
+import sys
 import threading
 import weakref
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -50,6 +51,9 @@ BUSY_FOR = 0.01
 
 SENT_AHEAD = 512 * 1024
 """Size of a connection's buffer in the system, in bytes: what is in there is too late to be replaced by newer."""
+
+_BUSY = {errno.EADDRINUSE} | ({errno.EACCES} if sys.platform == "win32" else set())
+"""Error numbers of a port that is in use, or that Windows keeps for itself: Hyper-V has whole ranges of them."""
 
 STARTED_WITHIN = 10.0
 
@@ -175,7 +179,7 @@ class View:
             try:
                 return await self._listen_at(port)
             except OSError as error:
-                if error.errno != errno.EADDRINUSE:
+                if error.errno not in _BUSY:
                     why = error.strerror or str(error)
                     raise ViewError(f"cannot listen at {self._host} port {port}: {why}") from None
         if self._port is not None:

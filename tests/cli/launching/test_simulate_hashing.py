@@ -152,3 +152,14 @@ def test_a_process_stands_in_for_another_where_it_cannot_become_it() -> None:
         [sys.executable, "-c", code, *child], input="it\n", capture_output=True, text=True, timeout=60, check=False
     )
     assert (done.returncode, done.stdout, done.stderr) == (7, "it\n", "")
+
+
+def test_windows_codes_of_32_bits_are_an_int_of_pythons(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`os._exit(0xC0000005)` is an OverflowError."""
+    ended: list[int] = []
+    monkeypatch.setattr(sys, "platform", "win32")
+    monkeypatch.setattr(os, "_exit", ended.append)
+    monkeypatch.setattr(hashing, "stand_in_for", lambda command, environ: 0xC0000005)
+    hashing._begin_anew(["x"], {})
+    assert [each % 2**32 for each in ended] == [0xC0000005]
+    assert -(2**31) <= ended[0] < 2**31

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import errno
 import re
+from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robolink.view.server import view
 from robolink.view.server.access import Access, is_loopback
+from robolink.view.server.view import View
 from tests.support.view_clients import shown
 
 UPGRADE = (
@@ -51,6 +55,22 @@ def test_a_token_with_any_letters_opens_the_page() -> None:
         cookie = re.search(r"Set-Cookie: (\S+=\S+); HttpOnly", answer)
         assert cookie is not None
         assert system.view._access.judge("/", "localhost", None, cookie[1]).trusted
+
+
+def test_a_port_that_windows_keeps_for_itself_is_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[int] = []
+    listen = View._listen_at
+
+    async def reserved(self: View, port: int) -> Any:
+        tried.append(port)
+        if len(tried) == 1:
+            raise OSError(errno.EACCES, "Permission denied")
+        return await listen(self, 0)
+
+    monkeypatch.setattr(View, "_listen_at", reserved)
+    monkeypatch.setattr(view, "_BUSY", {errno.EADDRINUSE, errno.EACCES})
+    with shown(port=None):
+        assert tried == [view.PORT, view.PORT + 1]
 
 
 @pytest.mark.parametrize(
