@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from array import array
+from collections.abc import Mapping
 from typing import Any
 
-from robolink.exceptions import EncodeError, nearest
+from robolink.exceptions import EncodeError, MessageError, nearest
 from robolink.message.annotations import FieldType
 from robolink.message.base import Message
 from robolink.message.check import explain
 
-_FLOATS = ("float32", "float64")
-_EXACT = 2**53
-"""Bound of the integers that are floats without loss."""
+_WORDS = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False}
+
+
+class UnknownFieldError(MessageError, AttributeError):
+    """The data has a field that the message has not; not a TypeError, which stands for a value that does not fit."""
 
 
 def from_builtins(cls: type[Message], data: Any) -> Any:
     """Return a message of the class `cls` from a mapping; fields that `data` leaves out keep their defaults.
 
-    Raises EncodeError that names the field; for an unknown one also the nearest that exists.
+    Scalars are converted; see `converted`. Raises EncodeError that names the field, and UnknownFieldError (an
+    AttributeError) for an unknown one, with the nearest that exists.
 
     >>> from_builtins(Twist, {"linear": {"x": 0.3}}).linear.x
     0.3
@@ -40,7 +44,7 @@ def _fill(message: Message, data: Any, path: str) -> None:
         if kind is None:
             known = list(message.__ros_fields__)
             hint = _unspaced(message, name) or f"{nearest(str(name), known)}; it has {', '.join(known)}"
-            raise EncodeError(f"{path}: no field '{name}'{hint}")
+            raise UnknownFieldError(f"{path}: no field '{name}'{hint}")
         setattr(message, name, _value(kind, value, f"{path}.{name}"))
 
 
@@ -53,11 +57,7 @@ def _unspaced(message: Message, text: Any) -> str:
 
 def _value(kind: FieldType, value: Any, path: str) -> Any:
     if kind.message is None:
-        if kind.base == "byte":
-            return _octets(kind, value)
-        if kind.base in _FLOATS and kind.shape == "one" and type(value) is int and abs(value) < _EXACT:
-            return float(value)
-        return value
+        return converted(kind, value, path)
     if kind.shape == "one":
         return _nested(kind.message, value, path)
     if not isinstance(value, (list, tuple)):
@@ -71,11 +71,39 @@ def _nested(cls: type[Message], value: Any, path: str) -> Message:
     return message
 
 
-def _octets(kind: FieldType, value: Any) -> Any:
-    """Return a byte of YAML, a number, as a message holds it: a bytes object of length one."""
-    if kind.shape == "one":
-        return bytes((value,)) if isinstance(value, int) and 0 <= value < 256 else value
-    return [bytes((each,)) if isinstance(each, int) and 0 <= each < 256 else each for each in value]
+def converted(kind: FieldType, value: Any, path: str) -> Any:
+    """Return a value of a field that is no message as the field holds it, converted as rosidl_runtime_py does.
+
+    A string takes any scalar, a number what Python's int and float take (5.7 becomes 5), a bool any number and the
+    words that YAML 1.1 has for it; in ros2 every text in quotes is true, 'false' too. What then does not fit is the
+    caller's to find. Raises EncodeError that names the field.
+    """
+    try:
+        if kind.shape == "one":
+            return _scalar(kind.base, kind.code, value)
+        if isinstance(value, (str, Mapping)) or not hasattr(value, "__iter__"):
+            raise EncodeError(f"{path}: expected {kind}, got {value!r:.60}")
+        if kind.code and kind.shape != "array":  # array.array, which converts no texts
+            return value
+        return [_scalar(kind.base, kind.code, each) for each in value]
+    except (TypeError, ValueError, OverflowError) as error:
+        if isinstance(error, EncodeError):
+            raise
+        raise EncodeError(f"{path}: expected {kind}, got {value!r:.60}") from None
+
+
+def _scalar(base: str, code: str | None, value: Any) -> Any:
+    if base in ("string", "wstring"):
+        return value if isinstance(value, str) else str(value)
+    if code in ("f", "d"):
+        return float(value)
+    if base == "bool":
+        if isinstance(value, str):
+            return _WORDS.get(value.lower(), value)
+        return bool(value) if isinstance(value, (int, float)) else value
+    if base == "byte":
+        return bytes((value,)) if isinstance(value, int) else value
+    return int(value) if isinstance(value, (str, float, bool)) else value
 
 
 def to_builtins(message: Message) -> dict[str, Any]:

@@ -9,15 +9,12 @@ from typing import Any
 from robolink.exceptions import EncodeError, nearest
 from robolink.message import FieldType, Message, message_type
 from robolink.message.check import explain_value
+from robolink.message.convert import UnknownFieldError, converted
 
 HEADER, TIME = "std_msgs/msg/Header", "builtin_interfaces/msg/Time"
 
 Setter = Callable[[Any], None]
 """Function that sets a builtin_interfaces Time in the message."""
-
-
-class UnknownFieldError(EncodeError, AttributeError):
-    """The data has a field that the message does not."""
 
 
 def set_message_fields(
@@ -69,7 +66,7 @@ class _Filling:
     def value(self, kind: FieldType, old: Any, value: Any, where: str, path: tuple[str | int, ...]) -> Any:
         """Return the new value of a field."""
         if kind.message is None:
-            made = _converted(kind, value, where)
+            made = converted(kind, value, where)
         elif kind.shape == "one":
             made = self.nested(kind.message, old, value, where, path)
         elif isinstance(value, (list, tuple)):
@@ -97,26 +94,6 @@ class _Filling:
         for name, each in self.changes(made, value, where, path).items():
             setattr(made, name, each)
         return made
-
-
-def _converted(kind: FieldType, value: Any, where: str) -> Any:
-    """Return a primitive as the field has it: a number from a text, a text from a number, as in ros2."""
-    if kind.shape != "one":
-        elements = list(value) if hasattr(value, "__iter__") and not isinstance(value, (str, Mapping)) else None
-        if elements is None:
-            raise EncodeError(f"{where}: expected {kind}, got {value!r:.60}")
-        element = FieldType(base=kind.base, string_bound=kind.string_bound)
-        return value if kind.code else [_converted(element, each, where) for each in elements]
-    try:
-        if kind.base in ("string", "wstring"):
-            return value if isinstance(value, str) else str(value)
-        if kind.base in ("float32", "float64"):
-            return float(value)
-        if kind.base == "byte" and isinstance(value, int):
-            return bytes((value,))
-        return int(value) if kind.code and isinstance(value, str) else value
-    except (TypeError, ValueError) as error:
-        raise EncodeError(f"{where}: expected {kind}, got {value!r:.60} ({error})") from None
 
 
 def _put(msg: Any, path: tuple[str | int, ...], stamp: Any) -> None:

@@ -147,7 +147,7 @@ def test_calls_at_a_rate_go_on_until_ctrl_c(when_told: Callable[[str, Hook], Non
     ("words", "said"),
     [
         (["SetBool", "{dta: true}"], "SetBool_Request: no field 'dta' (did you mean 'data'?); it has data"),
-        (["SetBool", "{data: 3}"], "SetBool_Request.data: expected bool, got 3"),
+        (["SetBool", "{data: maybe}"], "SetBool_Request.data: expected bool, got 'maybe'"),
         (["SetBool", "[1]"], "SetBool_Request: expected a mapping of data, got [1]"),
         (["std_msgs/msg/String"], "'std_msgs/msg/String' is the name of a message type; a service type is asked for"),
     ],
@@ -160,8 +160,8 @@ def test_a_wrong_request_is_told_before_anybody_waits(words: list[str], said: st
 
 @pytest.mark.usefixtures("served")
 def test_a_wrong_request_for_a_type_that_was_found_out(capsys: Captured) -> None:
-    assert main(["service", "call", "/lab/arm", "{data: 3}"]) == 1
-    assert capsys.readouterr() == ("", "robolink: SetBool_Request.data: expected bool, got 3\n")
+    assert main(["service", "call", "/lab/arm", "{data: maybe}"]) == 1
+    assert capsys.readouterr() == ("", "robolink: SetBool_Request.data: expected bool, got 'maybe'\n")
 
 
 @pytest.mark.parametrize(
