@@ -89,12 +89,7 @@ class MessageMeta(msgspec.StructMeta):
             first = next(iter(self.__ros_fields__), None)
             how = f"{self.__name__}({first}=...)" if first else "it has none"
             raise TypeError(f"{self.__ros_type__} takes its fields by name: {how}")
-        try:
-            return _make(self, **fields)
-        except TypeError:
-            for name in fields:
-                _known(self, name)
-            raise
+        return _make(self, **fields)
 
 
 _make = msgspec.StructMeta.__call__
@@ -296,17 +291,12 @@ else:
 
 
 def _set_fields(message: Any, /, **fields: Any) -> None:
-    for name, value in fields.items():
-        _known(message, name)
-        setattr(message, name, value)
-
-
-def _known(message: Any, name: str) -> None:
-    """Raise TypeError if a message, or its class, has no field `name`."""
     known = message.__ros_fields__
-    if name not in known:
-        only = f"{nearest(name, known)}, only {', '.join(known)}" if known else ""
-        raise TypeError(f"{message.__ros_type__} has no field {name!r}{only}")
+    for name, value in fields.items():
+        if name not in known:
+            only = f"{nearest(name, known)}, only {', '.join(known)}"
+            raise TypeError(f"{message.__ros_type__} has no field {name!r}{only}")
+        setattr(message, name, value)
 
 
 if not TYPE_CHECKING:

@@ -75,8 +75,10 @@ def converted(kind: FieldType, value: Any, path: str) -> Any:
     """Return a value of a field that is no message as the field holds it, converted as rosidl_runtime_py does.
 
     A string takes any scalar, a number what Python's int and float take (5.7 becomes 5), a bool any number and the
-    words that YAML 1.1 has for it; in ros2 every text in quotes is true, 'false' too. What then does not fit is the
-    caller's to find. Raises EncodeError that names the field.
+    words that YAML 1.1 has for it (in ros2 every text in quotes is true, 'false' too), a byte a number or the character
+    that `topic echo` shows of it. What then does not fit is the caller's to find.
+
+    Raises EncodeError that names the field.
     """
     try:
         if kind.shape == "one":
@@ -102,8 +104,13 @@ def _scalar(base: str, code: str | None, value: Any) -> Any:
             return _WORDS.get(value.lower(), value)
         return bool(value) if isinstance(value, (int, float)) else value
     if base == "byte":
-        return bytes((value,)) if isinstance(value, int) else value
+        return bytes((value,)) if isinstance(value, int) else _byte_of(value)
     return int(value) if isinstance(value, (str, float, bool)) else value
+
+
+def _byte_of(value: Any) -> Any:
+    """Return the byte that `topic echo` shows as this character."""
+    return bytes((ord(value),)) if isinstance(value, str) and len(value) == 1 and ord(value) < 256 else value
 
 
 def to_builtins(message: Message) -> dict[str, Any]:

@@ -31,7 +31,7 @@ class Style(NamedTuple):
     strings: bool = True
     """True shows texts, False only describes them."""
     flow: bool = False
-    """True writes YAML's {a: [1, 2]}, False indented blocks."""
+    """True writes sequences as YAML's [1, 2], False as indented blocks. Fields always are blocks, as in ros2."""
 
 
 USUAL = Style()
@@ -65,7 +65,15 @@ def _dumper() -> Any:
         quote = None if is_fit(text) else '"'
         return dumper.represent_scalar("tag:yaml.org,2002:str", text, style=quote)
 
+    def byte_node(dumper: Any, octet: bytes) -> Any:  # as ros2 shows a byte: the character of its number
+        return text_node(dumper, octet.decode("latin-1"))
+
+    def mapping_node(dumper: Any, fields: dict[str, Any]) -> Any:
+        return dumper.represent_mapping("tag:yaml.org,2002:map", fields.items(), flow_style=False)
+
     Dumper.add_representer(str, text_node)
+    Dumper.add_representer(bytes, byte_node)
+    Dumper.add_representer(dict, mapping_node)
     return Dumper
 
 
@@ -88,7 +96,7 @@ def plain(value: Any) -> Any:
 
 
 def shown_data(value: Any, style: Style, kind: FieldType | None = None) -> Any:
-    """Return what is shown of a value as plain data; what is cut off is never converted, so images cost nothing."""
+    """Return what is shown as plain data and bytes; what is cut off is never converted, so images cost nothing."""
     if hasattr(value, "__ros_fields__"):
         return {name: shown_data(getattr(value, name), style, each) for name, each in value.__ros_fields__.items()}
     if isinstance(value, dict):
@@ -101,7 +109,7 @@ def shown_data(value: Any, style: Style, kind: FieldType | None = None) -> Any:
         first = plain(value[: style.longest]) if hasattr(value, "tolist") else value[: style.longest]
         elements = [shown_data(each, style) for each in first]
         return elements if style.longest is None or len(value) <= style.longest else [*elements, "..."]
-    return plain(value)
+    return value if isinstance(value, bytes) else plain(value)
 
 
 def _is_sequence(value: Any) -> bool:

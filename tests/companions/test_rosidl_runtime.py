@@ -57,7 +57,8 @@ def test_a_message_as_text() -> None:
     assert "ranges:\n- 1.0\n- 2.0\n- '...'" in message_to_yaml(scan, truncate_length=2)
     assert "<sequence type: float, length: 3>" in message_to_yaml(scan, no_arr=True)
     assert message_to_yaml(String(data="hello"), no_str=True) == "data: '<string length: <5>>'\n"
-    assert message_to_yaml(Twist(), flow_style=True).startswith("{linear: {x: 0.0")
+    assert "ranges: [1.0, 2.0, 3.0]\nintensities: []\n" in message_to_yaml(scan, flow_style=True)
+    assert message_to_ordereddict(Byte(data=b"2")) == {"data": "2"}
     assert message_to_csv(PointStamped(header=Header(frame_id="map"))) == "0,0,map,0.0,0.0,0.0"
     assert list(message_to_ordereddict(scan))[:2] == ["header", "angle_min"]
     assert list(get_message_slot_types(Twist())) == ["linear", "angular"]

@@ -79,4 +79,6 @@ def _message(msg: Any) -> Any:
 def _ordered(data: Any) -> Any:
     if isinstance(data, dict):
         return OrderedDict((name, _ordered(each)) for name, each in data.items())
-    return [_ordered(each) for each in data] if isinstance(data, list) else data
+    if isinstance(data, list):
+        return [_ordered(each) for each in data]
+    return data.decode("latin-1") if isinstance(data, bytes) else data

@@ -14,12 +14,13 @@ from hypothesis import strategies as st
 
 from robolink.cli.shared.show import Style, as_csv, as_json, as_yaml, check_path, field_of
 from robolink.exceptions import EncodeError
-from robolink.interfaces.geometry_msgs.msg import PoseWithCovariance, Twist, Vector3
+from robolink.interfaces.geometry_msgs.msg import Pose, PoseArray, PoseWithCovariance, Twist, Vector3
 from robolink.interfaces.sensor_msgs.msg import Image, LaserScan
 from robolink.interfaces.std_msgs.msg import Byte, ByteMultiArray, Empty, Header, String
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.message import to_builtins
 
+POSE = "{position: {x: 0.0, y: 0.0, z: 0.0}, orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}}"
 TWIST = Twist(linear=Vector3(x=0.3), angular=Vector3(z=-1.5))
 
 
@@ -48,8 +49,8 @@ def test_scalars_texts_and_what_is_empty() -> None:
     assert as_yaml(Empty()) == "{}"
     assert as_yaml(scan().ranges) == "[]"
     assert as_yaml(math.inf) == ".inf"
-    assert as_yaml(Byte(data=b"\x07")) == "data: 7"
-    assert as_yaml(Byte(data=b"\x07").data) == "7"
+    assert [as_yaml(Byte(data=each)) for each in (b"2", b"\0", b"\xff")] == ["data: '2'", 'data: "\\0"', "data: ÿ"]
+    assert as_yaml(Byte(data=b"a").data) == "a"
 
 
 @given(st.text(), st.lists(st.floats(width=32, allow_nan=False)), st.floats(allow_nan=False))
@@ -63,7 +64,9 @@ def test_yaml_reads_back_as_what_was_sent(frame: str, ranges: list[float], angle
 @pytest.mark.parametrize(
     ("value", "style", "shown"),
     [
-        (TWIST, Style(flow=True), "{linear: {x: 0.3, y: 0.0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: -1.5}}"),
+        (TWIST.linear, Style(flow=True), "x: 0.3\ny: 0.0\nz: 0.0"),
+        (scan(1.0, 2.0).ranges, Style(flow=True), "[1.0, 2.0]"),
+        (PoseArray(poses=[Pose()]).poses, Style(flow=True), f"[{POSE}]"),
         (scan(1.0, 2.0).ranges, Style(longest=1), "- 1.0\n- '...'"),
         (String(data="hello"), Style(longest=2), "data: he..."),
         (String(data="hello"), Style(longest=0), "data: '...'"),
@@ -74,7 +77,7 @@ def test_yaml_reads_back_as_what_was_sent(frame: str, ranges: list[float], angle
             "transforms: '<sequence type: geometry_msgs/msg/TransformStamped, length: 0>'",
         ),
         (Image(data=bytes(70_000)).data, Style(longest=2), "- 0\n- 0\n- '...'"),
-        (ByteMultiArray(data=[b"\x01", b"\x02"]).data, Style(), "- 1\n- 2"),
+        (ByteMultiArray(data=[b"\x01", b"\x02"]).data, Style(), '- "\\x01"\n- "\\x02"'),
     ],
 )
 def test_how_much_is_shown_is_up_to_the_style(value: Any, style: Style, shown: str) -> None:
@@ -105,7 +108,7 @@ def test_sequences_are_described_with_ros2s_words() -> None:
             Style(arrays=False),
             "0,0,laser,0.0,0.0,0.0,0.0,0.0,0.0,0.0,<sequence type: float, length: 1>,<sequence type: float, length: 0>",
         ),
-        (Byte(data=b"\x07"), Style(), "7"),
+        (Byte(data=b"\x07"), Style(), r"b'\x07'"),
         (TWIST.linear.x, Style(), "0.3"),
     ],
 )

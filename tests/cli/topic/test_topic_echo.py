@@ -34,7 +34,7 @@ def node(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
     [
         (["--csv"], "0.3,0.0,0.0,0.0,0.0,0.0\n"),
         (["--csv", "--field", "linear"], "0.3,0.0,0.0\n"),
-        (["--flow-style"], "{linear: {x: 0.3, y: 0.0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: 0.0}}\n---\n"),
+        (["--flow-style", "--field", "linear"], "x: 0.3\ny: 0.0\nz: 0.0\n---\n"),
         (["--clear", "--field", "linear.x"], "\x1b[H\x1b[2J\n0.3\n---\n"),
         (["--raw"], repr(encode(Twist(linear=Vector3(x=0.3)))) + "\n---\n"),
     ],

@@ -170,7 +170,7 @@ def test_a_channel_that_cannot_be_is_refused_and_the_others_are_not(channel: dic
         assert "channel 1, which was not advertised" in client.wait_for("status")["message"]
 
 
-@pytest.mark.parametrize("payload", [b"", b"\x00\x01\x00\x00", b"\x07\x07\x07\x07" + bytes(48), bytes(1000)])
+@pytest.mark.parametrize("payload", [b"", b"\x00\x01\x00\x00", b"\x07\x07\x07\x07" + bytes(48), b"\x07" * 1000])
 def test_nonsense_never_reaches_a_robot(payload: bytes) -> None:
     with shown() as system, system.spinning(), system.client() as client:
         robot = Listener(system)
