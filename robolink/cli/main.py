@@ -8,7 +8,7 @@ import importlib
 import io
 import os
 import sys
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -130,12 +130,32 @@ def _complete(args: list[str]) -> int:
     """Answer the shell, without any error or warning: it would stand in the middle of what is being typed."""
     os.environ.pop("RUST_LOG", None)
     try:
-        with contextlib.redirect_stderr(io.StringIO()):
+        with contextlib.redirect_stderr(io.StringIO()), _answering_bash():
             return _run(args)
     except SystemExit as answered:  # what typer ends with
         return answered.code if isinstance(answered.code, int) else 0
     except (Exception, KeyboardInterrupt):  # noqa: BLE001
         return 1
+
+
+@contextlib.contextmanager
+def _answering_bash() -> Iterator[None]:
+    """Have bash's words joined where it has torn `NAME:=VALUE`, and the answer cut to the part that it replaces."""
+    from robolink.cli.shared.complete import joined_for_bash
+
+    words, at, prefix = os.environ.get("COMP_WORDS", ""), os.environ.get("COMP_CWORD", ""), ""
+    if os.environ.get(COMPLETION) == "complete_bash" and at.isdecimal():
+        words, number, prefix = joined_for_bash(words, int(at))
+    if not prefix:
+        yield
+        return
+    os.environ.update(COMP_WORDS=words, COMP_CWORD=str(number))
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(said):
+            yield
+    finally:
+        sys.stdout.write("".join(each.removeprefix(prefix) for each in said.getvalue().splitlines(keepends=True)))
 
 
 def _has_open_looks() -> bool:

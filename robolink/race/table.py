@@ -46,6 +46,12 @@ def error_of(result: Result, language: Language = "en") -> str:
     return f"{head} {told}" if mistake.kind in ("syntax", "exception", "elsewhere") else head
 
 
+def noted(result: Result, language: Language = "en") -> str:
+    """Return the note about a program that has ended: that it is done, or what went wrong with it."""
+    error = error_of(result, language)
+    return f"{result.program}: {error}" if error else words(language, "raced", program=result.program)
+
+
 def as_csv(race: Race, results: Sequence[Result], seed: int) -> str:
     """Return a table as CSV, with a head."""
     text = io.StringIO()

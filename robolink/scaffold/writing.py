@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from robolink.scaffold.naming import ScaffoldError, checked, checked_module, class_name
 from robolink.scaffold.rendering import rendered
+from robolink.scaffold.requirement import WHEELS, requirement
 from robolink.system.paths import expanded
 from robolink.system.whole_files import write_new
 from robolink.workspace import built_in_workspace, user_workspace
@@ -43,7 +44,17 @@ def new_project(path: str) -> Made:
     name = checked("project", folder.name if path else "")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ScaffoldError(f"{path} is there already and not empty: take another name, or an empty folder")
-    return written(folder, name, _with_schemas(rendered("project", {"NAME": name}), folder))
+    needs = requirement()
+    words = {
+        "NAME": name,
+        "REQUIREMENT": f"# {needs.note}\n{needs.line}" if needs.note else needs.line,
+        "STEP": f"{needs.step}\n" if needs.step else "",
+        "NOTE": f"{needs.note}\n\n" if needs.note else "",
+    }
+    files: dict[str, str | bytes] = {**_with_schemas(rendered("project", words), folder)}
+    if needs.wheel is not None:
+        files[f"{WHEELS}/{needs.wheel.name}"] = needs.wheel.read_bytes()
+    return written(folder, name, files)
 
 
 def new_node(name: str, *, workspace: Folder = None) -> Made:
@@ -107,8 +118,8 @@ def _workspace(asked: Folder) -> Path | None:
     return found
 
 
-def written(folder: Path, name: str, files: Mapping[str, str]) -> Made:
-    """Write `files`, texts by relative path, into a `folder`, and return the record of the thing called `name`.
+def written(folder: Path, name: str, files: Mapping[str, str | bytes]) -> Made:
+    """Write `files`, contents by relative path, into a `folder`, and return the record of the thing called `name`.
 
     All of them are written, or none.
 
@@ -120,9 +131,9 @@ def written(folder: Path, name: str, files: Mapping[str, str]) -> Made:
     if there:
         raise ScaffoldError(f"{folder / there[0]} is there already, and stays as it is: take another name")
     with contextlib.ExitStack() as undo:
-        for path, text in files.items():
+        for path, content in files.items():
             _make_folder((folder / path).parent, undo)
-            write_new(folder / path, text.encode())
+            write_new(folder / path, content.encode() if isinstance(content, str) else content)
             undo.callback((folder / path).unlink)
         undo.pop_all()
     return Made(name, folder, list(files))

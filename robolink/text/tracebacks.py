@@ -25,6 +25,7 @@ def formatted(error: BaseException, trace: TracebackType | None = None) -> str:
     """Return an exception and its traceback as text, from `trace` on (default: all), without a final newline."""
     trace = trace or error.__traceback__
     _leave_out_search(trace)
+    _leave_out_check(trace)
     head, newline, last = "".join(traceback.format_exception(type(error), error, trace)).rstrip().rpartition("\n")
     place = place_of(error)
     if place is not None:
@@ -57,6 +58,23 @@ def _leave_out_search(trace: TracebackType | None) -> None:
         code = trace.tb_next.tb_frame
         if code.f_code.co_name == "__getattr__" and code.f_globals.get("__name__") == "robolink.node":
             trace.tb_next = None
+            return
+        trace = trace.tb_next
+
+
+def _leave_out_check(trace: TracebackType | None) -> None:
+    """Cut the end of a traceback where robolink refuses what the program gave it: the error says what and why.
+
+    The line tells a refusal from a fault of ours, whose frames are needed: it raises the error by a statement.
+    """
+    users = None
+    while trace is not None:
+        file = trace.tb_frame.f_code.co_filename
+        if not file.startswith((_OWN, "<")):
+            users = trace
+        elif trace.tb_next is None and linecache.getline(file, trace.tb_lineno).lstrip().startswith("raise "):
+            if users is not None:
+                users.tb_next = None
             return
         trace = trace.tb_next
 

@@ -142,8 +142,8 @@ def ends_at_ctrl_c(command: Command) -> None:
 def test_the_course_runs_from_its_first_line_to_its_last(terminal: Terminal) -> None:
     left = list(LINES)
     others = [Terminal(terminal.stack, terminal.domain, terminal.home, Path()) for _ in range(2)]
-    for each in others:
-        each.environ = terminal.environ
+    for other in others:
+        other.environ = terminal.environ
     simulator, commander = others
 
     def until(last: str) -> None:

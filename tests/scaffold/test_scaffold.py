@@ -14,6 +14,7 @@ from robolink.launch import plan
 from robolink.scaffold import ScaffoldError, new_node, new_project, new_world, writing
 from robolink.scaffold.naming import LONGEST, class_name
 from robolink.scaffold.rendering import TEMPLATES, rendered
+from robolink.scaffold.requirement import required, requirement
 from robolink.scaffold.writing import MODELINE
 from robolink.sim.worldfile import check_world
 from robolink.testing import System
@@ -63,13 +64,67 @@ def test_its_ci_file_installs_and_tests(here: Path) -> None:
     workflow = yaml.safe_load((here / "demo/.github/workflows/test.yml").read_text())
     steps = [each["run"] for each in workflow["jobs"]["test"]["steps"] if "run" in each]
     assert steps == ["pip install -r requirements.txt", "pytest"]
-    assert (here / "demo/requirements.txt").read_text() == "robolink[test]\n"
+    assert (here / "demo/requirements.txt").read_text().splitlines()[-1] == requirement().line
+
+
+CLONE = ROOT.as_uri()
+NEEDED = {
+    "index": ({}, "robolink[test]", ""),
+    "git": (
+        {"url": "https://example.com/robolink.git", "vcs_info": {"vcs": "git", "commit_id": "12ab"}},
+        "robolink[test] @ git+https://example.com/robolink.git@12ab",
+        "",
+    ),
+    "address": (
+        {"url": "https://example.com/robolink-1.2-py3-none-any.whl", "archive_info": {}},
+        "robolink[test] @ https://example.com/robolink-1.2-py3-none-any.whl",
+        "",
+    ),
+    "clone": (
+        {"url": CLONE, "dir_info": {"editable": True}},
+        "./wheels/robolink-1.2-py3-none-any.whl[test]",
+        f'pip wheel --no-deps --wheel-dir wheels "{ROOT}"',
+    ),
+    "lost clone": (
+        {"url": f"{CLONE}/gone", "dir_info": {}},
+        "./wheels/robolink-1.2-py3-none-any.whl[test]",
+        'pip wheel --no-deps --wheel-dir wheels "PATH/OF/THE/CLONE"',
+    ),
+    "lost wheel": (
+        {"url": f"{CLONE}/robolink-1.2-py3-none-any.whl", "archive_info": {}},
+        "./wheels/robolink-1.2-py3-none-any.whl[test]",
+        "cp PATH/OF/robolink-1.2-py3-none-any.whl wheels/",
+    ),
+}
+
+
+@pytest.mark.parametrize("origin", NEEDED)
+def test_a_project_requires_the_robolink_that_made_it(origin: str) -> None:
+    found, line, step = NEEDED[origin]
+    needs = required(found, "1.2")
+    assert (needs.line, needs.step, needs.wheel) == (line, step, None)
+    assert ("no package index" in needs.note) is line.startswith("./wheels/")
+
+
+def test_a_wheel_goes_into_the_project(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    wheel = here / "robo link" / "robolink-1.2-py3-none-any.whl"
+    wheel.parent.mkdir()
+    wheel.write_bytes(b"PK\x03\x04\xff")
+    needs = required({"url": wheel.as_uri(), "archive_info": {}}, "1.2")
+    assert (needs.step, needs.wheel) == ("", wheel)
+    monkeypatch.setattr(writing, "requirement", lambda: needs)
+    assert f"wheels/{wheel.name}" in new_project("demo").files
+    assert (here / "demo/wheels" / wheel.name).read_bytes() == wheel.read_bytes()
+    assert needs.note in (here / "demo/README.md").read_text()
+    last = (here / "demo/requirements.txt").read_text().splitlines()[-1]
+    assert (here / "demo" / last.removesuffix("[test]")).is_file()
 
 
 def test_its_readme_is_short_and_names_its_commands(here: Path) -> None:
     new_project("demo")
     readme = (here / "demo/README.md").read_text()
-    assert len(readme.splitlines()) <= 15
+    assert len(readme.splitlines()) <= 18
+    assert "@" not in readme
     assert "robolink launch demo" in readme
 
 

@@ -15,6 +15,7 @@ EXCUSED = {
     "plot odom": "draws a picture, and names only topics",
     "plot path": "draws a picture, and names only topics",
     "plot topic": "draws a picture, and names only topics and fields",
+    "learn list": "shows texts of exercises",
     "learn start": "shows texts of robolink's own, and the path that it was given",
     "learn check": "shows what a program prints by `say`, which escapes it: tests/learn/test_isolated.py",
     "learn watch": "is learn check, again and again",

@@ -171,3 +171,15 @@ def test_lines_of_own_files_are_left_out_of_a_traceback() -> None:
 def own_file() -> str:
     """Return the path of a file of robolink's."""
     return robolink.__file__
+
+
+def test_a_refusal_ends_in_the_programs_own_line(node: robolink.Node) -> None:
+    refused = raised_by(lambda: node.create_publisher("cmd_vel", Twist, 10))  # type: ignore[arg-type]
+    text = formatted(refused)
+    assert text.count('File "') == text.count(__file__) > 0
+    assert text.endswith("(the type comes first)")
+
+
+def test_a_fault_of_robolinks_own_keeps_its_frames(monkeypatch: pytest.MonkeyPatch, node: robolink.Node) -> None:
+    monkeypatch.setattr("robolink.arguments.remapping.validate_topic_name", lambda *_, **__: len(3))  # type: ignore[arg-type]
+    assert "remapping.py" in formatted(raised_by(lambda: node.create_publisher(Twist, "cmd_vel", 10)))

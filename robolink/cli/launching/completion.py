@@ -22,6 +22,8 @@ def launch_words(ctx: typer.Context, incomplete: str) -> list[str]:
             from robolink.cli.launching.launchers import names_for
 
             return complete.offered(names_for(words, complete.WITHIN), incomplete)
+        if ":=" in incomplete:
+            return complete.world_assignments(ctx, incomplete)
         from robolink.launch.system import arguments_of
 
         with contextlib.redirect_stdout(io.StringIO()):  # a launch file may print

@@ -41,6 +41,15 @@ def list_exercises(
         context.obj = language
 
 
+@app.command("list")
+def list_them(context: typer.Context, language: Language = "") -> None:
+    """List the exercises, with your progress."""
+    from robolink.cli.learn import work
+    from robolink.cli.shared import languages
+
+    work.list_exercises(languages.language_of(language or context.obj))
+
+
 @app.command("start")
 def start(
     context: typer.Context,

@@ -65,7 +65,7 @@ def race(
         rules,
         programs,
         seed,
-        on_done=lambda each: _note(words(tongue, "raced", program=each.program)) if many else None,
+        on_done=lambda each: _note(table.noted(each, tongue)) if many else None,
     )
     if as_json:
         say_json(table.rows(rules, results, seed))

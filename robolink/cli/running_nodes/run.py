@@ -41,6 +41,7 @@ class RunCommand(typer.core.TyperCommand):
         options = [(name, each) for name, each in names if name != "-h" or args[:1] == ["-h"]]  # else the program's
         parts = part(args[:at], {name: not getattr(each, "is_flag", False) for name, each in options})
         ctx.meta[FIXED] = len(parts.fixed)
+        ctx.meta[complete.NODE] = next(iter(parts.words), "")
         rest = [] if parts.is_cut_off else ["--", *parts.words, *parts.fixed]
         left: list[str] = super().parse_args(ctx, [*parts.own, *rest])
         return left
@@ -103,7 +104,10 @@ def run(
         ),
     ] = None,
     parameters: Annotated[
-        list[str] | None, typer.Option("--param", "-p", metavar="NAME:=VALUE", help="Set a parameter.")
+        list[str] | None,
+        typer.Option(
+            "--param", "-p", metavar="NAME:=VALUE", help="Set a parameter.", autocompletion=complete.parameters
+        ),
     ] = None,
     remappings: Annotated[
         list[str] | None,

@@ -25,6 +25,9 @@ WITHIN = 0.3
 _SAFE = re.compile(r"[A-Za-z0-9_./:~-]+", re.ASCII)
 """Names that need no quotes in a shell. zsh evaluates what it is offered, and anybody may announce a name."""
 
+NODE = "robolink.node"
+"""Key of a context's `meta` for the node of `run`, which a line that is not complete has not parsed."""
+
 Context = typer.Context
 
 
@@ -132,6 +135,43 @@ def world_files(ctx: Context, incomplete: str) -> list[str]:
     return []
 
 
+def parameters(ctx: Context, incomplete: str) -> list[str]:
+    """Return the assignment of the world for the node `world`, whose other parameters are numbers and switches."""
+    if ctx.meta.get(NODE) not in ("world", "world.py"):
+        return []
+    if ":=" in incomplete:
+        return world_assignments(ctx, incomplete)
+    return ["world:="] if "world".startswith(incomplete) else []
+
+
+def world_assignments(ctx: Context, incomplete: str) -> list[str]:
+    """Return `world:=NAME` for each world, if `incomplete` begins so."""
+    name, given, value = incomplete.partition(":=")
+    return [f"{name}:={each}" for each in world_files(ctx, value)] if given and name == "world" else []
+
+
+def joined_for_bash(words: str, at: int) -> tuple[str, int, str]:
+    """Return bash's words with the last assignment in one piece, the index of the word to complete, and what to cut.
+
+    Bash ends a word at each `:` and `=`, as they separate paths and variables, and has its own part of the word only
+    replaced: the answer must do without what stands before.
+
+    >>> joined_for_bash("robolink\\nrun\\nworld\\n-p\\nworld\\n:=\\ncl", 6)
+    ('robolink\\nrun\\nworld\\n-p\\nworld:=cl', 4, 'world:=')
+
+    Args:
+        words: Words of the line, one a line.
+        at: Index of the word at the cursor.
+    """
+    parts = words.split("\n")
+    for back in (1, 2):  # the value has been begun, or not
+        head, rest = parts[:-back], parts[-back:]
+        if at == len(parts) - 1 and head and rest[0] == ":=":
+            prefix = f"{head[-1]}:="
+            return "\n".join([*head[:-1], prefix + "".join(rest[1:])]), len(head) - 1, prefix
+    return words, at, ""
+
+
 def faults_files(ctx: Context, incomplete: str) -> list[str]:
     """Return the faults files known by name, and folders and YAML files whose paths begin so."""
     with contextlib.suppress(Exception):
@@ -145,7 +185,8 @@ def faults_files(ctx: Context, incomplete: str) -> list[str]:
 def _files(incomplete: str, suffixes: tuple[str, ...]) -> list[str]:
     """Return the folders, and the files with these suffixes, whose paths begin so."""
     folder, slash, _ = incomplete.rpartition("/")
-    found = [each for each in Path(folder + slash or ".").iterdir() if each.is_dir() or each.suffix in suffixes]
+    inside = [each for each in Path(folder + slash or ".").iterdir() if each.name[0] != "." or incomplete[-1:] == "."]
+    found = [each for each in inside if each.is_dir() or each.suffix in suffixes]
     return [f"{folder}{slash}{each.name}{'/' if each.is_dir() else ''}" for each in found]
 
 

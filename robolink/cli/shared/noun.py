@@ -7,6 +7,8 @@ from typing import Any
 
 import typer.core
 
+from robolink.exceptions import nearest
+
 HIDDEN = ("--include-hidden-topics", "--include-hidden-services", "--include-hidden-nodes", "--include-hidden-actions")
 """Flags that ros2 takes before the verb, too."""
 WITHOUT_EFFECT = {"--no-daemon": False, "--use-sim-time": False, "--spin-time": True, **dict.fromkeys(HIDDEN, False)}
@@ -15,6 +17,12 @@ WITHOUT_EFFECT = {"--no-daemon": False, "--use-sim-time": False, "--spin-time": 
 
 class Noun(typer.core.TyperGroup):
     """Command group whose verbs take ros2's flags as ros2 does."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Return the command of the first word; end with a usage error that has the nearest name if it is unknown."""
+        if self.get_command(ctx, args[0]) is None:
+            ctx.fail(f"no command named '{ctx.info_name} {args[0]}'{nearest(args[0], self.list_commands(ctx))}")
+        return super().resolve_command(ctx, args)
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse the arguments."""

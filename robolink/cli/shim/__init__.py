@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -41,6 +42,7 @@ def shim(
         say(f"removed {writing.remove(place, name)}")
         return
     path = writing.write(place, name, TARGETS[name], force=force)
-    say(f"made {path}; 'robolink shim {name} --remove' takes it away")
+    where = "" if folder is None else f" --folder {shlex.quote(str(folder))}"
+    say(f"made {path}; 'robolink shim {name} --remove{where}' takes it away")
     if not writing.is_on_path(place):
         tell(f"{place} is not on the PATH of this shell: activate its environment, or add it")

@@ -87,8 +87,8 @@ class Screen:
     def text(self, shown: Shown, columns: int, rows: int) -> str:
         """Return the text of the whole screen, control sequences included."""
         seen = chosen(shown, self.view)
-        nodes = laid_out(NODE_HEADER, (node_cells(each) for each in seen.nodes))
-        topics = laid_out(TOPIC_HEADER, (topic_cells(each) for each in seen.topics))
+        nodes = laid_out(NODE_HEADER, (node_cells(each) for each in seen.nodes), columns=columns)
+        topics = laid_out(TOPIC_HEADER, (topic_cells(each) for each in seen.topics), columns=columns)
         room = max(0, rows - 3)  # the first line, an empty one between, and the last one
         for_topics = max(min(len(topics), LEAST_TOPICS), room - len(nodes))
         nodes = _cut(nodes, max(0, room - for_topics), 0)

@@ -113,6 +113,8 @@ def _count(number: int, noun: str) -> str:
 NODE_HEADER = ["NODE", "PID", "CPU", "MEMORY", "SENDS", "BANDWIDTH"]
 TOPIC_HEADER = ["TOPIC", "TYPE", "RATE", "BANDWIDTH", "AGE", "LOST", "MISSED", "PUBS", "SUBS"]
 _LEFT = {"NODE", "TOPIC", "TYPE"}
+NARROWEST = 12
+"""Least width of a column of names, however narrow the terminal is."""
 
 
 def node_cells(row: NodeRow) -> list[str]:
@@ -153,14 +155,25 @@ def as_bytes(number: float) -> str:
     return f"{number:.0f} B"
 
 
-def laid_out(header: Sequence[str], rows: Iterable[Sequence[str]], widest: int = 60) -> list[str]:
-    """Return the lines of a table, numbers to the right; a cell that is longer than `widest` is cut in its middle."""
-    cells = [list(header), *([_cut(each, widest) for each in row] for row in rows)]
-    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+def laid_out(header: Sequence[str], rows: Iterable[Sequence[str]], widest: int = 60, columns: int = 0) -> list[str]:
+    """Return the lines of a table, numbers to the right; a cell that is longer than `widest` is cut in its middle.
+
+    Args:
+        header: Titles of the columns.
+        rows: Cells of each row.
+        widest: Upper bound of a cell's length.
+        columns: Width of the terminal: types, then names are cut further until all numbers are seen; 0 for any.
+    """
+    cells = [list(header), *map(list, rows)]
+    widths = [min(max(map(len, column)), widest) for column in zip(*cells, strict=True)]
     left = [title in _LEFT for title in header]
+    over = sum(widths) + 2 * (len(widths) - 1) - columns if columns else 0
+    for at in reversed([number for number, is_left in enumerate(left) if is_left]):
+        less = max(0, min(over, widths[at] - NARROWEST))
+        widths[at], over = widths[at] - less, over - less
     return [
         "  ".join(
-            cell.ljust(width) if is_left else cell.rjust(width)
+            _cut(cell, width).ljust(width) if is_left else cell.rjust(width)
             for cell, width, is_left in zip(row, widths, left, strict=True)
         ).rstrip()
         for row in cells
@@ -169,7 +182,7 @@ def laid_out(header: Sequence[str], rows: Iterable[Sequence[str]], widest: int =
 
 def _cut(text: str, widest: int) -> str:
     half = (widest - 1) // 2
-    return text if len(text) <= widest else f"{text[:half]}…{text[-half:]}"
+    return text if len(text) <= widest else f"{text[:half]}…{text[len(text) - (widest - 1 - half) :]}"
 
 
 def lines(shown: Shown, domain: int) -> list[str]:

@@ -53,6 +53,8 @@ BAD = Report([Line(False, "it stands")], seconds=0.8)
 def test_before_the_start_it_lists_them_all(here: Path, capsys: Captured) -> None:
     assert main(["learn"]) == 0
     out = capsys.readouterr().out
+    assert main(["learn", "list"]) == 0
+    assert capsys.readouterr().out == out
     assert "02_hello.py" in out
     assert "A first node" in out
     assert main(["learn", "--language", "pt"]) == 0

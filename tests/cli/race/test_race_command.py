@@ -58,7 +58,8 @@ def test_a_table_for_people(capsys: Captured) -> None:
         "  -  b.py   31% of the way   2 contacts  cdcdcdcdcdcdcdcd",
         "  -  c.py  your program stopped with an error at line 4: NameError: name 'x\\x1b[2J'",
     ]
-    assert err == "c.py is done\nb.py is done\na.py is done\n"
+    wrong = "your program stopped with an error at line 4: NameError: name 'x\\x1b[2J'"
+    assert err == f"c.py: {wrong}\nb.py is done\na.py is done\n"
 
 
 @pytest.mark.usefixtures("three")
@@ -73,7 +74,8 @@ def test_a_table_in_portuguese(capsys: Captured, monkeypatch: pytest.MonkeyPatch
     assert main([*words, "--language", "pt"]) == 0
     out, err = capsys.readouterr()
     assert out.splitlines() == told
-    assert err == "c.py terminou\nb.py terminou\na.py terminou\n"
+    wrong = "seu programa parou com um erro na linha 4: NameError: name 'x\\x1b[2J'"
+    assert err == f"c.py: {wrong}\nb.py terminou\na.py terminou\n"
     monkeypatch.setenv("LC_ALL", "pt_BR.UTF-8")
     assert main(words) == 0
     assert capsys.readouterr().out.splitlines() == told

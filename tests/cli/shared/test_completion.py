@@ -293,10 +293,29 @@ def test_a_tab_in_bash_completes_a_live_name(tmp_path: Path, shell: dict[str, st
     (tmp_path / "programs").mkdir()
     with Program(tmp_path / "programs", TALKER, domain) as talker:
         assert talker.line() == "up"
-        typed = [f"source {script}", "robolink topic echo /lab/ch\t", "robolink no\tin\t/la\t", "exit"]
+        typed = [f"source {script}", "robolink topic echo /lab/ch\t", "robolink no\tin\t/la\t"]
+        typed += ["robolink run world -p world:=cor\t", "exit"]
         said = typed_into_bash(typed, {**shell, "ROS_DOMAIN_ID": str(domain)})
     assert "GOT topic echo /lab/chatter" in said
     assert "GOT node info /lab/talker" in said
+    assert "GOT run world -p world:=corners" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        ("robolink run world -p wor", ["world:="]),
+        ("robolink run world -p world:=corn", ["world:=corners"]),
+        ("robolink run world -p world\n:=\ncorn", ["corners"]),
+        ("robolink launch wander world\n:=\ncorn", ["corners"]),
+        ("robolink run talker -p world\n:=\ncorn", []),
+        ("robolink run world -p seed\n:=", []),
+    ],
+)
+def test_the_world_of_a_parameter_is_completed(words: str, offered: list[str], tab: Tab) -> None:
+    words = words.replace(" ", "\n")
+    tab.ask("complete_bash", COMP_WORDS=words, COMP_CWORD=str(words.count("\n")))
+    assert tab.output().split() == offered
 
 
 def typed_into_bash(lines: list[str], environ: dict[str, str]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import shlex
 import subprocess
 import sys
 import zipfile
@@ -37,7 +38,8 @@ def shim(*words: str, folder: Path) -> int:
 def test_the_command_is_robolink_by_another_name(folder: Path, capsys: Captured) -> None:
     assert shim("ros2", folder=folder) == 0
     path = folder / f"ros2{SUFFIX}"
-    assert capsys.readouterr().out == f"made {path}; 'robolink shim ros2 --remove' takes it away\n"
+    advice = f"robolink shim ros2 --remove --folder {shlex.quote(str(folder))}"
+    assert capsys.readouterr().out == f"made {path}; '{advice}' takes it away\n"
     environ = {**os.environ, "PATH": f"/bin:/usr/bin:{folder}"}
     asked = subprocess.run([path, "daemon", "status"], capture_output=True, text=True, env=environ, check=False)
     assert (asked.returncode, asked.stdout[:29]) == (0, "The daemon is not running: ro")

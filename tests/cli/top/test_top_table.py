@@ -93,6 +93,16 @@ def test_the_screen_has_as_many_lines_as_the_terminal_at_most(columns: int, rows
     assert len(written) <= max(rows, 3)
 
 
+@pytest.mark.parametrize("columns", [90, 100, 200])
+def test_a_narrow_terminal_shows_every_column(columns: int) -> None:
+    name, kind = "/robot_with_a_long_name/camera/image_raw/compressed", "sensor_msgs/msg/CompressedImage"
+    shown = Shown([], [TopicRow(name, (kind, kind), 29.9, 1e6, 0.1, publishers=1, subscriptions=3)])
+    text = pressed().text(shown, columns, 20)
+    header, row = text[text.index("TOPIC") :].replace("\x1b[0m", "").replace("\x1b[K", "").split("\n")[:2]
+    assert (header.split()[-1], row.split()[-1], len(row) <= columns) == ("SUBS", "3", True)
+    assert (name in row) is (columns == 200)
+
+
 def test_topics_scroll() -> None:
     many = Shown([], [TopicRow(f"/t{i:02}", ("a/msg/B",)) for i in range(40)])
     screen = pressed(*["down"] * 5)
