@@ -18,7 +18,7 @@ import msgspec
 from robolink.documents.limits import MOST_MISTAKES, first_mistakes
 from robolink.documents.mistakes import Hook, Reader, Step, steps_of
 from robolink.exceptions import DocumentError, nearest
-from robolink.system.plainfile import read_plain
+from robolink.system.plainfile import decoded, read_plain
 from robolink.system.terminal import quoted
 
 if TYPE_CHECKING:
@@ -144,9 +144,8 @@ def read_text(path: str | os.PathLike[str], most: int | None = None) -> str:
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise DocumentError(f"cannot be read: {reason}", str(file)) from None
-    encoding = "utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
     try:
-        return raw.decode(encoding)
+        return decoded(raw)
     except UnicodeDecodeError as error:
         before = raw[: error.start]
         line, column = before.count(b"\n") + 1, error.start - before.rfind(b"\n")

@@ -5,6 +5,7 @@ Every file that is named by a stranger's file (a map's image, an included launch
 
 from __future__ import annotations
 
+import codecs
 import errno
 import os
 import stat
@@ -43,6 +44,14 @@ def read_plain(path: str | os.PathLike[str], most: int) -> bytes:
     if left <= 0:
         raise OSError(errno.EFBIG, f"it is longer than {size(most)}", os.fspath(path))
     return b"".join(parts)
+
+
+def decoded(raw: bytes, errors: str = "strict") -> str:
+    """Decode the text of a file: UTF-8 with or without a byte order mark, or UTF-16 with one, as PowerShell writes it.
+
+    Raises UnicodeDecodeError, unless `errors` says otherwise.
+    """
+    return raw.decode("utf-16" if raw[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) else "utf-8-sig", errors)
 
 
 def _check(found: os.stat_result, path: str | os.PathLike[str]) -> None:

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path, PureWindowsPath
 
-from robolink.system.plainfile import read_plain
+from robolink.system.plainfile import decoded, read_plain
 from robolink.workspace.listing import Listing
 
 LONGEST = 200_000
@@ -194,6 +194,6 @@ def is_python(path: Path) -> bool:
 
 def _read(path: Path) -> str:
     try:
-        return read_plain(path, LONGEST).decode("utf-8-sig", errors="replace")
+        return decoded(read_plain(path, LONGEST), "replace")
     except (OSError, ValueError):
         return ""

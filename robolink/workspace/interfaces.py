@@ -17,7 +17,7 @@ from typing import Any
 
 from robolink import interfaces
 from robolink.exceptions import DefinitionError, MessageError, NotFoundError
-from robolink.system.plainfile import read_plain
+from robolink.system.plainfile import decoded, read_plain
 from robolink.workspace.built_in import built_in_workspace
 from robolink.workspace.find import user_workspace
 from robolink.workspace.modules import FINDER, Fill
@@ -140,11 +140,14 @@ def _build(path: Path, type_name: str) -> type[Any]:
 
 
 def _read(path: Path) -> str:
-    """Read an interface file, without the mark at its beginning that some editors of Windows write."""
+    """Read an interface file, also one as an editor or the PowerShell of Windows writes it."""
     from robolink.message.definition import LONGEST_TEXT
 
     try:  # no character takes more than four bytes
-        return read_plain(path, 4 * LONGEST_TEXT).decode("utf-8-sig")
+        return decoded(read_plain(path, 4 * LONGEST_TEXT))
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        raise DefinitionError(f"{path}:{line}:1: not UTF-8 text") from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise DefinitionError(f"{path}:1:1: cannot be read: {reason}") from None

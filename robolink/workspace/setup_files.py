@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from robolink.system.plainfile import read_plain
+from robolink.system.plainfile import decoded, read_plain
 from robolink.workspace.literals import Values, keywords, parsed
 
 LONGEST = 200_000
@@ -69,7 +69,7 @@ def data_files(folder: Path) -> list[tuple[str, list[str]]]:
 
 def _read(file: Path) -> str:
     try:
-        return read_plain(file, LONGEST).decode("utf-8-sig", errors="replace")
+        return decoded(read_plain(file, LONGEST), "replace")
     except (OSError, ValueError):
         return ""
 

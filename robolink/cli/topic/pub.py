@@ -18,6 +18,7 @@ from robolink.event_handler import PublisherEventCallbacks
 from robolink.exceptions import DocumentError, RobolinkError, nearest
 from robolink.executors import Executor, SingleThreadedExecutor
 from robolink.system import clocks
+from robolink.system.plainfile import decoded
 from robolink.system.terminal import shown
 from robolink.task import Future
 from robolink.wire import EndpointKind
@@ -97,7 +98,7 @@ def read_input() -> str:
     if len(raw) > LONGEST_INPUT:
         raise DocumentError(f"more than {LONGEST_INPUT // 2**20} MiB", INPUT)
     try:
-        return raw.decode("utf-8-sig")
+        return decoded(raw)
     except UnicodeDecodeError as error:
         line = raw[: error.start].count(b"\n") + 1
         raise DocumentError("not UTF-8 text", INPUT, line) from None

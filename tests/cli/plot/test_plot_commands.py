@@ -347,7 +347,7 @@ def test_a_bags_trajectories_are_drawn(lap: Path, drawn: list[Any], capsys: Capt
     assert [each.get_label() for each in drawn[-1].lines[::3]] == ["/odom: 4.00 m", "/arm/goal: 8.00 m"]
     assert "/odom: " in (told := capsys.readouterr().err)
     assert "it is left out" in told
-    assert main(["plot", "odom", "odom", "--bag", "lap", "--world", "empty", "--out", "way.png"]) == 0
+    assert main(["plot", "odom", "odom", "--bag", "lap", "--world", "obstacles", "--out", "way.png"]) == 0
     assert [each.get_text() for each in drawn[-1].get_legend().get_texts()] == ["/odom: 4.00 m"]
     assert Path("way.png").read_bytes().startswith(PNG)
 
