@@ -63,7 +63,7 @@ def _change_spawn(enter: Enter, mode: str, spawn: ModuleType) -> None:
 
 
 def _change_forkserver(ours: str, forkserver: ModuleType) -> None:
-    """Have the server from which processes are forked import ours, and not the program's file, which it could not."""
+    """Let the server from which processes are forked import ours instead of the program's file, which it could not."""
     server = forkserver._forkserver
     if server._preload_modules == ["__main__"]:  # else the program wants it otherwise
         server.set_forkserver_preload([ours])
