@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import _thread
+import contextlib
 import itertools
 import weakref
 from types import FunctionType
@@ -318,6 +320,19 @@ class Node(NodeParameters, NodeCreation):
         self._destroy_entities_()
         self._announced_.close()
         self._context.untrack_node(self)
+
+    def __del__(self) -> None:
+        """Leave the graph, as in rclpy, once nobody refers to the node any more; not where runs are to repeat.
+
+        That is in a thread of its own, since garbage is collected anywhere: this one may hold any lock.
+        """
+        context: Context | None = vars(self).get("_context")
+        if context is None or self._destroyed or "_announced_" not in vars(self):
+            return
+        if not context.ok() or not context.transport.threaded:
+            return
+        with contextlib.suppress(RuntimeError):  # Python ends, or there are too many threads
+            _thread.start_new_thread(Node.destroy_node, (self,))
 
     if not TYPE_CHECKING:  # or every attribute would be one of mypy's
 
