@@ -62,6 +62,11 @@ class _Call:
             return
         self.client.deliver((self, arrived))
 
+    def forget_if_cancelled(self) -> None:
+        """Abandon the call once its future is cancelled: the answer comes too late then."""
+        if self.future.cancelled():
+            self.client.remove_pending_request(self.future)
+
 
 class Client(ServiceEnd):
     """Calls one service; made by `Node.create_client`.
@@ -248,6 +253,7 @@ class Client(ServiceEnd):
         inbox = self._parking if executor is None else executor._queue_.inbox
         call = _Call(self, inbox, future, fails)
         self._calls.add(call)
+        future.when_done(call.forget_if_cancelled)
         call.sequence_number = unpack_attachment(packed[1]).sequence
         call.handle = self._transport.call(self._key(), *packed, call.sink)
         return future

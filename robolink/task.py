@@ -11,6 +11,8 @@ import weakref
 from collections.abc import Callable, Generator
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
+from robolink.system.terminal import fit
+
 if TYPE_CHECKING:
     import asyncio
 
@@ -47,10 +49,9 @@ class Future(Generic[T]):
         self.set_executor(executor)
 
     def __del__(self) -> None:
-        if self._exception is not None and not self._exception_fetched:
-            warnings.warn(
-                f"The following exception was never retrieved: {self._exception}", ResourceWarning, stacklevel=1
-            )
+        if self._exception is not None and not self._exception_fetched and sys.stderr is not None:
+            text = fit(str(self._exception))
+            print(f"The following exception was never retrieved: {text}", file=sys.stderr)  # noqa: T201 - as rclpy does
 
     def __await__(self) -> Generator[Any, None, T | None]:
         """Yield until done: to a task of an executor, to asyncio's event loop, or to whoever else drives it."""
@@ -125,10 +126,11 @@ class Future(Generic[T]):
         else:
             callback(self)
 
-    def remove_done_callback(self, callback: Callable[[Future[T]], object]) -> None:
-        """Remove a done `callback`; one that was not added is ignored."""
+    def remove_done_callback(self, callback: Callable[[Future[T]], object]) -> bool:
+        """Remove a done `callback`, and return True; False if it was not added."""
         with self._lock:
-            self._callbacks = [each for each in self._callbacks if each != callback]
+            before, self._callbacks = self._callbacks, [each for each in self._callbacks if each != callback]
+            return len(self._callbacks) < len(before)
 
     def when_done(self, waker: Callable[[], None]) -> None:
         """Call `waker()` at once where the future becomes done, in whatever thread; for executors."""

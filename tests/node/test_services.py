@@ -66,6 +66,17 @@ def test_the_end_of_all_answers_takes_no_turn(node: Node, server: Node, executor
         assert not client.is_waiting
 
 
+def test_a_call_that_was_cancelled_stays_so_when_its_answer_comes(
+    node: Node, server: Node, executor: SingleThreadedExecutor
+) -> None:
+    client = node.create_client(SetBool, "switch")
+    future = client.call_async(ON)
+    future.cancel()
+    assert not client.is_waiting
+    spin_for(executor, 0.5)
+    assert (future.done(), future.cancelled(), future.result()) == (False, True, None)
+
+
 def test_an_answer_comes_while_the_clients_own_group_is_busy(node: Node, server: Node) -> None:
     group, answers = MutuallyExclusiveCallbackGroup(), list[str]()
     client = node.create_client(SetBool, "switch", callback_group=group)

@@ -34,12 +34,20 @@ def test_a_future_raises_its_exception() -> None:
         future.result()
 
 
-def test_an_exception_that_nobody_asked_for_is_a_warning() -> None:
+def test_an_exception_that_nobody_asked_for_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     future: Future[int] = Future()
     future.set_exception(ValueError("lost"))
-    with pytest.warns(ResourceWarning, match="never retrieved: lost"):
-        future.__del__()
+    future.__del__()
+    assert capsys.readouterr().err == "The following exception was never retrieved: lost\n"
     assert future.exception() is not None
+    future.__del__()
+    assert capsys.readouterr().err == ""
+
+
+def test_whether_a_done_callback_was_there_is_told() -> None:
+    future: Future[int] = Future()
+    future.add_done_callback(print)
+    assert [future.remove_done_callback(print) for _ in range(2)] == [True, False]
 
 
 def test_cancelling_counts_only_before_the_result() -> None:
