@@ -60,6 +60,8 @@ class Context:
         self.arguments = Arguments()
         self.given_parameters = GivenParameters()
         self.interrupted = False
+        self.terminated = False
+        """True if it was SIGTERM that interrupted it, and not Ctrl-C."""
         """True if a signal ended this context."""
         self.speaks_humble = False
         """True if everything of this context is on the wire as Humble spells it."""
@@ -223,15 +225,17 @@ class Context:
             return "a signal (Ctrl-C or SIGTERM)"
         return f"{imported_as()}.shutdown()" if self._closed else ""
 
-    def interrupt(self) -> None:
+    def interrupt(self, *, by_sigterm: bool = False) -> None:
         """End the spinning, as Ctrl-C does, but stay connected: a program may still send its last words.
+
+        `by_sigterm`: it is SIGTERM that does so, which is a KeyboardInterrupt for nobody who spins.
 
         A signal's handler may call this at any moment, within anything that the main thread does: whoever wants to
         know of the end is told on a thread of its own, since the main thread may hold the very lock that it needs.
         """
         if not self._ok:
             return
-        self.interrupted = True
+        self.interrupted, self.terminated = True, by_sigterm
         self._ok = False
         self._platform.run_aside(self._tell_now)
 

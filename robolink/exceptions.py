@@ -325,7 +325,7 @@ class ExternalShutdownException(RobolinkError):
 
 
 class InterruptedByUser(KeyboardInterrupt, ExternalShutdownException):
-    """`spin` was ended by Ctrl-C or SIGTERM: programs for Humble catch the first parent, programs for Jazzy the second.
+    """`spin` was ended by Ctrl-C: programs for Humble catch the first parent, programs for Jazzy the second.
 
     Anywhere else Ctrl-C is a KeyboardInterrupt alone, which `except Exception` lets pass. `text` is that of the error.
     """

@@ -21,8 +21,8 @@ class Interruptible(Protocol):
     def ok(self) -> bool:
         """True from its beginning to its end."""
 
-    def interrupt(self) -> None:
-        """End the spinning, as Ctrl-C does."""
+    def interrupt(self, *, by_sigterm: bool = False) -> None:
+        """End the spinning, as Ctrl-C does, or SIGTERM."""
 
 
 class SignalHandlerOptions(IntFlag):
@@ -90,10 +90,11 @@ def _on_signal(number: int, frame: FrameType | None) -> None:
     _received = number
     running = [context for context in list(_contexts) if context.ok()]
     for context in running:
-        context.interrupt()
+        context.interrupt(by_sigterm=number == signal.SIGTERM)
     before = _before.get(number)
     if before in (signal.default_int_handler, signal.SIG_DFL):
-        # Ctrl-C is no Exception, as everywhere in Python: event loops (tornado's) log every Exception and go on.
+        # Ctrl-C is not an Exception, as everywhere in Python: event loops (tornado's) log every Exception and go on. So
+        # is SIGTERM where nobody spins; who does makes an ExternalShutdownException of it, as rclpy has it.
         raise InterruptedByUser if running and number == signal.SIGTERM else KeyboardInterrupt
     if callable(before):
         before(number, frame)

@@ -183,7 +183,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
         executor: Executor that runs the callbacks; None is the global one, which is single-threaded.
 
     Raises:
-        ExternalShutdownException: if the context ends while this waits. After Ctrl-C or SIGTERM it is, in the
+        ExternalShutdownException: if the context ends while this waits. After Ctrl-C it is, in the
             main thread, an InterruptedByUser, which is a KeyboardInterrupt too.
         TypeError: if `node` is no Node.
         Exception: what a callback raises.
@@ -226,7 +226,7 @@ def spin_until_future_complete(
         timeout_sec: Longest wait in seconds; None or less waits for ever, 0 does not wait.
 
     Raises:
-        ExternalShutdownException: if the context ends while this waits. After Ctrl-C or SIGTERM it is, in the
+        ExternalShutdownException: if the context ends while this waits. After Ctrl-C it is, in the
             main thread, an InterruptedByUser, which is a KeyboardInterrupt too.
         TypeError: if `node` is no Node.
         Exception: what a callback raises.

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from robolink.cli.launching.hashing import begin_steadily
 from robolink.cli.shared.interrupts import not_lost
 from robolink.cli.shared.output import complain
-from robolink.exceptions import RobolinkError
+from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.system import exit_code
 
 if TYPE_CHECKING:
@@ -104,10 +104,10 @@ def _outcome(args: list[str]) -> int:
         code = _run(args)
         if sys.stdout is not None:
             sys.stdout.flush()
+    except (KeyboardInterrupt, ExternalShutdownException):  # the second is what SIGTERM ends a spin with
+        return 130
     except RobolinkError as error:
         return complain(error)
-    except KeyboardInterrupt:
-        return 130
     except BrokenPipeError:
         _drop_output()
         return 141

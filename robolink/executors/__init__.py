@@ -74,7 +74,7 @@ class MultiThreadedExecutor(Executor):
     """Executor with a thread pool: callbacks run in parallel, as far as their callback groups allow.
 
     The thread that spins hands them out. What a callback raises is raised by the next spin. When the context ends,
-    spinning returns, as in rclpy; after Ctrl-C or SIGTERM it raises InterruptedByUser in the main thread.
+    spinning returns, as in rclpy; after Ctrl-C it raises InterruptedByUser in the main thread.
 
     Args:
         num_threads: Number of threads; None is the number of cores that this process may use. One thread is slower
@@ -100,6 +100,10 @@ class MultiThreadedExecutor(Executor):
         self._waiting.pause = self._threads.pause
         self._runs_here = self._threads.runs_here
 
+    def _check_interrupt(self) -> None:
+        if not self._context.terminated:  # as in rclpy, SIGTERM only lets the spinning of this one return
+            super()._check_interrupt()
+
     def _is_held_here(self, entity: Entity) -> bool:
         return super()._is_held_here(entity) and self._threads.holds(entity.gate)
 
@@ -110,6 +114,22 @@ class MultiThreadedExecutor(Executor):
             raise
         except ExternalShutdownException:  # as in rclpy, only the single-threaded one raises it
             pass
+
+    def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+        """Run callbacks until a future is done, as every executor does; raise what they have raised, the future's too.
+
+        Args:
+            future: Future to wait for; `future.done()` says whether it came.
+            timeout_sec: Longest wait in seconds; None or less waits for ever, 0 does not wait.
+
+        Raises:
+            Exception: what a callback raises, also the task that is waited for.
+        """
+        super().spin_until_future_complete(future, timeout_sec)
+        if isinstance(future, Task) and future.done():
+            self._threads.settle(future)
+        if self._threads.failures:
+            raise self._threads.failures.popleft()
 
     def check_end(self) -> None:
         """Raise what a callback raised, or the exception for the end of the context or of this executor."""

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robolink.exceptions import ExternalShutdownException, InterruptedByUser
+from robolink.exceptions import ExternalShutdownException, InterruptedByUser, NotInitializedException
 from robolink.running.deadlock_warning import DeadlockWarning
 from robolink.running.defaults import get_defaults
 from robolink.running.entity import Entity
@@ -17,7 +17,6 @@ from robolink.running.execution import (
     ShutdownException,
     TimeoutException,
     TimeoutObject,
-    log_failure,
 )
 from robolink.running.ready_queue import ReadyQueue
 from robolink.running.spinners import Spinners
@@ -42,6 +41,9 @@ class Executor:
 
     Args:
         context: Context whose end ends the spinning; None is the default one.
+
+    Raises:
+        NotInitializedException: (a RuntimeError) before `init`, or after the end of the context.
     """
 
     parallel = False
@@ -49,6 +51,8 @@ class Executor:
 
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = context if context is not None else get_default_context()
+        if not self._context.ok():
+            raise NotInitializedException("cannot make an executor", ended_by=self._context.ended_by)
         self._queue_: ReadyQueue[Entity] = ReadyQueue(self._context.make_inbox(), self._context.time.steady)
         """Ready queue: what is ready, and what will be."""
         self.inbox = self._queue_.inbox
@@ -139,9 +143,10 @@ class Executor:
             raise ShutdownException
 
     def _check_interrupt(self) -> None:
-        """Raise after a signal; KeyboardInterrupt is for the main thread alone, as in every Python program."""
+        """Raise after a signal; KeyboardInterrupt is for Ctrl-C in the main thread, as in every Python program."""
         if self._context.interrupted:
-            raise InterruptedByUser if get_defaults().in_main_thread() else ExternalShutdownException
+            is_ctrl_c = get_defaults().in_main_thread() and not self._context.terminated
+            raise InterruptedByUser if is_ctrl_c else ExternalShutdownException
 
     def wait_for_ready_callbacks(
         self,
@@ -208,11 +213,6 @@ class Executor:
                 coroutine = outcome  # its group is busy until it ends
                 task: Task[Any] = Task(coroutine, executor=self)
                 TaskRunner(task, self, entity).execute(task)
-        except (ExternalShutdownException, ShutdownException):  # Ctrl-C in a callback is no fault of it
-            raise
-        except Exception as error:
-            log_failure(entity, error, self._context)
-            raise
         finally:
             if coroutine is None:
                 group = entity.gate
@@ -254,7 +254,7 @@ class Executor:
         """Run callbacks until the context or this executor is shut down.
 
         Raises:
-            ExternalShutdownException: if the context ends while this waits. After Ctrl-C or SIGTERM it is, in the
+            ExternalShutdownException: if the context ends while this waits. After Ctrl-C it is, in the
                 main thread, an InterruptedByUser, which is a KeyboardInterrupt too.
             Exception: what a callback raises.
         """
@@ -278,7 +278,7 @@ class Executor:
                 wait.
 
         Raises:
-            ExternalShutdownException: if the context has ended. After Ctrl-C or SIGTERM, in the main thread, it is
+            ExternalShutdownException: if the context has ended. After Ctrl-C, in the main thread, it is
                 an InterruptedByUser, which is a KeyboardInterrupt too.
             Exception: what the callback raises.
         """
@@ -292,7 +292,7 @@ class Executor:
             timeout_sec: Longest wait in seconds; None or less waits for ever, 0 does not wait.
 
         Raises:
-            ExternalShutdownException: if the context ends while this waits. After Ctrl-C or SIGTERM it is, in the
+            ExternalShutdownException: if the context ends while this waits. After Ctrl-C it is, in the
                 main thread, an InterruptedByUser, which is a KeyboardInterrupt too.
             Exception: what a callback raises.
         """
@@ -347,6 +347,10 @@ class Executor:
                     return
         except (TimeoutException, ShutdownException, ConditionReachedException):
             pass
+        except KeyboardInterrupt:
+            if self._context.terminated:  # a signal's handler broke into the wait, or into a callback
+                raise ExternalShutdownException from None
+            raise
         finally:
             threads.remove(thread)
             if self._is_shutdown:

@@ -219,8 +219,7 @@ class Program:
         if isinstance(error, _ENDS) or (isinstance(error, NotInitializedException) and self._was_interrupted()):
             return INTERRUPTED if is_script else 0
         error = self.error = _lacking_opencv(error) or error
-        if not getattr(error, "__robolink_logged__", False):
-            get_logger("robolink").error(self._told(error))
+        get_logger("robolink").error(self._told(error))
         return 1
 
     def _was_interrupted(self) -> bool:

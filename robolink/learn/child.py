@@ -92,12 +92,10 @@ def _show_own_lines() -> None:
     """Print what the student's nodes log, as `INFO robo: hello`, and nothing of the world's."""
     from robolink import logging
     from robolink.logging import Record
-    from robolink.running.execution import ENDS_THE_SPINNING
     from robolink.text.tracebacks import without_own_frames
 
     def show(record: Record) -> None:
-        is_told = record.message.startswith(ENDS_THE_SPINNING)  # by the report, with its line
-        if record.name.partition(".")[0] not in _OURS and not is_told:
+        if record.name.partition(".")[0] not in _OURS:
             text = without_own_frames(record.message)
             print(f"[{record.severity.name}] {record.name}: {text}", flush=True)  # noqa: T201
 

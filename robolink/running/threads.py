@@ -12,6 +12,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup
@@ -145,6 +146,15 @@ class CallbackThreads:
     def can_serve(self) -> bool:
         """Return whether a callback waits and may run services meanwhile."""
         return any(callback.idle and callback.serves for callback in self._waiting)
+
+    def settle(self, task: Future[Any]) -> None:
+        """Wait until the thread in which a task has just ended has noted what it raised."""
+
+        def is_noted() -> bool:
+            return not any(getattr(each, "task", None) is task for each in chain(*list(self._running.values())))
+
+        with self.ended:
+            self.ended.wait_for(is_noted, A_WHILE)
 
     # Waiting within a callback
 

@@ -106,8 +106,4 @@ class TransformListener:
 
 def _spin(executor: Executor) -> None:
     with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):  # the main thread is told of these
-        try:
-            executor.spin()
-        except Exception as error:
-            if not getattr(error, "__robolink_logged__", False):
-                raise
+        executor.spin()

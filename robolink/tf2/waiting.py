@@ -136,7 +136,7 @@ class Waits:
 def check(contexts: list[Context]) -> None:
     """Raise InterruptedByUser (in the main thread) or ExternalShutdownException if a context has ended."""
     for context in contexts:
-        if context.interrupted and get_defaults().in_main_thread():
+        if context.interrupted and not context.terminated and get_defaults().in_main_thread():
             raise InterruptedByUser
         if not context.ok():
             raise ExternalShutdownException("the context ended before the transform came")

@@ -7,7 +7,7 @@ from typing import Any
 from robolink.callback_groups import ReentrantCallbackGroup
 from robolink.clock import Clock
 from robolink.clock_type import ClockType
-from robolink.exceptions import NotFoundError, RobolinkError, nearest
+from robolink.exceptions import ExternalShutdownException, NotFoundError, RobolinkError, nearest
 from robolink.executors import Executor
 from robolink.interfaces.sensor_msgs.msg import JointState
 from robolink.node import Node
@@ -164,7 +164,7 @@ class Robot:
             start = start or self._stamp
             try:
                 self._spin_once(executor)
-            except KeyboardInterrupt:
+            except (KeyboardInterrupt, ExternalShutdownException):
                 return -1
         return -1
 

@@ -12,9 +12,10 @@ import pytest
 
 from robolink import Context, Future, Node, VirtualTime
 from robolink.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-from robolink.exceptions import ExternalShutdownException
-from robolink.executors import SingleThreadedExecutor
+from robolink.exceptions import ExternalShutdownException, NotInitializedException
+from robolink.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.guard_condition import GuardCondition
+from robolink.impl.log_output import Record
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.publisher import Publisher
@@ -371,3 +372,24 @@ def test_a_hundred_idle_subscriptions_cost_nothing(bus: Bus) -> None:
     """What a tick takes of a core stands in benchmarks/executors.py."""
     alone = calls_of_a_hundred_ticks(bus, 0)
     assert 0 < alone == calls_of_a_hundred_ticks(bus, 100)
+
+
+@pytest.mark.parametrize("kind", [SingleThreadedExecutor, MultiThreadedExecutor])
+def test_an_executor_needs_a_context_that_goes_on(bus: Bus, kind: type[Executor]) -> None:
+    context = Context(transport=MemoryTransport(bus=bus))
+    with pytest.raises(NotInitializedException, match="cannot make an executor"):
+        kind(context=context)
+    context.init(args=[])
+    kind(context=context).shutdown()
+    context.shutdown()
+    with pytest.raises(NotInitializedException, match="cannot make an executor"):
+        kind(context=context)
+
+
+def test_what_a_callback_raises_is_for_whoever_spins_to_tell(
+    node: Node, executor: SingleThreadedExecutor, log_lines: list[Record]
+) -> None:
+    node.create_timer(0.1, lambda: 1 // 0)
+    with pytest.raises(ZeroDivisionError):
+        executor.spin()
+    assert log_lines == []

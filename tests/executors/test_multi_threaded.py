@@ -346,3 +346,15 @@ def test_over_the_network(net: Network) -> None:
         other.shutdown()
         thread.join(PATIENCE)
     assert answers == [True]
+
+
+def test_the_task_that_is_waited_for_raises_what_it_raised_there(two: MultiThreadedExecutor) -> None:
+    """And not in the next spin, which has nothing to do with it."""
+
+    async def fail() -> None:
+        raise FileNotFoundError("x")
+
+    for _ in range(20):
+        with pytest.raises(FileNotFoundError):
+            two.spin_until_future_complete(two.create_task(fail), timeout_sec=PATIENCE)
+        two.spin_once(timeout_sec=0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import signal
 import threading
 from collections.abc import Callable, Iterator
@@ -11,9 +12,9 @@ from typing import Any
 import pytest
 
 import robolink
-from robolink import Context, Node, signals
+from robolink import Context, Future, Node, signals
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser
-from robolink.executors import SingleThreadedExecutor
+from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.interfaces.std_msgs.msg import String
 from robolink.signals import SignalHandlerOptions
 from tests.support.programs import Program
@@ -70,13 +71,40 @@ def test_a_signal_ends_the_spin(context: Context, number: int) -> None:
     timer = node.create_timer(0.005, interrupt)
     with SingleThreadedExecutor(context=context) as executor:
         executor.add_node(node)
-        with pytest.raises(InterruptedByUser):
+        with pytest.raises(ExternalShutdownException) as first:
             executor.spin()
         assert not context.ok()
-        with pytest.raises(KeyboardInterrupt):
+        with pytest.raises(ExternalShutdownException) as second:
             executor.spin()
+        assert (
+            first.type is second.type is (InterruptedByUser if number == signal.SIGINT else ExternalShutdownException)
+        )
         with pytest.raises(ExternalShutdownException):
             executor.spin_once()
+
+
+@pytest.mark.parametrize("spin", ["spin", "spin_once", "spin_until_future_complete", "spin_once_until_future_complete"])
+def test_sigterm_is_not_a_ctrl_c_whatever_spins(context: Context, spin: str) -> None:
+    signals.install_signal_handlers()
+    thread = threading.Timer(0.05, signal.raise_signal, [signal.SIGTERM])
+    with SingleThreadedExecutor(context=context) as executor:
+        thread.start()
+        with pytest.raises(ExternalShutdownException) as met:
+            getattr(executor, spin)(*([Future[None]()] if "future" in spin else []))
+        thread.join(PATIENCE)
+    assert met.type is ExternalShutdownException
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_sigterm_lets_a_multi_threaded_spin_return(context: Context, number: int) -> None:
+    signals.install_signal_handlers()
+    thread = threading.Timer(0.05, signal.raise_signal, [number])
+    with MultiThreadedExecutor(2, context=context) as executor:
+        thread.start()
+        with pytest.raises(InterruptedByUser) if number == signal.SIGINT else contextlib.nullcontext():
+            executor.spin()
+        thread.join(PATIENCE)
+    assert not context.ok()
 
 
 def test_only_the_main_thread_meets_a_keyboard_interrupt(context: Context) -> None:
@@ -247,7 +275,7 @@ BROKEN = """
         (LONELY, Program.interrupt, 3),
         (LONELY, Program.terminate, 3),
         (IN_A_CALLBACK, Program.interrupt, 3),
-        (IN_A_CALLBACK, Program.terminate, 3),
+        (IN_A_CALLBACK, Program.terminate, 0),  # the spinning returns
     ],
     ids=[
         "tutorial-int",

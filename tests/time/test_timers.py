@@ -253,7 +253,7 @@ def test_a_timer_without_a_callback_says_so_when_it_is_due(
     with pytest.raises(TypeError, match=r"^the timer of 0\.5 s that was made at .*test_timers\.py:\d+ has None for a"):
         spin_for(executor, 1.0)
     assert called == [None]
-    assert "without (): self.on_timer, not self.on_timer()" in capsys.readouterr().err
+    assert capsys.readouterr().err == ""  # it is for whoever spins to tell
 
 
 def test_a_timer_calls_only_what_can_be_called(node: Node) -> None:

@@ -13,6 +13,7 @@ from robolink.cli.bag.progress_line import ProgressLine
 from robolink.cli.shared.keys import keys
 from robolink.cli.shared.output import tell
 from robolink.cli.shared.session import opened
+from robolink.exceptions import ExternalShutdownException
 from robolink.logging import LoggingSeverity
 from robolink.node import Node
 from robolink.system import clocks
@@ -48,7 +49,7 @@ def run(paths: Sequence[str], settings: PlaySettings, wish: Wish) -> int:
         command = _Command(context, paths, settings, wish)
         try:
             command.run(line)
-        except KeyboardInterrupt:  # a usual end; SIGTERM comes as one, too
+        except (KeyboardInterrupt, ExternalShutdownException):  # a usual end: Ctrl-C, or SIGTERM
             pass
         finally:
             line.clear()

@@ -16,6 +16,7 @@ from robolink.cli.bag.recording_lines import as_data, progress, summary
 from robolink.cli.shared.keys import keys
 from robolink.cli.shared.output import complain, say, say_json
 from robolink.cli.shared.session import opened
+from robolink.exceptions import ExternalShutdownException
 from robolink.logging import LoggingSeverity
 from robolink.node import Node
 from robolink.system import clocks
@@ -49,7 +50,7 @@ def run(path: str | Path, selection: Selection, settings: RecordSettings, wish: 
         command = _Command(context, path, selection, settings, wish)
         try:
             command.run(line)
-        except KeyboardInterrupt:  # the usual end; SIGTERM comes as one, too
+        except (KeyboardInterrupt, ExternalShutdownException):  # the usual end: Ctrl-C, or SIGTERM
             pass
         finally:
             command.end(line)

@@ -12,7 +12,7 @@ from robolink.cli.shared.matching_qos import matching_qos
 from robolink.cli.shared.output import tell
 from robolink.cli.shared.pictures import check_picture
 from robolink.cli.shared.types import message_type
-from robolink.exceptions import RobolinkError, nearest
+from robolink.exceptions import ExternalShutdownException, RobolinkError, nearest
 from robolink.executors import SingleThreadedExecutor
 from robolink.system import clocks
 from robolink.task import Future
@@ -118,7 +118,7 @@ def listen(node: Node, topics: Mapping[str, tuple[type[Any], Callable[[Any], Any
         executor.add_node(node)
         try:
             executor.spin_until_future_complete(Future[None](), timeout_sec=duration)
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, ExternalShutdownException):
             tell("")
 
 

@@ -108,7 +108,7 @@ def outcome(act: Callable[[], Any], terminated: list[int]) -> int:
         _show(error)
         return 1
     except RobolinkError as error:
-        return 1 if _is_logged(error) else complain(error, place=_place(error))
+        return complain(error, place=_place(error))
     except Exception as error:  # noqa: BLE001 - it is the user's, and they want to see where
         if isinstance(error, ImportError):
             from robolink.image.opencv import lacking
@@ -341,9 +341,7 @@ def _purpose(source: NodeSource) -> str:
 
 
 def _show(error: Exception) -> None:
-    """Print a traceback that begins in the user's code, unless the executor has logged it."""
-    if _is_logged(error):
-        return
+    """Print a traceback that begins in the user's code."""
     trace = error.__traceback__
     while trace is not None and is_ours(trace):
         trace = trace.tb_next
@@ -359,10 +357,6 @@ def _end_in_users_code(trace: TracebackType | None) -> None:
         last, trace = last if is_ours(trace) else trace, trace.tb_next
     if last is not None:
         last.tb_next = None
-
-
-def _is_logged(error: Exception) -> bool:
-    return getattr(error, "__robolink_logged__", False)
 
 
 def _place(error: Exception) -> str:

@@ -99,9 +99,8 @@ def test_an_error_in_the_users_code_is_shown_from_there_on(write: Write) -> None
     code, _, err = outcome("run", "talker")
     assert code == 1
     lines = err.splitlines()
-    assert lines[0].endswith("[talker]: an exception in a callback ends the spinning:")
-    assert lines[1] == "Traceback (most recent call last):"
-    assert lines[2].startswith(f'  File "{path.resolve()}", line')
+    assert lines[0] == "Traceback (most recent call last):"
+    assert lines[1].startswith(f'  File "{path.resolve()}", line')
     assert lines[-1] == "KeyError: 'x'"
     assert "/robolink/" not in err
     assert err.count("Traceback") == 1
@@ -132,8 +131,7 @@ def test_what_a_callback_asked_for_in_vain_is_told_once(write: Write) -> None:
     write("nodes/talker.py", TALKER + "        self.create_timer(0.01, self.tick)\n" + tick)
     code, _, err = outcome("run", "talker")
     assert code == 1
-    assert "[talker]: an exception in a callback ends the spinning:" in err.splitlines()[0]
-    assert "robolink: invalid" not in err
+    assert (err.count("\n"), err.count("robolink: invalid topic name")) == (1, 1)
 
 
 @pytest.mark.processes
