@@ -15,11 +15,11 @@ from robolink.compat.launch_names import LAUNCH_ROOMS
 from robolink.compat.names import ROOMS, instead_of, snake_case
 from robolink.exceptions import closest
 from robolink.interfaces import ACTION_PARTS, KINDS
-from robolink.interfaces._standard import STANDARD
+from robolink.interfaces.standard import packages, set_home, types_of
 from robolink.text.suggestions import LackingModuleError, lacking, names_in
 from robolink.workspace.modules import FINDER, Fill, Filling
 
-MESSAGES = frozenset(package for kind in KINDS for package in STANDARD[kind])
+MESSAGES = frozenset(packages())
 TOPS = frozenset({*MESSAGES, *(name for name in ROOMS if "." not in name)})
 """The top-level names that are robolink's."""
 ALIKE = 0.85
@@ -160,20 +160,15 @@ def _put(fullname: str, room: str, _new: ModuleType) -> None:
     if holds_types or any(name.startswith(f"{fullname}.") for name in ROOMS):
         vars(module).setdefault("__path__", [])  # else Python asks no finder for geometry_msgs.msg._twist
     if holds_types:
-        vars(module)["__all__"] = STANDARD[kind][package].split()
-        _say_where(fullname, module)
+        set_home(package, kind, functools.partial(_home, fullname))
     own = vars(module).get("__getattr__")
     if module is not sys.modules["robolink"] and not isinstance(own, functools.partial):
         module.__getattr__ = functools.partial(_asked, fullname, module, own)
 
 
-def _say_where(fullname: str, module: Any) -> None:
-    """Let each type say that it is where rosidl defines it: programs take its package from its `__module__`."""
-    for short in module.__all__:
-        cls = getattr(module, short)
-        parts = {f"{short}_{part}": vars(cls)[part] for part in PARTS if part in vars(cls)}
-        for name, each in {short: cls, **parts}.items():
-            each.__module__, each.__qualname__ = f"{fullname}._{snake_case(short)}", name
+def _home(module: str, short: str) -> str:
+    """Return where rosidl defines a type of a module."""
+    return f"{module}._{snake_case(short)}"
 
 
 def _asked(fullname: str, module: ModuleType, own: Callable[[str], Any] | None, name: str) -> Any:
@@ -195,9 +190,9 @@ def _home_of(fullname: str, name: str) -> str:
     if package not in MESSAGES or kind not in KINDS:
         return ""
     service, part = next(((name.removesuffix(each), each) for each in PARTS if name.endswith(each)), ("", ""))
-    if service in STANDARD[kind].get(package, "").split():
+    if service in types_of(package, kind):
         return f"that is ROS 1: {service}.{part} is what ROS 2 has"
-    homes = [f"{each}.{kind}" for each, types in STANDARD[kind].items() if name in types.split()]
+    homes = [f"{each}.{kind}" for each in packages() if name in types_of(each, kind)]
     return f"it is in {' and in '.join(homes)}" if homes else ""
 
 
@@ -208,7 +203,7 @@ def _fill_package(module: ModuleType) -> None:
 def _defined_in(fullname: str) -> list[str]:
     """Return the types that rosidl defines in ``geometry_msgs.msg._twist``: those so spelled, usually one."""
     package, kind, last = [*fullname.split("."), "", ""][:3]
-    types = STANDARD.get(kind, {}).get(package, "").split() if fullname.count(".") == 2 else []
+    types = types_of(package, kind) if fullname.count(".") == 2 else ()
     found = [each for each in types if f"_{snake_case(each)}" == last]
     if not found:
         raise LackingModuleError(fullname, lambda: [f"_{snake_case(each)}" for each in types])

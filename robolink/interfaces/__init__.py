@@ -10,12 +10,12 @@ workspace's `.msg`, `.srv` and `.action` files are one (`robolink.workspace.use_
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Collection, Mapping
 from typing import Any, Protocol
 
 from robolink.exceptions import MessageError, NotFoundError
-from robolink.interfaces._standard import STANDARD
+from robolink.interfaces.standard import packages as standard_packages
+from robolink.interfaces.standard import standard_type, types_of
 from robolink.text import advice
 
 __all__ = ["Source", "add_source", "find", "find_announced", "is_named", "names", "register", "remove_source"]
@@ -160,7 +160,7 @@ def _package_of(short: str, kind: str) -> str:
 
 
 def _types(kind: str) -> dict[str, list[str]]:
-    types = {package: text.split() for package, text in STANDARD[kind].items()}
+    types = {package: list(found) for package in standard_packages() if (found := types_of(package, kind))}
     known = [
         (package, short) for source in _sources for package, shorts in source.names(kind).items() for short in shorts
     ]
@@ -182,19 +182,12 @@ def _get(package: str, kind: str, short: str) -> type[Any] | None:
     registered = _registered.get(f"{package}/{kind}/{short}")
     if registered is not None:
         return registered
-    standard = _standard(package, kind, short)
+    standard = standard_type(package, kind, short)
     for source in _sources:
         found = source.get(package, kind, short)
         if found is not None:
             return standard if standard is not None and _same(found, standard) else found
     return standard
-
-
-def _standard(package: str, kind: str, short: str) -> type[Any] | None:
-    if short not in STANDARD[kind].get(package, "").split():
-        return None
-    found: type[Any] = getattr(importlib.import_module(f"robolink.interfaces.{package}.{kind}"), short)
-    return found
 
 
 def _same(one: type[Any], other: type[Any]) -> bool:

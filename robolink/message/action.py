@@ -57,8 +57,8 @@ def _impl(action: type[Action]) -> ActionImpl:
     from robolink.interfaces.builtin_interfaces.msg import Time
     from robolink.interfaces.unique_identifier_msgs.msg import UUID
 
-    send_goal_request = {"goal_id": UUID, "goal": action.Goal}
-    get_result_response = {"status": int8, "result": action.Result}
+    send_goal_request: dict[str, Any] = {"goal_id": UUID, "goal": action.Goal}
+    get_result_response: dict[str, Any] = {"status": int8, "result": action.Result}
     return ActionImpl(
         SendGoalService=_service(action, "SendGoal", send_goal_request, {"accepted": boolean, "stamp": Time}),
         GetResultService=_service(action, "GetResult", {"goal_id": UUID}, get_result_response),

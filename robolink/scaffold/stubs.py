@@ -16,13 +16,12 @@ import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import robolink
 from robolink import interfaces
 from robolink.compat.names import ROOMS
-from robolink.interfaces._standard import STANDARD
-from robolink.message.annotations import FieldType
+from robolink.interfaces.standard import packages, types_of
+from robolink.message.stub import stub_of
 from robolink.workspace.interfaces import WORKSPACE_TYPES, use_interfaces
 
 FOLDER = "typings"
@@ -37,11 +36,6 @@ OTHER_SETTINGS = {
     "pyrightconfig.json": {"pyproject.toml": "[tool.pyright"},
 }
 """Other files that may have a checker's settings, each with the section that shows it."""
-PARTS = {"msg": (), "srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
-"""Messages that a type of each kind is made of."""
-BASES = {"msg": "Message", "srv": "Service", "action": "Action"}
-PYTHON = {"bool": "bool", "byte": "bytes", "string": "str", "wstring": "str", "float32": "float", "float64": "float"}
-"""Python's types of ROS's primitives; the others are int."""
 
 
 def write_stubs(workspace: Path) -> list[str]:
@@ -201,10 +195,11 @@ def _standard_types() -> dict[str, str]:
     """Return the stubs of the message packages that come with robolink: the same classes by ROS 2's names."""
     return {
         f"{package}/{kind}.pyi": "".join(
-            f"from robolink.interfaces.{package}.{kind} import {each} as {each}\n" for each in sorted(names.split())
+            f"from robolink.interfaces.{package}.{kind} import {each} as {each}\n" for each in names
         )
-        for kind, packages in STANDARD.items()
-        for package, names in packages.items()
+        for kind in interfaces.KINDS
+        for package in packages()
+        if (names := types_of(package, kind))
     }
 
 
@@ -213,43 +208,7 @@ def _own_types() -> dict[str, str]:
     found: dict[str, str] = {}
     for kind in interfaces.KINDS:
         for package, names in WORKSPACE_TYPES.names(kind).items():
-            if package not in STANDARD[kind]:
+            if not types_of(package, kind):
                 types = [interfaces.find(f"{package}/{kind}/{each}", kind) for each in sorted(set(names))]
-                found[f"{package}/{kind}.pyi"] = _types(types, kind)
+                found[f"{package}/{kind}.pyi"] = stub_of(types, kind)
     return found
-
-
-def _types(types: list[type[Any]], kind: str) -> str:
-    """Return the stub of a module of types."""
-    messages = [part for each in types for part in (each, *(getattr(each, name) for name in PARTS[kind]))]
-    fields = [field for each in messages for field in getattr(each, "__ros_fields__", {}).values()]
-    modules = sorted({field.base.replace("/", ".").rpartition(".")[0] for field in fields if field.message})
-    heads = ["builtins", "collections.abc", "typing", *modules, "robolink.message"]
-    imports = "".join(f"import {each}\n" for each in heads)
-    return f"{imports}\n{''.join(_type(each, kind) for each in types)}"
-
-
-def _type(cls: type[Any], kind: str) -> str:
-    if kind == "msg":
-        return _message(cls, cls.__name__, "")
-    parts = "".join(_message(getattr(cls, each), each, "    ") for each in PARTS[kind])
-    return f"class {cls.__name__}(robolink.message.{BASES[kind]}):\n{parts}"
-
-
-def _message(cls: type[Any], name: str, indent: str) -> str:
-    """Return a class with its constants and fields; all fields are keyword arguments that one may leave out."""
-    fields: dict[str, FieldType] = cls.__ros_fields__
-    constants: dict[str, tuple[FieldType, Any]] = cls.__ros_constants__
-    arguments = "".join(f", {each}: {_python(kind)} = ..." for each, kind in fields.items())
-    lines = [
-        *(f"{each}: typing.ClassVar[{_python(kind)}]" for each, (kind, _) in constants.items()),
-        *(f"{each}: {_python(kind)}" for each, kind in fields.items()),
-        f"def __init__(self{', *' if fields else ''}{arguments}) -> None: ...",
-    ]
-    return f"{indent}class {name}(robolink.message.Message):\n" + "".join(f"{indent}    {each}\n" for each in lines)
-
-
-def _python(kind: FieldType) -> str:
-    """Return the annotation of a field."""
-    one = kind.base.replace("/", ".") if kind.message else f"builtins.{PYTHON.get(kind.base, 'int')}"
-    return one if kind.shape == "one" else f"collections.abc.MutableSequence[{one}]"

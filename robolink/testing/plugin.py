@@ -214,9 +214,9 @@ def pytest_exception_interact(call: pytest.CallInfo[Any], report: pytest.Collect
 
 
 def _is_ros(name: str) -> bool:
-    from robolink.interfaces._standard import STANDARD
+    from robolink.interfaces.standard import packages
 
-    return name in ("rclpy", "tf2_ros", "message_filters") or any(name in packages for packages in STANDARD.values())
+    return name in ("rclpy", "tf2_ros", "message_filters") or name in packages()
 
 
 _ROBOLINK = Path(__file__).parents[1]

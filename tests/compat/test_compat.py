@@ -14,7 +14,7 @@ import pytest
 import robolink
 from robolink import interfaces
 from robolink.exceptions import RobolinkError
-from robolink.interfaces._standard import STANDARD
+from robolink.interfaces.standard import KINDS, packages, types_of
 from robolink.workspace.modules import FINDER
 from tests.support.ros_names import VERSION, raised
 
@@ -43,14 +43,14 @@ def test_a_module_stays_what_it_was() -> None:
 
 
 @pytest.mark.usefixtures("compat")
-@pytest.mark.parametrize("kind", list(STANDARD))
+@pytest.mark.parametrize("kind", KINDS)
 def test_every_message_package_is_there(kind: str) -> None:
-    for package, types in STANDARD[kind].items():
+    for package in filter(lambda each: types_of(each, kind), packages()):
         module = importlib.import_module(f"{package}.{kind}")
         assert module is importlib.import_module(f"robolink.interfaces.{package}.{kind}")
         scope: dict[str, Any] = {}
         exec(f"from {package}.{kind} import *", scope)
-        assert {each for each in scope if not each.startswith("__")} == set(types.split())
+        assert {each for each in scope if not each.startswith("__")} == set(types_of(package, kind))
 
 
 @pytest.mark.usefixtures("compat")
@@ -61,12 +61,12 @@ def test_turtlesims_types_have_their_newer_package_too(kind: str, name: str) -> 
 
 
 @pytest.mark.usefixtures("compat")
-@pytest.mark.parametrize("kind", list(STANDARD))
+@pytest.mark.parametrize("kind", KINDS)
 def test_the_modules_in_which_rosidl_defines_a_type_are_there(kind: str) -> None:
     from robolink.compat.names import snake_case
 
-    for package, types in STANDARD[kind].items():
-        for short in types.split():
+    for package in packages():
+        for short in types_of(package, kind):
             module = importlib.import_module(f"{package}.{kind}._{snake_case(short)}")
             assert getattr(module, short) is interfaces.find(f"{package}/{kind}/{short}", kind)
 

@@ -39,7 +39,12 @@ class Lidar(Node):
     def on_timer(self) -> None:
         if self.is_on:
             stamp = self.get_clock().now().to_msg()
-            limits = {"range_min": 0.1, "range_max": 10.0, "angle_min": -math.pi, "angle_increment": math.tau / 360}
+            limits: dict[str, Any] = {
+                "range_min": 0.1,
+                "range_max": 10.0,
+                "angle_min": -math.pi,
+                "angle_increment": math.tau / 360,
+            }
             self.scan.publish(LaserScan(header=Header(stamp=stamp), scan_time=0.1, ranges=self.ranges, **limits))
 
 

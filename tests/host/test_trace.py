@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from pathlib import Path
+from typing import Any
 
 from robolink.host.trace import LARGE, MANY, Trace
 from robolink.interfaces.builtin_interfaces.msg import Time
@@ -78,11 +79,18 @@ def test_what_is_sent_arrives() -> None:
     assert bus.outlets == {}
 
 
-def logged(**fields: object) -> str:
+def logged(**fields: Any) -> str:
     trace, session = Trace(), MemoryTransport(bus=Bus())
     rosout = key("/rosout", "rcl_interfaces/msg/Log")
     outlet = trace.tapped(rosout, session.advertise(rosout, QOS))
-    line = {"stamp": Time(sec=1), "level": 20, "name": "world", "msg": "hello", "file": "/a/b.py", "line": 3}
+    line: Any = {
+        "stamp": Time(sec=1),
+        "level": 20,
+        "name": "world",
+        "msg": "hello",
+        "file": "/a/b.py",
+        "line": 3,
+    }
     outlet.put(encode(Log(**{**line, **fields})), pack_attachment(1, 5, GID))
     return trace.hexdigest()
 

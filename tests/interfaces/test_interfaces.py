@@ -2,7 +2,8 @@
 
 import importlib
 import json
-import pkgutil
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,6 @@ from typing import Any
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
-import robolink.interfaces
 from robolink.exceptions import EncodeError, MessageError
 from robolink.interfaces import find, find_announced, names
 from robolink.interfaces.action_msgs.msg import GoalStatusArray
@@ -18,6 +18,7 @@ from robolink.interfaces.action_msgs.srv import CancelGoal
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticStatus
 from robolink.interfaces.nav2_msgs.action import NavigateToPose
 from robolink.interfaces.sensor_msgs.msg import LaserScan, NavSatStatus
+from robolink.interfaces.standard import KINDS, packages, types_of
 from robolink.interfaces.std_srvs.srv import SetBool
 from robolink.interfaces.unique_identifier_msgs.msg import UUID
 from robolink.message import (
@@ -32,6 +33,7 @@ from robolink.message import (
     type_name,
 )
 from tests.support import ros_test_types as ros
+from tools.interface_stubs import stale, stubs
 
 DATA = Path(__file__).parents[1] / "data"
 ALL_HASHES: dict[str, str] = json.loads((DATA / "type_hashes.json").read_text())
@@ -68,15 +70,11 @@ def announced_of(name: str) -> list[str]:
 
 
 def defined() -> Iterator[Any]:
-    """Every message, service and action class that a module of the packages defines."""
-    for package in pkgutil.iter_modules(robolink.interfaces.__path__):
-        where = Path(robolink.interfaces.__path__[0]) / package.name
-        for kind in ("msg", "srv", "action"):
-            if (where / f"{kind}.py").exists() or (where / kind).is_dir():
-                module = importlib.import_module(f"robolink.interfaces.{package.name}.{kind}")
-                for value in vars(module).values():
-                    if getattr(value, "__ros_type__", "").startswith(f"{package.name}/{kind}/"):
-                        yield value
+    """Every message, service and action class of the packages."""
+    for package in packages():
+        for kind in KINDS:
+            for short in types_of(package, kind):
+                yield getattr(importlib.import_module(f"robolink.interfaces.{package}.{kind}"), short)
 
 
 def messages_in(interface: Any) -> list[Any]:
@@ -102,8 +100,56 @@ def test_no_type_is_without_a_hash_to_compare_with() -> None:
     assert set(HASHES) == expected | set(names("action"))
 
 
-def test_the_table_of_names_is_what_the_modules_define() -> None:
+def test_the_names_are_what_the_modules_define() -> None:
     assert sorted(type_name(cls) for cls in defined()) == sorted(ALL)
+
+
+def test_each_package_says_what_it_is_for() -> None:
+    assert len(packages()) > 40
+    for package in packages():
+        module = importlib.import_module(f"robolink.interfaces.{package}")
+        assert str(module.__doc__).startswith(f"# {package}\n\n")
+
+
+@pytest.mark.processes
+def test_a_type_is_made_when_it_is_first_used_and_once() -> None:
+    program = """
+import sys
+from robolink.interfaces.geometry_msgs import msg
+assert "Twist" not in vars(msg)
+from robolink.interfaces.geometry_msgs.msg import Twist
+from robolink.interfaces import find
+assert find("Twist") is Twist is msg.Twist and type(Twist().linear) is msg.Vector3
+assert "Wrench" not in vars(msg) and "Wrench" in dir(msg) and "Wrench" in msg.__all__
+try:
+    msg.Twits
+except AttributeError as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout == (
+        "module 'robolink.interfaces.geometry_msgs.msg' has no attribute 'Twits' (did you mean 'Twist'?)\n"
+    )
+
+
+@pytest.mark.processes
+def test_threads_that_use_a_type_first_get_one_class() -> None:
+    program = """
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from robolink.interfaces.nav_msgs import msg
+start = threading.Barrier(8)
+def use(_):
+    start.wait()
+    return msg.Odometry
+with ThreadPoolExecutor(8) as pool:
+    assert len(set(pool.map(use, range(8)))) == 1
+"""
+    subprocess.run([sys.executable, "-c", program], check=True)
+
+
+def test_stubs_are_fresh() -> None:
+    assert stale(stubs()) == [], "run: python tools/interface_stubs.py"
 
 
 def test_every_class_says_what_it_means() -> None:

@@ -192,7 +192,7 @@ def test_what_was_set_before_a_callback_failed_is_told_as_set(ask: Asker) -> Non
     assert ask.robot.get_parameter("name").value == "b"
 
 
-@pytest.mark.parametrize("answer", [None, True, SetParametersResult(successful=False, reason=None)])
+@pytest.mark.parametrize("answer", [None, True, SetParametersResult(successful=False, reason=None)])  # type: ignore[arg-type]
 @pytest.mark.usefixtures("log_lines")
 def test_a_callback_that_answers_nonsense_does_not_end_the_node(ask: Asker, answer: Any) -> None:
     ask.robot.declare_parameter("name", "a")

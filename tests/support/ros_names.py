@@ -8,7 +8,7 @@ import sys
 import pytest
 
 import robolink
-from robolink.interfaces._standard import STANDARD
+from robolink.interfaces.standard import packages
 
 MODE = "ROBOLINK_COMPAT"
 
@@ -34,8 +34,7 @@ COMPANIONS = [
 def is_ros(name: str) -> bool:
     """Return whether a module is there through robolink.compat or these tests, or is a part of it."""
     top = name.partition(".")[0]
-    packages = {package for types in STANDARD.values() for package in types}
-    return name.startswith("robolink.compat") or top in {*packages, *COMPANIONS}
+    return name.startswith("robolink.compat") or top in {*packages(), *COMPANIONS}
 
 
 def forget() -> None:

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink import Context, Node, VirtualTime, interfaces
-from robolink.interfaces.geometry_msgs.msg import Point, Polygon, TransformStamped, Twist
+from robolink.interfaces.geometry_msgs.msg import Point32, Polygon, TransformStamped, Twist
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.std_msgs.msg import Int32, String
@@ -75,7 +75,7 @@ def test_a_transform_tells_its_frames_and_what_is_not_zero() -> None:
 
 def test_a_line_has_an_end() -> None:
     assert short(String(data="x" * 1000)) == f"data='{'x' * 60}...'"
-    assert len(short(Polygon(points=[Point(x=float(each)) for each in range(100)]))) <= WIDTH
+    assert len(short(Polygon(points=[Point32(x=float(each)) for each in range(100)]))) <= WIDTH
 
 
 @given(st.sampled_from(interfaces.names()), st.integers(0, 1000))

@@ -69,13 +69,13 @@ class Robot:
 
     def make(self) -> None:
         std_msgs.msg.String(
-            dta="text",
+            dta="text",  # type: ignore[call-arg]
         )
 
 
 def make_a_request() -> None:
     request = SetBool.Request
-    if request(dat=True):
+    if request(dat=True):  # type: ignore[call-arg]
         pass
 
 

@@ -90,7 +90,7 @@ def trace(world: Any, system: System) -> str:
         message.header.stamp.sec = message.header.stamp.nanosec = 0
         digest.update(repr(message).encode())
 
-    kinds = {"/ada/scan": LaserScan, "/ada/odom": Odometry, "/bob/ground_truth": Odometry}
+    kinds: dict[str, Any] = {"/ada/scan": LaserScan, "/ada/odom": Odometry, "/bob/ground_truth": Odometry}
     heard = [system.node.create_subscription(kind, topic, note, 100) for topic, kind in kinds.items()]
     cmd_vel = system.node.create_publisher(Twist, "/ada/cmd_vel", 10)
     cmd_vel.publish(Twist(linear=Vector3(x=0.4), angular=Vector3(z=0.3)))

@@ -13,8 +13,7 @@ from pathlib import Path
 
 from robolink.companions.ament_index.search_paths import get_search_paths
 from robolink.exceptions import MessageError, NotFoundError
-from robolink.interfaces import KINDS
-from robolink.interfaces._standard import STANDARD
+from robolink.interfaces import standard
 from robolink.workspace.counterparts import COUNTERPARTS, counterpart_folder
 from robolink.workspace.find import find_package, list_packages
 from robolink.workspace.installed import installed_packages
@@ -140,7 +139,7 @@ def _folder(name: str) -> Path | None:
 def _standard() -> dict[str, Path]:
     """Return the packages of types that come with robolink, each with the folder of its module."""
     folder = types_folder()
-    return {package: folder / package for kind in KINDS for package in STANDARD[kind]}
+    return {package: folder / package for package in standard.packages()}
 
 
 def _counterparts() -> dict[str, Path]:

@@ -1,1 +1,0 @@
-"""ROS 2's action_tutorials_interfaces: the action of the tutorials."""

@@ -1,1 +1,0 @@
-"""ROS 2's actionlib_msgs: goals as ROS 1's actions had them, for bridges and old bags."""

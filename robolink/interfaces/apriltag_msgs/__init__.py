@@ -1,1 +1,0 @@
-"""ROS's apriltag_msgs: AprilTags that a camera sees."""

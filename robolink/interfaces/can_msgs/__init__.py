@@ -1,1 +1,0 @@
-"""ROS's can_msgs: frames on a CAN bus."""

@@ -1,1 +1,0 @@
-"""ROS 2's composition_interfaces: nodes loaded into a running process."""

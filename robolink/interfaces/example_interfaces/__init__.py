@@ -1,1 +1,0 @@
-"""ROS 2's example_interfaces: types to learn and to try things out with."""

@@ -1,1 +1,0 @@
-"""ROS 2's geometry_msgs: points, poses, velocities and forces in space."""

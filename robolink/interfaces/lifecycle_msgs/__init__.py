@@ -1,1 +1,0 @@
-"""ROS 2's lifecycle_msgs: the states of a managed node, and the steps between them."""

@@ -1,1 +1,0 @@
-"""ROS's map_msgs: parts of maps, and changes to them."""

@@ -1,1 +1,0 @@
-"""ROS 2's nav_msgs: odometry, paths and maps."""

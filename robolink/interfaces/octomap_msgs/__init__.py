@@ -1,1 +1,0 @@
-"""ROS's octomap_msgs: occupancy maps in three dimensions, as octrees."""

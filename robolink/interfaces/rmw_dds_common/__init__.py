@@ -1,1 +1,0 @@
-"""ROS 2's rmw_dds_common: how nodes over DDS tell each other what they have."""

@@ -1,1 +1,0 @@
-"""ROS 2's rosbag2_interfaces: remote control for players and recorders of bags."""

@@ -1,1 +1,0 @@
-"""ROS 2's rosgraph_msgs: the clock that a simulation publishes."""

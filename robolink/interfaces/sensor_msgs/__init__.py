@@ -1,1 +1,0 @@
-"""ROS 2's sensor_msgs: what sensors measure."""

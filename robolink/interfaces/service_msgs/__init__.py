@@ -1,1 +1,0 @@
-"""ROS 2's service_msgs: what service introspection says of a call."""

@@ -1,1 +1,0 @@
-"""ROS 2's statistics_msgs: what was measured of topics and processes."""

@@ -1,1 +1,0 @@
-"""ROS 2's std_srvs: services that need no types of their own."""

@@ -1,1 +1,0 @@
-"""ROS's topic_tools_interfaces: services of a multiplexer and a demultiplexer of topics."""

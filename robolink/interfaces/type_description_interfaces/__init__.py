@@ -1,1 +1,0 @@
-"""ROS 2's type_description_interfaces: what a type is made of, as messages."""

@@ -1,1 +1,0 @@
-"""ROS 2's visualization_msgs: what rviz shows, and what one can drag there."""

@@ -1,0 +1,52 @@
+"""Writer of the stubs of the standard types, by which type checkers and editors know robolink.interfaces.
+
+python tools/interface_stubs.py            writes robolink/interfaces/PACKAGE/{msg,srv,action}.pyi
+python tools/interface_stubs.py --check    exit code 1 if one is out of date
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from robolink.interfaces import find
+from robolink.interfaces.standard import FOLDER, KINDS, ROOT, packages, types_of
+from robolink.message.stub import stub_of
+
+HEAD = "# Made of the files in the folder of this name by tools/interface_stubs.py.\n"
+
+
+def stubs() -> dict[Path, str]:
+    """Return the text of each stub by its path."""
+    return {
+        FOLDER / package / f"{kind}.pyi": HEAD
+        + stub_of([find(f"{package}/{kind}/{each}", kind) for each in types_of(package, kind)], kind, f"{ROOT}.")
+        for package in packages()
+        for kind in KINDS
+        if types_of(package, kind)
+    }
+
+
+def stale(written: dict[Path, str]) -> list[Path]:
+    """Return the stubs that are out of date, or of types that are gone."""
+    there = set(FOLDER.glob("*/*.pyi"))
+    changed = [path for path, text in written.items() if path not in there or path.read_text(encoding="utf-8") != text]
+    return [*changed, *sorted(there - set(written))]
+
+
+def main(words: list[str]) -> int:
+    """Write the stubs, or with `--check` compare them; return the exit code."""
+    written = stubs()
+    changed = stale(written)
+    for path in changed:
+        if words == ["--check"]:
+            sys.stderr.write(f"{path} is out of date: python tools/interface_stubs.py\n")
+        elif path in written:
+            path.write_text(written[path], encoding="utf-8", newline="\n")
+        else:
+            path.unlink()
+    return int(words == ["--check"] and bool(changed))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
