@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 import robolink
-from robolink.interfaces import std_msgs
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
+from robolink.interfaces.std_msgs import msg as std_msgs
 from robolink.interfaces.std_srvs.srv import SetBool
 from robolink.text.suggestions import LackingAttributeError
 from robolink.text.tracebacks import formatted, suggestion, without_own_frames
@@ -68,7 +68,7 @@ class Robot:
         str(self.twist.angle)  # type: ignore[attr-defined]
 
     def make(self) -> None:
-        std_msgs.msg.String(
+        std_msgs.String(
             dta="text",  # type: ignore[call-arg]
         )
 
