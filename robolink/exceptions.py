@@ -167,6 +167,10 @@ class NoTypeSupportImportedException(RobolinkError, TypeError):
     """A class that is no message class was given where one is needed."""
 
 
+class RCLError(RobolinkError, RuntimeError):
+    """ROS 2's client library refused something: what rclpy's C library raises under this name."""
+
+
 class InvalidHandle(RobolinkError, RuntimeError):
     """An entity was used after it had been destroyed."""
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import array
 import os
+import warnings
 from collections.abc import Sequence
 from enum import IntEnum
 from typing import Any, Generic, TypeAlias, TypeVar, cast, overload
 
-from robolink.exceptions import DocumentError, nearest
+from robolink.exceptions import nearest
 from robolink.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
 from robolink.interfaces.rcl_interfaces.msg import ParameterType, ParameterValue
 
@@ -149,19 +150,29 @@ def _field(type_: Parameter.Type) -> str:
 
 
 def get_parameter_value(string_value: str) -> ParameterValue:
-    """Parse `string_value`, text of a command line, as YAML; what is no single YAML value stays a string.
+    """Parse `string_value`, text of a command line, as YAML; what is not one value, or has no type, stays a string.
+
+    The rules are PyYAML's, as in rclpy, and not those of parameter files: 1e3 is a string, and [] a list of booleans.
 
     >>> get_parameter_value("[1, 2]").type == ParameterType.PARAMETER_INTEGER_ARRAY
     True
     """
-    from robolink.arguments.parameter_file import parse_parameter_value
+    import yaml  # late: most programs never read text
 
-    value: AllowableParameterValue
     try:
-        value = parse_parameter_value(string_value)
-    except DocumentError:
+        value = yaml.safe_load(string_value)
+    except (yaml.YAMLError, ValueError, RecursionError):  # ValueError: a date with a 32nd day
         value = string_value
-    return Parameter("", value=value).get_parameter_value()
+    if value == []:
+        return ParameterValue(type=ParameterType.PARAMETER_BOOL_ARRAY)
+    return Parameter("", value=value if _is_value(value) else string_value).get_parameter_value()
+
+
+def _is_value(value: object) -> bool:
+    """Return whether a parameter can have a value of YAML: text, a number of 64 bits, a boolean, or a list of one."""
+    if isinstance(value, list):
+        return any(_all_are(value, each) for each in _SCALARS.values()) and all(map(_is_value, value))
+    return isinstance(value, (bool, float, str)) or (isinstance(value, int) and -(2**63) <= value < 2**63)
 
 
 def parameter_value_to_python(parameter_value: ParameterValue) -> AllowableParameterValue:
@@ -195,17 +206,22 @@ def parameter_dict_from_yaml_file(
 
     Raises:
         FileNotFoundError: if there is no such file.
-        ParameterFileError: (a RuntimeError) if it is no ROS parameter file, or has no section for a target node.
+        ParameterFileError: (a RuntimeError) if it is no ROS parameter file, or has no section for any target node.
+
+    Warns (RuntimeWarning) of a target node without a section where another one has any.
     """
     from robolink.arguments.parameter_file import ParameterFileError, read_parameter_file
 
     overrides = read_parameter_file(parameter_file)
     sections = list(dict.fromkeys(each.pattern for each in overrides))
     wanted = _wanted_sections(sections, use_wildcard, target_nodes)
-    for section in wanted:
-        if section not in sections:
-            hint = nearest(section, sections) or f": it has {', '.join(sections) or 'none'}"
-            raise ParameterFileError(f"{parameter_file}:1:1: no parameters for node '{section}'{hint}")
+    missing = [each for each in wanted if each not in sections]
+    if missing:
+        hint = nearest(missing[0], sections) or f": it has {', '.join(sections) or 'none'}"
+        text = f"{parameter_file}:1:1: no parameters for node '{missing[0]}'{hint}"
+        if len(missing) == len(wanted):
+            raise ParameterFileError(text)
+        warnings.warn(text, RuntimeWarning, stacklevel=2)
     if not wanted:
         raise ParameterFileError(f"{parameter_file}:1:1: no parameters for the nodes asked for")
     values = {namespace + each.name: each.value for part in wanted for each in overrides if each.pattern == part}

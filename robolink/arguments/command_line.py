@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from robolink.arguments.overrides import Override, Value, overrides_for
+from robolink.arguments.overrides import Override, Value, by_first_pattern, overrides_for
 from robolink.arguments.remapping import RemapKind, RemapRule, parse_remap_rule, remap_node
-from robolink.exceptions import RobolinkError, nearest
+from robolink.exceptions import RCLError, RobolinkError, nearest
 from robolink.impl.logging_severity import (
     LoggingSeverity,
     LoggingSeverityError,
@@ -17,14 +17,14 @@ from robolink.impl.logging_severity import (
 )
 
 
-class InvalidROSArgsError(RobolinkError, ValueError):
+class InvalidROSArgsError(RCLError, ValueError):
     """A ROS argument cannot be read; the text names it and says what was expected."""
 
     def __init__(self, reason: str) -> None:
         super().__init__(f"Failed to parse ROS arguments: {' '.join(reason.split())}")
 
 
-class UnknownROSArgsError(RobolinkError, ValueError):
+class UnknownROSArgsError(RobolinkError, RuntimeError, ValueError):
     """Arguments between `--ros-args` and `--` that ROS does not know; `unknown_args` lists them."""
 
     def __init__(self, unknown_args: Sequence[str]) -> None:
@@ -60,7 +60,7 @@ class Arguments:
         return remap_node(self.remap_rules, RemapKind.NAMESPACE, node_name) or default
 
     def overrides_for(self, full_node_name: str) -> dict[str, Value]:
-        """Return the parameters that a node such as `/arm/driver` gets, by name; later arguments win."""
+        """Return the parameters that a node such as `/arm/driver` gets, by name; of one pattern later arguments win."""
         return overrides_for(self.parameter_overrides, full_node_name)
 
     def over(self, base: Arguments) -> Arguments:
@@ -92,7 +92,7 @@ def parse_arguments(args: Sequence[str]) -> Arguments:
         raise UnknownROSArgsError(parser.unknown)
     return Arguments(
         tuple(parser.remap_rules),
-        tuple(parser.overrides),
+        tuple(by_first_pattern(parser.overrides)),
         tuple(parser.log_levels),
         unparsed=tuple(rest),
         **parser.settings,

@@ -31,6 +31,17 @@ class Override(NamedTuple):
         return _fits(self.pattern, full_node_name)
 
 
+def by_first_pattern(overrides: Iterable[Override]) -> list[Override]:
+    """Sort the overrides of one command line as rcl keeps them: by patterns, in the order in which each first appears.
+
+    So a file's value for a node by name, after its `/**`, wins over a later `-p` for all nodes.
+    """
+    groups: dict[str, list[Override]] = {}
+    for each in overrides:
+        groups.setdefault(each.pattern, []).append(each)
+    return [each for group in groups.values() for each in group]
+
+
 def overrides_for(overrides: Iterable[Override], full_node_name: str) -> dict[str, Value]:
     """Return the values for a node such as `/arm/driver`, by parameter name; later overrides win."""
     return {each.name: each.value for each in overrides if each.is_for(full_node_name)}

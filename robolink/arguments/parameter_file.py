@@ -14,7 +14,7 @@ from typing import cast
 
 import yaml
 
-from robolink.arguments.overrides import Override, Scalar, Value
+from robolink.arguments.overrides import Override, Scalar, Value, by_first_pattern
 from robolink.documents import yamltext
 from robolink.documents.yamlfile import DocumentNotFoundError, read_text
 from robolink.exceptions import DocumentError, nearest
@@ -29,7 +29,7 @@ class ParameterFileError(DocumentError, RuntimeError):
 
 
 def read_parameter_file(path: str | os.PathLike[str]) -> list[Override]:
-    """Read a ROS parameter file; later entries override earlier ones.
+    """Read a ROS parameter file; later entries override earlier ones, sections in the order of their first appearance.
 
     Raises `DocumentNotFoundError` (a `FileNotFoundError`) where there is no such file, and `ParameterFileError`
     with file:line:column for everything else that is wrong; both are `DocumentError`s.
@@ -47,7 +47,7 @@ def parse_parameter_file(text: str, name: str) -> list[Override]:
     """Read the text of a ROS parameter file; `name` stands for the file in errors."""
     reader = _Reader(name)
     root = reader.compose(text)
-    return [] if root is None else list(reader.sections(root, ()))
+    return [] if root is None else by_first_pattern(reader.sections(root, ()))
 
 
 def parse_parameter_value(text: str, name: str = "<value>") -> Value:
@@ -127,7 +127,7 @@ class _Reader:
             yield key, child
 
     def value(self, node: yaml.Node, what: str = "") -> Value:
-        """Return the value of a scalar or of a list whose items have one type; int and float mix to float."""
+        """Return the value of a scalar or of a list whose items have one type."""
         if isinstance(node, yaml.ScalarNode):
             return self.scalar(node, what)
         self.check_alias(node)
@@ -138,10 +138,9 @@ class _Reader:
             if not isinstance(child, yaml.ScalarNode):
                 raise self.error(child, f"{what}a list cannot hold {_found(child)}")
             items.append(self.scalar(child, what))
-            if not _go_together(items[0], items[-1]):
-                first, other = type(items[0]).__name__, type(items[-1]).__name__
-                raise self.error(child, f"{what}a list holds one type, got {other} after {first}")
-        return _as_one_type(items)
+            if type(items[0]) is not type(items[-1]):
+                raise self.error(child, f"{what}a list holds one type, got {_mixed(items, child.value)}")
+        return cast("Value", items)
 
     def scalar(self, node: yaml.ScalarNode, what: str) -> Scalar:
         self.check_alias(node)
@@ -177,6 +176,13 @@ def _found(node: yaml.Node) -> str:
     if isinstance(node, yaml.ScalarNode):
         return f"'{node.value}'" if node.value else "nothing"
     return f"a {yamltext.kind(node)}"
+
+
+def _mixed(items: list[Scalar], text: str) -> str:
+    """Return in words what a list mixes; integers among numbers of floating point need a point."""
+    first, other = type(items[0]), type(items[-1])
+    cure = {(float, int): f": write {text}.0", (int, float): f": write {items[0]}.0"}.get((first, other), "")
+    return f"{other.__name__} after {first.__name__}{cure}"
 
 
 _TAG = re.compile(r"(?:&\S*\s+)?!")
@@ -219,13 +225,3 @@ def _parse_number(text: str) -> int | float | str:
     if _INF.fullmatch(text):
         return -math.inf if text.startswith("-") else math.inf
     return text
-
-
-def _go_together(first: Scalar, other: Scalar) -> bool:
-    return type(first) is type(other) or {type(first), type(other)} == {int, float}
-
-
-def _as_one_type(items: list[Scalar]) -> Value:
-    if any(isinstance(item, float) for item in items):
-        return [float(item) for item in items]
-    return cast("Value", items)

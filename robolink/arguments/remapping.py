@@ -38,11 +38,13 @@ class RemapRule:
 
 
 _RULE = re.compile(
-    r"(?:(?P<node>[A-Za-z_][A-Za-z0-9_]*):(?![=/]))?"
+    r"(?:(?P<node>[A-Za-z_][A-Za-z0-9_]*):(?!=|//))?"  # `rostopic://` names no node, `camera:/image` does
     r"(?:(?P<scheme>rostopic|rosservice)://)?"
     r"(?P<match>.*?):=(?P<replacement>.*)",
     re.DOTALL,
 )
+# As rcl reads rules: narrower than topics are, which may have {node} in them, two underscores, or be ~ alone.
+_NAME = re.compile(r"(?:~?/)?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*")
 _SCHEMES = {
     None: RemapKind.TOPIC | RemapKind.SERVICE,
     "rostopic": RemapKind.TOPIC,
@@ -60,6 +62,8 @@ def parse_remap_rule(text: str) -> RemapRule:
     if parts is None:
         raise ValueError("expected from:=to, such as scan:=lidar/scan")
     match, replacement = parts["match"], parts["replacement"]
+    if "__" in (parts["node"] or ""):
+        raise ValueError(f"a node's name in a rule has no two underscores in a row: '{parts['node']}'")
     kind = _NODE_KEYS.get(match) if parts["scheme"] is None else None
     try:
         if kind is None:
@@ -77,8 +81,12 @@ def _check_names(match: str, replacement: str) -> None:
         raise ValueError(f"no name to remap is called '{match}'{nearest(match, _NODE_KEYS)}")
     if "*" in match:
         raise ValueError(f"wildcards are not supported: '{match}'")
-    expand_topic_name(match, "node", "/")
-    expand_topic_name(replacement, "node", "/")
+    for name in (match, replacement):
+        expand_topic_name(name, "node", "/")
+        if _NAME.fullmatch(name) is None:
+            raise ValueError(f"expected a name such as scan, /lidar/scan or ~/scan, got '{name}'")
+        if "__" in name:
+            raise ValueError(f"names in a rule have no two underscores in a row: '{name}'")
 
 
 def remap_node(rules: Iterable[RemapRule], kind: RemapKind, node_name: str) -> str | None:

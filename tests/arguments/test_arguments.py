@@ -67,6 +67,36 @@ def test_parameters_are_for_all_nodes_or_for_one() -> None:
 
 
 @pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ("-p n:a:=1 -p b:=2 -p n:b:=3", {"a": 1, "b": 2}),  # the pattern /n came before /**
+        ("-p b:=2 -p n:b:=3", {"b": 3}),
+        ("-p n:b:=3 -p n:b:=4", {"b": 4}),
+    ],
+)
+def test_of_several_patterns_the_one_that_came_first_is_overridden(words: str, expected: dict[str, object]) -> None:
+    assert parse_arguments(["--ros-args", *words.split()]).overrides_for("/n") == expected
+
+
+def test_a_files_section_for_a_node_wins_over_a_later_value_for_all(tmp_path: Path) -> None:
+    file = tmp_path / "params.yaml"
+    file.write_text("/**: {ros__parameters: {x: 1, y: 1}}\nn: {ros__parameters: {x: 2}}\n")
+    words = ["--ros-args", "--params-file", str(file), "-p", "x:=3", "-p", "y:=3"]
+    assert parse_arguments(words).overrides_for("/n") == {"x": 2, "y": 3}
+    assert parse_arguments(words).overrides_for("/m") == {"x": 3, "y": 3}
+
+
+def test_errors_are_those_of_rclpy_and_value_errors() -> None:
+    with pytest.raises(UnknownROSArgsError) as unknown:
+        parse_arguments(["--ros-args", "--nonsense"])
+    with pytest.raises(InvalidROSArgsError) as invalid:
+        parse_arguments(["--ros-args", "-p", "a"])
+    for error in (unknown.value, invalid.value):
+        assert isinstance(error, RuntimeError)
+        assert isinstance(error, ValueError)
+
+
+@pytest.mark.parametrize(
     ("text", "value"),
     [
         ("1", 1),
@@ -74,7 +104,7 @@ def test_parameters_are_for_all_nodes_or_for_one() -> None:
         ("true", True),
         ("'1'", "1"),
         ("[1,2]", [1, 2]),
-        ("[1, 2.5]", [1.0, 2.5]),
+        ("[1.0, 2.5]", [1.0, 2.5]),
         ("0x1F", 31),
         ("-.inf", float("-inf")),
         ("a:=b", "a:=b"),
@@ -127,6 +157,8 @@ def test_a_nodes_own_arguments_go_over_the_programs() -> None:
         ("-p :=1", "expected name:=value"),
         ("-p *:x:=1", "expected name:=value"),
         ("-p x:=[1,a]", "a list holds one type, got str after int"),
+        ("-p x:=[1.5,2]", "a list holds one type, got int after float: write 2.0"),
+        ("-p x:=[1,2.5]", "a list holds one type, got float after int: write 1.0"),
         ("-p x:={a:1}", "cannot be a mapping"),
         ("-p x:=[1", "value:1:3: expected"),
         ("--param", "--param must be followed by name:=value"),

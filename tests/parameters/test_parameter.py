@@ -114,14 +114,20 @@ def test_it_shows_what_it_is_and_can_be_annotated() -> None:
     [
         ("True", ParameterType.PARAMETER_BOOL, True),
         ("42", ParameterType.PARAMETER_INTEGER, 42),
-        ("1e3", ParameterType.PARAMETER_DOUBLE, 1000.0),
+        ("1e3", ParameterType.PARAMETER_STRING, "1e3"),
+        ("1.5", ParameterType.PARAMETER_DOUBLE, 1.5),
+        ("12:30", ParameterType.PARAMETER_INTEGER, 750),
+        ("99999999999999999999", ParameterType.PARAMETER_STRING, "99999999999999999999"),
+        ("[]", ParameterType.PARAMETER_BOOL_ARRAY, []),
+        ("[null]", ParameterType.PARAMETER_STRING, "[null]"),
+        ("2020-99-99", ParameterType.PARAMETER_STRING, "2020-99-99"),
         ("foo", ParameterType.PARAMETER_STRING, "foo"),
         ("'42'", ParameterType.PARAMETER_STRING, "42"),
         ("", ParameterType.PARAMETER_STRING, ""),
         (" ", ParameterType.PARAMETER_STRING, " "),
         ("2024-01-01", ParameterType.PARAMETER_STRING, "2024-01-01"),
         ("[1, 2]", ParameterType.PARAMETER_INTEGER_ARRAY, [1, 2]),
-        ("[1, 2.5]", ParameterType.PARAMETER_DOUBLE_ARRAY, [1.0, 2.5]),
+        ("[1, 2.5]", ParameterType.PARAMETER_STRING, "[1, 2.5]"),
         ("[1, a]", ParameterType.PARAMETER_STRING, "[1, a]"),
         ("a: b", ParameterType.PARAMETER_STRING, "a: b"),
         ("[1", ParameterType.PARAMETER_STRING, "[1"),
@@ -140,7 +146,7 @@ def test_any_text_gives_some_value(text: str) -> None:
 FILE = """
 /**: {ros__parameters: {a: 1, b: 1}}
 /ns/talker: {ros__parameters: {b: 2, d: {e: '3'}}}
-listener: {ros__parameters: {c: [1.0, 2]}}
+listener: {ros__parameters: {c: [1.0, 2.0]}}
 """
 
 
@@ -168,3 +174,8 @@ def test_a_node_that_a_file_does_not_have_is_a_runtime_error(tmp_path: Path) -> 
         parameter_dict_from_yaml_file(tmp_path / "empty.yaml")
     with pytest.raises(FileNotFoundError):
         parameter_dict_from_yaml_file("unknown_file")
+
+
+def test_a_node_that_a_file_does_not_have_beside_others_is_told(tmp_path: Path) -> None:
+    with pytest.warns(RuntimeWarning, match="no parameters for node '/zz'"):
+        assert read(tmp_path, target_nodes=["/zz"], use_wildcard=True) == {"a": 1, "b": 1}
