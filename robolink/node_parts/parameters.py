@@ -31,11 +31,13 @@ from robolink.parameter import (
 from robolink.parameters.callbacks import Parameters, listed
 from robolink.parameters.rules import (
     EMPTY_LIST,
+    INVALID_RESULT,
     WrittenParameter,
     as_declared,
     describing,
     first_fitting,
     has_wrong_type,
+    leniency,
     read_declaration,
     record,
     refusal,
@@ -44,6 +46,7 @@ from robolink.validate_parameter_name import validate_parameter_name
 
 if TYPE_CHECKING:
     from robolink.clock import Clock
+    from robolink.impl.rcutils_logger import RcutilsLogger
 
 
 class NodeParameters(ParameterReading):
@@ -56,6 +59,9 @@ class NodeParameters(ParameterReading):
     """Tolerance of a float towards an end or a step of its range, relative to its size."""
 
     if TYPE_CHECKING:  # the node's
+
+        def get_logger(self) -> RcutilsLogger:
+            """Return the logger of what is told about its parameters."""
 
         def get_clock(self) -> Clock:
             """Return the clock that stamps events."""
@@ -170,6 +176,9 @@ class NodeParameters(ParameterReading):
             is_given = parameter.name in self._parameter_overrides
             if is_given or not self._declare_as_wished_(parameter, descriptor):
                 self._declare_one_(parameter, descriptor)
+                told = leniency(overrides.get(parameter.name), parameter)
+                if told:
+                    self.get_logger().warning(told)
         return [self._parameters.get(parameter.name, parameter) for parameter, _ in declarations]
 
     def _declare_as_wished_(self, parameter: Parameter[Any], descriptor: ParameterDescriptor) -> bool:
@@ -258,7 +267,9 @@ class NodeParameters(ParameterReading):
         for callback in tuple(self._on_set_parameters_callbacks):
             result = callback(parameters)
             if not hasattr(result, "successful"):
-                raise TypeError(f"on-set callback {callback!r} must return a SetParametersResult, got {result!r:.80}")
+                text = f"on-set callback {callback!r} must return a SetParametersResult, got {result!r:.80}"
+                warnings.warn(text, stacklevel=4)
+                return SetParametersResult(successful=False, reason=INVALID_RESULT)
             if not result.successful:
                 return result
         self._on_parameter_event_(self._store_(parameters, declaring))

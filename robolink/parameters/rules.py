@@ -27,6 +27,7 @@ EMPTY_LIST = (
     "parameter list cannot be empty, this might be due to pre_set_parameters_callback "
     "modifying the original parameters list."
 )
+INVALID_RESULT = "Callback returned an invalid type"
 
 
 class Declaration(NamedTuple):
@@ -115,6 +116,20 @@ def as_declared(override: Parameter[Any], descriptor: ParameterDescriptor) -> Pa
     if is_empty and not descriptor.dynamic_typing and Type(descriptor.type).check(override.value):
         return Parameter(override.name, Type(descriptor.type), override.value)
     return override
+
+
+def leniency(given: Parameter[Any] | None, declared: Parameter[Any]) -> str:
+    """Return what ROS 2 makes of a written override that was taken here as it was meant, or '' if it takes it too."""
+    if not isinstance(given, WrittenParameter):
+        return ""
+    if given.value == []:
+        return f"parameter '{given.name}' was given an empty list: in ROS 2 it has no value then"
+    if given.type_ is not declared.type_ and declared.type_ in (Type.DOUBLE, Type.DOUBLE_ARRAY):
+        return (
+            f"parameter '{given.name}' is a {declared.type_.name} and was given {given.value}: "
+            f"ROS 2 refuses integers for it, so write {declared.value}"
+        )
+    return ""
 
 
 def _parameter(name: str, value: Any) -> Parameter[Any]:

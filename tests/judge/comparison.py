@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-_RAISES = re.compile(r"raises (?P<name>\w+)(?:\((?P<bases>[\w,]*)\))?(?::|$)")
+_RAISES = re.compile(r": raises (?P<name>\w+)(?:\((?P<bases>[\w,]*)\))?(?::|$)")
 _LOGGED = re.compile(r"\[(WARN|ERROR|FATAL)\] \[<time>\] \[[\w.]+\]: ")
 _REASON = re.compile(r"""(False, |reason=)("[^"]*"|'[^']*')""")
 
@@ -102,7 +102,7 @@ def _same_but_for_text(real: str, ours: str) -> bool:
 
 def _errors(line: str) -> set[str] | None:
     """Return the classes by which the error of a line is caught: its own name, and those of its bases."""
-    found = _RAISES.match(line.partition(": ")[2])
+    found = _RAISES.search(line)
     return None if found is None else {found["name"], *filter(None, (found["bases"] or "").split(","))}
 
 

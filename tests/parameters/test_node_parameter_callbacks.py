@@ -145,8 +145,9 @@ def test_a_callback_that_forgets_to_return_is_named(make: Make) -> None:
         them[0].value + 1
 
     node.add_on_set_parameters_callback(forgetful)
-    with pytest.raises(TypeError, match=r"forgetful.* must return a SetParametersResult, got None"):
-        node.set_parameters([made("a", 2)])
+    with pytest.warns(UserWarning, match=r"forgetful.* must return a SetParametersResult, got None"):
+        (result,) = node.set_parameters([made("a", 2)])
+    assert (result.successful, result.reason) == (False, "Callback returned an invalid type")
     assert node.get_parameter("a").value == 1
 
 
@@ -160,8 +161,8 @@ def test_a_callback_that_returns_something_else_is_named(make: Make) -> None:
     def prints(them: list[Parameter[Any]]) -> Any: ...
 
     node.add_on_set_parameters_callback(agrees)
-    with pytest.raises(TypeError, match=r"agrees.* must return a SetParametersResult, got True"):
-        node.set_parameters([made("a", 2)])
+    with pytest.warns(UserWarning, match=r"agrees.* must return a SetParametersResult, got True"):
+        assert not node.set_parameters_atomically([made("a", 2)]).successful
     node.add_pre_set_parameters_callback(prints)
     with pytest.raises(TypeError, match=r"prints.* must return a list of parameters, got None"):
         node.set_parameters([made("a", 2)])

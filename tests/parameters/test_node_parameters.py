@@ -298,7 +298,7 @@ FILE = f"/driver: {{ros__parameters: {{{', '.join(f'{name}: {value}' for name, v
 
 @pytest.mark.parametrize("is_file", [False, True])
 def test_an_integer_that_is_written_serves_as_a_double_and_as_nothing_else(
-    context: Context, tmp_path: Path, is_file: bool
+    context: Context, tmp_path: Path, is_file: bool, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "driver.yaml").write_text(FILE)
     args = ["--params-file", str(tmp_path / "driver.yaml")] if is_file else LINES
@@ -316,6 +316,16 @@ def test_an_integer_that_is_written_serves_as_a_double_and_as_nothing_else(
             with pytest.raises(InvalidParameterTypeException, match="of type 'INTEGER'"):
                 node.declare_parameter(name, default)
         assert not node.set_parameters([made("speed", 2)])[0].successful
+    told = capsys.readouterr().err
+    assert "'speed' is a DOUBLE and was given 1: ROS 2 refuses integers for it, so write 1.0" in told
+    assert "'gains' is a DOUBLE_ARRAY and was given [1, 2]" in told
+    assert told.count("ROS 2 refuses") == 2
+
+
+def test_an_empty_list_that_is_written_is_told(context: Context, capsys: pytest.CaptureFixture[str]) -> None:
+    with Node("driver", context=context, cli_args=["--ros-args", "-p", "names:=[]"]) as node:
+        assert node.declare_parameter("names", ["a"]).value == []
+    assert "'names' was given an empty list: in ROS 2 it has no value then" in capsys.readouterr().err
 
 
 def test_an_integer_that_a_program_gives_is_one(context: Context) -> None:

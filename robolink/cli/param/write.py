@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from robolink.arguments.parameter_file import ParameterFileError, read_parameter_file
 from robolink.cli.param.ask import ParameterClient, asking
-from robolink.cli.param.values import fitting, plain, read
+from robolink.cli.param.values import fitting, plain, read, type_name
 from robolink.cli.shared import show
-from robolink.cli.shared.output import complain, say
+from robolink.cli.shared.output import complain, say, tell
 from robolink.exceptions import NotFoundError
 from robolink.interfaces.rcl_interfaces.msg import (
     Parameter,
@@ -17,6 +17,7 @@ from robolink.interfaces.rcl_interfaces.msg import (
     ParameterValue,
     SetParametersResult,
 )
+from robolink.parameter import get_parameter_value
 
 if TYPE_CHECKING:
     from robolink.arguments.overrides import Override, Value
@@ -29,7 +30,16 @@ def set_one(node: str, parameter: str, text: str, timeout: float, *, as_json: bo
     with asking(node, timeout) as client:
         value = read(text, _descriptor(client, parameter))
         result = client.set([Parameter(name=parameter, value=value)])[0]
+        if result.successful:
+            _tell_of_type(parameter, text, get_parameter_value(text).type, value)
     return _tell(result, as_json, "Set parameter successful", "Setting parameter failed")
+
+
+def _tell_of_type(name: str, written: object, type_: int, value: ParameterValue) -> None:
+    """Say that ros2 refuses what was converted here: it sets a value as it is written, of whatever type that is."""
+    if type_ != value.type:
+        fitting_type, other = type_name(value.type), type_name(type_)
+        tell(f"note: {name} is of type {fitting_type}; ros2 takes {written} for one of type {other} and refuses it")
 
 
 def delete(node: str, parameter: str, timeout: float, *, as_json: bool) -> int:
@@ -83,6 +93,9 @@ def _load(client: ParameterClient, values: dict[str, Any]) -> dict[str, SetParam
     to_set = [name for name in values if name not in _unchanged(client, wanted, descriptors)]
     given = client.set([Parameter(name=name, value=wanted[name]) for name in to_set]) if to_set else []
     results.update(zip(to_set, given, strict=True))
+    for name in to_set:
+        if results[name].successful:
+            _tell_of_type(name, values[name], fitting(values[name], None).type, wanted[name])
     return results
 
 

@@ -38,26 +38,32 @@ DYNAMIC = ParameterDescriptor(dynamic_typing=True)
 
 
 @pytest.mark.parametrize(
-    ("name", "text", "value"),
+    ("name", "text", "value", "note"),
     [
-        ("speed", "1.5", 1.5),
-        ("speed", "1", 1.0),
-        ("name", "123", "123"),
-        ("name", "'quoted'", "quoted"),
-        ("name", "{a: 1}", "{a: 1}"),
-        ("gains", "[1, 2]", [1.0, 2.0]),
-        ("gains", "[]", []),
-        ("free", "-0.5", -0.5),
-        ("free", "-3", -3),
-        ("free", "[a, b]", ["a", "b"]),
-        ("odd..", "no", False),
+        ("speed", "1.5", 1.5, ""),
+        ("speed", "1", 1.0, "speed is of type double; ros2 takes 1 for one of type integer"),
+        ("name", "123", "123", "name is of type string; ros2 takes 123 for one of type integer"),
+        ("name", "'quoted'", "quoted", ""),
+        ("name", "{a: 1}", "{a: 1}", ""),
+        (
+            "gains",
+            "[1, 2]",
+            [1.0, 2.0],
+            "gains is of type double array; ros2 takes [1, 2] for one of type integer array",
+        ),
+        ("gains", "[]", [], "gains is of type double array; ros2 takes [] for one of type boolean array"),
+        ("free", "-0.5", -0.5, ""),
+        ("free", "-3", -3, ""),
+        ("free", "[a, b]", ["a", "b"], ""),
+        ("odd..", "no", False, ""),
     ],
 )
 def test_a_value_is_set_in_the_parameters_own_type(
-    driver: Node, name: str, text: str, value: Any, capsys: Captured
+    driver: Node, name: str, text: str, value: Any, note: str, capsys: Captured
 ) -> None:
     assert main(["param", "set", "/lab/driver", name, text]) == 0
-    assert capsys.readouterr() == ("Set parameter successful\n", "")
+    told = f"note: {note} and refuses it\n" if note else ""
+    assert capsys.readouterr() == ("Set parameter successful\n", told)
     assert parameter_value_to_python(driver.get_parameter(name).get_parameter_value()) == value
 
 
@@ -91,7 +97,7 @@ def test_a_dump_can_be_loaded_again(driver: Node, tmp_path: Path, capsys: Captur
     driver.declare_parameter("free", "other", DYNAMIC)
     assert main(["param", "load", "/lab/driver", str(file)]) == 0
     said, told = capsys.readouterr()
-    assert told == ""
+    assert told == "note: speed is of type double; ros2 takes 2 for one of type integer and refuses it\n"
     assert "Set parameter speed successful\n" in said
     assert "Set parameter arm.length successful: it is read-only and has this value already\n" in said
     assert [each.value for each in driver.get_parameters(["speed", "free", "name"])] == [2.0, 1, "1e3"]
