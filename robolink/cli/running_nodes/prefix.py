@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-import shlex
 import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
 
 from robolink.exceptions import NotFoundError, RobolinkError
+from robolink.system.command_words import split_words
 from robolink.system.own_command import own_command
 
 
@@ -31,7 +31,7 @@ def command_line(prefix: str, words: Sequence[str]) -> list[str]:
         NotFoundError: if there is no such program.
     """
     try:
-        first, *others = shlex.split(prefix, posix=sys.platform != "win32")
+        first, *others = split_words(prefix)
     except ValueError as error:
         raise PrefixError(f"--prefix: expected a command, got '{prefix[:100]}' ({error})") from None
     if first in ("python", "python3"):

@@ -26,6 +26,7 @@ from robolink.launch.reading.lookup import command_of, source_of
 from robolink.launch.ros.parameters import parameters_of, texts_of
 from robolink.launch.ros.programs import Program, program_of
 from robolink.supervisor.rules import NO_LIMIT
+from robolink.system.command_words import SHELL, split_words
 from robolink.system.own_command import own_command
 from robolink.system.terminal import shown
 from robolink.validate_namespace import validate_namespace
@@ -170,7 +171,7 @@ class EntryMaker:
         if action.shell:
             run, words = _in_shell(" ".join(words)), " ".join(words).split()
         else:
-            words = [*shlex.split(words[0], posix=sys.platform != "win32"), *words[1:]] if len(words) == 1 else words
+            words = [*split_words(words[0]), *words[1:]] if len(words) == 1 else words
             found = _command_line(words, context)
             if found is None:
                 self._leave_out(action, f"no program '{shown(words[0])}' is on the PATH")
@@ -214,7 +215,7 @@ class EntryMaker:
             "respawn": _respawn(action, context),
             "on_exit": _on_exit(action),
         }
-        words = [] if described.prefix is None else shlex.split(performed(context, described.prefix))
+        words = [] if described.prefix is None else split_words(performed(context, described.prefix))
         if words and shutil.which(words[0]) is not None:
             settings["prefix"] = words
         elif words and PurePath(words[0]).name in TERMINALS and not self.has_keyboard:
@@ -309,7 +310,7 @@ def _in_shell(line: str) -> list[str]:
     """Return the words by which a shell runs a line; a command `ros2` in it is robolink's own."""
     if sys.platform == "win32":
         own = subprocess.list2cmdline(own_command())
-        return ["cmd", "/c", re.sub(r"^\s*ros2(?=\s|$)", lambda _: own, line)]
+        return [*SHELL, re.sub(r"^\s*ros2(?=\s|$)", lambda _: own, line)]
     return ["/bin/sh", "-c", f'ros2() {{ {shlex.join(own_command())} "$@"; }}\n{line}']
 
 

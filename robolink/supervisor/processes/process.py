@@ -23,6 +23,7 @@ from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.supervisor.processes.terminal import Terminal
 from robolink.supervisor.rules import Rules, Step
 from robolink.system import clocks
+from robolink.system.command_words import windows_line
 from robolink.system.variables import Variables, environment_with
 
 _LONGEST_LINE = 1 << 20
@@ -155,7 +156,7 @@ class Child:
 def _started(process: Process, stdin: IO[bytes] | int | None, lifeline: Lifeline) -> subprocess.Popen[bytes]:
     variables, options = lifeline.options()
     return subprocess.Popen(
-        list(process.argv),
+        windows_line(process.argv) if sys.platform == "win32" else list(process.argv),
         env=environment_with({**process.env, **variables}, _plain_output()),
         cwd=process.cwd,
         stdin=stdin,

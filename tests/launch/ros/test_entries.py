@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from robolink.launch.planning import as_process, processes
 from robolink.launch.reading.description import Respawn
 from robolink.launch.reading.entry import Entry
+from robolink.launch.ros import entries
 from robolink.supervisor.rules import NO_LIMIT
 from robolink.system.own_command import own_command
 from tests.support.ros_launch import FIRST, only, read, write
@@ -331,3 +333,9 @@ def test_old_names_of_arguments_are_taken_and_told_once(package: Path) -> None:
         "old names, which ROS 2 refuses since Galactic: node_name, node_plugin; write name, plugin",
     ]
     assert system.notes[0].startswith(f"bot.launch.py:{FIRST + 2}: ")
+
+
+def test_a_line_for_the_shell_of_windows_keeps_its_quotes(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(entries, "sys", SimpleNamespace(platform="win32"))
+    entry = only(package, """ExecuteProcess(cmd=['other service call /spawn "{x: 2}"'], shell=True)""")
+    assert entry.node.run == ["cmd", "/d", "/s", "/c", 'other service call /spawn "{x: 2}"']

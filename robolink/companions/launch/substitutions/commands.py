@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-import shlex
 import shutil
 import subprocess
 import sys
@@ -14,6 +13,7 @@ from typing import Any
 from robolink.companions.launch.bases import LaunchContext, SomeSubstitutionsType, Substitution
 from robolink.companions.launch.substitutions.failure import SubstitutionFailure
 from robolink.companions.launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+from robolink.system.command_words import split_words
 from robolink.system.terminal import shown
 
 _REACTIONS = ("fail", "ignore", "warn", "capture")
@@ -40,7 +40,7 @@ class Command(Substitution):
         reaction = perform_substitutions(context, self.on_stderr)
         if reaction not in _REACTIONS:
             raise SubstitutionFailure(f"on_stderr is one of {', '.join(_REACTIONS)}, got '{shown(reaction)}'")
-        words = shlex.split(text, posix=sys.platform != "win32")
+        words = split_words(text)
         if not words:
             raise SubstitutionFailure("Command has no command")
         is_captured = reaction == "capture"
