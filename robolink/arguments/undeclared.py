@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Protocol
 
+from robolink.arguments.untaken import untaken
 from robolink.exceptions import ExternalShutdownException, closest, nearest
 from robolink.logging import get_logger
 
@@ -47,10 +48,19 @@ class GivenParameters:
         self._open: dict[int, tuple[Override, str]] = {}
         self._seen: dict[int, Override] = {}
         self._declared: set[str] = set()
+        self._names: dict[str, str] = {}
+        """Loggers of the nodes that were given files, by full name."""
+        self._files: dict[int, Override] = {}
+        self._told: set[str] = set()
 
     def expect(self, node: OverriddenNode, overrides: Iterable[Override]) -> None:
         """Note what is given to a new node."""
         full_name = node.get_fully_qualified_name()
+        overrides = list(overrides)
+        of_files = {id(each): each for each in overrides if not each.is_typed}
+        if of_files:
+            self._names[full_name] = node.get_logger().name
+            self._files.update(of_files)
         for each in {(each.pattern, each.name): each for each in overrides}.values():
             if id(each) not in self._seen and each.is_meant_for(full_name):
                 self._seen[id(each)] = each
@@ -67,7 +77,8 @@ class GivenParameters:
                 self._open.pop(id(each), None)
 
     def warn_of_typos(self, nodes: Iterable[OverriddenNode]) -> None:
-        """Warn, once, of names that are nearly those of parameters that the nodes have."""
+        """Warn, once, of names that are nearly those of parameters that the nodes have, and of sections for no node."""
+        self._warn_of_sections()
         if not self._open:
             return
         for node in nodes:
@@ -78,6 +89,12 @@ class GivenParameters:
             if near:
                 del self._open[key]
                 _warn(each, logger, f"no node has declared it so far (did you mean '{near}'?)")
+
+    def _warn_of_sections(self) -> None:
+        for text in untaken(self._files.values(), self._names) if self._files else ():
+            if text not in self._told:
+                self._told.add(text)
+                get_logger(next(iter(self._names.values()))).warning(f"in a parameter file, {text}")
 
     def warn_of_rest(self) -> None:
         """Warn of all that no node has declared: this is the end. An error that ends the program says enough."""

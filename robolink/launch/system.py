@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 from robolink.exceptions import DocumentError
+from robolink.launch.looking.sections import section_notes
 from robolink.launch.reading.arguments import ArgumentHelp
 from robolink.launch.reading.arguments import arguments_of as own_arguments_of
 from robolink.launch.reading.entries import read_launch_file, read_with_mistakes
@@ -72,7 +73,8 @@ def read_system(
     """
     path = Path(path)
     if not is_of_ros(path):
-        return System(read_launch_file(path, given, workspace=workspace))
+        entries = read_launch_file(path, given, workspace=workspace)
+        return System(entries, list(section_notes(entries)))
     from robolink.launch.ros.reading import foresee_all, visited
 
     visit = visited(path, given, workspace)
@@ -98,7 +100,8 @@ def read_description(description: LaunchDescription, path: Path, given: Mapping[
 
 
 def _system_of(visit: Visit, foresee: bool) -> System:
-    entries, notes = [each.entry for each in visit.started], list(visit.context.said)
+    entries = [each.entry for each in visit.started]
+    notes = [*visit.context.said, *section_notes(entries)]
     visit.context.said.clear()
     if foresee or not visit.goes_on:
         return System(entries, notes)
@@ -122,7 +125,7 @@ def read_system_with_mistakes(
     """
     if not is_of_ros(Path(path)):
         entries, mistakes = read_with_mistakes(path, given, workspace=workspace)
-        return System(entries), mistakes
+        return System(entries, list(section_notes(entries))), mistakes
     try:
         return read_system(path, given, workspace=workspace, foresee=True), []
     except DocumentError as error:  # a program stops at its first one

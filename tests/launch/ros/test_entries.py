@@ -125,6 +125,15 @@ def test_files_of_parameters_count_by_their_sections(package: Path) -> None:
     assert package / "config" / "a.yaml" in unnamed.files
 
 
+def test_a_section_of_a_file_that_no_node_takes_is_told_of(package: Path) -> None:
+    file = package / "config" / "a.yaml"
+    file.write_text("/**: {ros__parameters: {word: x}}\nsepaker: {ros__parameters: {word: y}}\n")
+    body = f'Node(package="bot", executable="talker", name="speaker", parameters=[{str(file)!r}]),'
+    line = "a.yaml: 'sepaker' is not the name of a node that gets it (did you mean 'speaker'?)"
+    assert read(package, body).notes == [line]
+    assert read(package, body.replace("speaker", "other")).notes == []
+
+
 def test_values_have_the_types_that_are_asked_for(package: Path) -> None:
     entry = only(
         package,
