@@ -11,7 +11,7 @@ class SetBool(Service):
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolink.exceptions import MessageError
 from robolink.message.annotations import AtMost, Sequence
@@ -85,7 +85,7 @@ class Service:
         for part in ("Request", "Response"):
             name_part(cls, cls.__dict__[part], part)
 
-    def __new__(cls) -> NoReturn:
+    def __new__(cls) -> Any:  # NoReturn would make a type checker take the class for a function
         """Refuse to make one: a service is its two messages, and rclpy's class cannot be instantiated either."""
         raise NotImplementedError(f"a service cannot be instantiated: make a {cls.__name__}.Request()")
 

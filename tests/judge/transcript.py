@@ -8,6 +8,7 @@ import re
 import shlex
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Sequence
@@ -111,12 +112,17 @@ def _watch(
             return "hangs"
         if any(os.fstat(stream.fileno()).st_size > FLOOD for stream in streams):
             return "floods"
-        if waiting and ready is None and b"READY\n" in os.pread(streams[0].fileno(), FLOOD, 0):
+        if waiting and ready is None and _is_ready(streams[0]):
             ready = now
         if waiting and ready is not None and now >= ready + waiting[0][1]:
             process.send_signal(signal.Signals[f"SIG{waiting.pop(0)[0]}"])
         time.sleep(0.01)
     return str(process.returncode)
+
+
+def _is_ready(stream: IO[bytes]) -> bool:
+    """True if a program has said so; the file's own position, at which the program writes, stays."""
+    return sys.platform != "win32" and b"READY\n" in os.pread(stream.fileno(), FLOOD, 0)
 
 
 def _written(stream: IO[bytes], most: int) -> str:
@@ -137,8 +143,11 @@ def environment(domain: int = 0) -> dict[str, str]:
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(process.pid, signal.SIGKILL)
+    if sys.platform == "win32":
+        process.kill()
+    else:
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(process.pid, signal.SIGKILL)
     process.wait()
 
 

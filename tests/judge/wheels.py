@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import getpass
 import hashlib
-import os
 import platform
 import shutil
 import subprocess
@@ -66,7 +66,7 @@ def interpreter(environment: Path | None = None) -> list[str]:
 def _folder() -> Path:
     """Return a folder of this user, Python and list of packages."""
     key = hashlib.sha256("\n".join([sys.version, *PACKAGES]).encode()).hexdigest()[:12]
-    return Path(tempfile.gettempdir()) / f"robolink-judge-{os.getuid()}-{key}"
+    return Path(tempfile.gettempdir()) / f"robolink-judge-{getpass.getuser()}-{key}"
 
 
 def _install(environment: Path) -> None:
