@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from robolink.exceptions import MessageError, nearest
+from robolink.exceptions import MessageError, closest, nearest
 from robolink.message import annotations as ros
 from robolink.message.annotations import FieldType
 from robolink.message.numbers import DTYPES, FixedNumbers, Numbers
@@ -89,7 +89,15 @@ class MessageMeta(msgspec.StructMeta):
             first = next(iter(self.__ros_fields__), None)
             how = f"{self.__name__}({first}=...)" if first else "it has none"
             raise TypeError(f"{self.__ros_type__} takes its fields by name: {how}")
-        return _make(self, **fields)
+        try:
+            return _make(self, **fields)
+        except TypeError:
+            unknown = next((name for name in fields if name not in self.__ros_fields__), None)
+            if unknown is None:
+                raise
+            close = closest(unknown, self.__ros_fields__)
+            hint = f". Did you mean: '{close}'?" if close else f" (only {', '.join(self.__ros_fields__)})"
+            raise TypeError(f"Unexpected keyword argument '{unknown}'{hint}") from None  # in CPython's words
 
 
 _make = msgspec.StructMeta.__call__

@@ -139,24 +139,24 @@ def _last(trace: TracebackType | None) -> TracebackType | None:
 
 # --- Fields of messages -----------------------------------------------------------------------------------------------
 
-_UNKNOWN_FIELD = re.compile(r"(Unexpected keyword argument|'\w+' object has no attribute) '(\w+)'")
+_UNKNOWN_FIELD = re.compile(r"'\w+' object has no attribute '(\w+)'")
 
 
 def misspelt_field(error: BaseException) -> str:
-    """Return a suggestion for the field in `String(dta=...)` or `twist.liner = 3`; '' for other errors.
+    """Return a suggestion for the field in `twist.liner = 3`; '' for other errors.
 
-    Messages are made and changed by C, which a look at each field would slow down several times over. So which message
+    Messages are changed by C, which a look at each field would slow down several times over. So which message
     it was is read from the line that failed.
     """
-    found = _UNKNOWN_FIELD.fullmatch(str(error)) if isinstance(error, (TypeError, AttributeError)) else None
+    found = _UNKNOWN_FIELD.fullmatch(str(error)) if isinstance(error, AttributeError) else None
     last = _last(error.__traceback__)
     if found is None or last is None:
         return ""
     with contextlib.suppress(Exception):  # a source that is gone, or has changed; anybody's attributes
         for node in _statement(last):
-            fields = getattr(_meant(node, found[2], last), "__ros_fields__", None)
+            fields = getattr(_meant(node, found[1], last), "__ros_fields__", None)
             if fields:
-                return _did_you_mean(found[2], fields) or f" (only {', '.join(fields)})"
+                return _did_you_mean(found[1], fields) or f" (only {', '.join(fields)})"
     return ""
 
 
@@ -175,11 +175,9 @@ def _end(node: ast.stmt) -> int:
 
 
 def _meant(node: ast.AST, name: str, trace: TracebackType) -> Any:
-    """Return the class or message of which this part of a statement names a field `name`; None if it names none."""
+    """Return the message of which this part of a statement names a field `name`; None if it names none."""
     import ast
 
-    if isinstance(node, ast.Call) and name in [each.arg for each in node.keywords]:
-        return _value(node.func, trace)
     if isinstance(node, ast.Attribute) and node.attr == name:
         return _value(node.value, trace)
     return None

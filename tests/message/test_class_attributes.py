@@ -80,7 +80,8 @@ def test_a_service_or_an_action_cannot_be_instantiated(cls: type[Service] | type
     [
         (lambda: find("String")("x"), r"std_msgs/msg/String takes its fields by name: String\(data=\.\.\.\)"),
         (lambda: find("Empty")(1), "std_msgs/msg/Empty takes its fields by name: it has none"),
-        (lambda: find("String")(Data="x"), "Unexpected keyword argument 'Data'"),
+        (lambda: find("String")(Data="x"), r"Unexpected keyword argument 'Data'\. Did you mean: 'data'\?"),
+        (lambda: find("Twist")(w=1.0), r"Unexpected keyword argument 'w' \(only linear, angular\)"),
     ],
 )
 def test_a_message_is_made_of_its_fields_by_name(make: Any, text: str) -> None:

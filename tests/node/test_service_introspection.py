@@ -206,7 +206,7 @@ def test_an_event_is_shown_as_ros2_does(capsys: Captured) -> None:
     ("flags", "begin", "end"),
     [
         (["--csv"], "1,", ",1,True,\n"),
-        (["--flow-style"], "{info: {event_type: REQUEST_RECEIVED, stamp: {sec: ", "response: []}\n---\n"),
+        (["--flow-style"], "info:\n  event_type: REQUEST_RECEIVED\n", "request: [{data: true}]\nresponse: []\n---\n"),
         (
             ["SetBool", "--no-arr"],
             "info:\n  event_type: REQUEST_RECEIVED\n",
