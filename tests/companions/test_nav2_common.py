@@ -146,7 +146,9 @@ def test_texts_are_replaced_under_a_condition(source: Path) -> None:
     assert never.perform(context(scan="/front")) == str(source)
 
 
-def test_questions(source: Path) -> None:
+def test_questions(source: Path, tmp_path: Path) -> None:
+    (tmp_path / "empty.yaml").write_text("\n")
+    assert HasNodeParams(str(tmp_path / "empty.yaml"), "amcl").perform(context()) == "False"
     assert [HasNodeParams(str(source), name).perform(context()) for name in ("amcl", "planner")] == ["True", "False"]
     answers = {text: LaunchConfigAsBool("slam").perform(context(slam=text)) for text in ("yes", "On", "1", "no", "x")}
     assert answers == {"yes": "True", "On": "True", "1": "True", "no": "False", "x": "False"}

@@ -185,10 +185,12 @@ def test_gamepads_are_listed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, ca
 def test_the_names_of_joy_linux(system: System, pad: Pad, tmp_path: Path) -> None:
     (tmp_path / "js7").touch()
     started(system, pad, JoyLinuxNode, dev=str(tmp_path / "js7"))
-    system.run(0.5)
+    heard = system.messages("/joy")
+    system.run(1.0)
+    assert len(heard) in (19, 20, 21)  # autorepeat_rate 20.0, as its source declares
     pad.waiting = [axis(0, -32767)]
-    assert system.expect("/joy").axes[0] == 1
-    system.expect_none("/joy", during=1.0)
+    system.run(0.1)
+    assert heard[-1].axes[0] == 1
 
 
 def test_a_game_controller_node_has_its_name(system: System, pad: Pad) -> None:

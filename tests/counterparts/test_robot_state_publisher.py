@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from robolink.counterparts.robot_state_publisher.robot_state_publisher import RobotStatePublisher
+from robolink.counterparts.robot_state_publisher.robot_state_publisher import RobotStatePublisher, positions
+from robolink.counterparts.urdf import parse_urdf
 from robolink.exceptions import DocumentError, InvalidParameterValueException, RobolinkError
 from robolink.interfaces.geometry_msgs.msg import TransformStamped
 from robolink.interfaces.sensor_msgs.msg import JointState
@@ -16,7 +17,7 @@ from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.testing import System
 from tests.support.transforms import place, rotation
-from tests.support.urdfs import ARM, robot
+from tests.support.urdfs import ARM, joint, robot
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -153,3 +154,29 @@ def test_a_mistake_in_a_file_has_its_place(system: System, tmp_path: Path) -> No
     for path, said in ((file, r"broken.urdf:2: two roots"), (tmp_path / "nowhere", r"nowhere: No such file")):
         with pytest.raises(DocumentError, match=said):
             system.start("robot_state_publisher robot_state_publisher", args=[str(path)])
+
+
+def chain(*mimics: tuple[str, str]) -> str:
+    """A robot whose joint `root` moves, and in which each other joint mimics the second name, doubled."""
+    names = ["root", *(name for name, _ in mimics)]
+    inner = {name: f'<mimic joint="{other}" multiplier="2"/>' for name, other in mimics}
+    joints = [joint(name, "base", f"link_{name}", inner.get(name, ""), "continuous") for name in names]
+    return robot(*joints, links=" ".join(["base", *(f"link_{name}" for name in names)]))
+
+
+@pytest.mark.parametrize("names", [("a", "b", "c"), ("c", "b", "a")])
+def test_a_mimic_of_a_mimic_follows_whatever_the_order_of_names(names: tuple[str, str, str]) -> None:
+    one, two, three = names
+    model = parse_urdf(chain((three, two), (two, one), (one, "root")))
+    assert positions(model, {"root": 0.1}) == pytest.approx({"root": 0.1, one: 0.2, two: 0.4, three: 0.8})
+    assert positions(model, {"root": 0.1, two: 1.0})[three] == 2.0
+
+
+def test_a_mimic_of_nobody_is_left_out_and_told(system: System, capfd: pytest.CaptureFixture[str]) -> None:
+    system.start(RobotStatePublisher, parameters={"robot_description": chain(("a", "nobody"))})
+    system.run(1.0)
+    moved(system, root=0.2)
+    assert [each.child_frame_id for each in system.expect("/tf").transforms] == ["link_root"]
+    assert "joint 'a' mimics 'nobody', which is not there: it is published only where joint_states has it" in (
+        capfd.readouterr().err
+    )

@@ -99,8 +99,6 @@ XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro">'
         (robot(joint("j", "a", "b", '<origin xyz="1 2 1_0"/>')), "r:3: xyz: expected a number, got '1_0'"),
         (robot(joint("j", "a", "b", '<origin xyz="1 2 1e999"/>')), "r:3: xyz: expected a number, got '1e999'"),
         (robot(joint("j", "a", "b", '<axis xyz="0 0 0"/>', "continuous")), "r:3: an axis of length 0"),
-        (robot(joint("j", "a", "b", '<mimic joint="k"/>')), "r:3: mimic: no joint named 'k'"),
-        (robot(joint("j", "a", "b", '<mimic joint="j"/>')), "r:3: joints mimic each other in a circle: j -> j"),
         (robot(joint("j", "a", "b"), joint("k", "b", "a"), links="a b"), "r:3: links are below each other in a circle"),
         (robot(joint("j", "c", "b"), joint("k", "b", "c")), "r:3: links are below each other in a circle: b -> c -> b"),
         (robot(joint("j", "a", "c"), joint("k", "b", "c")), "r:4: link 'c' is the child of two joints, 'j' and 'k'"),
@@ -161,3 +159,25 @@ def test_whatever_the_text_is_it_is_read_or_refused(parts: list[str]) -> None:
     except DocumentError as error:
         reason = str(error)
     assert "\n" not in reason
+
+
+@pytest.mark.parametrize(
+    ("inner", "note"),
+    [
+        ('<mimic joint="k"/>', "r:3: joint 'j' mimics 'k', which is not there"),
+        ('<mimic joint="j"/>', "r:3: joints mimic each other in a circle: j -> j"),
+    ],
+)
+def test_an_odd_mimic_is_noted_and_not_refused(inner: str, note: str) -> None:
+    found = parse_urdf(robot(joint("j", "a", "b", inner, "continuous"), links="a b"), "r")
+    assert found.notes == (note,)
+    assert list(found.joints) == ["j"]
+
+
+def test_a_robot_inside_of_another_root() -> None:
+    text = f"<urdf><other/>{robot(joint('j', 'a', 'b'), links='a b')}</urdf>"
+    assert list(parse_urdf(text, anywhere=True).joints) == ["j"]
+    with pytest.raises(DocumentError, match="expected <robot>, got <urdf>"):
+        parse_urdf(text)
+    with pytest.raises(DocumentError, match="expected <robot>, got <urdf>"):
+        parse_urdf("<urdf/>", anywhere=True)

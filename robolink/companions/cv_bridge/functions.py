@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
 from typing import Any
 
 import numpy as np
 
+from robolink.companions.cv_bridge.label_colours import LABEL_COLOURS
 from robolink.image.conversion import Pixels, convert
 from robolink.image.encodings import Encoding, ImageError, encoding_of
 from robolink.image.opencv import call, opencv
@@ -133,9 +133,7 @@ def _scaled(source: Pixels, came: Encoding, wanted: Encoding, ends: tuple[float,
 
 
 def _labels(source: Pixels) -> Pixels:
-    """Return a colour for each label: its bits, the lowest first, are the highest bits of blue, green, red by turns."""
-    numbers = np.where(source == BACKGROUND, 0, source.astype(np.int64) + 1)
-    made = np.zeros((*source.shape[:2], 3), np.uint8)
-    for bit, channel in itertools.product(range(8), range(3)):
-        made[..., channel] |= (((numbers >> (3 * bit + channel)) & 1) << (7 - bit)).astype(np.uint8)
+    """Return a colour for each label."""
+    made: Pixels = LABEL_COLOURS[source % len(LABEL_COLOURS)]
+    made[source == BACKGROUND] = 0
     return made

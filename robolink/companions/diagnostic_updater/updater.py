@@ -127,7 +127,9 @@ class Updater(DiagnosticTaskVector):
             raise TypeError(f"the diagnostic task '{task.getName()}' returned {kind}: it must return the status")
         if self.verbose and status.level != DiagnosticStatus.OK:
             level = int.from_bytes(status.level, "little")
-            self.node.get_logger().warning(f"{status.name} has the level {level}: {status.message}")
+            self.node.get_logger().warning(
+                f"Non-zero diagnostic status. Name: {status.name}, status {level}: {status.message}"
+            )
         return status
 
 

@@ -121,7 +121,8 @@ class HasNodeParams(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Read the file; raises LaunchError."""
-        return str(self.node_name in _read(performed(context, self.source_file)))
+        path = performed(context, self.source_file)
+        return str(bool(_text(path).strip()) and self.node_name in _read(path))
 
 
 class LaunchConfigAsBool(Substitution):

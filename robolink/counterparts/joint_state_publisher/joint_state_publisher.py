@@ -108,7 +108,7 @@ class JointStatePublisher(Node):
 
     def _use(self, description: str) -> None:
         """Publish the joints of this robot from now on. Raises DocumentError, DependentJointError."""
-        joints = Joints(parse_urdf(description), self._settings)
+        joints = Joints(parse_urdf(description, anywhere=True), self._settings)
         joints.state()
         self._joints = joints
         for name, joint in joints.free.items():
@@ -166,7 +166,7 @@ class JointStatePublisher(Node):
 
 def make(words: list[str]) -> Node:
     """Make the node from its own arguments: none, or the path of a URDF file."""
-    return JointStatePublisher(read_text(Path(words[0])) if words else "")
+    return JointStatePublisher(read_text(Path(words[0]), anywhere=True) if words else "")
 
 
 def main(args: list[str] | None = None) -> None:

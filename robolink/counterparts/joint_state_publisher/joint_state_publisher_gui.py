@@ -17,7 +17,7 @@ SLIDERS = (
 
 def make(words: list[str]) -> Node:
     """Make the node, whose name is joint_state_publisher in ROS too, and say what serves as sliders."""
-    node = JointStatePublisher(read_text(Path(words[0])) if words else "")
+    node = JointStatePublisher(read_text(Path(words[0]), anywhere=True) if words else "")
     node.get_logger().info(SLIDERS.format(node=node.get_name()))
     return node
 

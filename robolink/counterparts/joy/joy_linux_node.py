@@ -16,8 +16,6 @@ from robolink.counterparts.program import spin_program
 class JoyLinuxNode(JoyNode):
     """A node that publishes the state of the gamepad `dev`. `options` are those of `JoyNode`."""
 
-    repeat = 0.0
-
     def __init__(self, **options: Any) -> None:
         super().__init__("joy_node", **options)
 

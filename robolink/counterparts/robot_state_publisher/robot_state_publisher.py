@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from robolink.counterparts.program import spin_program
-from robolink.counterparts.urdf import Joint, Robot, parse_urdf, placed
+from robolink.counterparts.urdf import Joint, Mimic, Robot, parse_urdf, placed
 from robolink.counterparts.urdf.parser import read_text
 from robolink.exceptions import DocumentError, InvalidParameterValueException, RobolinkError
 from robolink.interfaces.geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
@@ -102,6 +102,8 @@ class RobotStatePublisher(Node):
         if self._description is not None:
             self._description.publish(String(data=text))
         self.get_logger().info("Robot initialized")
+        for each in self._robot.notes:
+            self.get_logger().warning(f"{each}: it is published only where joint_states has it")
         self._publish_fixed()
 
     def _publish_fixed(self) -> None:
@@ -182,11 +184,23 @@ def is_fixed(joint: Joint) -> bool:
 
 
 def positions(robot: Robot, given: dict[str, float]) -> dict[str, float]:
-    """Return the positions of joints: those given, and of joints that mimic one of them."""
-    found = dict(given)
-    for each in robot.joints.values():
-        if each.mimic is not None and each.mimic.joint in given:
-            found.setdefault(each.name, given[each.mimic.joint] * each.mimic.multiplier + each.mimic.offset)
+    """Return the positions of joints: those given, and of joints that mimic one of them, or another one that does.
+
+    ROS follows a chain only as far as its joints' names happen to be in order; here it is followed to its end.
+    """
+    found, seen = dict(given), set(given)
+    for name in robot.joints:
+        way: list[tuple[str, Mimic]] = []
+        while name not in seen and name in robot.joints:
+            seen.add(name)
+            rule = robot.joints[name].mimic
+            if rule is None:
+                break
+            way.append((name, rule))
+            name = rule.joint  # noqa: PLW2901 - up the chain
+        for each, rule in reversed(way):
+            if rule.joint in found:
+                found[each] = found[rule.joint] * rule.multiplier + rule.offset
     return found
 
 

@@ -53,6 +53,8 @@ class Robot(NamedTuple):
     root: str
     links: tuple[str, ...]
     joints: dict[str, Joint]
+    notes: tuple[str, ...] = ()
+    """What is odd in it, with file and line, though ROS takes it."""
 
 
 def placed(joint: Joint, position: float = 0.0) -> Rigid:

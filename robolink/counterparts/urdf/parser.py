@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TypeVar
 
@@ -32,8 +32,8 @@ PROLOG = 4000
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
-def read_urdf(path: Path) -> Robot:
-    """Read a URDF file. Raises DocumentError, with file and line, for whatever is wrong in it."""
+def read_urdf(path: Path, *, anywhere: bool = False) -> Robot:
+    """Read a URDF file; see `parse_urdf`. Raises DocumentError, with file and line, for whatever is wrong in it."""
     try:
         content = read_plain(path, xmltext.LARGEST)
     except (OSError, ValueError) as error:
@@ -41,21 +41,23 @@ def read_urdf(path: Path) -> Robot:
     late = DECLARATION.search(content[:PROLOG].decode("latin-1"))
     if late is not None and late.start() > 0:
         content = _blank(late[0]).encode().join((content[: late.start()], content[late.end() :]))
-    return robot_of(xmltext.parse(content, str(path)))
+    return robot_of(xmltext.parse(content, str(path)), anywhere=anywhere)
 
 
-def read_text(path: Path) -> str:
-    """Return the text of a URDF file that has no mistake. Raises DocumentError, with file and line."""
-    read_urdf(path)
+def read_text(path: Path, *, anywhere: bool = False) -> str:
+    """Return the text of a URDF file without a mistake; see `parse_urdf`. Raises DocumentError, with file and line."""
+    read_urdf(path, anywhere=anywhere)
     return path.read_text(encoding="utf-8", errors="replace")
 
 
-def parse_urdf(text: str, name: str = "robot_description") -> Robot:
+def parse_urdf(text: str, name: str = "robot_description", *, anywhere: bool = False) -> Robot:
     """Return the robot model of a URDF text.
 
     Args:
         text: The text.
         name: Name of the text's source in errors.
+        anywhere: True takes the first <robot> wherever it is, as joint_state_publisher does; False wants it as the root
+            of the text, as urdfdom does.
 
     Raises:
         DocumentError: for whatever is wrong in it; the text begins with `name` and the line.
@@ -67,11 +69,13 @@ def parse_urdf(text: str, name: str = "robot_description") -> Robot:
         content = text.encode()
     except UnicodeEncodeError:
         raise DocumentError("it has characters that are none (surrogates)", name) from None
-    return robot_of(xmltext.parse(content, name))
+    return robot_of(xmltext.parse(content, name), anywhere=anywhere)
 
 
-def robot_of(root: Element) -> Robot:
-    """Return the robot model of an XML element. Raises DocumentError."""
+def robot_of(root: Element, *, anywhere: bool = False) -> Robot:
+    """Return the robot model of an XML element; see `parse_urdf`. Raises DocumentError."""
+    if anywhere:
+        root = _first_robot(root) or root
     if root.tag != "robot":
         raise root.mistake(f"expected <robot>, got <{shown(root.tag)}>: this is no URDF")
     try:
@@ -83,14 +87,20 @@ def robot_of(root: Element) -> Robot:
         raise
 
 
+def _first_robot(element: Element) -> Element | None:
+    if element.tag == "robot":
+        return element
+    return next(filter(None, map(_first_robot, element.children)), None)
+
+
 def _robot(root: Element) -> Robot:
     links = _once(root, "link")
     if not links:
         raise root.mistake("a robot needs a <link>")
     joints = {name: _joint(each, links) for name, each in _once(root, "joint").items()}
     places = {each.attributes["name"]: each for each in root.all("joint")}
-    _check_mimics(joints, places)
-    return Robot(root.attributes.get("name", ""), _root(root, links, joints, places), tuple(links), joints)
+    notes = tuple(str(each) for each in _odd_mimics(joints, places))
+    return Robot(root.attributes.get("name", ""), _root(root, links, joints, places), tuple(links), joints, notes)
 
 
 def _blank(declaration: str) -> str:
@@ -203,14 +213,19 @@ def _as_number(element: Element, attribute: str, text: str) -> float:
     return value
 
 
-def _check_mimics(joints: dict[str, Joint], places: dict[str, Element]) -> None:
-    """Refuse joints that follow joints which are not there, or each other in a circle."""
+def _odd_mimics(joints: dict[str, Joint], places: dict[str, Element]) -> Iterator[DocumentError]:
+    """Yield what is wrong with joints that follow ones which are not there, or each other in a circle.
+
+    ROS's parser takes them: such a joint moves only where its own position is given.
+    """
     followed = {each.name: each.mimic.joint for each in joints.values() if each.mimic is not None}
     for name, other in followed.items():
         if other not in joints:
-            raise places[name].mistake(f"mimic: no joint named '{shown(other)}'{nearest(other[:100], joints)}")
+            yield places[name].mistake(
+                f"joint '{shown(name)}' mimics '{shown(other)}', which is not there{nearest(other[:100], joints)}"
+            )
     if circle := _circle(followed):
-        raise places[circle[0]].mistake(f"joints mimic each other in a circle: {_arrows(circle)}")
+        yield places[circle[0]].mistake(f"joints mimic each other in a circle: {_arrows(circle)}")
 
 
 def _root(root: Element, links: dict[str, Element], joints: dict[str, Joint], places: dict[str, Element]) -> str:
