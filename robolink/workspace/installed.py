@@ -10,7 +10,6 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from robolink.workspace.cmake_files import is_python
 from robolink.workspace.setup_files import entry_points_file
 from robolink.workspace.source import NodeSource
 
@@ -44,6 +43,8 @@ def installed_executables(package: str) -> dict[str, NodeSource]:
     prefix = installed_packages().get(package)
     if prefix is None:
         return {}
+    from robolink.workspace.cmake_files import is_python  # late: a node's start has no installed packages to look at
+
     roots = list(_site_packages(Path(prefix)))
     found = {}
     for path in _inside(Path(prefix, "lib", package)):

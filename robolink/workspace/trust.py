@@ -7,7 +7,6 @@ nobody else may write there. So no other user's `/tmp/nodes/world.py` runs becau
 from __future__ import annotations
 
 import os
-import platform
 import stat
 import sys
 from collections.abc import Collection, Iterator
@@ -104,7 +103,7 @@ def _trusted_ids() -> set[int]:
 def _has_windows_modes(folder: Path) -> bool:
     """True if this is a drive of Windows within WSL, which shows all as writable by everybody."""
     is_drive = folder.parts[1:2] == ("mnt",) and len(folder.parts) > 2 and len(folder.parts[2]) == 1
-    return is_drive and "microsoft" in platform.release().lower()
+    return is_drive and sys.platform != "win32" and "microsoft" in os.uname().release.lower()
 
 
 if sys.platform == "win32":
