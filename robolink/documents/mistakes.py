@@ -24,6 +24,8 @@ T = TypeVar("T")
 Step: TypeAlias = "str | int"
 Hook: TypeAlias = "Callable[[type, Any], type]"
 
+MOST_KEYS = 20
+"""Most keys that an error about an unknown one lists."""
 _ANY_ITEM = "[...]"
 _STEP = r"\.([^.\[\]]+)|\[(\d+)\]|\[\"((?:[^\"\\]|\\.)*)\"\]|(\[\.\.\.\])"
 _PLACED = r"(?P<text>.*?)(?: - at (?P<key>`key` in )?`\$(?P<path>.*)`)?"
@@ -133,7 +135,8 @@ class Reader:
         return self.error(steps, _worded(text, self._node(steps), _at(data, inner)))
 
     def _unknown_key(self, name: str, known: Sequence[str], above: Sequence[Step]) -> DocumentError:
-        return self.error([*above, name], f"unknown key '{name}'{nearest(name, known)}", key=True)
+        hint = nearest(name, known) or (f"; there are {', '.join(known)}" if 0 < len(known) <= MOST_KEYS else "")
+        return self.error([*above, name], f"unknown key '{name}'{hint}", key=True)
 
     def _node(self, steps: Sequence[Step], key: bool = False) -> yaml.Node | None:
         """Return the YAML node at these steps, or the last one on the way that exists."""

@@ -32,7 +32,11 @@ def read_faults(path: str | os.PathLike[str], *, text: str | None = None) -> Doc
     Raises:
         DocumentError: with `file:line:column`, for invalid YAML, an unknown key, a value of the wrong type or out of
             its range, an invalid name, or a fault without effect or that cannot be.
+        TypeError: if `path` is not one, but the faults themselves.
     """
+    if not isinstance(path, (str, os.PathLike)):
+        kind = type(path).__name__
+        raise TypeError(f"faults are the path of a file, got a {kind}: write them into one, or call `system.faults`")
     document = read(path, FaultsDescription, text=text)
     for steps, message in _problems(document.value):
         raise document.error(steps, message)

@@ -90,8 +90,11 @@ class Story:
 
     def whole(self) -> str:
         """Return what was last published on each topic, what was logged, what failed, and how to replay it."""
-        topics = [each.name for each in self.recorder.topics.values() if each.name not in EVERYBODYS_TOPICS]
-        return self.failure_text(f"the system after {self.time:.3f} s", others=topics)
+        return self.failure_text(f"the system after {self.time:.3f} s", others=self.topics())
+
+    def topics(self) -> list[str]:
+        """Return the names of the system's own topics."""
+        return [each.name for each in self.recorder.topics.values() if each.name not in EVERYBODYS_TOPICS]
 
     def failure_text(
         self, headline: str, topic: str | None = None, *, others: Iterable[str] = (), all_logs: bool = False

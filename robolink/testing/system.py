@@ -97,6 +97,7 @@ class System(SystemWithBags):
         Raises:
             NotFoundError: if a file, node or argument does not exist.
             DocumentError: if a file has a mistake, with `file:line:column`.
+            TypeError: if `faults` is not a path.
         """
         __tracebackhide__ = True
         from robolink.testing.launching import read

@@ -128,7 +128,7 @@ NOT_A_WORLD = [
     ("rates: {one: 1}", "w.yaml:1:8: rates: a key: expected int, got str"),
     ("rates: {1: 1, 2: x}", "w.yaml:1:18: rates.2: expected float, got 'x'"),
     ("title: [a]", "w.yaml:1:8: title: expected str | nothing, got list"),
-    ('"a\\nb": 1', "w.yaml:1:1: a\\nb: unknown key 'a\\nb'"),
+    ('"a\\nb": 1', "w.yaml:1:1: a\\nb: unknown key 'a\\nb'; there are robots, zones, rates, title"),
     ("robot: []", "w.yaml:1:1: robot: unknown key 'robot' (did you mean 'robots'?)"),
     ("- 1", "w.yaml:1:1: expected mapping, got list"),
     ("hello", "w.yaml:1:1: expected mapping, got 'hello'"),
@@ -312,7 +312,7 @@ def test_all_mistakes_are_found_at_once() -> None:
         "robots[1].nme: unknown key 'nme' (did you mean 'name'?)",
         "zones.a.sped: unknown key 'sped' (did you mean 'speed'?)",
         "rates.1: expected float, got 'fast'",
-        "x: unknown key 'x'",
+        "x: unknown key 'x'; there are robots, zones, rates, title",
     ]
     assert [str(each) for each in mistakes("w.yaml", World, text="a: [")] == [report_of("w.yaml", "a: [")]
     assert mistakes("w.yaml", World, text="robots: [{name: a}]") == []

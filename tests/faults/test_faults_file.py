@@ -106,6 +106,8 @@ BAD = {
     ),
     "clocks: [{node: a, drift: 2}]": "1:27: clocks[0].drift: expected float <= 0.1, got '2'",
     "clocks: [{node: a, offset: .nan}]": "1:28: clocks[0].offset: expected float >= -1000000000.0, got '.nan'",
+    "messages: [{topic: a, qux: 1}]": "1:23: messages[0].qux: unknown key 'qux'; there are topic, service, from, to, "
+    "loss, burst, duplication, latency, jitter, reorder, after, until",
     "message: []": "1:1: message: unknown key 'message' (did you mean 'messages'?)",
     "seed: x": "1:7: seed: expected int | nothing, got 'x'",
 }

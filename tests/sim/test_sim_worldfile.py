@@ -252,7 +252,7 @@ def test_all_that_is_wrong_is_found_at_once() -> None:
     assert [str(each).partition(": ")[2] for each in checked.errors] == [
         "robots[0].pose[1]: expected float, got 'one'",
         "robots[0].sensors[0].lidar: expected str, got '3'",
-        "robots[0].sensors[1].fov: unknown key 'fov'",
+        "robots[0].sensors[1].fov: unknown key 'fov'; there are imu, rate, noise",
         "robots[0].sensors[2]: this sensor has no kind (did you mean 'lidar'?): one of its keys must be " + KINDS,
         "robots[0].color: unknown key 'color' (did you mean 'colour'?)",
         "robots[1].nam: unknown key 'nam' (did you mean 'name'?)",

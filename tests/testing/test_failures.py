@@ -150,3 +150,24 @@ def test_a_node_that_sleeps_or_starts_threads_is_named(tested: System) -> None:
     (line,) = (each for each in told(error) if each.startswith("real time was used, which is virtual here: "))
     assert re.search(r"sleeper .*sleep.* \(.*test_failures.py:\d+\)", line)
     assert re.search(r"sleeper .*thread.* \(.*test_failures.py:\d+\)", line)
+
+
+def test_what_came_last_is_told_of_a_condition_that_looks_at_no_message() -> None:
+    logging.set_console_handler(None)
+    with System(seed=7, replay="pytest x.py") as tested:
+        counter = tested.start(Counter)
+        with pytest.raises(ExpectationError) as error:
+            tested.wait_until(lambda: counter is None, within=0.25)
+    assert told(error) == [
+        "what was waited for did not come true within 0.25 s (from 0 s to 0.25 s)",
+        "what came last:",
+        "  0.100 s  /count  /counter  (zero)",
+        "  0.200 s  /count  /counter  data=1",
+        "replay: pytest x.py",
+    ]
+
+
+def test_faults_are_a_file_s_path_and_not_the_faults_themselves(tested: System) -> None:
+    reason = "faults are the path of a file, got a list: write them into one, or call `system.faults`"
+    with pytest.raises(TypeError, match=re.escape(reason)):
+        tested.launch("follow", faults=[{"topic": "odom", "loss": 0.5}])  # type: ignore[arg-type]
