@@ -353,6 +353,7 @@ class Client(ServiceEnd):
 
     def service_is_ready(self) -> bool:
         """True if somebody serves this name with this type."""
+        self._check_(f"client of {self.srv_name}")
         return self._endpoint.count_others() > 0
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:

@@ -102,6 +102,8 @@ class JumpHandle:
         pre_callback: Callable[[], None] | None,
         post_callback: Callable[[TimeJump], None] | None,
     ) -> None:
+        if not isinstance(threshold, JumpThreshold):
+            raise TypeError(f"threshold must be a {imported_as()}.clock.JumpThreshold, got {threshold!r:.80}")
         if pre_callback is None and post_callback is None:
             raise ValueError("One of pre_callback or post_callback must be callable")
         if pre_callback is not None and not callable(pre_callback):

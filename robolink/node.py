@@ -153,6 +153,8 @@ class Node(NodeParameters, NodeCreation):
         self._is_parked_ = False
         """True while that executor keeps the entities only for the next spin, and the node belongs to none."""
         self._number_ = _number()
+        self._was_taken_ = False
+        """True once it was spun though another executor has it, and that was warned of."""
         self._turns_: list[Entity] = []
         """Entities whose turn was still to come when the last executor removed this node, in order."""
         self._rosout_: Publisher[Log] | None = None  # none of the user's: `publishers` does not list it

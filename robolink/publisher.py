@@ -107,6 +107,7 @@ class Publisher(Destroyable, Generic[MsgT]):
 
     def get_subscription_count(self) -> int:
         """Return the number of subscriptions of this topic and type."""
+        self._check_(f"publisher of {self.topic}")
         return self._endpoint.count_others()
 
     @property
@@ -121,10 +122,12 @@ class Publisher(Destroyable, Generic[MsgT]):
 
     def wait_for_all_acked(self, timeout: Duration = _FOR_EVER) -> bool:
         """Return True at once, for any `timeout`: there are no acknowledgements on this wire, as in rmw_zenoh."""
+        self._check_(f"publisher of {self.topic}")
         return True
 
     def assert_liveliness(self) -> None:
         """Do nothing: the process's liveliness token says that it is alive."""
+        self._check_(f"publisher of {self.topic}")
 
     def destroy(self) -> None:
         """End the publisher, and undeclare it. Safe to call twice."""

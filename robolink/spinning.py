@@ -274,11 +274,20 @@ def _check_node(given: object) -> None:
         raise TypeError(f"expected a Node to spin, got {given!r:.80}{hint}")
 
 
+_TAKEN = (
+    "this node is spun though it belongs to another executor, which gets it back here; with ROS 2 it would then be"
+    " in no executor any more, and none of its callbacks run: spin that executor instead (executor.spin_once())"
+)
+
+
 def _give_back(node: Node, executor: Executor, before: Executor | None) -> None:
     """Undo `add_node`: rclpy takes a node from the executor that it had, for good, and that one hangs then."""
     if node.executor is not executor:
         return  # a callback moved or destroyed it
     if before is None or before is executor:
         executor._park_(node)
-    else:
-        before.add_node(node)
+        return
+    before.add_node(node)
+    if not node._was_taken_:
+        node._was_taken_ = True
+        node.get_logger().warning(_TAKEN)

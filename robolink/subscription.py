@@ -276,6 +276,7 @@ class Subscription(Receiver, Generic[MsgT]):
 
     def get_publisher_count(self) -> int:
         """Return the number of publishers of this topic and type."""
+        self._check_(f"subscription of {self.topic}")
         return self._endpoint.count_others()
 
     # Events

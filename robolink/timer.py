@@ -12,6 +12,7 @@ from robolink.clock import Clock, ROSClock
 from robolink.clock_type import ClockType
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser, InvalidHandle, ROSInterruptException
 from robolink.running.entity import NOTHING, TIMER, Entity
+from robolink.running.execution import logger_of
 from robolink.system import waits
 from robolink.task import Future
 from robolink.text.callbacks import Place, call_instead_of_function
@@ -190,6 +191,7 @@ class Timer(Entity):
 
     def is_canceled(self) -> bool:
         """True if the timer was cancelled and not reset."""
+        self._check()
         return self._canceled
 
     def cancel(self) -> None:
@@ -273,6 +275,12 @@ def _info_parameter(callback: Callable[..., Any]) -> str | None:
     return next(found, None)
 
 
+_NEVER_THERE = (
+    "rate.sleep() returns here, but never does with ROS 2: {}, and no other can call the rate's timer. Spin in a thread"
+    " of its own, threading.Thread(target=rclpy.spin, args=(node,), daemon=True), or use a timer instead of a rate"
+)
+
+
 class Rate:
     """Sleeps for the rest of each period. Something else has to spin, or time to be virtual.
 
@@ -287,7 +295,7 @@ class Rate:
     def __init__(self, timer: Timer, *, context: Context) -> None:
         self._timer, self._context = timer, context
         self._sleepers: list[Future[None]] = []
-        self._has_ticked = False
+        self._has_ticked = self._has_warned = False
         self._lock = threading.Lock()
         self._is_shutdown = self._is_destroyed = False
         timer.callback = self._tick
@@ -314,7 +322,8 @@ class Rate:
     def sleep(self) -> None:
         """Sleep until the next tick, or until the rate is destroyed; not at all if there was one since the last sleep.
 
-        In the thread that spins, or where nobody does, it sleeps by the clock instead of waiting for a callback. Raises
+        In the thread that spins, or where nobody does, it sleeps by the clock instead of waiting for a callback; rclpy
+        would never return, and a warning says so. Raises
         ROSInterruptException when the context ends, InterruptedByUser (a KeyboardInterrupt) in the main thread when
         that is by a signal, RuntimeError when the rate or its timer was destroyed before.
         """
@@ -352,16 +361,26 @@ class Rate:
 
     def _wait_for(self, tick: Future[None]) -> None:
         executor = self._timer.executor
-        if executor is None or not executor.spinning or (executor.spins_here and not executor.parallel):
-            self._tick_by_clock(tick)
+        if executor is None or not executor.spinning:
+            self._tick_by_clock(tick, "nothing spins its node")
+        elif executor.spins_here and not executor.parallel:
+            self._tick_by_clock(tick, "the thread that sleeps is the one that spins")
         elif executor.spins_here:
+            if executor.is_last_awake():
+                self._warn("all threads of its executor sleep")
             executor.serve_until(tick, None, serving=False)
         else:
             woken = threading.Event()
             tick.when_done(woken.set)
             waits.wait(woken)
 
-    def _tick_by_clock(self, tick: Future[None]) -> None:
+    def _warn(self, reason: str) -> None:
+        """Warn, once, that ROS 2 leaves the sleeper asleep: a program that runs here must not hang on a robot."""
+        if not self._has_warned:
+            self._has_warned = True
+            logger_of(self._timer).warning(_NEVER_THERE.format(reason))
+
+    def _tick_by_clock(self, tick: Future[None], reason: str) -> None:
         """Take the timer's ticks here, until an executor that begins to spin has taken one, or the rate ends."""
         timer, woken = self._timer, threading.Event()
         tick.when_done(woken.set)
@@ -371,5 +390,6 @@ class Rate:
                 return
             if timer.take() is not NOTHING:
                 self._tick()
+                self._warn(reason)  # so late: a thread that spins may only just begin
             elif timer.is_canceled() or not reached:  # not: an executor took it just now, and will tell
                 timer.reset()

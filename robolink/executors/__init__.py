@@ -162,6 +162,10 @@ class MultiThreadedExecutor(Executor):
         else:  # in whoever spins, who runs callbacks once Python has ended the pool
             super().serve_until(future, deadline, serving=serving)
 
+    def is_last_awake(self) -> bool:
+        """Return True in a callback if all other threads of this executor sleep until a timer wakes them."""
+        return self._threads.is_last_awake()
+
     @contextmanager
     def waiting_for(self, services: Sequence[Entity]) -> Iterator[bool]:
         """Enter a wait for an answer of one of `services`, in a callback; the value is True if it would be a deadlock.

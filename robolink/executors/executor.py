@@ -381,6 +381,10 @@ class Executor:
                 if arrival is not None:
                     self.inbox.deliver(arrival)
 
+    def is_last_awake(self) -> bool:
+        """Return True in a callback if no other thread of this executor could run one that wakes it."""
+        return True
+
     @contextmanager
     def waiting_for(self, services: Sequence[Entity]) -> Iterator[bool]:
         """Enter a wait for an answer of one of `services`, in a callback; the value is True if it would be a deadlock.

@@ -30,6 +30,7 @@ class NodeEntities(Destroyable):
     """The part of a node that keeps its entities, and destroys them."""
 
     if TYPE_CHECKING:  # the node's
+        _number_: int
 
         @property
         def context(self) -> ContextLike:

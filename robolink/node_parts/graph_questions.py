@@ -4,18 +4,25 @@ from __future__ import annotations
 
 from robolink.context import Context
 from robolink.exceptions import NodeNameNonExistentError, nearest
-from robolink.graph.graph import NamesAndTypes, names_and_types
+from robolink.graph.graph import Graph, NamesAndTypes, names_and_types
 from robolink.qos import resolved
+from robolink.running.destroyable import Destroyable
 from robolink.text.names import join
 from robolink.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from robolink.type_hash import TypeHash
 from robolink.wire import EndpointKind
 
 
-class NodeGraph:
+class NodeGraph(Destroyable):
     """The part of a node that queries the graph. Names are resolved as the node's own are."""
 
     _context: Context
+
+    @property
+    def _graph_(self) -> Graph:
+        """The graph as it is known now. Raises InvalidHandle once the node has been destroyed."""
+        self._check_("node")
+        return self._context.graph
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
         """Return the fully qualified name of a `topic`; without remapping if `only_expand`."""
@@ -30,27 +37,27 @@ class NodeGraph:
 
         `no_demangle` is rclpy's and changes nothing: names are not mangled on this wire.
         """
-        return names_and_types(self._context.graph.endpoints(EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION))
+        return names_and_types(self._graph_.endpoints(EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION))
 
     def get_service_names_and_types(self) -> NamesAndTypes:
         """Return all services that are served or called, each with its types."""
-        return names_and_types(self._context.graph.endpoints(EndpointKind.SERVICE, EndpointKind.CLIENT))
+        return names_and_types(self._graph_.endpoints(EndpointKind.SERVICE, EndpointKind.CLIENT))
 
     def get_node_names(self) -> list[str]:
         """Return the names of all nodes, without namespaces."""
-        return [each.node_name for each in self._context.graph.nodes()]
+        return [each.node_name for each in self._graph_.nodes()]
 
     def get_fully_qualified_node_names(self) -> list[str]:
         """Return the fully qualified names of all nodes."""
-        return [each.full_node_name for each in self._context.graph.nodes()]
+        return [each.full_node_name for each in self._graph_.nodes()]
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         """Return name and namespace of each node."""
-        return [(each.node_name, each.namespace) for each in self._context.graph.nodes()]
+        return [(each.node_name, each.namespace) for each in self._graph_.nodes()]
 
     def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
         """Return name, namespace and enclave of each node."""
-        return [(each.node_name, each.namespace, each.enclave) for each in self._context.graph.nodes()]
+        return [(each.node_name, each.namespace, each.enclave) for each in self._graph_.nodes()]
 
     def get_publisher_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
@@ -107,7 +114,7 @@ class NodeGraph:
         return self._by_node_(node_name, node_namespace, EndpointKind.CLIENT)
 
     def _by_node_(self, node_name: str, namespace: str, kind: EndpointKind) -> NamesAndTypes:
-        graph = self._context.graph
+        graph = self._graph_
         if not graph.has_node(node_name, namespace):
             full = join(namespace, node_name)
             raise NodeNameNonExistentError(
@@ -153,24 +160,24 @@ class NodeGraph:
                 endpoint_gid=list(gid),
                 qos_profile=resolved(each.qos),  # a copy, for the caller to change
             )
-            for gid, each in self._context.graph.gids(kind, name)
+            for gid, each in self._graph_.gids(kind, name)
         ]
 
     def count_publishers(self, topic_name: str) -> int:
         """Return the number of publishers of the topic `topic_name`, of any type."""
-        return self._context.graph.count(EndpointKind.PUBLISHER, self.resolve_topic_name(topic_name))
+        return self._graph_.count(EndpointKind.PUBLISHER, self.resolve_topic_name(topic_name))
 
     def count_subscribers(self, topic_name: str) -> int:
         """Return the number of subscriptions of the topic `topic_name`, of any type."""
-        return self._context.graph.count(EndpointKind.SUBSCRIPTION, self.resolve_topic_name(topic_name))
+        return self._graph_.count(EndpointKind.SUBSCRIPTION, self.resolve_topic_name(topic_name))
 
     def count_services(self, service_name: str) -> int:
         """Return the number of servers of the service `service_name`, of any type."""
-        return self._context.graph.count(EndpointKind.SERVICE, self.resolve_service_name(service_name))
+        return self._graph_.count(EndpointKind.SERVICE, self.resolve_service_name(service_name))
 
     def count_clients(self, service_name: str) -> int:
         """Return the number of clients of the service `service_name`, of any type."""
-        return self._context.graph.count(EndpointKind.CLIENT, self.resolve_service_name(service_name))
+        return self._graph_.count(EndpointKind.CLIENT, self.resolve_service_name(service_name))
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Wait until a node is in the graph, or the context ends.
@@ -183,6 +190,6 @@ class NodeGraph:
             True if the node is there.
         """
         namespace, _, name = ("/" + fully_qualified_node_name.lstrip("/")).rpartition("/")
-        graph = self._context.graph
+        graph = self._graph_
         limit = None if timeout < 0 else timeout
         return self._context.wait_until(lambda: graph.has_node(name, namespace or "/"), limit)

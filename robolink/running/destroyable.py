@@ -43,6 +43,11 @@ class Destroyable:
 
     _destroyed = False
 
+    def _check_(self, kind: str) -> None:
+        """Raise InvalidHandle, a RuntimeError, if this `kind` of thing has been destroyed."""
+        if self._destroyed:
+            raise self._gone_(f"the {kind}")
+
     def _gone_(self, name: str) -> InvalidHandle:
         """Return the error for whoever uses this after its end; it says so if the context's end was that."""
         context = self._used_in_

@@ -136,6 +136,9 @@ class Loop(Protocol):
     def serve_until(self, future: Future[Any], deadline: int | None, *, serving: bool = True) -> None:
         """Run what serves until the future is over, in a callback that waits for it."""
 
+    def is_last_awake(self) -> bool:
+        """Return True in a callback if no other thread of this loop could run one that wakes it."""
+
     def waiting_for(self, services: Sequence[Any]) -> AbstractContextManager[bool]:
         """Enter a wait for one of these services; the value is True if that would be a deadlock."""
 

@@ -143,6 +143,11 @@ class CallbackThreads:
         """Return whether a callback in the calling thread keeps a group busy."""
         return threading.get_ident() in self._holding(group)
 
+    def is_last_awake(self) -> bool:
+        """Return whether all threads but one wait for something that they do not run themselves."""
+        with self._lock:
+            return sum(not callback.serves for callback in self._waiting) >= self._size - 1
+
     def can_serve(self) -> bool:
         """Return whether a callback waits and may run services meanwhile."""
         return any(callback.idle and callback.serves for callback in self._waiting)

@@ -12,6 +12,7 @@ from robolink.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCa
 from robolink.exceptions import ROSInterruptException, ServiceError
 from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.guard_condition import GuardCondition
+from robolink.impl.log_output import Record
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.running.threads import CallbackThreads
@@ -133,8 +134,8 @@ def test_coroutines_wait_for_services_and_keep_their_group_busy(node: Node, two:
     assert trace == ["ask 0", "True 0", "ask 1", "True 1"]
 
 
-def test_a_rate_in_a_callback_beside_others(node: Node, two: MultiThreadedExecutor) -> None:
-    """Both threads sleep; the ticks need none."""
+def test_a_rate_in_a_callback_beside_others(node: Node, two: MultiThreadedExecutor, log_lines: list[Record]) -> None:
+    """Both threads sleep; the ticks need none, and a warning says that rclpy's do."""
     rates, slept = [node.create_rate(500.0) for _ in range(2)], [0, 0]
 
     def work(index: int) -> None:
@@ -146,6 +147,9 @@ def test_a_rate_in_a_callback_beside_others(node: Node, two: MultiThreadedExecut
     groups = [MutuallyExclusiveCallbackGroup() for _ in range(2)]
     timers = [node.create_timer(0.001, lambda mine=index: work(mine), groups[index]) for index in (0, 1)]
     spin_until(two, lambda: slept == [5, 5])
+    assert {line.message[:72] for line in log_lines} == {
+        "rate.sleep() returns here, but never does with ROS 2: all threads of its"
+    }
 
 
 def test_the_end_of_the_context_wakes_a_rate_in_a_callback(

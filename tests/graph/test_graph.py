@@ -149,8 +149,8 @@ def test_waiting_for_a_change(bus: Bus, context: Context) -> None:
 
 
 @pytest.mark.parametrize("by_node", ["publisher", "subscriber", "service", "client"])
-def test_an_unknown_node_is_an_error(talker: Node, by_node: str) -> None:
-    ask = getattr(talker, f"get_{by_node}_names_and_types_by_node")
+def test_an_unknown_node_is_an_error(talker: Node, listener: Node, by_node: str) -> None:
+    ask = getattr(listener, f"get_{by_node}_names_and_types_by_node")
     with pytest.raises(RuntimeError, match="no node named '/left/nobody'"):
         ask("nobody", "/left")
     talker.destroy_node()

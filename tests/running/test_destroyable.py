@@ -77,3 +77,30 @@ def test_a_node_that_has_been_destroyed_makes_nothing(context: Context, make: Ca
         make(node)
     assert (watcher.get_topic_names_and_types(), watcher.get_service_names_and_types()) == before
     assert node._entities_() == []
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda node: node.create_publisher(Int32, "topic", 10).get_subscription_count,
+        lambda node: node.create_subscription(Int32, "topic", nothing, 10).get_publisher_count,
+        lambda node: node.create_client(Trigger, "service").service_is_ready,
+        lambda node: node.create_client(Trigger, "service").wait_for_service,
+        lambda node: node.create_timer(1.0, nothing).is_canceled,
+    ],
+)
+def test_who_asks_what_has_been_destroyed_is_told(context: Context, ask: Callable[[Node], Any]) -> None:
+    question = ask(Node("node", context=context))
+    question.__self__.destroy()
+    with pytest.raises(InvalidHandle, match="has been destroyed"):
+        question()
+
+
+@pytest.mark.parametrize(
+    "name", ["get_name", "get_fully_qualified_name", "get_topic_names_and_types", "get_node_names"]
+)
+def test_who_asks_a_destroyed_node_is_told(context: Context, name: str) -> None:
+    node = Node("node", context=context)
+    node.destroy_node()
+    with pytest.raises(InvalidHandle, match="the node has been destroyed"):
+        getattr(node, name)()

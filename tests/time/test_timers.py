@@ -15,6 +15,7 @@ from robolink import Clock, Context, Node
 from robolink.clock_type import ClockType
 from robolink.exceptions import InvalidHandle, ROSInterruptException
 from robolink.executors import SingleThreadedExecutor
+from robolink.impl.log_output import Record
 from robolink.running.timebase import SystemTime
 from robolink.testing import System
 from robolink.timer import Timer, TimerInfo
@@ -270,6 +271,25 @@ def test_a_rate_sleeps_the_rest_of_each_period_in_one_thread(node: Node, executo
         rate.sleep()
         woke.append(node.context.time.now() // MILLISECOND)
     assert woke == [100, 200, 300]
+
+
+def test_a_rate_that_would_never_return_with_ros_2_is_warned_of_once(
+    node: Node, executor: SingleThreadedExecutor, log_lines: list[Record]
+) -> None:
+    rate, inside, slept = node.create_rate(10.0), node.create_rate(10.0), list[int]()
+    for _ in range(2):
+        rate.sleep()
+
+    def work() -> None:
+        timer.cancel()
+        for _ in range(3):
+            inside.sleep()
+        slept.append(1)
+
+    timer = node.create_timer(0.1, work)
+    spin_until(executor, lambda: bool(slept))
+    reasons = ["nothing spins its node", "the thread that sleeps is the one that spins"]
+    assert [each in line.message for each, line in zip(reasons, log_lines, strict=True)] == [True, True]
 
 
 def test_a_tick_that_comes_while_nobody_sleeps_is_kept(node: Node, executor: SingleThreadedExecutor) -> None:
