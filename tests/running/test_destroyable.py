@@ -96,9 +96,7 @@ def test_who_asks_what_has_been_destroyed_is_told(context: Context, ask: Callabl
         question()
 
 
-@pytest.mark.parametrize(
-    "name", ["get_name", "get_fully_qualified_name", "get_topic_names_and_types", "get_node_names"]
-)
+@pytest.mark.parametrize("name", ["get_topic_names_and_types", "get_node_names"])
 def test_who_asks_a_destroyed_node_is_told(context: Context, name: str) -> None:
     node = Node("node", context=context)
     node.destroy_node()
