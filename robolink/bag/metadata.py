@@ -18,6 +18,7 @@ import msgspec
 
 from robolink.bag.offered_qos import profiles_of_list, profiles_or_none, text_of
 from robolink.bag.topic import BagError, BagTopic
+from robolink.documents.foreign import unknown_key, warn
 from robolink.documents.yamlfile import read_text
 from robolink.documents.yamltext import compose, texts
 from robolink.exceptions import DocumentError
@@ -122,15 +123,16 @@ def read_metadata(folder: Path) -> BagMetadata:
         text = read_text(path)
     except DocumentError as error:
         raise BagError(str(error)) from None
-    return parse_metadata(text, str(path))
+    return parse_metadata(text, str(path), tells=True)
 
 
-def parse_metadata(text: str, name: str = FILE_NAME) -> BagMetadata:
+def parse_metadata(text: str, name: str = FILE_NAME, *, tells: bool = False) -> BagMetadata:
     """Parse metadata, as it is in `metadata.yaml` or (without the outermost key) in a storage file.
 
     Args:
         text: The YAML text.
         name: Name of the text in errors.
+        tells: True to give a `FileWarning` for keys that are not known, and are ignored, as by rosbag2.
 
     Raises:
         BagError: for a text that is no metadata.
@@ -147,6 +149,9 @@ def parse_metadata(text: str, name: str = FILE_NAME) -> BagMetadata:
         stored = msgspec.convert(data, _Stored, strict=False)
     except msgspec.ValidationError as error:
         raise BagError(f"{name}: {_reason(error)}{_of_version(data)}") from None
+    for key in data if tells else ():
+        if key not in _Stored.__struct_fields__:
+            warn(f"{name}: {unknown_key(key, _Stored.__struct_fields__)}{_of_version(data)}")
     return _metadata(stored)
 
 

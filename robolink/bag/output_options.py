@@ -10,10 +10,11 @@ import msgspec
 from robolink.bag.converting import Output
 from robolink.bag.selection import Selection, SelectionError
 from robolink.bag.storage_options import chunk_compression, compression_word
+from robolink.documents.foreign import warn_of_unknown_keys
 from robolink.documents.yamlfile import Document, read
 
 
-class _OutputBag(msgspec.Struct, forbid_unknown_fields=True):
+class _OutputBag(msgspec.Struct):
     """Keys of rosbag2's StorageOptions and RecordOptions; those that matter only to a recorder have no effect."""
 
     uri: str
@@ -62,7 +63,7 @@ class _OutputBag(msgspec.Struct, forbid_unknown_fields=True):
     disable_keyboard_controls: Any = None
 
 
-class _Outputs(msgspec.Struct, forbid_unknown_fields=True):
+class _Outputs(msgspec.Struct):
     output_bags: list[_OutputBag]
 
 
@@ -74,6 +75,10 @@ def read_outputs(path: Path) -> list[Output]:
         BagError: for an option that cannot be.
     """
     document = read(path, _Outputs)
+    data: Any = document.data
+    warn_of_unknown_keys(document, data, _Outputs.__struct_fields__)
+    for number, each in enumerate(data["output_bags"]):
+        warn_of_unknown_keys(document, each, _OutputBag.__struct_fields__, ["output_bags", number])
     if not document.value.output_bags:
         raise document.error("$.output_bags", "expected at least one output bag")
     return [_output(document, number, each) for number, each in enumerate(document.value.output_bags)]

@@ -10,6 +10,7 @@ from typing import Any
 
 import msgspec
 
+from robolink.documents.foreign import warn_of_unknown_keys
 from robolink.documents.yamlfile import Document, read
 from robolink.exceptions import RobolinkError
 from robolink.interfaces import find
@@ -18,7 +19,7 @@ from robolink.validate_full_topic_name import validate_full_topic_name
 KEY = "static_topics_and_types_list"
 
 
-class _StaticTopics(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class _StaticTopics(msgspec.Struct, frozen=True):
     static_topics_and_types_list: list[tuple[str, str]]
 
 
@@ -34,6 +35,7 @@ def read_static_topics(path: str | os.PathLike[str], *, text: str | None = None)
         DocumentNotFoundError: if the file does not exist.
     """
     document = read(path, _StaticTopics, text=text)
+    warn_of_unknown_keys(document, document.data, [KEY])
     pairs = document.value.static_topics_and_types_list
     return {topic: _class_of(document, number, topic, kind) for number, (topic, kind) in enumerate(pairs)}
 

@@ -5,12 +5,21 @@ from __future__ import annotations
 import msgspec
 
 from robolink.bag.topic import BagError
-from robolink.documents.yamlfile import load
+from robolink.documents.foreign import warn_of_unknown_keys
+from robolink.documents.yamlfile import read
 from robolink.exceptions import nearest
 from robolink.system.terminal import shown
 
 PROFILES = {"": "", "none": "", "fastwrite": "", "resilient": "", "zstd_fast": "zstd", "zstd_small": "zstd"}
 """Presets of rosbag2's storages, each with the compression that it means."""
+
+
+KNOWN = (
+    *("noChunkCRC", "noAttachmentCRC", "enableDataCRC", "noChunking", "noMessageIndex", "noSummary", "chunkSize"),
+    *("compression", "compressionLevel", "forceCompression", "noRepeatedSchemas", "noRepeatedChannels"),
+    *("noAttachmentIndex", "noMetadataIndex", "noChunkIndex", "noStatistics", "noSummaryOffsets"),
+)
+"""Keys of a configuration of rosbag2's MCAP storage."""
 
 
 class _Configuration(msgspec.Struct):
@@ -36,7 +45,11 @@ def chunk_compression(profile: str | None, config: str | None) -> str:
         raise BagError(
             f"no storage_preset_profile named '{shown(name, 60)}'{nearest(name, known)}: there are {', '.join(known)}"
         )
-    return compression_word(load(config, _Configuration).compression) if config else PROFILES[name]
+    if not config:
+        return PROFILES[name]
+    document = read(config, _Configuration)
+    warn_of_unknown_keys(document, document.data, KNOWN)
+    return compression_word(document.value.compression)
 
 
 def compression_word(text: str | None) -> str:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from robolink.cli.launching.hashing import begin_steadily
 from robolink.cli.shared.interrupts import not_lost
 from robolink.cli.shared.output import complain
+from robolink.documents.foreign import told_in_a_line
 from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.system import exit_code
 
@@ -64,7 +65,8 @@ def _main(given: list[str], *, ends_here: bool) -> int:
             _end(code)
         return code
     try:
-        code = _outcome(given)
+        with told_in_a_line():
+            code = _outcome(given)
         if ends_here and _has_open_looks():
             _end(code)
         return code

@@ -19,6 +19,7 @@ from robolink.counterparts.joint_state_publisher.joints import (
 from robolink.counterparts.program import UsageError, spin_program
 from robolink.counterparts.urdf import parse_urdf
 from robolink.counterparts.urdf.parser import read_text
+from robolink.documents.foreign import warnings_to
 from robolink.exceptions import DocumentError, RobolinkError
 from robolink.interfaces.sensor_msgs.msg import JointState
 from robolink.interfaces.std_msgs.msg import String
@@ -108,7 +109,8 @@ class JointStatePublisher(Node):
 
     def _use(self, description: str) -> None:
         """Publish the joints of this robot from now on. Raises DocumentError, DependentJointError."""
-        joints = Joints(parse_urdf(description, anywhere=True), self._settings)
+        with warnings_to(self.get_logger().warning):
+            joints = Joints(parse_urdf(description, anywhere=True), self._settings)
         joints.state()
         self._joints = joints
         for name, joint in joints.free.items():

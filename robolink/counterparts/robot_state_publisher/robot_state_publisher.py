@@ -12,6 +12,7 @@ from typing import Any
 from robolink.counterparts.program import spin_program
 from robolink.counterparts.urdf import Joint, Mimic, Robot, parse_urdf, placed
 from robolink.counterparts.urdf.parser import read_text
+from robolink.documents.foreign import warnings_to
 from robolink.exceptions import DocumentError, InvalidParameterValueException, RobolinkError
 from robolink.interfaces.geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
@@ -98,7 +99,8 @@ class RobotStatePublisher(Node):
 
     def _use(self, text: str) -> None:
         """Publish a description, and the fixed transforms of its robot. Raises DocumentError."""
-        self._robot = parse_urdf(text)
+        with warnings_to(self.get_logger().warning):
+            self._robot = parse_urdf(text)
         if self._description is not None:
             self._description.publish(String(data=text))
         self.get_logger().info("Robot initialized")
@@ -221,7 +223,8 @@ def refusal(name: str, value: Any) -> str:
     if not value:
         return "Empty URDF is not allowed"
     try:
-        parse_urdf(value)
+        with warnings_to(lambda _: None):  # they are told when the description is used
+            parse_urdf(value)
     except DocumentError as error:
         return str(error)
     return ""

@@ -12,7 +12,9 @@ from pathlib import Path
 from typing import TypeVar
 
 from robolink.counterparts.urdf.model import KINDS, Joint, Mimic, Robot, Vector
+from robolink.counterparts.urdf.vocabulary import tell_ignored
 from robolink.documents import xmltext
+from robolink.documents.foreign import warnings_to
 from robolink.documents.xmltext import Element
 from robolink.exceptions import DocumentError, nearest
 from robolink.geometry.transformations import quaternion_from_euler
@@ -46,7 +48,8 @@ def read_urdf(path: Path, *, anywhere: bool = False) -> Robot:
 
 def read_text(path: Path, *, anywhere: bool = False) -> str:
     """Return the text of a URDF file without a mistake; see `parse_urdf`. Raises DocumentError, with file and line."""
-    read_urdf(path, anywhere=anywhere)
+    with warnings_to(lambda _: None):  # they are told when the text is used
+        read_urdf(path, anywhere=anywhere)
     return path.read_text(encoding="utf-8", errors="replace")
 
 
@@ -79,12 +82,14 @@ def robot_of(root: Element, *, anywhere: bool = False) -> Robot:
     if root.tag != "robot":
         raise root.mistake(f"expected <robot>, got <{shown(root.tag)}>: this is no URDF")
     try:
-        return _robot(root)
+        robot = _robot(root)
     except DocumentError as error:
         if any(XACRO.match(each.tag) for each in root.children):  # which are ignored otherwise, as other unknown tags
             hint = "it has tags of xacro: run it through xacro first (robolink run xacro xacro FILE)"
             raise DocumentError(f"{error.message}; {hint}", error.file, error.line) from None
         raise
+    tell_ignored(root)
+    return robot
 
 
 def _first_robot(element: Element) -> Element | None:

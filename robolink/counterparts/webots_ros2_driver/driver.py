@@ -16,6 +16,7 @@ from robolink.context import Context
 from robolink.counterparts.webots_ros2_driver.plugins import IMU, WebotsNode, load_plugin, why_left_out
 from robolink.counterparts.webots_ros2_driver.relays import Relay, make_relays
 from robolink.counterparts.webots_ros2_driver.section import Section, read_section
+from robolink.documents.foreign import warnings_to
 from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.sensor_msgs.msg import JointState
@@ -51,7 +52,8 @@ class WebotsDriver(Node):
         mappings = self._declare("xacro_mappings", [""], "arguments of xacro, name:=value")
         self._declare("set_robot_state_publisher", False, "of no effect: the world publishes transforms itself")
         self._declare("components_remappings", "", "of no effect")
-        self.section = read_section(description, filter(None, mappings))
+        with warnings_to(self.get_logger().warning):
+            self.section = read_section(description, filter(None, mappings))
         self._classes = self._load()
         self._plugins: list[Any] = []
         self._relays: list[Relay] = []

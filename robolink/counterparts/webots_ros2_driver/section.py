@@ -8,9 +8,15 @@ from typing import NamedTuple
 
 from robolink.counterparts.xacro import expanded
 from robolink.documents import xmltext
+from robolink.documents.foreign import unknown_key, warn
 from robolink.documents.xmltext import Element
 from robolink.exceptions import DocumentError
 from robolink.system.terminal import shown
+
+TAGS = ("device", "plugin")
+SETTINGS = ("topicName", "frameName", "updateRate", "alwaysOn", "enabled", "imageSuffix", "cameraInfoSuffix")
+NO_EFFECT = ("pointCloudSuffix",)
+"""Tags of <webots>, and of a device's <ros>, with those of no effect here; Webots' driver ignores others silently."""
 
 
 class Device(NamedTuple):
@@ -58,6 +64,9 @@ def read_section(description: str, mappings: Iterable[str] = ()) -> Section:
     webots = next(root.all("webots"), None)
     if webots is None:
         return Section([], [])
+    for each in webots.children:
+        if each.tag not in TAGS:
+            warn(each.mistake(f"<webots>: {unknown_key(each.tag, TAGS)}"))
     return Section([_device(each) for each in webots.all("device")], [_plugin(each) for each in webots.all("plugin")])
 
 
@@ -78,6 +87,9 @@ def _device(element: Element) -> Device:
     if not name:
         raise element.mistake('a <device> needs its name in the world: <device reference="ds0" type="DistanceSensor">')
     settings = {each.tag: each.text for ros in element.all("ros") for each in ros.children}
+    for each in (each for ros in element.all("ros") for each in ros.children if each.tag not in SETTINGS):
+        reason = f"'{each.tag}' has no effect here" if each.tag in NO_EFFECT else unknown_key(each.tag, SETTINGS)
+        warn(each.mistake(f"device '{shown(name)}': {reason}"))
     return Device(name, element.attributes.get("type", ""), settings, element)
 
 

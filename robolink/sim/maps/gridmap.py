@@ -8,7 +8,6 @@ the mode `scale` those between have a number, with `raw` the shade itself is the
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
@@ -19,7 +18,7 @@ import numpy.typing as npt
 from msgspec import Meta, Struct
 
 from robolink.documents import yamlfile
-from robolink.documents.foreign import FileWarning, unknown_key
+from robolink.documents.foreign import warn, warn_of_unknown_keys
 from robolink.exceptions import DocumentError, nearest
 from robolink.sim.description import MapWalls
 from robolink.sim.maps.formats import read_image
@@ -93,8 +92,9 @@ def load_map(path: Path) -> GridMap:
     """
     document = yamlfile.read(path, dict[str, Any])
     file = document.convert(_as_map_io_reads(document.value), MapFile)
+    warn_of_unknown_keys(document, document.data, [each.name for each in msgspec.structs.fields(MapFile)])
     for each in _doubts(document, file):
-        warnings.warn(str(each), FileWarning, stacklevel=2)
+        warn(each)
     try:
         image = read_image(path.parent / file.image)
     except FileNotFoundError:
@@ -140,10 +140,6 @@ def _truth(value: Any) -> Any:
 
 def _doubts(document: yamlfile.Document[dict[str, Any]], file: MapFile) -> Iterator[DocumentError]:
     """Yield what nav2 loads without a word."""
-    names = [each.name for each in msgspec.structs.fields(MapFile)]
-    for key in document.data if isinstance(document.data, dict) else ():
-        if key not in names:
-            yield document.error([key], unknown_key(key, names), key=True)
     for key in ("occupied_thresh", "free_thresh"):
         if not 0.0 <= getattr(file, key) <= 1.0:
             yield document.error([key], f"{getattr(file, key):g} is not a share from 0 to 1")
