@@ -240,7 +240,9 @@ class _Parser:
             if name not in definition.fields:
                 self._note(node.type, name, field.offset, definition.fields)
         parser = _Parser(definition.source, definition.scope, self._protos)
-        return parser.instance(definition, node, self._depth)
+        made = parser.instance(definition, node, self._depth)
+        made.source, made.offset = node.source, node.offset  # where the world has it, as for any other node
+        return made
 
     def _note(self, kind: str, name: str, offset: int, known: Iterable[str]) -> None:
         text = f"{kind}.{name}: {unknown_key(name, known)}"

@@ -141,6 +141,11 @@ def test_one_whose_file_is_not_there_and_one_on_the_network_are_told(folder: Pat
     )
 
 
+def test_a_robot_inside_of_something_is_told_where_the_world_has_it(folder: Path) -> None:
+    with pytest.raises(DocumentError, match=r"w\.wbt:4:1: Robot 'TurtleBot3Burger': this starts inside of WoodenBox"):
+        world(folder, "WoodenBox { }\nTurtleBot3Burger { }")
+
+
 def test_webots_own_definitions_are_read_where_it_is_installed(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
