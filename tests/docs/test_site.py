@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import shutil
+import subprocess
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,7 +13,7 @@ import pytest
 import yaml
 
 from robolink.learn.languages import _WORDS
-from tools.docs_site.build import finished
+from tools.docs_site.build import SEARCH_NEEDS, SERVE, finished, script
 from tools.docs_site.markdown import LINK, blocks, headings, outside_blocks, slugs, with_site_tables
 from tools.docs_site.pages import DOCS, LANGUAGES, Page, addresses, pages
 from tools.docs_site.same_code import pairs, with_code_of
@@ -208,3 +210,31 @@ def test_a_block_can_show_fences() -> None:
     assert [(each.language, each.text) for each in blocks(page)] == [("markdown", "```text\n# B\n```\n")]
     assert [words for _, words in headings(page)] == ["A", "C"]
     assert with_code_of(page, page.replace("```text\n# B\n```\n", ""), "page") == page
+
+
+IN_A_PAGE = """
+const shown = [];
+const element = () => ({ parts: [], append(...parts) { this.parts.push(...parts); } });
+globalThis.location = { protocol: new URL(process.argv[1]).protocol };
+globalThis.document = {
+  currentScript: { src: process.argv[1] },
+  createElement: element,
+  querySelector: () => ({ prepend: (note) => shown.push(...note.parts.map((each) => each.textContent ?? each)) }),
+};
+"""
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="there is no node")
+@pytest.mark.parametrize(
+    ("source", "language", "folder"),
+    [
+        ("file:///home/jos%C3%A9%20s/site/opened_from_file.js", "en", "/home/josé s/site"),
+        ("file:///home/a/site/pt/opened_from_file.js", "pt", "/home/a/site"),
+        ("file:///C:/site/opened_from_file.js", "en", "C:/site"),
+        ("http://localhost:8000/opened_from_file.js", "en", ""),
+    ],
+)
+def test_a_page_opened_from_a_file_says_how_to_search(source: str, language: str, folder: str) -> None:
+    program = IN_A_PAGE + script(language) + "console.log(shown.join(''))"
+    done = subprocess.run(["node", "-e", program, source], capture_output=True, encoding="utf-8", check=True)
+    assert done.stdout == (f'{SEARCH_NEEDS[language]} {SERVE} "{folder}"\n' if folder else "\n")

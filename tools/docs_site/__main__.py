@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import time
 
-from tools.docs_site.build import SITE, build
+from tools.docs_site.build import SERVE, SITE, build
 from tools.docs_site.same_code import copy_code
 
 USAGE = "usage: python -m tools.docs_site [build | same-code | pictures [NAME]...]"
@@ -17,7 +17,8 @@ def main(words: list[str]) -> int:
         started = time.monotonic()
         code = build()
         if not code:
-            print(f"the site is in {SITE}: open index.html ({time.monotonic() - started:.1f} s)")  # noqa: T201
+            print(f"the site is in {SITE} ({time.monotonic() - started:.1f} s): open index.html, or with a search:")  # noqa: T201
+            print(f"  {SERVE} {SITE}    # then http://localhost:8000")  # noqa: T201
         return code
     if words[0] == "pictures":
         from tools.docs_site.pictures import write  # its simulator is not needed by the rest

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -37,6 +38,7 @@ copyright = "Apache-2.0"
 docs_dir = "{docs}"
 site_dir = "{site}"
 use_directory_urls = false
+extra_javascript = ["{script}"]
 nav = [
 {nav}
 ]
@@ -63,6 +65,14 @@ generator = false
 
 {alternates}
 """
+SCRIPT = "opened_from_file.js"
+"""Script of the pages, beside this module, which says how to search on a site that no server serves."""
+SERVE = "python -m http.server --directory"
+"""Command that serves a site, without its folder."""
+SEARCH_NEEDS = {
+    "en": "Opened from a file, the site cannot be searched. Type this, then open http://localhost:8000:",
+    "pt": "Aberto de um arquivo, o site não tem busca. Digite isto e abra http://localhost:8000:",
+}
 TOGGLES = {"en": ("Dark", "Light"), "pt": ("Escuro", "Claro")}
 TAGS = {"en": "en", "pt": "pt-BR"}
 
@@ -92,6 +102,7 @@ def gather(language: str) -> None:
     for source, place in pictures().items():
         (folder / place).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(source, folder / place)
+    (folder / SCRIPT).write_text(script(language), encoding="utf-8")
     (GATHERED / f"{language}.toml").write_text(configuration(language), encoding="utf-8")
 
 
@@ -116,6 +127,13 @@ def _noted(text: str, page: Page) -> str:
     return f"{first}\n\n{NOTES[page.language]}{rest}"
 
 
+def script(language: str) -> str:
+    """Return the script of the pages in a language: the words that it shows, and where the site is from its folder."""
+    text = Path(__file__).with_name(SCRIPT).read_text(encoding="utf-8")
+    said = {"words": SEARCH_NEEDS[language], "command": SERVE, "site": "." if language == "en" else ".."}
+    return f"const SAID = {json.dumps(said)};\n{text}"
+
+
 def contents(index: Page) -> str:
     """Return a list of the pages of a part, for the page on which it begins."""
     part = Path(index.address).parent.as_posix() + "/"
@@ -138,6 +156,7 @@ def configuration(language: str) -> str:
         docs=language,
         site=Path(os.path.relpath(SITE if language == "en" else SITE / language, GATHERED)).as_posix(),
         nav="\n".join(navigation(language)),
+        script=SCRIPT,
         language=TAGS[language],
         dark=dark,
         light=light,
