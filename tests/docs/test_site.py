@@ -224,6 +224,7 @@ globalThis.document = {
 """
 
 
+@pytest.mark.processes
 @pytest.mark.skipif(shutil.which("node") is None, reason="there is no node")
 @pytest.mark.parametrize(
     ("source", "language", "folder"),
