@@ -105,7 +105,7 @@ class Protos:
         address = scope.addresses.get(kind, "")
         if address and "://" not in address:
             path = scope.folder / address
-            if path.is_file():
+            if address.endswith(".proto") and path.is_file():
                 return path
             self.missing[kind] = f"there is no file '{shown(address, 60)}'"
         elif kind not in self._known and re.fullmatch(r"[\w.-]+", kind):
