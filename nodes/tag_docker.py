@@ -32,6 +32,7 @@ from robolink.parameters.descriptors import described
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.tf2 import Buffer, TransformException, TransformListener
 from robolink.tf2.geometry import do_transform_point, do_transform_vector3
+from robolink.time import sent_time
 
 FAMILIES = {
     "16h5": cv2.aruco.DICT_APRILTAG_16h5,
@@ -285,9 +286,9 @@ class TagDocker(ImageController):
 
 
 def stamp_of(message: Image) -> Time:
-    """Return the time of an image. Raises ImageError for one before 1970."""
+    """Return the time of an image. Raises ImageError for one that no message has."""
     try:
-        return Time.from_msg(message.header.stamp)
+        return sent_time(message.header.stamp)
     except ValueError as error:
         raise ImageError(f"an image is of no time that there is: {error}") from None
 

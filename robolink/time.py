@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ClockType", "Duration", "Time"]
 
-_LIMIT = 2**63
+_LIMIT, _LIMIT_OF_SECONDS = 2**63, 2**31
 
 
 class Time:
@@ -136,3 +136,14 @@ class Time:
                 f"cannot {verb} times of different clocks: {self._clock_type.name} and {other._clock_type.name}"
             )
         return other._nanoseconds
+
+
+def sent_time(msg: TimeMsg) -> Time:
+    """Return the ROS time of a stamp that somebody sent, if a message can have it again.
+
+    Raises ValueError for a time before 1970, and for one whose nanoseconds carry its seconds beyond 32 bits.
+    """
+    time = Time.from_msg(msg)
+    if time.nanoseconds // S_TO_NS >= _LIMIT_OF_SECONDS:
+        raise ValueError(f"a message has no time after 2038, got sec={msg.sec}, nanosec={msg.nanosec}")
+    return time

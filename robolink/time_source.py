@@ -10,7 +10,7 @@ from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
 from robolink.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
 from robolink.parameter import Parameter
 from robolink.qos import QoSProfile, ReliabilityPolicy
-from robolink.time import Time
+from robolink.time import Time, sent_time
 
 if TYPE_CHECKING:
     from robolink.node_parts.ports import TimedNode
@@ -89,7 +89,7 @@ class TimeSource:
     def clock_callback(self, msg: ClockMsg) -> None:
         """Set the clocks to the time of `msg`, a message of /clock."""
         try:
-            time = Time.from_msg(msg.clock)
+            time = sent_time(msg.clock)
         except ValueError as error:  # rclpy raises here, and whoever publishes one such message ends every node
             if self._node is not None:
                 self._node.get_logger().warning(f"a time on {CLOCK_TOPIC} is ignored: {error}", once=True)

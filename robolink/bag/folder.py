@@ -71,12 +71,18 @@ def _metadata(folder: Path, problems: list[str]) -> BagMetadata | None:
 
 
 def _named(folder: Path, metadata: BagMetadata, problems: list[str]) -> list[Path]:
-    """Return the files that metadata names and that are there: within the folder, whatever path it says."""
+    """Return the files that metadata names and that are there: within the folder, whatever path it says.
+
+    Where one is missing, a file that nobody names may be it: a name is as easily damaged as anything else.
+    """
     files = list(dict.fromkeys(_within(folder, each) for each in metadata.relative_file_paths))
     for each in files:
         if not each.is_file():
             problems.append(f"{each} is missing: metadata.yaml names it")
-    return [each for each in files if each.is_file()]
+    found = [each for each in files if each.is_file()]
+    if found and len(found) < len(files):
+        found += [each for each in storage_files(folder) if each not in found]
+    return found
 
 
 def _within(folder: Path, named: str) -> Path:

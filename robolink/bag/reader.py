@@ -138,7 +138,8 @@ class Bag:
     def _release(self, file: _File) -> None:
         """Note what a file's reader has found to be broken, and close it if there are many."""
         if file.reader is not None:
-            self.problems += [each for each in file.reader.problems if each not in self.problems]
+            known = set(self.problems)
+            self.problems += [each for each in file.reader.problems if each not in known]
         if not self._keeps_open:
             file.close()
 

@@ -9,12 +9,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from robolink.bag.limits import most_of_file, most_of_piece
 from robolink.bag.topic import BagError
 
 MAGIC = b"\x28\xb5\x2f\xfd"
 """First bytes of compressed data; no CDR message begins so."""
-LARGEST = 1 << 30
-"""Most bytes of one message: a hostile one of a few kilobytes would unpack to more than the memory has."""
 ENDING = ".zstd"
 """Ending that rosbag2 appends to the names of compressed files."""
 
@@ -28,16 +27,18 @@ def compress(data: bytes | memoryview) -> bytes:
 def decompress(data: bytes | memoryview, what: str) -> bytes:
     """Return a message decompressed.
 
-    Raises BagError, naming `what` it is, for damaged data, for more than LARGEST bytes, or where there is no zstd.
+    Raises BagError, naming `what` it is, for damaged data, for more bytes than its size is good for, or where there is
+    no zstd.
     """
     zstd = _module()
     plain, rest = bytearray(), bytes(data)
+    most = most_of_piece(len(rest))
     try:
         while True:
             frame = zstd.ZstdDecompressor()
-            plain += frame.decompress(rest, LARGEST + 1 - len(plain))
-            if len(plain) > LARGEST:
-                raise BagError(f"{what} cannot be decompressed: it is larger than {LARGEST:,} bytes")
+            plain += frame.decompress(rest, most + 1 - len(plain))
+            if len(plain) > most:
+                raise BagError(f"{what} cannot be decompressed: it is more than {most:,} bytes")
             if not frame.eof:
                 raise BagError(f"{what} cannot be decompressed: its end is missing")
             rest = frame.unused_data
@@ -73,21 +74,41 @@ def decompress_file(path: Path, target: Path, check_head: Callable[[bytes], obje
         check_head: Called with the first bytes, before the rest is unpacked: it raises for what is not wanted.
 
     Raises:
-        BagError: for damaged data, or if the copy cannot be written.
+        BagError: for damaged data, for more than its size is good for or the disk has room for, or if the copy cannot
+            be written.
     """
     zstd = _module()
+    most = most_of_file(path.stat().st_size)
     try:
         with zstd.open(path, "rb") as packed:
             head = packed.read(16)
             check_head(head)
             with target.open("wb") as plain:
                 plain.write(head)
-                shutil.copyfileobj(packed, plain, 1 << 20)
+                room = shutil.disk_usage(target.parent).free // 2
+                words = "are unpacked of such a file" if most <= room else "have room here"
+                refusal = f"{path} cannot be decompressed: {min(most, room):,} bytes at most {words}"
+                shutil.copyfileobj(_Limited(packed, min(most, room) - len(head), refusal), plain, 1 << 20)
     except (zstd.ZstdError, EOFError) as error:
         raise BagError(f"{path} cannot be decompressed: {error}") from None
     except OSError as error:
         reason = error.strerror or error
         raise BagError(f"{path} cannot be decompressed: {reason} (into {target.parent})") from None
+
+
+class _Limited:
+    """File that is read up to a limit; `refusal` is the text of the BagError beyond it."""
+
+    def __init__(self, file: Any, left: int, refusal: str) -> None:
+        self._file, self._left, self._refusal = file, left, refusal
+
+    def read(self, size: int) -> bytes:
+        """Return the next bytes. Raises BagError beyond the limit."""
+        part: bytes = self._file.read(size)
+        self._left -= len(part)
+        if self._left < 0:
+            raise BagError(self._refusal)
+        return part
 
 
 def _module() -> Any:

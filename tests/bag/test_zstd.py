@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from robolink.bag import zstd
+from robolink.bag import limits, zstd
 from robolink.bag.reader import open_bag
 from robolink.bag.topic import BagError
 from tests.support.bags import ten_messages, write
@@ -30,12 +30,12 @@ def test_a_message_that_unpacks_to_too_much_is_a_line(tmp_path: Path, monkeypatc
     with contextlib.closing(sqlite3.connect(file)) as database:
         database.execute("UPDATE messages SET data = ? WHERE id = 5", (bomb(1 << 20),))
         database.commit()
-    monkeypatch.setattr(zstd, "LARGEST", 1 << 19)
+    monkeypatch.setattr(limits, "PIECE", 1 << 19)
     with open_bag(tmp_path / "bag") as bag:
         found = [each.log_time for each in bag.messages()]
         assert found == [each.stamp for number, each in enumerate(MESSAGES, start=1) if number != 5]
         assert [each.partition(": ")[2] for each in bag.problems] == [
-            "a message of /chatter cannot be decompressed: it is larger than 524,288 bytes; it is left out"
+            "a message of /chatter cannot be decompressed: it is more than 524,288 bytes; it is left out"
         ]
 
 
@@ -56,6 +56,16 @@ def test_a_file_that_unpacks_to_something_else_is_not_unpacked_as_a_whole(tmp_pa
     with pytest.raises(BagError) as caught, open_bag(path):
         pass
     assert str(caught.value) == (f"{path} begins with zeros: its disk lost power, or it was never copied as a whole")
+
+
+def test_a_file_that_unpacks_to_too_much_fills_no_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "bag_0.mcap.zstd"
+    path.write_bytes(zstd.compress(b"\x89MCAP0\r\n" + bytes(8 << 20)))
+    monkeypatch.setattr(limits, "FILE", 1 << 20)
+    with pytest.raises(BagError) as caught, open_bag(path):
+        pass
+    most = max(1 << 20, limits.FILE_RATIO * path.stat().st_size)
+    assert str(caught.value) == f"{path} cannot be decompressed: {most:,} bytes at most are unpacked of such a file"
 
 
 def test_of_a_file_that_is_refused_nothing_is_unpacked(tmp_path: Path) -> None:

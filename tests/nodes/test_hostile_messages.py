@@ -40,6 +40,18 @@ def _odometry(**orientation: float) -> Odometry:
 CASES: list[tuple[str, dict[str, Any], str, Any]] = [
     ("demo_nodes_py talker", {"use_sim_time": True}, "/clock", Clock(clock=Time(sec=-1))),
     (
+        "examples_rclpy_minimal_publisher publisher_member_function",
+        {"use_sim_time": True},
+        "/clock",
+        Clock(clock=Time(sec=2**31 - 1, nanosec=2**32 - 1)),
+    ),
+    (
+        "robot_state_publisher robot_state_publisher",
+        {"robot_description": ARM},
+        "/joint_states",
+        JointState(header=Header(stamp=Time(sec=2**31 - 1, nanosec=2**32 - 1)), name=["left"], position=[1.0]),
+    ),
+    (
         "robot_state_publisher robot_state_publisher",
         {"robot_description": ARM},
         "/joint_states",

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
+import itertools
 import struct
 import threading
 import zlib
-from collections.abc import Container
+from collections.abc import Container, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from robolink.bag.limits import most_messages
 from robolink.bag.mcap.compression import unpack
 from robolink.bag.mcap.records import (
     CHUNK,
@@ -23,7 +26,11 @@ from robolink.bag.mcap.records import (
     Schema,
     Statistics,
     read_chunk_head,
+    records,
 )
+
+WINDOW = 1 << 16
+"""Bytes that are read at a time where records are small."""
 
 _opening = struct.Struct("<BQ")
 _head = struct.Struct("<BQHIQQ")
@@ -93,6 +100,21 @@ class Source:
         opcode, length = _opening.unpack(content)
         return opcode, length
 
+    def walk(self, at: int, end: int) -> Iterator[tuple[int, int, int]]:
+        """Iterate over records from a place to another: place, opcode and length. Raises Malformed at the file's end.
+
+        The file is read in large parts: a summary may have a hundred thousand records.
+        """
+        window, begin = b"", at
+        while at < end:
+            if at + OPENING > begin + len(window):
+                window, begin = self.read(at, WINDOW), at
+                if len(window) < OPENING:
+                    raise Malformed("the file ends within a record")
+            opcode, length = _opening.unpack_from(window, at - begin)
+            yield at, opcode, length
+            at += OPENING + length
+
     def content(self, at: int, length: int) -> bytes:
         """Return the content of the record at a place. Raises Malformed if it is cut."""
         found = self.read(at + OPENING, length)
@@ -127,9 +149,18 @@ def load(source: Source, block: Block) -> Buffer:
 def chunk_data(packed: Buffer, compression: str, size: int, crc: int) -> Buffer:
     """Return a chunk's records. Raises Malformed if they do not unpack or differ from their CRC."""
     data = unpack(compression, packed, size)
+    most = most_messages(len(packed), size) if compression else None
+    if most is not None and _has_more_records(data, most):
+        raise Malformed(f"it is {len(packed)} bytes with more than {most} messages")
     if crc and zlib.crc32(data) != crc:
         raise Malformed("its CRC differs")
     return data
+
+
+def _has_more_records(data: Buffer, most: int) -> bool:
+    with contextlib.suppress(Malformed):
+        return next(itertools.islice(records(data), most, None), None) is not None
+    return False
 
 
 def messages_of(data: Buffer, wanted: Container[int], low: int, high: int) -> list[Message]:
@@ -141,7 +172,7 @@ def messages_of(data: Buffer, wanted: Container[int], low: int, high: int) -> li
     while at + OPENING + MESSAGE_HEAD <= end:
         opcode, length, channel, sequence, log_time, publish_time = unpack_head(data, at)
         stop = at + OPENING + length
-        if stop > end:
+        if stop > end or not opcode:
             break
         if opcode == MESSAGE and channel in wanted and low <= log_time < high and length >= MESSAGE_HEAD:
             take(new(Message, (channel, sequence, log_time, publish_time, view[at + 31 : stop])))

@@ -7,6 +7,7 @@ import importlib
 from collections.abc import Callable
 from typing import Any
 
+from robolink.bag.limits import refusal_of_piece
 from robolink.bag.mcap.records import Buffer, Malformed, McapError
 
 COMPRESSIONS = ("", "zstd", "lz4")
@@ -15,10 +16,6 @@ LEVEL = 1
 """Level of zstd: the fastest of the usual ones, since a recorder shares the computer with a robot's programs."""
 MODULES = {"zstd": ("compression.zstd", "backports.zstd"), "lz4": ("lz4.frame",)}
 """Modules that can, the first that is there: Python has zstd itself from 3.14 on."""
-LARGEST = 4 << 30
-"""Size of the largest chunk that is unpacked, in bytes: what claims to be larger is taken for broken."""
-
-
 LARGEST_PART = 64 << 20
 """Most that is unpacked of a chunk without an end, in bytes."""
 
@@ -53,9 +50,12 @@ def compressor(name: str) -> Callable[[bytes], bytes]:
 
 
 def unpack(name: str, packed: Buffer, size: int) -> Buffer:
-    """Return a chunk's data, which is `size` bytes. Raises Malformed if it is not, and MissingCompressionError."""
-    if size > LARGEST:
-        raise Malformed(f"it claims to be {size} bytes")
+    """Return a chunk's data, which is `size` bytes.
+
+    Raises Malformed if it is not, or claims more than its packed size is good for, and MissingCompressionError.
+    """
+    if reason := refusal_of_piece(len(packed), size):
+        raise Malformed(reason)
     found: Buffer
     if not name:
         found = packed

@@ -6,6 +6,7 @@ import contextlib
 import zlib
 from collections.abc import Iterator
 
+from robolink.bag.limits import PIECE_RATIO, most_of_file
 from robolink.bag.mcap.blocks import Block, Catalog, Source, load
 from robolink.bag.mcap.compression import MissingCompressionError
 from robolink.bag.mcap.records import (
@@ -31,6 +32,7 @@ from robolink.bag.mcap.records import (
     ChunkIndex,
     Fields,
     Malformed,
+    Unindexed,
     read_attachment,
     read_channel,
     read_chunk_index,
@@ -132,6 +134,7 @@ def _read_summary(source: Source, start: int, head: Catalog) -> Catalog:
         raise Malformed("its summary has no statistics")
     catalog.statistics = counted
     catalog.blocks = [_block(source, each) for each in sorted(chunks, key=lambda each: each.at)]
+    _leave_out_bombs(source, catalog)
     _read_places(source, catalog, places)
     _check(catalog, chunks)
     return catalog
@@ -152,7 +155,7 @@ def _read_footer(source: Source) -> tuple[int, int]:
         raise Malformed("it has no end")
     start, _, crc = Fields(source.content(at, 20)).numbers("QQI")
     if not len(MAGIC) < start <= at:
-        raise Malformed("it has no summary")
+        raise Unindexed("it has no summary")
     return start, crc
 
 
@@ -167,16 +170,14 @@ def _check_crc(source: Source, start: int, crc: int) -> None:
 
 def _summary(source: Source, start: int) -> Iterator[tuple[int, bytes]]:
     """Iterate over the summary's records, those of interest: opcode and content."""
-    at, end = start, source.size - END_SIZE
-    while at < end:
-        opcode, length = source.opening(at)
+    end = source.size - END_SIZE
+    for at, opcode, length in source.walk(start, end):
         if opcode == 0 or at + OPENING + length > end:
             raise Malformed("its summary is broken")
         if opcode < FILLER:
             if length > LARGEST_SUMMARY:
                 raise Malformed("its summary is too large")
             yield opcode, source.content(at, length)
-        at += OPENING + length
 
 
 def _block(source: Source, index: ChunkIndex) -> Block:
@@ -184,6 +185,21 @@ def _block(source: Source, index: ChunkIndex) -> Block:
         raise Malformed("its index reaches beyond its end")
     channels = frozenset(index.index_offsets) or None
     return Block(index.at, index.length, index.first, index.last, channels, True, index.compression, index.size)
+
+
+def _leave_out_bombs(source: Source, catalog: Catalog) -> None:
+    """Leave out the chunks of the largest ratios where all chunks together claim more than the file is good for."""
+    claimed, most = sum(each.size for each in catalog.blocks), most_of_file(source.size)
+    if claimed <= most:
+        return
+    kept = [each for each in catalog.blocks if each.size <= PIECE_RATIO * each.length]
+    left_out = len(catalog.blocks) - len(kept)
+    if left_out:
+        catalog.blocks = kept
+        catalog.problems.append(
+            f"its chunks claim to be {claimed} bytes, and {most} at most are unpacked of a file of {source.size}:"
+            f" {left_out} that claim more than {PIECE_RATIO} times their size are left out"
+        )
 
 
 def _read_places(source: Source, catalog: Catalog, places: list[tuple[int, int, int]]) -> None:
@@ -203,21 +219,15 @@ def _check(catalog: Catalog, chunks: list[ChunkIndex]) -> None:
     """Raise Malformed if the summary leaves out something that is in the file: then all of the file must be read."""
     used = set(catalog.statistics.counts).union(*(each.index_offsets for each in chunks))
     if catalog.statistics.message_count and not chunks:
-        raise Malformed("its messages have no index")
+        raise Unindexed("its messages have no index")
     if not used <= set(catalog.channels):
-        raise Malformed("its summary lacks channels")
+        raise Unindexed("its summary lacks channels")
     if not {each.schema for each in catalog.channels.values()} <= {0, *catalog.schemas}:
-        raise Malformed("its summary lacks schemas")
+        raise Unindexed("its summary lacks schemas")
     if catalog.statistics.message_count and not catalog.statistics.counts:
         raise Malformed("its statistics count no channels")
 
 
 def _is_open(source: Source, start: int) -> bool:
     """True if a filler leads from the summary to the footer: the file was not closed by its writer."""
-    at, end = start, source.size - END_SIZE
-    while at < end:
-        opcode, length = source.opening(at)
-        if opcode >= FILLER:
-            return True
-        at += OPENING + length
-    return False
+    return any(opcode >= FILLER for _, opcode, _ in source.walk(start, source.size - END_SIZE))

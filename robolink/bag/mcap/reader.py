@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import bisect
-import itertools
 from collections.abc import Collection, Iterator
 from operator import attrgetter
 from pathlib import Path
@@ -12,6 +10,7 @@ from robolink.bag.mcap.ahead import loaded
 from robolink.bag.mcap.blocks import Block, Catalog, Source, load, messages_of
 from robolink.bag.mcap.compression import MissingCompressionError
 from robolink.bag.mcap.index import read_index
+from robolink.bag.mcap.ordering import in_log_order
 from robolink.bag.mcap.records import (
     MAGIC,
     Attachment,
@@ -22,6 +21,7 @@ from robolink.bag.mcap.records import (
     Message,
     Schema,
     Statistics,
+    Unindexed,
 )
 from robolink.bag.mcap.scan import scan
 
@@ -35,7 +35,6 @@ OTHERS = {
 """Beginnings of other files that are given in an MCAP's place."""
 ATTEMPTS = 5
 """Times that the index is read when it does not fit: a writer may have changed it meanwhile."""
-_log_time = attrgetter("log_time")
 
 
 class Reader:
@@ -52,6 +51,8 @@ class Reader:
 
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
+        self._broken: set[int] = set()
+        """Places of chunks whose faults are among the problems."""
         try:
             self._source = Source(self.path)
         except OSError as error:
@@ -156,7 +157,7 @@ class Reader:
         ]
         if not in_log_order:
             return self._in_file_order(blocks, wanted, low, high, reverse)
-        return (self._backwards if reverse else self._forwards)(blocks, wanted, low, high)
+        return self._in_log_order(blocks, wanted, low, high, reverse)
 
     def close(self) -> None:
         """Close the file."""
@@ -169,24 +170,15 @@ class Reader:
             found = self._messages(data, wanted, low, high)
             yield from reversed(found) if reverse else found
 
-    def _forwards(self, blocks: list[Block], wanted: set[int], low: int, high: int) -> Iterator[Message]:
-        """Iterate in order of log time, over chunks that may overlap: those that can come next are held together."""
-        blocks = sorted(blocks, key=attrgetter("first"))
-        held: list[Message] = []
-        for data, following in itertools.zip_longest(loaded(blocks, self._load), blocks[1:]):
-            held = sorted(held + self._messages(data, wanted, low, high), key=_log_time)
-            count = len(held) if following is None else bisect.bisect_left(held, following.first, key=_log_time)
-            yield from held[:count]
-            held = held[count:]
-
-    def _backwards(self, blocks: list[Block], wanted: set[int], low: int, high: int) -> Iterator[Message]:
-        blocks = sorted(blocks, key=attrgetter("last"), reverse=True)
-        held: list[Message] = []
-        for data, following in itertools.zip_longest(loaded(blocks, self._load), blocks[1:]):
-            held = sorted(self._messages(data, wanted, low, high) + held, key=_log_time)
-            count = 0 if following is None else bisect.bisect_right(held, following.last, key=_log_time)
-            yield from reversed(held[count:])
-            held = held[:count]
+    def _in_log_order(
+        self, blocks: list[Block], wanted: set[int], low: int, high: int, reverse: bool
+    ) -> Iterator[Message]:
+        """Iterate in order of log time, over chunks that may overlap."""
+        time = attrgetter("last" if reverse else "first")
+        blocks = sorted(blocks, key=time, reverse=reverse)
+        chunks = (self._messages(data, wanted, low, high) for data in loaded(blocks, self._load))
+        times = [*map(time, blocks[1:]), None]
+        return in_log_order(zip(chunks, times, strict=False), reverse=reverse)
 
     def _messages(self, data: Buffer | None, wanted: set[int], low: int, high: int) -> list[Message]:
         return [] if data is None else messages_of(data, wanted, low, high)
@@ -196,9 +188,9 @@ class Reader:
         try:
             return load(self._source, block)
         except Malformed as error:
-            problem = f"byte {block.at}: a chunk: {error}; its messages are left out"
-            if problem not in self.problems:
-                self.problems.append(problem)
+            if block.at not in self._broken:
+                self._broken.add(block.at)
+                self.problems.append(f"byte {block.at}: a chunk: {error}; its messages are left out")
             return None
         except OSError as error:
             raise McapError(f"{self.path} cannot be read: {error.strerror or error}") from None
@@ -211,10 +203,10 @@ class Reader:
             try:
                 return read_index(self._source)
             except Malformed as error:
-                why = str(error)
+                is_final = isinstance(error, Unindexed)
             size = self._source.size
             self._source.measure()
-            if self._source.size == size and why in FINAL:
+            if self._source.size == size and is_final:
                 break
         return scan(self._source)
 
@@ -231,10 +223,6 @@ class Reader:
             raise McapError(f"it is cut after {len(begin)} bytes: no message is in it")
         other = next((words for start, words in OTHERS.items() if begin.startswith(start)), "")
         raise McapError("it is no MCAP file" + (f", but {other}" if other else f": it begins with {begin[:8]!r}"))
-
-
-FINAL = ("it has no summary", "its messages have no index", "its summary lacks channels", "its summary lacks schemas")
-"""Reasons for which reading the index again is of no use."""
 
 
 def open_mcap(path: str | Path) -> Reader:

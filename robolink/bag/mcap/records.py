@@ -108,6 +108,10 @@ class Malformed(Exception):  # noqa: N818 - it never leaves this room
     """Bytes that are no record, or not the one that they should be."""
 
 
+class Unindexed(Malformed):
+    """A summary that lacks what is needed to read by it, though it is whole: reading it again is of no use."""
+
+
 def record(opcode: int, content: Buffer) -> bytes:
     """Return a record."""
     return _opening.pack(opcode, len(content)) + content
@@ -329,12 +333,17 @@ def read_chunk_head(content: Buffer) -> ChunkHead:
 
 
 def records(content: Buffer) -> Iterator[tuple[int, int, int]]:
-    """Iterate over records: opcode, and start and end of the content. Raises Malformed where one reaches too far."""
+    """Iterate over records: opcode, and start and end of the content.
+
+    Raises Malformed where one reaches too far, or there is none.
+    """
     at, end = 0, len(content)
     while at < end:
         if at + OPENING > end:
             raise Malformed("a record is cut")
         opcode, length = _opening.unpack_from(content, at)
+        if not opcode:
+            raise Malformed("there is no record")
         start = at + OPENING
         at = start + length
         if at > end:

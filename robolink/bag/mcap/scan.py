@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from robolink.bag.limits import PIECE_RATIO, most_of_file, refusal_of_piece
 from robolink.bag.mcap.blocks import Block, Catalog, Source, chunk_data, messages_of
 from robolink.bag.mcap.compression import LARGEST_PART, unpack_partly
 from robolink.bag.mcap.records import (
@@ -19,6 +20,7 @@ from robolink.bag.mcap.records import (
     OPENING,
     SCHEMA,
     Buffer,
+    ChunkHead,
     Fields,
     Malformed,
     Statistics,
@@ -54,6 +56,8 @@ class _Scan:
         """Blocks by their first message: the versions of an open chunk have the same."""
         self.chunks: set[int] = set()
         """Places of all chunks, the broken ones too."""
+        self.left = most_of_file(source.size)
+        """Bytes that may still be unpacked."""
 
     def run(self) -> Catalog:
         at: int | None = len(MAGIC)
@@ -138,10 +142,17 @@ class _Scan:
         head = read_chunk_head(self.source.read(at + OPENING, min(length, LONGEST_HEAD)))
         if head.head - OPENING + head.packed > length:
             raise Malformed("its data reaches beyond its end")
-        packed = self.source.read(at + head.head, head.packed)
-        data = chunk_data(packed, head.compression, head.size, head.crc)
+        data = self._unpacked(at, head)
         self._declare_all(data)
         self._block(Block(at, OPENING + length, head.first, head.last, None, True, head.compression, head.size), data)
+
+    def _unpacked(self, at: int, head: ChunkHead) -> Buffer:
+        """Return the data of a chunk. Raises Malformed if it is broken, or all chunks together claim too much."""
+        if head.compression and not refusal_of_piece(head.packed, head.size):
+            if head.size > self.left and head.size > PIECE_RATIO * head.packed:
+                raise Malformed(f"it claims to be {head.size} bytes, and too many were unpacked before for such a file")
+            self.left -= head.size
+        return chunk_data(self.source.read(at + head.head, head.packed), head.compression, head.size, head.crc)
 
     def _declare_all(self, data: Buffer) -> None:
         """Take the schemas and channels of a chunk."""
@@ -223,7 +234,7 @@ class _Scan:
             head = read_chunk_head(self.source.read(at + OPENING, LONGEST_HEAD))
             if not head.crc or at + head.head + head.packed > self.source.size:
                 return
-            data = chunk_data(self.source.read(at + head.head, head.packed), head.compression, head.size, head.crc)
+            data = self._unpacked(at, head)
         except Malformed:
             return
         self._declare_all(data)

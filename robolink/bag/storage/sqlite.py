@@ -34,6 +34,10 @@ CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timesta
     data BLOB NOT NULL);
 CREATE INDEX timestamp_idx ON messages (timestamp ASC);
 """
+LONGEST_TEXT = 16 << 20
+"""Length of the longest name, definition or metadata that is read, in bytes."""
+SORTED_WHOLE = 1 << 20
+"""Size in bytes up to which messages are sorted with their data; of larger ones sqlite would hold several copies."""
 _COMMIT_AFTER = 0.25
 """Longest time, in seconds, after which written messages are committed."""
 
@@ -99,7 +103,7 @@ class SqliteReader(StorageReader):
         if not {"topics", "messages"} <= tables:
             raise BagError(f"{self.path} is a sqlite3 database, but no bag: it lacks the tables topics and messages")
         definitions = self._definitions() if "message_definitions" in tables else {}
-        query = ", ".join(_column(columns, name) for name in _COLUMNS)
+        query = ", ".join(_short(_column(columns, name)) for name in _COLUMNS)
         rows = self._database.execute(f"SELECT id, {query} FROM topics ORDER BY id").fetchall()
         self._ids = [row[0] for row in rows]
         self.topics = [_topic(row, definitions) for row in rows]
@@ -111,12 +115,14 @@ class SqliteReader(StorageReader):
         self.start_time, self.end_time = self._time("MIN"), self._time("MAX")
 
     def _definitions(self) -> dict[str, tuple[str, str]]:
-        query = "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
+        columns = ", ".join(map(_short, ("topic_type", "encoding", "encoded_message_definition")))
+        query = f"SELECT {columns} FROM message_definitions"
         return {str(row[0]): (str(row[1]), str(row[2])) for row in self._database.execute(query)}
 
     def _metadata(self) -> BagMetadata | None:
         with contextlib.suppress(BagError, sqlite3.DatabaseError):  # a copy: what counts is metadata.yaml, and messages
-            row = self._database.execute("SELECT metadata FROM metadata ORDER BY id DESC LIMIT 1").fetchone()
+            query = f"SELECT {_short('metadata')} FROM metadata ORDER BY id DESC LIMIT 1"
+            row = self._database.execute(query).fetchone()
             return parse_metadata(str(row[0])) if row else None
         return None
 
@@ -160,15 +166,18 @@ class SqliteReader(StorageReader):
                 values.append(max(-(2**63), min(value, 2**63 - 1)))
         order = "DESC" if reverse else "ASC"
         query = (
-            f"SELECT topic_id, timestamp, data FROM messages WHERE {' AND '.join(conditions)}"
+            f"SELECT topic_id, timestamp, CASE WHEN length(data) <= {SORTED_WHOLE} THEN data END, id"
+            f" FROM messages WHERE {' AND '.join(conditions)}"
             f" ORDER BY timestamp {order}, id {order}"
         )
         strange, given = 0, 0
         with self._errors():
             try:
-                for id_, stamp, data in self._database.execute(query, values) if self._salvaged is None else ():
+                rows = self._database.execute(query, values) if self._salvaged is None else ()
+                for id_, stamp, small, number in rows:
                     if (name := wanted.get(id_)) is None:
                         continue
+                    data = self._large(number) if small is None else small
                     if type(data) is bytes and type(stamp) is int:
                         yield BagMessage(name, data, stamp, stamp)
                         given += 1
@@ -181,6 +190,11 @@ class SqliteReader(StorageReader):
                 rest = self._salvaged.rows(wanted, start, end, reverse=reverse)
                 for id_, stamp, data in itertools.islice(rest, given, None):  # in the same order as those before
                     yield BagMessage(wanted[id_], data, stamp, stamp)
+
+    def _large(self, number: int) -> object:
+        """Return the data of a row that is too large to be sorted with the others; None if it has none."""
+        row = self._database.execute("SELECT data FROM messages WHERE id = ?", (number,)).fetchone()
+        return row[0] if row else None
 
     def close(self) -> None:
         """Close the database."""
@@ -310,6 +324,11 @@ def _created(path: Path) -> sqlite3.Connection:
 
 def _column(columns: set[str], name: str) -> str:
     return name if name in columns else "''"
+
+
+def _short(column: str) -> str:
+    """Return the expression of a column, '' where it is longer than a text of a bag ever is."""
+    return f"CASE WHEN length({column}) <= {LONGEST_TEXT} THEN {column} ELSE '' END"
 
 
 def _topic(row: tuple[Any, ...], definitions: dict[str, tuple[str, str]]) -> BagTopic:

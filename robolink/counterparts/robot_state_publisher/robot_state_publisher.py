@@ -23,9 +23,11 @@ from robolink.parameter import Parameter
 from robolink.parameters.descriptors import described
 from robolink.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from robolink.tf2 import StaticTransformBroadcaster, TransformBroadcaster
-from robolink.time import Time
+from robolink.time import Time, sent_time
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+SLOWEST = 1e-6
+"""Smallest publish_frequency that makes a difference, in Hz: once in eleven days."""
 FASTEST = 1000.0
 """Largest publish_frequency, in Hz."""
 
@@ -82,7 +84,7 @@ class RobotStatePublisher(Node):
         self.add_post_set_parameters_callback(self._on_parameters)
         self.create_subscription(JointState, "joint_states", self.on_joint_states, qos_profile_sensor_data)
         if not self.get_parameter("use_tf_static").value:
-            self.create_timer(1.0 / self.get_parameter("publish_frequency").value, self._publish_fixed)
+            self.create_timer(1.0 / max(SLOWEST, self.get_parameter("publish_frequency").value), self._publish_fixed)
 
     def _declare(self, name: str, default: Any, description: str) -> Any:
         return self.declare_parameter(name, default, described(description)).value
@@ -124,7 +126,7 @@ class RobotStatePublisher(Node):
             self._tell_of_invalid(state)
             return
         try:
-            stamp = Time.from_msg(state.header.stamp)
+            stamp = sent_time(state.header.stamp)
         except ValueError as error:  # rclcpp's publisher ends here
             self.get_logger().warning(f"Robot state publisher ignored a JointState message: {error}", once=True)
             return
@@ -134,7 +136,7 @@ class RobotStatePublisher(Node):
             self._published.clear()
         self._called = now
         oldest = min((self._published.get(each, 0) for each in state.name), default=now)
-        interval = int(1000.0 / self.get_parameter("publish_frequency").value) * 10**6
+        interval = int(1000.0 / max(SLOWEST, self.get_parameter("publish_frequency").value)) * 10**6
         due = stamp.nanoseconds >= min(oldest, now) + interval
         if self._robot is None or not (due or self.get_parameter("ignore_timestamp").value):
             return
