@@ -188,10 +188,12 @@ def _noise(share: float, farthest: float) -> float:
 
 
 def _range_finder(node: Node, placement: Placement, names: _Names, dt: float) -> RangeFinder:
-    """A distance sensor; it measures metres, up to the last distance of its `lookupTable`."""
+    """A distance sensor; it measures metres, from the least to the greatest distance of its `lookupTable`."""
     table = node.all_numbers("lookupTable") or TABLE
-    if len(table) % 3 or not table[-3] > 0.0:
+    if len(table) % 3 or not max(table[0], table[-3]) > 0.0:
         raise node.error("expected rows of distance, value and noise, the last distance more than 0", "lookupTable")
+    farthest = max(table[0], table[-3], 0.001)
+    nearest = max(min(table[0], table[-3]), 0.0)
     kind = node.text("type", "generic")
     radiation: Literal["ultrasound", "infrared"] = "ultrasound" if kind == "sonar" else "infrared"
     wide = node.number("numberOfRays", 1.0) > 1.0 and kind != "laser"
@@ -201,7 +203,7 @@ def _range_finder(node: Node, placement: Placement, names: _Names, dt: float) ->
         names.of(node, "distance sensor"),
         rate=rate_near(10.0, dt),
         fov=angle,
-        range=(0.0, max(table[-3], 0.001)),
+        range=(nearest if nearest < farthest else 0.0, farthest),
         offset=placement.pose,
         radiation=radiation,
         aperture=0.0 if wide else aperture,

@@ -235,6 +235,10 @@ def test_distance_sensors_tell_metres() -> None:
     assert (second.topic, second.range, second.radiation) == ("ds_1", (0.0, 0.1), "infrared")
     assert second.fov == pytest.approx(math.degrees(0.5))
     assert notes(BODY + WHEELS + text) == ("r: metres, not what the lookupTable says, come from 'ds 1'",)
+    for table in ("0.05 1000 0 0.8 0 0", "0.8 0 0 0.05 1000 0"):
+        (sharp,) = sensors(f"DistanceSensor {{ lookupTable [ {table} ] }}")
+        assert isinstance(sharp, RangeFinder)
+        assert sharp.range == (0.05, 0.8)
     with pytest.raises(DocumentError, match="lookupTable: expected rows of distance, value and noise"):
         sensors("DistanceSensor { lookupTable [ 0 0 0 1 ] }")
 
