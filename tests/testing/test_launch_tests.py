@@ -117,8 +117,9 @@ BAD = """
         return launch.LaunchDescription([once, launch_testing.actions.ReadyToTest()])
 
     class TestIt(unittest.TestCase):
-        def test_in_vain(self, proc_output):
+        def test_in_vain(self, proc_output, proc_info):
             proc_output.assertWaitFor("said", timeout=20)
+            proc_info.assertWaitForShutdown("python", timeout=20)  # else it may be ended before it ends
             proc_output.assertWaitFor("never", timeout=0)
 
         def test_asks(self, proc_outptu): pass
