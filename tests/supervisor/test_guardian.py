@@ -18,6 +18,7 @@ from robolink.supervisor.processes.guardian import Guardian, marked, remaining
 from robolink.supervisor.processes.lifeline import VARIABLE, Lifeline, watch_lifeline
 from robolink.supervisor.processes.process import Child
 from robolink.supervisor.rules import Step
+from robolink.system import clocks
 
 pytestmark = pytest.mark.processes
 
@@ -76,12 +77,35 @@ def test_a_process_of_which_the_guardian_was_not_told_yet_is_known_by_its_lifeli
         child = Child(Process("a", [sys.executable, "-c", "import time; time.sleep(100)"]), lifeline)
         ended = threading.Event()
         child.watch(lambda name, line: None, lambda name, code: ended.set())
-        assert guardian._process is not None
-        assert guardian._process.stdin is not None
+        process = guardian._process
+        assert process is not None
+        assert process.stdin is not None
         if in_order:
             guardian.close()
             assert not ended.is_set()
             child.ask(KILL)
-        guardian._process.stdin.close()
+        process.stdin.close()
         assert ended.wait(PATIENCE)
-        guardian._process.wait(PATIENCE)
+        process.wait(PATIENCE)
+        guardian.close()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no process groups")
+def test_a_guardian_that_was_killed_is_followed_by_another_one() -> None:
+    with closing(Lifeline()) as lifeline:
+        guardian = Guardian(patience=0.0)
+        child = Child(Process("a", [sys.executable, "-c", "import time; time.sleep(100)"]), lifeline)
+        ended = threading.Event()
+        child.watch(lambda name, line: None, lambda name, code: ended.set())
+        guardian.guard(child.group)
+        first = guardian._process
+        assert first is not None
+        first.kill()
+        deadline = clocks.monotonic() + PATIENCE
+        while guardian._process is first and clocks.monotonic() < deadline:
+            first.poll()
+        second = guardian._process
+        assert second is not None
+        assert second.pid != first.pid
+        guardian.close()  # without an order to spare what is left: it is killed
+        assert ended.wait(PATIENCE)

@@ -16,6 +16,7 @@ import contextlib
 import os
 import signal
 import sys
+import threading
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -23,6 +24,8 @@ from subprocess import DEVNULL, PIPE, Popen
 
 PATIENCE = 2.5
 """Time for an orderly end, in seconds: longer than a lifeline's, so that programs that watch theirs can end."""
+MOST_STARTS = 20
+"""Most watchdogs of one supervisor: somebody may kill each."""
 _BEGINNING = 0.2
 """Time in seconds in which a process that was just being started appears with its own group."""
 _IN_ORDER = b".\n"
@@ -32,44 +35,85 @@ _IN_ORDER = b".\n"
 class Guardian:
     """Supervisor's side of the watchdog; does nothing where there are no process groups (Windows).
 
-    `leavings` are files that it removes when the supervisor has been killed.
+    A watchdog that somebody kills is started anew, and is told of all groups again.
+
+    Args:
+        mark: Mark of the supervisor's lifeline.
+        patience: Time for an orderly end, in seconds.
+        leavings: Files that it removes when the supervisor has been killed.
     """
 
     def __init__(self, mark: str = "", patience: float = PATIENCE, leavings: Iterable[Path] = ()) -> None:
+        self._words = [str(patience), mark]
+        self._leavings = leavings
+        self._groups: set[int] = set()
+        self._lock = threading.Lock()
+        self._starts = 0
+        self._is_closed = False
+        self._watcher: threading.Thread | None = None
         self._process: Popen[bytes] | None = None
         if sys.platform != "win32":
-            from robolink.supervisor.processes.lifeline import VARIABLE  # the guardian itself can import none of ours
-
-            # a launcher that was launched by another has that one's mark, and its guardian must outlive it
-            environ = {name: value for name, value in os.environ.items() if name != VARIABLE}
-            command = [sys.executable, "-I", "-S", __file__, str(patience), mark, *map(str, leavings)]
-            self._process = Popen(
-                command, bufsize=0, stdin=PIPE, stdout=DEVNULL, stderr=DEVNULL, start_new_session=True, env=environ
-            )
+            self._process = self._start()
 
     def guard(self, group: int) -> None:
         """Add a group to those that are killed if the supervisor is gone."""
-        self._tell(b"+%d\n" % group)
+        with self._lock:
+            self._groups.add(group)
+            self._tell(b"+%d\n" % group)
 
     def release(self, group: int) -> None:
         """Remove a group that has ended."""
-        self._tell(b"-%d\n" % group)
+        with self._lock:
+            self._groups.discard(group)
+            self._tell(b"-%d\n" % group)
 
     def close(self) -> None:
         """End the guardian; it kills the groups that it still guards."""
-        if self._process is not None and self._process.stdin is not None:
+        with self._lock:
+            self._is_closed = True
+            process = self._process
+        if process is not None and process.stdin is not None:
             self._tell(_IN_ORDER)
-            self._process.stdin.close()
+            process.stdin.close()
             if sys.platform != "win32":
-                self._process.send_signal(signal.SIGCONT)  # somebody may have paused it
-            self._process.wait()
+                process.send_signal(signal.SIGCONT)  # somebody may have paused it
+            process.wait()
+        if self._watcher is not None:
+            self._watcher.join()
+
+    def _start(self) -> Popen[bytes]:
+        from robolink.supervisor.processes.lifeline import VARIABLE  # the guardian itself can import none of ours
+
+        # a launcher that was launched by another has that one's mark, and its guardian must outlive it
+        environ = {name: value for name, value in os.environ.items() if name != VARIABLE}
+        command = [sys.executable, "-I", "-S", __file__, *self._words, *map(str, self._leavings)]
+        process = Popen(
+            command, bufsize=0, stdin=PIPE, stdout=DEVNULL, stderr=DEVNULL, start_new_session=True, env=environ
+        )
+        self._starts += 1
+        self._watcher = threading.Thread(target=self._watch, args=(process,), name="guardian", daemon=True)
+        self._watcher.start()
+        return process
+
+    def _watch(self, process: Popen[bytes]) -> None:
+        """Start a watchdog in the place of one that has been killed."""
+        process.wait()
+        with self._lock:
+            if self._is_closed or self._starts > MOST_STARTS:
+                return
+            if process.stdin is not None:
+                process.stdin.close()
+            with contextlib.suppress(OSError):
+                self._process = self._start()
+                for group in self._groups:
+                    self._tell(b"+%d\n" % group)
 
     def _tell(self, line: bytes) -> None:
         if self._process is None or self._process.stdin is None:
             return
         try:
             self._process.stdin.write(line)
-        except BrokenPipeError:  # somebody killed it; lifelines still hold
+        except (BrokenPipeError, ValueError):  # somebody killed it: the next one is told of all
             return
 
 
