@@ -6,15 +6,17 @@ import contextlib
 import functools
 import itertools
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robolink.exceptions import RobolinkError
 from robolink.launch import protection
 from robolink.launch.planning import Launched, as_process, core_errors, processes
 from robolink.launch.readiness import waiting
 from robolink.launch.reading.entry import Entry
+from robolink.networks.asked import domain_id
 from robolink.supervisor import Process, RunLogs, Supervisor
 from robolink.supervisor.processes.fork_server import ForkServer
 from robolink.supervisor.processes.lifeline import Lifeline
@@ -99,12 +101,13 @@ def launch(
             start = functools.partial(Child, server=stack.enter_context(contextlib.closing(server)))
         director, logs = _director(direct, watches, stack), RunLogs(path.stem)
         supervisor = Supervisor(to_run, output=output, logs=logs, on_event=on_event, start=start, director=director)
-        for line in (*notes, *protection.unprotected(entries, os.environ)):
+        nodes, domain = [each.full_name for each in entries if each.source is not None], _domain()
+        for line in (*notes, *protection.unprotected(entries, os.environ), *doubled(nodes, domain)):
             supervisor.say(line)
         if server is not None:
             server.is_asked_to_end = lambda: supervisor.is_asked_to_end
         beside: list[contextlib.AbstractContextManager[object]] = [
-            Control(supervisor, name=path.stem, file=str(path.resolve()), members=members)
+            Control(supervisor, name=path.stem, file=str(path.resolve()), members=members, nodes=nodes, domain=domain)
         ]
         if watches:
             beside.append(_watch(launched, path, supervisor))
@@ -114,6 +117,32 @@ def launch(
             beside.append(Figures(supervisor.status, say=supervisor.say))
         watch = waiting(held, supervisor.release, supervisor.say, enclave=enclave or _enclave(entries))
         return supervisor.run(duration, [*beside, watch])
+
+
+def _domain() -> int:
+    """Return the domain of the nodes; one that is invalid is told by the first of them."""
+    try:
+        return domain_id(os.environ)
+    except RobolinkError:
+        return -1
+
+
+def doubled(nodes: Sequence[str], domain: int) -> Iterator[str]:
+    """Yield a line about each launcher that has started nodes of the same names on this domain."""
+    from robolink.supervisor.control.client import running
+
+    try:
+        others = running()
+    except RobolinkError:  # the control server tells of it
+        return
+    for other in others:
+        both = [each for each in nodes if each in other.nodes] if other.domain == domain else []
+        if both:
+            more = f" and {len(both) - 2} more" if len(both) > 2 else ""
+            yield (
+                f"{other} has nodes of the same names, {' and '.join(both[:2])}{more}: both are heard and obeyed; "
+                "end one by `robolink launch stop`, or give it another ROS_DOMAIN_ID"
+            )
 
 
 def _director(

@@ -12,9 +12,12 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.main import main
+from robolink.launch.command import doubled
 from robolink.launch.planning import processes
 from robolink.launch.reading.entries import read_launch_file
 from robolink.launch.watching import files_of, roots_of, settings_of
+from robolink.supervisor import Supervisor
+from robolink.supervisor.control.server import Control
 from tests.support.commands import PATIENCE, Command
 from tests.support.launchers import files_in, own_runtime_folder
 
@@ -176,3 +179,12 @@ def test_what_a_system_is_made_of(tmp_path: Path) -> None:
     assert files_of(found) == {"talker": [talker], "p": [talker, talker]}
     assert roots_of(found) == [tmp_path / "src/pack"]
     assert sorted(each.name for each in settings_of(found)) == ["all.yaml", "own.yaml", "part.yaml", "shared.yaml"]
+
+
+def test_a_second_launch_of_the_same_nodes_is_told_of_the_first(folder: Path) -> None:
+    nodes = ["/a", "/b", "/c", "/d"]
+    with Control(Supervisor([]), name="first", nodes=nodes, domain=7):
+        (line,) = doubled(["/x", "/a", "/c", "/d"], 7)
+        assert line.startswith(f"first (pid {os.getpid()}) has nodes of the same names, /a and /c and 1 more: both are")
+        assert list(doubled(nodes, 8)) == list(doubled(["/x"], 7)) == []
+    assert list(doubled(nodes, 7)) == []

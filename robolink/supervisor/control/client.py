@@ -41,6 +41,7 @@ class Launcher:
         self._registration = registration
         self.name, self.pid, self.file = registration.name, registration.pid, registration.file
         self.started = registration.registered
+        self.nodes, self.domain = registration.nodes, registration.domain
 
     def __str__(self) -> str:
         return f"{shown(self.name)} (pid {self.pid})"

@@ -38,6 +38,10 @@ class Registration(msgspec.Struct, frozen=True):
     address: str | int
     key: str
     registered: float
+    nodes: tuple[str, ...] = ()
+    """Full names of the nodes that it starts at once."""
+    domain: int = 0
+    """Domain of these nodes."""
 
 
 def runtime_folder() -> Path:

@@ -62,7 +62,8 @@ class Controlled(Protocol):
 class Control:
     """Control server of a launcher, active inside a `with`; if it cannot start, it says so and the system runs on.
 
-    `members` are the nodes that share a process, by the process's name. One thread accepts clients, and each client
+    `members` are the nodes that share a process, by the process's name; `nodes` are the full names of all that it
+    starts at once, on a `domain`: another launcher tells who has the same. One thread accepts clients, and each client
     has a thread for at most `patience` seconds: none polls, and none can block the launcher.
     """
 
@@ -73,10 +74,13 @@ class Control:
         name: str,
         file: str = "",
         members: Mapping[str, Sequence[str]] | None = None,
+        nodes: Sequence[str] = (),
+        domain: int = 0,
         patience: float = PATIENCE,
     ) -> None:
         self._controlled = controlled
         self._name, self._file = _as_text(name), _as_text(file)
+        self._nodes, self._domain = tuple(map(_as_text, nodes)), domain
         self._members = {process: list(nodes) for process, nodes in (members or {}).items()}
         self._patience = patience
         self._key = os.urandom(32).hex()
@@ -90,7 +94,7 @@ class Control:
 
     def __enter__(self) -> Control:
         try:
-            self._listener = _Listener(self._name, self._file, self._key)
+            self._listener = _Listener(self._registration)
         except (OSError, ValueError, RobolinkError) as error:  # ValueError: a folder whose name is no text
             self._controlled.say(f"no other shell can ask for the status, restart or stop: {error}")
         else:
@@ -112,6 +116,10 @@ class Control:
         waits.join(self._thread, 1.0)
         for client in self._waiting_for_our_end:
             client.close()
+
+    def _registration(self, address: str | int) -> Registration:
+        now = clocks.time_of_day()
+        return Registration(os.getpid(), self._name, self._file, address, self._key, now, self._nodes, self._domain)
 
     def _accept(self) -> None:
         assert self._listener is not None
@@ -192,14 +200,14 @@ def _as_text(name: str) -> str:
 class _Listener:
     """Listening socket and its registration. Raises OSError and `RuntimeFolderError`."""
 
-    def __init__(self, name: str, file: str, key: str) -> None:
+    def __init__(self, registration: Callable[[str | int], Registration]) -> None:
         self._place = new_place(runtime_folder())
         self.files = files_at(self._place)
         self.socket, self._address = listen(str(self._place.with_suffix(".sock")))
         try:
             if AF_UNIX is not None:
                 self._place.with_suffix(".sock").chmod(0o600)
-            register(self._place, Registration(os.getpid(), name, file, self._address, key, clocks.time_of_day()))
+            register(self._place, registration(self._address))
         except BaseException:
             self.socket.close()
             unregister(self._place)
