@@ -156,13 +156,13 @@ def number(name: str, text: str) -> float:
 
 
 def main() -> None:
-    """Publish the transform of the command line until Ctrl-C; without any arguments, that of the node's parameters."""
+    """Publish the transform of the command line until Ctrl-C. Raises UsageError without its two frames, as in ROS 2."""
     with robolink.init(), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         args = remove_ros_args(sys.argv)[1:]
         if {"-h", "--help"} & set(args):
             print(HELP, end="")  # noqa: T201 - that is what was asked for
             return
-        values = parameters(args) if args else {}
+        values = parameters(args)
         name = f"static_transform_publisher_{uuid.uuid4().hex[:16]}"
         node = StaticTransformPublisher(
             name, parameter_overrides=[Parameter(each, value=value) for each, value in values.items()]

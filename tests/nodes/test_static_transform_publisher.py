@@ -131,3 +131,10 @@ def test_main_takes_ros_arguments_too(monkeypatch: pytest.MonkeyPatch, log_lines
     monkeypatch.setattr("robolink.spin", spin, raising=False)
     node_file.main()
     assert names == ["fixed"]
+
+
+def test_main_without_arguments_is_an_error_as_in_ros(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROBOLINK_TRANSPORT", "memory://static")
+    monkeypatch.setattr(sys, "argv", ["x"])
+    with pytest.raises(RobolinkError, match="--frame-id: the name of a frame is needed"):
+        node_file.main()
