@@ -131,6 +131,9 @@ def _parted(node: Node, asked: str, until: float | None) -> tuple[str, str]:
         return next((each for each in prefixes if _is_published(node.context, each)), "")
 
     while not published():
+        whole = "/" + "/".join(parts)
+        if _is_published(node.context, whole):
+            raise PlotError(f"{whole} is a topic: name a number in it, as in {whole}.FIELD")
         if not node.context.ok():
             raise KeyboardInterrupt
         if until is not None and clocks.monotonic() > until:
@@ -152,8 +155,10 @@ def _check_number(msg_type: type[Any], curve: Curve) -> None:
     if kind.shape != "one":
         raise PlotError(f"{curve.name} is a sequence of {kind.base}: say which, as in {curve.name}[0]")
     if kind.message is not None or not kind.base.startswith(NUMBERS):
-        what = kind.message.__ros_type__ if kind.message is not None else kind.base
-        raise PlotError(f"{curve.name} is no number but {what}: name a field of it")
+        if kind.message is None:
+            raise PlotError(f"{curve.name} is not a number but {kind.base}")
+        there = ", ".join(kind.message.__ros_fields__) or "none"
+        raise PlotError(f"{curve.name} is not a number but {kind.message.__ros_type__}: name a field of it: {there}")
 
 
 def _without_option(error: EncodeError) -> str:
