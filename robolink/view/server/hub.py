@@ -28,6 +28,8 @@ from robolink.view.sources.live import LiveSource
 PERIOD = 1 / 60
 """Interval of the tick, in seconds: batches go out at most so often."""
 
+TRUSTED = ("clientPublish", "services")
+"""Capabilities that a read-only client is not offered. It keeps "parameters", one word for reading and setting them."""
 IDLE = 0.25
 """Interval without clients, in seconds."""
 
@@ -93,7 +95,7 @@ class Hub:
         """Return the fields of a client's `serverInfo`."""
         shown: dict[str, Any] = {
             "name": "robolink",
-            "capabilities": self.source.capabilities(),
+            "capabilities": [each for each in self.source.capabilities() if client.trusted or each not in TRUSTED],
             "supportedEncodings": list(ENCODINGS),
             "metadata": {"ROS_DISTRO": DISTRO},
             "sessionId": self._session,
@@ -209,7 +211,7 @@ class Hub:
         seen = [
             each.advertisement(all_of_it=client.is_page, legacy=client.is_legacy)
             for each in services
-            if client.is_page or not each.hidden
+            if _sees(client, each)
         ]
         if seen:
             client.say(answers.text("advertiseServices", services=seen))
@@ -218,7 +220,7 @@ class Hub:
         """Take services back."""
         gone = list(services)
         for client in self.clients:
-            seen = [each.id for each in gone if client.is_page or not each.hidden]
+            seen = [each.id for each in gone if _sees(client, each)]
             if seen:
                 client.say(answers.text("unadvertiseServices", serviceIds=seen))
 
@@ -268,3 +270,8 @@ def _version() -> str:
         return version("robolink")
     except PackageNotFoundError:
         return ""
+
+
+def _sees(client: Client, service: ServiceEntry) -> bool:
+    """True if a client is told of a service: the page of all, others of those that they may call."""
+    return client.is_page or (client.trusted and not service.hidden)

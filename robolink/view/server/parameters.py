@@ -58,6 +58,10 @@ class Parameters:
         self._changes: Counter[str] = Counter()
         """Number of events of each node, by which a change while it is asked is noticed."""
         self._followers: dict[Listener, set[str] | None] = {}
+        self._told: dict[ParameterName, dict[str, Any]] = {}
+        """What followers know: an event that says what a client's own request has said before is told to nobody."""
+        self._setting: Counter[tuple[Listener, str]] = Counter()
+        """Requests under way, by client and parameter; each is answered once, whenever the event comes."""
         self._slots = asyncio.Semaphore(AT_ONCE)
         self._active = False
         self._channel: Channel | None = None
@@ -94,6 +98,8 @@ class Parameters:
         self._cache.pop(node, None)
         self._silent.pop(node, None)
         self._changes.pop(node, None)
+        for name in [each for each in self._told if each.node == node]:
+            del self._told[name]
         task = self._asked.pop(node, None)
         if task is not None:
             task.cancel()
@@ -161,12 +167,23 @@ class Parameters:
         self._tell(ParameterName(event.node, each.name) for each in [*changed, *event.deleted_parameters])
 
     def _tell(self, names: Iterable[ParameterName]) -> None:
-        """Send the values to the clients that follow them."""
-        changed = {str(name): to_json(name, self._cached(name)) for name in names}
-        for client, wanted in self._followers.items():
-            shown = [value for name, value in changed.items() if wanted is None or name in wanted]
+        """Send the values that are new to the clients that follow them."""
+        values = {name: to_json(name, self._cached(name)) for name in names}
+        changed = {str(name): value for name, value in values.items() if self._told.get(name) != value}
+        self._told.update(values)
+        for client in self._followers:
+            shown = self._followed(client, changed)
             if shown:
                 client.say(answers.text("parameterValues", parameters=shown))
+
+    def _followed(self, client: Listener, values: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
+        """Return those of the values that a client follows and is not setting now."""
+        wanted = self._followers.get(client, set())
+        return [
+            value
+            for name, value in values.items()
+            if (wanted is None or name in wanted) and not self._setting[client, name]
+        ]
 
     def _cached(self, name: ParameterName) -> ParameterValue | None:
         return self._cache.get(name.node, {}).get(name.name)
@@ -213,7 +230,7 @@ class Parameters:
             nodes.setdefault(each.node, []).append(each.name)
         there = self._there(client, nodes)
         await asyncio.gather(*(self._refresh(client, node, nodes[node]) for node in there))
-        return [to_json(each, self._cached(each)) for each in names]
+        return [shown for each in names if "value" in (shown := to_json(each, self._cached(each)))]
 
     def _there(self, client: Listener, nodes: Iterable[str]) -> list[str]:
         """Return those of these nodes that there are; the client is told of the first that is not."""
@@ -244,10 +261,17 @@ class Parameters:
         for each in wishes:
             by_node.setdefault(name_of(each.name).node, []).append(each)
         there = self._there(client, by_node)
-        await asyncio.gather(*(self._set(client, node, by_node[node]) for node in there))
+        under_way = [(client, each.name) for each in wishes]
+        self._setting.update(under_way)
+        try:
+            await asyncio.gather(*(self._set(client, node, by_node[node]) for node in there))
+        finally:
+            self._setting -= Counter(under_way)
+        shown = {each.name: to_json(name_of(each.name), self._cached(name_of(each.name))) for each in wishes}
         if id_ is not None:
-            shown = [to_json(name_of(each.name), self._cached(name_of(each.name))) for each in wishes]
-            client.say(answers.text("parameterValues", parameters=shown, id=id_))
+            client.say(answers.text("parameterValues", parameters=list(shown.values()), id=id_))
+        elif followed := self._followed(client, shown):
+            client.say(answers.text("parameterValues", parameters=followed))
 
     async def _set(self, client: Listener, node: str, wishes: list[ParameterWish]) -> None:
         names = [name_of(each.name).name for each in wishes]

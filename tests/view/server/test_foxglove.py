@@ -68,3 +68,18 @@ def test_foxgloves_client_subscribes_publishes_calls_and_sets(subprotocol: str) 
     assert found["answer"] == {"call": 7, "success": True, "message": "lit"}
     assert (found["parameter"], found["set"]) == (0.5, 2)
     assert found["graph"]["/scan"] == ["/robot"]
+
+
+def test_a_read_only_client_is_not_offered_what_would_be_refused() -> None:
+    with shown() as system:
+        system.node.create_service(SetBool, "/robot/switch", lambda request, response: response)
+        with system.spinning():
+            with system.client("foxglove.sdk.v1") as client:
+                assert {"clientPublish", "services", "parameters"} <= set(client.wait_for("serverInfo")["capabilities"])
+                client.service("/robot/switch")
+            with system.client("foxglove.sdk.v1", token=False) as client:
+                offered = set(client.wait_for("serverInfo")["capabilities"])
+                assert {"clientPublish", "services"} & offered == set()
+                assert {"parameters", "parametersSubscribe"} <= offered  # to read them
+                client.settle()
+                assert all(each["op"] != "advertiseServices" for each in client.heard)
