@@ -1,6 +1,6 @@
 """Writer of the stubs of the standard types, by which type checkers and editors know robolink.interfaces.
 
-python tools/interface_stubs.py            writes robolink/interfaces/PACKAGE/{msg,srv,action}.pyi
+python tools/interface_stubs.py            writes robolink/interfaces/PACKAGE/{msg,srv,action}/__init__.pyi
 python tools/interface_stubs.py --check    exit code 1 if one is out of date
 """
 
@@ -13,13 +13,13 @@ from robolink.interfaces import find
 from robolink.interfaces.standard import FOLDER, KINDS, ROOT, packages, types_of
 from robolink.message.stub import stub_of
 
-HEAD = "# Made of the files in the folder of this name by tools/interface_stubs.py.\n"
+HEAD = "# Made of the files beside it by tools/interface_stubs.py.\n"
 
 
 def stubs() -> dict[Path, str]:
     """Return the text of each stub by its path."""
     return {
-        FOLDER / package / f"{kind}.pyi": HEAD
+        FOLDER / package / kind / "__init__.pyi": HEAD
         + stub_of([find(f"{package}/{kind}/{each}", kind) for each in types_of(package, kind)], kind, f"{ROOT}.")
         for package in packages()
         for kind in KINDS
@@ -29,7 +29,7 @@ def stubs() -> dict[Path, str]:
 
 def stale(written: dict[Path, str]) -> list[Path]:
     """Return the stubs that are out of date, or of types that are gone."""
-    there = set(FOLDER.glob("*/*.pyi"))
+    there = set(FOLDER.rglob("*.pyi"))
     changed = [path for path, text in written.items() if path not in there or path.read_text(encoding="utf-8") != text]
     return [*changed, *sorted(there - set(written))]
 

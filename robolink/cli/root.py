@@ -11,6 +11,7 @@ import typer
 import typer.core
 import typer.main
 
+from robolink.cli.shared.added import added_command, added_help, added_names
 from robolink.cli.shared.noun import Noun
 from robolink.cli.shared.output import say
 from robolink.exceptions import nearest
@@ -75,8 +76,8 @@ COMMANDS = {
 
 OF_ROS2 = {
     "control": "it speaks to ros2_control, which is C++; 'robolink run world' simulates a robot's drive and sensors",
-    "extension_points": "commands are no plugins here; 'robolink --help' lists them",
-    "extensions": "commands are no plugins here; 'robolink --help' lists them",
+    "extension_points": "'robolink --help' lists the commands, those of other packages too",
+    "extensions": "'robolink --help' lists the commands, those of other packages too",
     "plugin": "plugins of pluginlib are C++; 'robolink pkg executables' lists what can be run",
     "test": "tests are pytest's, in virtual time (docs/testing.md)",
     "trace": "it records traces of C++ with LTTng; 'robolink top' shows what nodes use and what topics carry",
@@ -97,14 +98,14 @@ class Root(typer.core.TyperGroup):
     """Command group with lazy loading: it knows all commands by name, and imports only the one that is used."""
 
     def list_commands(self, ctx: Context) -> list[str]:
-        """Return the names that help lists, in the order of the table."""
-        return [name for name, entry in COMMANDS.items() if not entry.hidden]
+        """Return the names that help lists, in the order of the table, then those of other packages."""
+        return [*(name for name, entry in COMMANDS.items() if not entry.hidden), *_added()]
 
     def get_command(self, ctx: Context, cmd_name: str) -> Any:
         """Import and return a command; None for an unknown name."""
         entry = COMMANDS.get(cmd_name)
         if entry is None:
-            return None
+            return added_command(cmd_name, kind=Noun)
         found = _command_of(entry.module)
         return found.get_command(ctx, entry.verb) if entry.verb else found
 
@@ -115,8 +116,8 @@ class Root(typer.core.TyperGroup):
         verb = next((each for each in args[1:] if not each.startswith("-")), "")
         if (args[0], verb) in VERBS_OF_ROS2:
             ctx.fail(f"ros2's '{args[0]} {verb}' is not here: {VERBS_OF_ROS2[args[0], verb]}")
-        if args[0] not in COMMANDS:
-            ctx.fail(f"no command named '{args[0]}'{nearest(args[0], COMMANDS)}")
+        if args[0] not in COMMANDS and args[0] not in (added := _added()):
+            ctx.fail(f"no command named '{args[0]}'{nearest(args[0], [*COMMANDS, *added])}")
         return super().resolve_command(ctx, args)
 
     def shell_complete(self, ctx: Context, incomplete: str) -> list[Any]:
@@ -127,12 +128,21 @@ class Root(typer.core.TyperGroup):
         item = importlib.import_module(f"{base.__module__.rpartition('.')[0]}.shell_completion").CompletionItem
         names = [name for name in self.list_commands(ctx) if name.startswith(incomplete)]
         options: list[Any] = base.shell_complete(self, ctx, incomplete)  # type: ignore[attr-defined]
-        return [*(item(name, help=COMMANDS[name].help) for name in names), *options]
+        texts = {name: entry.help for name, entry in COMMANDS.items()}
+        return [*(item(name, help=texts.get(name, "")) for name in names), *options]
 
     def format_commands(self, ctx: Context, formatter: Any) -> None:
-        """Write the list of commands into the help, without importing any."""
+        """Write the list of commands into the help, without importing any but those of other packages."""
         with formatter.section("Commands"):
             formatter.write_dl([(name, entry.help) for name, entry in COMMANDS.items() if not entry.hidden])
+        if added := _added():
+            with formatter.section("Commands of other packages"):
+                formatter.write_dl([(name, added_help(name)) for name in added])
+
+
+def _added() -> list[str]:
+    """Return the names of the commands that other packages add, and that robolink has not."""
+    return [each for each in added_names() if each not in COMMANDS]
 
 
 @functools.cache

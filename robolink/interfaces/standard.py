@@ -2,7 +2,7 @@
 
 `robolink.interfaces.geometry_msgs.msg` is not a file: an import finder makes the module, and its attributes on demand
 of `geometry_msgs/msg/*.msg`. A program pays for the types that it uses, and a package is added as data. The stubs
-`geometry_msgs/msg.pyi`, made by tools/interface_stubs.py, are for type checkers.
+`geometry_msgs/msg/__init__.pyi`, made by tools/interface_stubs.py, are for type checkers.
 """
 
 from __future__ import annotations

@@ -16,6 +16,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from robolink.exceptions import NotFoundError, nearest
+from robolink.extensions import NODES, added
 from robolink.system.paths import expanded, is_file
 from robolink.workspace.built_in import built_in_workspace
 from robolink.workspace.counterparts import COUNTERPARTS, executable_of, lacking_executable
@@ -35,7 +36,6 @@ from robolink.workspace.trust import is_trusted, why_not
 
 VARIABLE = "ROBOLINK_WORKSPACE"
 """Environment variable with the folder of the user's workspace."""
-ENTRY_POINTS = "robolink.nodes"
 """Group of the entry points of installed nodes."""
 YAML = (".yaml", ".yml")
 LAUNCHES = (*YAML, ".py", ".xml", ".launch")
@@ -315,10 +315,7 @@ def _nodes_in(workspace: Path) -> Iterator[NodeSource]:
 
 
 def _installed_nodes() -> Iterator[NodeSource]:
-    from importlib.metadata import entry_points
-
-    for each in sorted(entry_points(group=ENTRY_POINTS), key=lambda each: each.name):
-        yield NodeSource(each.name, entry_point=each)
+    yield from (NodeSource(each.name, entry_point=each) for each in added(NODES).values())
 
 
 def _find_file(kind: str, name: str, inside: str, workspace: Folder, suffixes: tuple[str, ...]) -> Path:

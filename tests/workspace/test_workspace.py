@@ -14,6 +14,7 @@ import pytest
 
 from robolink import Node
 from robolink.exceptions import NotFoundError
+from robolink.extensions import NODES
 from robolink.workspace import (
     VARIABLE,
     NodeLoadError,
@@ -136,11 +137,9 @@ def test_a_workspace_can_be_asked_for(
 
 
 def test_installed_packages_bring_nodes(monkeypatch: pytest.MonkeyPatch, write: Write) -> None:
-    entry_points = [
-        EntryPoint(name, value, find.ENTRY_POINTS)
-        for name, value in [("shop-node", "os:getpid"), ("world", "os:PathLike")]
-    ]
-    monkeypatch.setattr("importlib.metadata.entry_points", lambda group: entry_points)
+    values = {"shop-node": "os:getpid", "world": "os:PathLike"}
+    entry_points = {name: EntryPoint(name, value, NODES) for name, value in values.items()}
+    monkeypatch.setattr(find, "added", lambda group: entry_points)
     assert find_node("world").entry_point is not None
     found = load_node(find_node("shop_node"))
     assert not isinstance(found, type)

@@ -7,6 +7,7 @@ from typing import Any
 
 import typer.core
 
+from robolink.cli.shared.added import added_command, added_names
 from robolink.exceptions import nearest
 
 HIDDEN = ("--include-hidden-topics", "--include-hidden-services", "--include-hidden-nodes", "--include-hidden-actions")
@@ -16,7 +17,16 @@ WITHOUT_EFFECT = {"--no-daemon": False, "--use-sim-time": False, "--spin-time": 
 
 
 class Noun(typer.core.TyperGroup):
-    """Command group whose verbs take ros2's flags as ros2 does."""
+    """Command group whose verbs take ros2's flags as ros2 does; other packages may add verbs."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Return the names of the verbs, those of other packages last."""
+        own = super().list_commands(ctx)
+        return [*own, *(each for each in added_names(str(ctx.info_name)) if each not in own)]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return a verb; None for an unknown name."""
+        return super().get_command(ctx, cmd_name) or added_command(cmd_name, str(ctx.info_name))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Return the command of the first word; end with a usage error that has the nearest name if it is unknown."""

@@ -1,0 +1,149 @@
+"""Extensions: commands, verbs and nodes of other packages are found by entry points, and their faults are told."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from robolink.cli.main import main
+from robolink.extensions import COMMANDS, NODES, ExtensionError, added, load
+
+CODE = """\
+import typer
+
+app = typer.Typer()
+number = 7
+
+
+@app.command()
+def hello(name: str = "you") -> None:
+    '''Greet somebody.'''
+    print("hello", name)
+
+
+def nodes(topic: str) -> None:
+    '''List who uses a topic.'''
+    print("nodes of", topic)
+
+
+weather = typer.Typer(help="Tell the weather.", no_args_is_help=True)
+
+
+@weather.command("today")
+def today() -> None:
+    '''Tell today's.'''
+    print("sunny")
+
+
+@weather.command("tomorrow")
+def tomorrow() -> None:
+    '''Tell tomorrow's.'''
+    raise typer.Exit(3)
+"""
+ENTRY_POINTS = """\
+[robolink.commands]
+hello = demo_extension:app
+weather = demo_extension:weather
+topic.nodes = demo_extension:nodes
+topic.list = demo_extension:nodes
+broken = demo_extension:lacking
+number = demo_extension:number
+"""
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An installed package that adds commands."""
+    info = tmp_path / "demo_extension-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: demo-extension\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(ENTRY_POINTS)
+    (tmp_path / "demo_extension.py").write_text(CODE)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "demo_extension", raising=False)
+    return tmp_path
+
+
+@pytest.mark.usefixtures("package")
+@pytest.mark.parametrize(
+    ("words", "output"),
+    [
+        (["hello"], "hello you\n"),
+        (["hello", "--name", "Ada"], "hello Ada\n"),
+        (["topic", "nodes", "/scan"], "nodes of /scan\n"),
+        (["weather", "today"], "sunny\n"),
+    ],
+)
+def test_commands_of_other_packages_run(words: list[str], output: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) == 0
+    assert capsys.readouterr().out == output
+
+
+@pytest.mark.usefixtures("package")
+def test_their_exit_codes_are_handed_on() -> None:
+    assert main(["weather", "tomorrow"]) == 3
+
+
+@pytest.mark.usefixtures("package")
+def test_help_lists_them_with_those_that_cannot_be_loaded(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--help"]) == 0
+    _, _, listed = capsys.readouterr().out.partition("Commands of other packages:\n")
+    assert [line.split()[0] for line in listed.splitlines() if line[2:3].strip()] == [
+        "broken", "hello", "number", "weather"
+    ]  # fmt: skip
+    assert "Greet somebody." in listed
+    assert main(["topic", "--help"]) == 0
+    assert "nodes    List who uses a topic." in capsys.readouterr().out.replace("  nodes  ", "  nodes    ")
+
+
+@pytest.mark.usefixtures("package")
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (
+            ["broken"],
+            "demo-extension adds 'broken' (robolink.commands), which cannot be loaded from demo_extension:lacking",
+        ),
+        (["number"], "'number' (robolink.commands) is a int; a command is a typer.Typer or a function"),
+        (["helo"], "no command named 'helo' (did you mean 'hello'?)"),
+        (["topic", "nodez"], "no command named 'topic nodez' (did you mean 'nodes'?)"),
+    ],
+)
+def test_faults_are_one_line(words: list[str], reason: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) != 0
+    told = capsys.readouterr().err
+    assert told.startswith(f"robolink: {reason}")
+    assert told.count("\n") == 1
+
+
+@pytest.mark.usefixtures("package")
+def test_a_command_of_robolinks_own_goes_first(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["topic", "list", "--help"]) == 0
+    assert "List the topics that are published or subscribed to." in capsys.readouterr().out
+
+
+def test_entry_points_are_those_of_the_path_of_now(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "hello" in added(COMMANDS)
+    monkeypatch.setattr(sys, "path", [each for each in sys.path if each != str(package)])
+    assert "hello" not in added(COMMANDS)
+    assert load(COMMANDS, "hello") is None
+
+
+@pytest.mark.usefixtures("package")
+def test_what_cannot_be_loaded_is_an_import_error() -> None:
+    with pytest.raises(ExtensionError, match="AttributeError") as caught:
+        load(COMMANDS, "broken")
+    assert isinstance(caught.value, ImportError)
+    assert NODES != COMMANDS
+
+
+@pytest.mark.processes
+def test_a_known_command_reads_no_entry_points(package: Path) -> None:
+    program = (
+        "import sys\nfrom robolink.cli.main import main\nmain(['topic', 'list', '--help'])\n"
+        "assert 'importlib.metadata' not in sys.modules, 'read'"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True, env={"PYTHONPATH": str(package)}, capture_output=True)
