@@ -15,7 +15,7 @@ from typing import Any
 from robolink.bag.metadata import BagMetadata, parse_metadata, spell_metadata
 from robolink.bag.offered_qos import profiles_or_none, text_of
 from robolink.bag.storage.base import StorageReader, StorageWriter, Written
-from robolink.bag.storage.sqlite_salvage import Salvage, allow_cut, whole_pages
+from robolink.bag.storage.sqlite_salvage import Salvage, allow_cut, lost_end
 from robolink.bag.topic import BagError, BagMessage, BagTopic
 from robolink.system import clocks
 from robolink.system.variables import ROS_DISTRO
@@ -58,8 +58,8 @@ class SqliteReader(StorageReader):
         self._salvaged: Salvage | None = None
         self._opened = contextlib.ExitStack()
         try:
-            database = contextlib.closing(_opened(self._without_cut_page(path), path))
-            self._database = self._opened.enter_context(database)
+            file, is_cut = self._without_cut_page(path)
+            self._database = self._opened.enter_context(contextlib.closing(_opened(file, path, is_cut)))
             with self._errors():
                 self._read_topics()
                 try:
@@ -70,18 +70,18 @@ class SqliteReader(StorageReader):
             self.close()
             raise
 
-    def _without_cut_page(self, path: Path) -> Path:
-        """Return a file, or a copy of one that was cut, without the page of which only a part is left."""
+    def _without_cut_page(self, path: Path) -> tuple[Path, bool]:
+        """Return a file, or a copy without a last page of which a part is left, and whether its end is lost."""
         try:
-            size = whole_pages(path)
-            if not size:
-                return path
+            is_cut, rest = lost_end(path)
+            if not rest:
+                return path, is_cut
             folder = self._opened.enter_context(tempfile.TemporaryDirectory(prefix="robolink-bag-"))
             copy = Path(shutil.copyfile(path, Path(folder) / path.name))
-            os.truncate(copy, size)
+            os.truncate(copy, copy.stat().st_size - rest)
         except OSError as error:
             raise BagError(f"{path} cannot be read: {error.strerror}") from None
-        return copy
+        return copy, is_cut
 
     @property
     def is_damaged(self) -> bool:
@@ -337,10 +337,10 @@ def _topic(row: tuple[Any, ...], definitions: dict[str, tuple[str, str]]) -> Bag
     return BagTopic(name, type_name, format_, type_hash, profiles_or_none(qos), text, encoding if text else "ros2msg")
 
 
-def _opened(path: Path, named: Path) -> sqlite3.Connection:
+def _opened(path: Path, named: Path, is_cut: bool) -> sqlite3.Connection:
     """Open a database to read, also one on a disk that is read-only or beside the log of a writer that was killed.
 
-    `named` is the file's name in errors.
+    `named` is the file's name in errors, `is_cut` says that its end is lost.
     """
     last = ""
     for way in ("mode=ro", "immutable=1"):
@@ -348,7 +348,8 @@ def _opened(path: Path, named: Path) -> sqlite3.Connection:
         try:
             database = sqlite3.connect(f"{path.resolve().as_uri()}?{way}", uri=True, check_same_thread=False)
             database.text_factory = _text
-            allow_cut(database)
+            if is_cut:
+                allow_cut(database)
             database.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()
         except sqlite3.Error as error:
             if database is not None:

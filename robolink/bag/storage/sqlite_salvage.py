@@ -23,8 +23,8 @@ def allow_cut(database: sqlite3.Connection) -> None:
     database.execute("PRAGMA writable_schema = ON")
 
 
-def whole_pages(path: Path) -> int:
-    """Return the bytes of a file that was cut within a page without that page; 0 for any other file.
+def lost_end(path: Path) -> tuple[bool, int]:
+    """Return whether a file is shorter than its header says, and the bytes after the last of its whole pages.
 
     sqlite takes the lost rest of a page for zeros, and would give messages that end in zeros.
     """
@@ -33,8 +33,8 @@ def whole_pages(path: Path) -> int:
     page = int.from_bytes(header[16:18], "big") if len(header) == 100 else 0
     page = 65536 if page == 1 else page
     size, pages = path.stat().st_size, int.from_bytes(header[28:32], "big")
-    is_cut = page >= 512 and size < pages * page and size % page
-    return size - size % page if is_cut else 0
+    is_cut = page >= 512 and size < pages * page
+    return is_cut, size % page if is_cut else 0
 
 
 class Salvage:

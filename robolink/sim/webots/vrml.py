@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import NoReturn
 
@@ -244,7 +244,7 @@ class _Parser:
         made.source, made.offset = node.source, node.offset  # where the world has it, as for any other node
         return made
 
-    def _note(self, kind: str, name: str, offset: int, known: Iterable[str]) -> None:
+    def _note(self, kind: str, name: str, offset: int, known: Collection[str]) -> None:
         text = f"{kind}.{name}: {unknown_key(name, known)}"
         self._source.notes.add(self._source.error(offset, text), kind, name)
 
