@@ -14,7 +14,6 @@ import typer.main
 from robolink.cli.shared.added import added_command, added_help, added_names
 from robolink.cli.shared.noun import Noun
 from robolink.cli.shared.output import say
-from robolink.exceptions import nearest
 
 if TYPE_CHECKING:
     Context = Any  # typer's own moved with its copy of click
@@ -116,9 +115,16 @@ class Root(typer.core.TyperGroup):
         verb = next((each for each in args[1:] if not each.startswith("-")), "")
         if (args[0], verb) in VERBS_OF_ROS2:
             ctx.fail(f"ros2's '{args[0]} {verb}' is not here: {VERBS_OF_ROS2[args[0], verb]}")
-        if args[0] not in COMMANDS and args[0] not in (added := _added()):
-            ctx.fail(f"no command named '{args[0]}'{nearest(args[0], [*COMMANDS, *added])}")
+        if args[0] not in COMMANDS and args[0] not in _added():
+            from robolink.cli.shared.unknown import meant
+
+            shown = self.list_commands(ctx)
+            ctx.fail(f"no command named '{args[0]}'{meant(args[0], shown, lambda noun: self._verbs(ctx, noun))}")
         return super().resolve_command(ctx, args)
+
+    def _verbs(self, ctx: Context, noun: str) -> list[str]:
+        command = self.get_command(ctx, noun)
+        return command.list_commands(ctx) if hasattr(command, "list_commands") else []
 
     def shell_complete(self, ctx: Context, incomplete: str) -> list[Any]:
         """Return completions of the commands' names and of the options, without importing any command."""

@@ -35,6 +35,7 @@ BAD = [
     (("talk", ":=x"), 2, "an argument has a name, as in speed:=0.5, got ':=x' (see"),
     (("talk", "a", "b"), 2, "what is 'b'? an argument is given as NAME:=VALUE (see"),
     (("talk", "word=a=b"), 2, "what is 'word=a=b'? an argument is given as word:=a=b (see"),
+    (("gazebo_ros", "gazebo.launch.py"), 1, "gazebo_ros gazebo.launch.py is not here: Gazebo, a simulator in C++; "),
     (("talk", "bye"), 1, "no package named 'talk' in the workspace (an argument is given as NAME:=VALUE)"),
     (("talk",), 1, "{home}/configs/talk.yaml:4:8: arguments.loud: 'loud' must be given: loud:=VALUE"),
     (("talk", "loud:=1", "wrd:=x"), 1, "{home}/configs/talk.yaml:3:3: arguments.wrd: no argument is called 'wrd'"),

@@ -15,11 +15,13 @@ from robolink.system.paths import expanded
 from robolink.workspace import (
     Folder,
     NodeSource,
+    RosProgramError,
     built_in_workspace,
     counterpart_folder,
     find_launch,
     find_node,
     find_package,
+    instead_of,
     list_packages,
     user_workspace,
     workspace_of,
@@ -53,6 +55,8 @@ def find(names: Sequence[str], *, workspace: Folder = None) -> Path:
     package, name = names
     folder = find_package(package, workspace=workspace) or counterpart_folder(package)
     if folder is None:
+        if advice := instead_of(package):
+            raise RosProgramError(package, name, advice)
         known = list_packages(workspace=workspace)
         raise NotFoundError("package", package, known, "the workspace (an argument is given as NAME:=VALUE)")
     return _in_package(folder, package, name)
