@@ -38,14 +38,14 @@ def unknown_key(key: object, known: Collection[str]) -> str:
 
 
 def warn(about: DocumentError | str) -> None:
-    """Give a `FileWarning` about a place in a file."""
+    """Emit a `FileWarning` about a place in a file."""
     warnings.warn(str(about), FileWarning, stacklevel=3)
 
 
 def warn_of_unknown_keys(
     document: Document[Any], data: object, known: Collection[str], path: Sequence[str | int] = ()
 ) -> None:
-    """Give a `FileWarning` for each key of a mapping, at `path` in a YAML file, that the format's reader ignores."""
+    """Emit a `FileWarning` for each key of a mapping, at `path` in a YAML file, that the format's reader ignores."""
     for key in data if isinstance(data, dict) else ():
         if key not in known:
             warn(document.error([*path, key], unknown_key(key, known), key=True))

@@ -34,7 +34,7 @@ MOST = 20
 
 
 def tell_ignored(robot: Element) -> None:
-    """Give a `FileWarning` for each word in a robot, its links and its joints that URDF does not have."""
+    """Emit a `FileWarning` for each word in a robot, its links and its joints that URDF does not have."""
     told: set[str] = set()
     for about, text in _ignored(robot):
         if text not in told and len(told) < MOST:

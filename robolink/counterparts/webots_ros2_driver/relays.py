@@ -89,7 +89,7 @@ class Relay:
 
 
 def as_webots_range(message: Range) -> None:
-    """Give a message the form of Webots' driver: all is infrared, and nothing there is the end of the range."""
+    """Convert a message to the form of Webots' driver: all is infrared, and nothing there is the end of the range."""
     message.radiation_type = Range.INFRARED
     message.range = min(max(message.range, message.min_range), message.max_range)
 

@@ -25,7 +25,7 @@ MOST_NOTES = 20
 
 
 class Notes:
-    """What Webots repairs or ignores with a warning of its own, in the files of one world: a sentence each."""
+    """Collector of what Webots repairs or ignores with a warning of its own, in the files of one world."""
 
     def __init__(self) -> None:
         self._found: dict[tuple[str, ...], str] = {}
