@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import sys
-import time
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -23,6 +21,7 @@ from robolink.documents.yamlfile import read_text
 from robolink.documents.yamltext import compose, texts
 from robolink.exceptions import DocumentError
 from robolink.system.terminal import quoted, shown
+from robolink.system.whole_files import put_in_place
 
 FILE_NAME = "metadata.yaml"
 VERSION = 8
@@ -31,8 +30,6 @@ OLDEST, NEWEST = 1, 9
 """Versions of the format that are known; a newer one is read as far as it is the same."""
 
 _KEY = "rosbag2_bagfile_information"
-_TRIES = 20
-"""Attempts to replace the file on Windows, 20 ms apart."""
 
 
 class FileInformation(msgspec.Struct):
@@ -188,23 +185,11 @@ def write_metadata(folder: Path, metadata: BagMetadata) -> None:
     partial = folder / f".{FILE_NAME}.partial"
     try:
         partial.write_text(f"{_KEY}:\n{body}\n", encoding="utf-8", newline="\n")
-        _replace(partial, folder / FILE_NAME)
+        put_in_place(partial, folder / FILE_NAME)
     except OSError as error:
         with contextlib.suppress(OSError):
             partial.unlink(missing_ok=True)
         raise OSError(error.errno, error.strerror or str(error), str(folder / FILE_NAME)) from None
-
-
-def _replace(source: Path, target: Path) -> None:
-    """Rename a file over another; on Windows that fails for a moment while somebody reads the other."""
-    for _ in range(_TRIES if sys.platform == "win32" else 0):
-        try:
-            source.replace(target)
-        except PermissionError:
-            time.sleep(0.02)
-        else:
-            return
-    source.replace(target)
 
 
 def metadata_of(topics: Iterable[tuple[BagTopic, int]], files: Iterable[FileInformation], **other: Any) -> BagMetadata:

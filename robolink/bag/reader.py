@@ -132,7 +132,11 @@ class Bag:
 
     def _open(self, path: Path) -> StorageReader:
         if self._scratch is None and path.name.endswith(zstd.ENDING):
-            self._scratch = Path(self._resources.enter_context(tempfile.TemporaryDirectory(prefix="robolink-bag-")))
+            self._scratch = Path(
+                self._resources.enter_context(
+                    tempfile.TemporaryDirectory(prefix="robolink-bag-", ignore_cleanup_errors=True)
+                )
+            )
         return storage_reader(path, self._scratch)
 
     def _release(self, file: _File) -> None:

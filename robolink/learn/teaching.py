@@ -66,7 +66,7 @@ def proofs(course: list[Exercise], check: Check, language: Language = "en") -> I
         check: Runs a check: `robolink.learn.isolated.check_apart`, for example.
         language: Language of the sentences, and of the given file.
     """
-    with tempfile.TemporaryDirectory(prefix="robolink-learn-") as scratch:
+    with tempfile.TemporaryDirectory(prefix="robolink-learn-", ignore_cleanup_errors=True) as scratch:
         for exercise in course:
             file = Path(scratch, exercise.file)
             file.write_text(exercise.given_text(language), encoding="utf-8")

@@ -71,7 +71,7 @@ class Drive:
         from robolink.testing import System
 
         try:
-            with tempfile.TemporaryDirectory(prefix="robolink-race-") as scratch:
+            with tempfile.TemporaryDirectory(prefix="robolink-race-", ignore_cleanup_errors=True) as scratch:
                 world = Path(scratch, "world.yaml")
                 world.write_text(self._race.world(self._seed), encoding="utf-8")
                 self._system = System(seed=self._seed)

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from robolink.exceptions import SecurityError
 from robolink.system.plainfile import read_plain
+from robolink.system.whole_files import put_in_place
 
 LARGEST = 1_000_000
 """Largest file of a keystore that is read, in bytes."""
@@ -32,7 +33,7 @@ def write(path: Path, content: bytes, mode: int = PUBLIC) -> None:
     try:
         with os.fdopen(number, "wb") as file:
             file.write(content)
-        draft.replace(path)
+        put_in_place(draft, path)
     except BaseException:
         with contextlib.suppress(OSError):
             draft.unlink()

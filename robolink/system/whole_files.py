@@ -6,14 +6,38 @@ import contextlib
 import errno
 import os
 import secrets
+import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
+
+_TRIES = 25
+_PAUSE = 0.02
+"""Seconds between two tries to replace a file that somebody has open."""
+
+
+def put_in_place(source: Path, target: Path) -> None:
+    """Rename a file over another.
+
+    On Windows that fails while somebody reads the other, a virus scanner say: it is tried for half a second.
+
+    Raises:
+        OSError: if it fails for good; both files are as they were then.
+    """
+    for _ in range(_TRIES if sys.platform == "win32" else 0):
+        try:
+            source.replace(target)
+        except PermissionError:
+            time.sleep(_PAUSE)
+        else:
+            return
+    source.replace(target)
 
 
 def write_whole(path: Path, data: bytes) -> None:
     """Write a file, in the place of one that is there. Raises OSError; what was there then stays as it was."""
     with _beside(path, data) as new:
-        new.replace(path)
+        put_in_place(new, path)
 
 
 def write_new(path: Path, data: bytes) -> None:

@@ -110,7 +110,7 @@ def _tree(added: Mapping[str, Path]) -> Tree:
 def _make(target: Path, folder: Path, tree: Tree) -> None:
     """Make the folder of links beside its place, and move it there, so that nobody sees half of it."""
     target.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=target.parent, prefix=".") as made:
+    with tempfile.TemporaryDirectory(dir=target.parent, prefix=".", ignore_cleanup_errors=True) as made:
         _fill(Path(made, target.name), folder, tree)
         try:
             Path(made, target.name).rename(target)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import ctypes
 import io
 import json
@@ -32,7 +33,7 @@ from robolink.supervisor.processes import affinity, process
 from robolink.supervisor.processes.process import Child
 from robolink.supervisor.reporting import logs
 from robolink.supervisor.rules import Step
-from robolink.system import clocks
+from robolink.system import clocks, whole_files
 from robolink.system.waits import A_WHILE
 from robolink.transport import network
 from tests.support.commands import PATIENCE
@@ -310,6 +311,40 @@ def replaced_unless(is_refused: Callable[[Path], bool]) -> Callable[[Path, Path]
         return really(path, target)
 
     return replace
+
+
+@pytest.mark.usefixtures("windows")
+@pytest.mark.parametrize("times", [3, 10**6])
+def test_a_file_that_somebody_reads_is_replaced_a_moment_later(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, times: int
+) -> None:
+    """As an editor or a virus scanner does."""
+    pauses: list[float] = []
+    file = tmp_path / "progress.json"
+    file.write_bytes(b"old")
+    monkeypatch.setattr(Path, "replace", replaced_unless(lambda target: len(pauses) < times))
+    monkeypatch.setattr("robolink.system.whole_files.time.sleep", pauses.append)
+    if times == 3:
+        whole_files.write_whole(file, b"new")
+    else:
+        with pytest.raises(PermissionError, match=r"progress\.json"):
+            whole_files.write_whole(file, b"new")
+    assert (file.read_bytes(), [*tmp_path.iterdir()]) == (b"new" if times == 3 else b"old", [file])
+    assert sum(pauses) <= 0.6
+
+
+def test_no_temporary_folder_fails_since_a_file_in_it_is_open() -> None:
+    """Windows removes no open file; what is left there is the system's to clear away."""
+    package = Path(clocks.__file__).parents[1]
+    calls = [
+        f"{file.relative_to(package)}:{node.lineno}"
+        for file in package.rglob("*.py")
+        if "TemporaryDirectory(" in (text := file.read_text(encoding="utf-8"))
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, ast.Call) and ast.unparse(node.func).endswith("TemporaryDirectory")
+        if "ignore_cleanup_errors" not in [each.arg for each in node.keywords]
+    ]
+    assert calls == []
 
 
 @pytest.mark.usefixtures("windows")

@@ -10,6 +10,7 @@ from io import FileIO
 from pathlib import Path
 
 from robolink.bag.mcap.records import Buffer
+from robolink.system.whole_files import put_in_place
 
 NEW = ".new"
 """Suffix of a file that is being made, until it is whole and gets its name."""
@@ -40,7 +41,7 @@ class DiskFile:
                     put(file, data, at)
                 if durable:
                     force(file)
-            new.replace(path)  # closed before: an open file cannot be replaced on Windows
+            put_in_place(new, path)  # closed before: an open file cannot be replaced on Windows
         except OSError:
             with contextlib.suppress(OSError):
                 new.unlink()

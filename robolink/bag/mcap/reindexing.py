@@ -10,6 +10,7 @@ from robolink.bag.mcap.disk import is_being_written
 from robolink.bag.mcap.reader import Reader
 from robolink.bag.mcap.records import McapError
 from robolink.bag.mcap.writer import Writer
+from robolink.system.whole_files import put_in_place
 
 PART = ".reindexed"
 """Suffix of the new file, until it is complete and replaces the old one."""
@@ -52,7 +53,7 @@ def reindex(path: str | Path, *, compression: str | None = None) -> Report:
             was_whole, problems = reader.is_whole and not reader.problems, tuple(reader.problems)
             channels = len(reader.channels)
             reader.close()  # Windows replaces no open file
-            new.replace(path)
+            put_in_place(new, path)
         except OSError as error:
             raise McapError(f"{path} cannot be replaced: {error.strerror or error}; it is as it was") from None
         finally:

@@ -76,7 +76,8 @@ class SqliteReader(StorageReader):
             is_cut, rest = lost_end(path)
             if not rest:
                 return path, is_cut
-            folder = self._opened.enter_context(tempfile.TemporaryDirectory(prefix="robolink-bag-"))
+            made = tempfile.TemporaryDirectory(prefix="robolink-bag-", ignore_cleanup_errors=True)
+            folder = self._opened.enter_context(made)
             copy = Path(shutil.copyfile(path, Path(folder) / path.name))
             os.truncate(copy, copy.stat().st_size - rest)
         except OSError as error:

@@ -104,7 +104,7 @@ def _written(name: str, kind: str) -> Path:
 def _temporary() -> tempfile.TemporaryDirectory[str]:
     import atexit
 
-    folder = tempfile.TemporaryDirectory(prefix="robolink_interfaces_")
+    folder = tempfile.TemporaryDirectory(prefix="robolink_interfaces_", ignore_cleanup_errors=True)
     atexit.register(folder.cleanup)
     return folder
 

@@ -12,7 +12,7 @@ from robolink.learn.trial import Trial
 def check(trial: Trial) -> None:
     """Record a robot that drives ahead, then one that drives in a circle."""
     robot = trial.world("empty_room")
-    with tempfile.TemporaryDirectory(prefix="robolink-learn-") as folder:
+    with tempfile.TemporaryDirectory(prefix="robolink-learn-", ignore_cleanup_errors=True) as folder:
         for name, turn, steps in (("way", 0.0, 25), ("circle", 1.0, 15)):
             before = robot.driven
             bag = Path(folder, name)
