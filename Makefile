@@ -67,7 +67,8 @@ docs: $(SITE)  ## The documentation site, in English and Portuguese, into build/
 lowest:  ## The fast tests with the lowest versions that pyproject.toml allows
 	$(PYTHON) -m venv $(VENV)-lowest
 	$(PYTHON) tools/lowest.py > $(VENV)-lowest/lowest.txt
-	$(VENV)-lowest/bin/python -m pip install --quiet --constraint $(VENV)-lowest/lowest.txt --editable .[dev]
+	$(VENV)-lowest/bin/python -m pip install --quiet "pip>=25.1"
+	$(VENV)-lowest/bin/python -m pip install --quiet --constraint $(VENV)-lowest/lowest.txt --editable . --group dev
 	$(VENV)-lowest/bin/python -m pytest -W ignore::DeprecationWarning -n 4 --dist worksteal -m "not processes and not slow" --hypothesis-profile quick $(ARGS)
 
 bench: $(READY)  ## Speed beside peers, in one run each

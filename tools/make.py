@@ -19,8 +19,8 @@ from typing import Dict, List, NamedTuple, Tuple
 OLDEST = (3, 10)
 NEWEST = 20
 """As far as this Python's younger sisters are looked for: 3.20."""
-EDITABLE_SINCE = (21, 3)
-"""The pip that can install a pyproject.toml as editable; the first Pythons 3.10 brought an older one."""
+EDITABLE_SINCE, GROUPS_SINCE = (21, 3), (25, 1)
+"""The pips that can install a pyproject.toml as editable, and its dependency groups; Pythons bring older ones."""
 
 NO_WHEELS = {"win32": "32-bit Windows", "win-arm32": "Windows on ARM", "win-arm64": "Windows on ARM"}
 """Systems, as Python names them, without wheels of Zenoh, pymunk or OpenCV. Windows on ARM runs Python for x64."""
@@ -30,17 +30,17 @@ USAGE = "usage: python tools/make.py demo | test | docs"
 
 
 class Stage(NamedTuple):
-    """One of the stages of installing: the file that says it is there, what pip is to install, and that in words."""
+    """One of the stages of installing: the file that says it is there, its dependency group, and that in words."""
 
     marker: str
-    wanted: str
+    group: str
     words: str
 
 
 STAGES: Dict[str, Stage] = {
-    "demo": Stage(".demo", ".", "installing what it needs, some 160 MB"),
-    "test": Stage(".ready", ".[dev]", "installing what it needs and its developers' tools, some 540 MB"),
-    "docs": Stage(".docs", ".[docs]", "installing what it needs and what builds the site, some 250 MB"),
+    "demo": Stage(".demo", "", "installing what it needs, some 160 MB"),
+    "test": Stage(".ready", "dev", "installing what it needs and its developers' tools, some 540 MB"),
+    "docs": Stage(".docs", "docs", "installing what it needs and what builds the site, some 250 MB"),
 }
 INSTALLING = {"install-" + name: name for name in STAGES}
 COMMANDS: Dict[str, List[str]] = {
@@ -140,15 +140,17 @@ def steps(name: str, venv: Path) -> List[Tuple[str, List[str]]]:
 
     python = str(python_of(venv))
     pip = quietly(python, "pip", "install", "--quiet", "--disable-pip-version-check")
+    stage = STAGES[name]
     made = []
     whole = any((venv / each.marker).exists() for each in STAGES.values())
     if not whole or not python_of(venv).exists():
         this = "{}.{}.{}".format(*sys.version_info[:3])
         made.append(("making a virtual environment with Python {} in {}".format(this, venv), venv_command(venv)))
-        if tuple(int(each) for each in ensurepip.version().split(".")[:2]) < EDITABLE_SINCE:
-            made.append(("installing a newer pip", [*pip, "--upgrade", "pip"]))
-    stage = STAGES[name]
-    made.append((stage.words, [*pip, *([] if reads_paths_by_locale() else ["--editable"]), stage.wanted]))
+    needed = GROUPS_SINCE if stage.group else EDITABLE_SINCE
+    if tuple(int(each) for each in ensurepip.version().split(".")[:2]) < needed:
+        made.append(("installing a newer pip", [*pip, "pip>={}.{}".format(*needed)]))
+    editable = [] if reads_paths_by_locale() else ["--editable"]
+    made.append((stage.words, [*pip, *editable, ".", *(["--group", stage.group] if stage.group else [])]))
     return made
 
 

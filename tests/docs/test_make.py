@@ -54,7 +54,7 @@ def commands(make: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: Captured
         monkeypatch.setattr(make, "run", noted)
         return noted
 
-    monkeypatch.setattr("ensurepip.version", lambda: "24.0")
+    monkeypatch.setattr("ensurepip.version", lambda: "25.1")
     return noting
 
 
@@ -63,10 +63,9 @@ def with_python(make: ModuleType, venv: Path) -> None:
     make.python_of(venv).touch()
 
 
-def installed(make: ModuleType, venv: Path, what: str) -> list[str]:
+def installed(make: ModuleType, venv: Path, *words: str) -> list[str]:
     python = str(make.python_of(venv))
-    words = ["pip", "install", "--quiet", "--disable-pip-version-check", "--editable", what]
-    return [python, "-c", make.QUIETLY, *words]
+    return [python, "-c", make.QUIETLY, "pip", "install", "--quiet", "--disable-pip-version-check", *words]
 
 
 def test_a_demo_installs_what_it_needs_and_no_tools_and_tells_each_step(
@@ -79,7 +78,7 @@ def test_a_demo_installs_what_it_needs_and_no_tools_and_tells_each_step(
     assert make.main(["demo"]) == 0
     assert noted == [
         [sys.executable, "-c", make.QUIETLY, "venv", str(venv)],
-        installed(make, venv, "."),
+        installed(make, venv, "--editable", "."),
         [str(make.python_of(venv)), "-m", "robolink", "launch", "wander", "--view"],
     ]
     assert [text.count("\n") for text in noted.told] == [1, 1, 1]
@@ -87,7 +86,7 @@ def test_a_demo_installs_what_it_needs_and_no_tools_and_tells_each_step(
     with_python(make, venv)
     noted.clear()
     assert make.main(["test", "-x"]) == 0  # the rest comes when something asks for it, into what there is
-    assert noted[:-1] == [installed(make, venv, ".[dev]")]
+    assert noted[:-1] == [installed(make, venv, "--editable", ".", "--group", "dev")]
     assert noted[-1][1:] == [*make.COMMANDS["test"], "-x"]
     noted.clear()
     assert make.main(["demo"]) == 0
@@ -99,7 +98,7 @@ def test_who_has_the_tools_has_all_that_a_demo_needs(
 ) -> None:
     noted = commands()
     assert make.main(["--venv", str(tmp_path), "install-test"]) == 0
-    assert noted[1:] == [installed(make, tmp_path, ".[dev]")]
+    assert noted[1:] == [installed(make, tmp_path, "--editable", ".", "--group", "dev")]
     assert make.main(["--venv", str(tmp_path), "install-demo"]) == 0
     assert len(noted) == 2
 
@@ -112,16 +111,28 @@ def test_a_newer_pyproject_is_installed_anew(
     os.utime(tmp_path / ".demo", (1, 1))
     noted = commands()
     assert make.main(["--venv", str(tmp_path), "install-demo"]) == 0
-    assert noted == [installed(make, tmp_path, ".")]
+    assert noted == [installed(make, tmp_path, "--editable", ".")]
 
 
-def test_an_old_pip_that_installs_nothing_editable_is_replaced_first(
-    make: ModuleType, commands: Callable[..., Commands], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("brought", "stage", "needed"),
+    [("21.2.4", "demo", "pip>=21.3"), ("24.0", "demo", ""), ("24.0", "test", "pip>=25.1"), ("25.1", "test", "")],
+)
+def test_a_pip_that_is_too_old_is_replaced_first(
+    make: ModuleType,
+    commands: Callable[..., Commands],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    brought: str,
+    stage: str,
+    needed: str,
 ) -> None:
     noted = commands()
-    monkeypatch.setattr("ensurepip.version", lambda: "21.2.4")
-    assert make.main(["--venv", str(tmp_path), "install-demo"]) == 0
-    assert [each[-2:] for each in noted[1:]] == [["--upgrade", "pip"], ["--editable", "."]]
+    monkeypatch.setattr("ensurepip.version", lambda: brought)
+    assert make.main(["--venv", str(tmp_path), f"install-{stage}"]) == 0
+    group = ["--group", "dev"] if stage == "test" else []
+    expected = [installed(make, tmp_path, "--editable", ".", *group)]
+    assert noted[1:] == [*([installed(make, tmp_path, needed)] if needed else []), *expected]
 
 
 @pytest.mark.parametrize(

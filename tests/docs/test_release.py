@@ -116,7 +116,7 @@ def test_all_is_every_extra_that_users_install() -> None:
     extras = re.findall(
         r"^(\w+) = \[", PYPROJECT.partition("[project.optional-dependencies]")[2].partition("\n[")[0], re.MULTILINE
     )
-    assert sorted(extras) == sorted([*LOWEST["USERS"], "all", "docs", "dev"])
+    assert sorted(extras) == sorted([*LOWEST["USERS"], "all"])
     assert f'all = ["robolink[{",".join(sorted(LOWEST["USERS"]))}]"]' in PYPROJECT
 
 
