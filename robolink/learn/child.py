@@ -15,6 +15,7 @@ import msgspec
 
 from robolink.learn.process import TRACE
 from robolink.learn.report import Mistake
+from robolink.learn.signing import signed, take_key
 from robolink.learn.watchdog import MOST_MEMORY, STUCK, Watchdog, Watched, memory_of_this_process
 from robolink.supervisor.processes.lifeline import watch_lifeline
 
@@ -33,7 +34,7 @@ class Child:
     """
 
     def __init__(self, answer: Path) -> None:
-        self._answer = answer
+        self._answer, self._key = answer, take_key()
         self._watchdog: Watchdog | None = None
         self._last = threading.Lock()
         """Held from the end on: the watchdog and the run may come to it at once, and one of them writes."""
@@ -67,7 +68,7 @@ class Child:
         self._last.acquire()
         try:
             with contextlib.suppress(Exception):  # the program has removed the folder, say: it gets no answer
-                self._answer.write_bytes(msgspec.json.encode(answer))
+                self._answer.write_bytes(signed(msgspec.json.encode(answer), self._key))
             for stream in (sys.stdout, sys.stderr):
                 with contextlib.suppress(Exception):  # whatever the program has put there
                     stream.flush()

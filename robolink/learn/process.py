@@ -17,6 +17,7 @@ from typing import IO, NamedTuple
 
 from robolink.learn.mistakes import line_of
 from robolink.learn.report import Mistake
+from robolink.learn.signing import new_key, opened
 from robolink.supervisor.processes.guardian import marked, signal_group
 from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.system import clocks, waits
@@ -56,7 +57,7 @@ class Ended(NamedTuple):
     """Outcome of a child process."""
 
     answer: bytes
-    """Content of the file that it was to write; nothing if it wrote none."""
+    """Answer that it wrote; nothing if it wrote none, or somebody else did."""
     printed: str
     mistake: Mistake
     """Mistake that explains a missing answer."""
@@ -88,12 +89,13 @@ def run_apart(
         temporary.mkdir()
         command = [*own_command(), *words, str(answer)]
         environ = {**os.environ, **variables, **dict.fromkeys(TEMPORARY, str(temporary))}
-        printed, in_time = _run(command, work, environ, longest, stop or threading.Event())
-        return Ended(_content(answer), printed, why_no_answer(answer.with_name(TRACE), file, in_time))
+        key = new_key()
+        printed, in_time = _run(command, key, work, environ, longest, stop or threading.Event())
+        return Ended(opened(_content(answer), key), printed, why_no_answer(answer.with_name(TRACE), file, in_time))
 
 
 def _run(
-    command: Sequence[str], work: Path, environ: Mapping[str, str], longest: float, stop: threading.Event
+    command: Sequence[str], key: bytes, work: Path, environ: Mapping[str, str], longest: float, stop: threading.Event
 ) -> tuple[str, bool]:
     """Run a process to its end, or kill it; return what it printed, and whether it ended by itself."""
     lifeline = Lifeline()
@@ -105,7 +107,7 @@ def _run(
             command,
             cwd=work,
             env={**environ, **SETTINGS, **variables, MARK: f"apart:{lifeline.mark}"},
-            stdin=subprocess.DEVNULL,
+            stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             start_new_session=True,
@@ -115,6 +117,7 @@ def _run(
             reader = threading.Thread(target=_keep, args=(process.stdout, kept), daemon=True)
             try:
                 reader.start()
+                _hand_over(key, process)
                 in_time = _wait(process, longest, stop)
             finally:
                 _kill(process, lifeline.mark, since)
@@ -122,6 +125,13 @@ def _run(
     finally:
         lifeline.close()
     return b"".join(kept)[:MOST_PRINTED].decode("utf-8", errors="replace"), in_time
+
+
+def _hand_over(key: bytes, process: subprocess.Popen[bytes]) -> None:
+    assert process.stdin is not None
+    with contextlib.suppress(OSError):  # it has ended already
+        process.stdin.write(key)
+        process.stdin.close()
 
 
 def _wait(process: subprocess.Popen[bytes], longest: float, stop: threading.Event) -> bool:

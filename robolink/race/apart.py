@@ -1,4 +1,7 @@
-"""Runs of a race in processes of their own, several at a time: no program can end the race, or another one."""
+"""Runs of a race in processes of their own, several at a time: no program ends the race, or wins by ending another one.
+
+They are processes of one user, so that one can end another, or spoil its answer. Who has none is run again, alone.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,7 @@ from pathlib import Path
 import msgspec
 
 from robolink.learn.process import run_apart
+from robolink.learn.report import Mistake
 from robolink.race.races import RACES, Race
 from robolink.race.result import Result
 from robolink.system import waits
@@ -29,7 +33,8 @@ def race_all(
 ) -> list[Result]:
     """Run programs in a race, as many at a time as there are processors; return their results in the same order.
 
-    Whatever interrupts it ends the programs that run.
+    Whatever interrupts it ends the programs that run. A program that ended without an answer may have been ended by
+    another one: it is run again once all others are over, by itself.
 
     Args:
         race: The race.
@@ -39,18 +44,25 @@ def race_all(
     """
     stop = threading.Event()
 
-    def run(program: str) -> Result:
-        result = run_one(race, program, seed, stop=stop)
-        on_done(result)
+    def run(program: str) -> Result | None:
+        result = _answered(race, program, seed, LONGEST, stop)[0]
+        if result is not None:
+            on_done(result)
         return result
 
     with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
         try:
-            return [waits.result(each) for each in [pool.submit(run, program) for program in programs]]
+            found = [waits.result(each) for each in [pool.submit(run, program) for program in programs]]
+            results = []
+            for program, result in zip(programs, found, strict=True):
+                results.append(result or waits.result(pool.submit(run_one, race, program, seed, stop=stop)))
+                if result is None:
+                    on_done(results[-1])
         except BaseException:
             stop.set()
             pool.shutdown(wait=False, cancel_futures=True)
             raise
+        return results
 
 
 def run_one(
@@ -65,6 +77,14 @@ def run_one(
         longest: Seconds after which the process is killed.
         stop: Event that ends the run; None for none.
     """
+    result, mistake = _answered(race, program, seed, longest, stop)
+    return result or Result(program, mistake=mistake)
+
+
+def _answered(
+    race: Race, program: str, seed: int, longest: float, stop: threading.Event | None
+) -> tuple[Result | None, Mistake]:
+    """Run one program; return its result, None if it gave none, and the mistake that explains that."""
     file = Path(program)
     what = str(file.resolve()) if file.is_file() else program
     workspace = user_workspace()  # the process works elsewhere, and is to find the same nodes
@@ -78,8 +98,8 @@ def run_one(
     try:
         result = msgspec.json.decode(ended.answer, type=Result)
     except msgspec.DecodeError:
-        result = Result(mistake=ended.mistake)
-    return msgspec.structs.replace(result, program=program)
+        return None, ended.mistake
+    return msgspec.structs.replace(result, program=program), ended.mistake
 
 
 def serve(name: str, program: str, seed: int, answer: Path) -> None:

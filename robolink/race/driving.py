@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robolink.exceptions import NotFoundError
+from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
 from robolink.learn.mistakes import mistake_in, mistake_of
 from robolink.learn.report import Mistake
 from robolink.race.races import Race
@@ -17,12 +18,16 @@ from robolink.race.result import Result
 from robolink.workspace import find_node
 
 if TYPE_CHECKING:
+    from robolink.node import Node
     from robolink.race.judges import Judge
     from robolink.testing import System
     from robolink.testing.robots import SimulatedRobot
 
 STEP = 0.05
 """Virtual seconds from one look of the judge to the next."""
+
+CONTROLS = ("reset", "pause", "resume", "step", "teleport", "spawn", "delete", "set_rate")
+"""Services of the world that a race does not have."""
 
 _STATE = struct.Struct("<3dI")
 
@@ -76,7 +81,7 @@ class Drive:
                 world.write_text(self._race.world(self._seed), encoding="utf-8")
                 self._system = System(seed=self._seed)
                 try:
-                    self._system.start("world", parameters={"world": str(world)})
+                    _leave_to_the_judge(self._system.start("world", parameters={"world": str(world)}))
                     robot = self._system.robot()
                     self._system.start(Path(self._program) if Path(self._program).is_file() else self._program)
                     self._drive(self._system, robot)
@@ -95,6 +100,16 @@ class Drive:
             self._judge.see(number * STEP, pose.x, pose.y, self._contacts)
             if self._judge.is_over:
                 return
+
+
+def _leave_to_the_judge(world: Node) -> None:
+    """Take from everybody what moves robots, and time, other than by driving: the world's services and parameters."""
+    for each in list(world.services):
+        if each.service_name.rpartition("/")[2] in CONTROLS:
+            world.destroy_service(each)
+    world.add_on_set_parameters_callback(
+        lambda _: SetParametersResult(successful=False, reason="this is a race: its world is the judge's")
+    )
 
 
 def _file_of(program: str) -> Path:

@@ -71,8 +71,7 @@ class LapJudge:
 class MazeJudge:
     """Judge of a maze: the score is the time in seconds to its goal, and some more for each contact; less is better.
 
-    The robot has to come from cell to open cell. One that is put elsewhere, by the world's service teleport, counts as
-    where it was.
+    The robot has to come from cell to open cell; one that is somewhere else at once counts as where it was.
 
     Args:
         maze: The maze.

@@ -104,7 +104,7 @@ def test_several_run_side_by_side_and_none_ends_the_others(tmp_path: Path) -> No
 @pytest.mark.processes
 @pytest.mark.skipif(sys.platform == "win32", reason="it has no sleep")
 def test_what_interrupts_a_race_ends_its_programs(tmp_path: Path) -> None:
-    (tmp_path / "gone.py").write_text("import os\nos._exit(0)\n")
+    (tmp_path / "broken.py").write_text("def main(:\n")
     (tmp_path / "waits.py").write_text("import subprocess\nsubprocess.run(['sleep', '60'])\n")
 
     def interrupt(result: Result) -> None:
@@ -112,7 +112,7 @@ def test_what_interrupts_a_race_ends_its_programs(tmp_path: Path) -> None:
 
     begin = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
-        race_all(FOLLOW, [str(tmp_path / "gone.py"), str(tmp_path / "waits.py")], 1, on_done=interrupt)
+        race_all(FOLLOW, [str(tmp_path / "broken.py"), str(tmp_path / "waits.py")], 1, on_done=interrupt)
     assert time.monotonic() - begin < 15.0, "it did not wait for the other, which ends after 20 s"
 
 
