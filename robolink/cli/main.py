@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from robolink.cli.launching.hashing import begin_steadily
 from robolink.cli.shared.interrupts import not_lost
+from robolink.cli.shared.other_names import OTHER_NAMES
 from robolink.cli.shared.output import complain
 from robolink.documents.foreign import told_in_a_line
 from robolink.exceptions import ExternalShutdownException, RobolinkError
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
 
 COMPLETION = "_ROBOLINK_COMPLETE"
 """Environment variable by which a shell asks for completions."""
-
-OTHER_NAMES = {"colcon": "robolink.cli.shim.colcon", "launch_test": "robolink.cli.shim.launch_test"}
-"""Modules whose `main` runs in place of this one where a copy of the command has such a name, as on Windows."""
 
 
 def main(args: Sequence[str] | None = None) -> int:
