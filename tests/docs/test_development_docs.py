@@ -155,3 +155,15 @@ def test_decisions_have_numbers_without_a_gap_and_all_their_parts() -> None:
 def test_every_decisions_page_is_listed() -> None:
     listed = (FOLDER / "decisions" / "README.md").read_text(encoding="utf-8")
     assert all(f"({page.name})" in listed for page in (FOLDER / "decisions").glob("*.md") if page.name != "README.md")
+
+
+def test_every_unsteady_test_is_there_with_its_date_and_cause() -> None:
+    text = (FOLDER / "unsteady.md").read_text(encoding="utf-8")
+    rows = [
+        [cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("| `")
+    ]
+    for name, seen, cause in rows:
+        file, _, test = name.strip("`").partition("::")
+        assert re.fullmatch(r"20\d\d-\d\d-\d\d", seen), name
+        assert f"def {test.partition('[')[0]}(" in (ROOT / file).read_text(encoding="utf-8"), name
+        assert cause, name
