@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import importlib
 import os
+import sys
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
@@ -14,6 +15,7 @@ import typer.main
 from robolink.cli.shared.added import added_command, added_help, added_names
 from robolink.cli.shared.noun import Noun
 from robolink.cli.shared.output import say
+from robolink.system.terminal import wants_colour
 
 if TYPE_CHECKING:
     Context = Any  # typer's own moved with its copy of click
@@ -96,6 +98,13 @@ VERBS_OF_ROS2 = {
 class Root(typer.core.TyperGroup):
     """Command group with lazy loading: it knows all commands by name, and imports only the one that is used."""
 
+    def make_context(self, *args: Any, **extra: Any) -> Any:
+        """Return the context of a command line; help has bold headings where there is a terminal."""
+        base = _click_of(type(self), "core")
+        plain = base.HelpFormatter
+        base.Context.formatter_class = _with_bold_headings(plain) if wants_colour(sys.stdout) else plain
+        return super().make_context(*args, **extra)
+
     def list_commands(self, ctx: Context) -> list[str]:
         """Return the names that help lists, in the order of the table, then those of other packages."""
         return [*(name for name, entry in COMMANDS.items() if not entry.hidden), *_added()]
@@ -128,10 +137,8 @@ class Root(typer.core.TyperGroup):
 
     def shell_complete(self, ctx: Context, incomplete: str) -> list[Any]:
         """Return completions of the commands' names and of the options, without importing any command."""
-        base = next(
-            each for each in type(self).__mro__ if each.__name__ == "Command"
-        )  # typer has its own copy of click
-        item = importlib.import_module(f"{base.__module__.rpartition('.')[0]}.shell_completion").CompletionItem
+        base = next(each for each in type(self).__mro__ if each.__name__ == "Command")
+        item = _click_of(type(self), "shell_completion").CompletionItem
         names = [name for name in self.list_commands(ctx) if name.startswith(incomplete)]
         options: list[Any] = base.shell_complete(self, ctx, incomplete)  # type: ignore[attr-defined]
         texts = {name: entry.help for name, entry in COMMANDS.items()}
@@ -149,6 +156,28 @@ class Root(typer.core.TyperGroup):
 def _added() -> list[str]:
     """Return the names of the commands that other packages add, and that robolink has not."""
     return [each for each in added_names() if each not in COMMANDS]
+
+
+def _click_of(cls: type, module: str) -> Any:
+    """Return a module of the click that a command class is of: typer has its own copy."""
+    base = next(each for each in cls.__mro__ if each.__name__ == "Command")
+    return importlib.import_module(f"{base.__module__.rpartition('.')[0]}.{module}")
+
+
+@functools.cache
+def _with_bold_headings(base: type) -> type:
+    """Return a help formatter whose headings are bold."""
+
+    class Formatter(base):  # type: ignore[misc]
+        def write_heading(self, heading: str) -> None:
+            self.write(f"{'':>{self.current_indent}}\x1b[1m{heading}:\x1b[0m\n")
+
+        def write_usage(self, *args: Any, **options: Any) -> None:
+            begin = len(self.buffer)
+            super().write_usage(*args, **options)
+            self.buffer[begin:] = ["".join(self.buffer[begin:]).replace("Usage:", "\x1b[1mUsage:\x1b[0m", 1)]
+
+    return Formatter
 
 
 @functools.cache

@@ -7,7 +7,10 @@ YAML (in double quotes) and JSON (but for ``\x1b``, which JSON's writers never l
 from __future__ import annotations
 
 import functools
+import os
 import re
+import sys
+from typing import TextIO
 
 _UNFIT = "\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u206f\ud800-\udfff"
 """Unsafe characters: C0 without tab and line feed, DEL, C1, text direction, line separators, lone surrogates."""
@@ -37,6 +40,23 @@ def fit(text: str, *, lines: bool = True, colours: bool = False) -> str:
     if colours:
         return _compiled(_BUT_COLOURS).sub(lambda match: match[1] or escaped(match[0]), text)
     return _compiled(_OF_LINES if lines else _OF_A_LINE).sub(lambda match: escaped(match[0]), text)
+
+
+def wants_colour(output: TextIO | None) -> bool:
+    """True if colours make sense in this `output`: it is a terminal, and NO_COLOR is not set."""
+    knows_colours = sys.platform != "win32" or "WT_SESSION" in os.environ or "TERM" in os.environ
+    return output is not None and output.isatty() and knows_colours and not os.environ.get("NO_COLOR")
+
+
+def styled(text: str, style: str, output: TextIO | None) -> str:
+    """Return `text` in a style where an output wants colours, and as it is elsewhere.
+
+    Args:
+        text: The text.
+        style: Numbers of an SGR sequence, such as "1;31" for bold red.
+        output: Where it is written.
+    """
+    return f"\x1b[{style}m{text}\x1b[0m" if wants_colour(output) else text
 
 
 def is_fit(text: str) -> bool:

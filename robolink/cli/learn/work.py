@@ -15,7 +15,10 @@ from robolink.learn.folder import StudentFolder, find_folder, folder_below, star
 from robolink.learn.isolated import check_apart
 from robolink.learn.languages import Language, default_language, words
 from robolink.learn.lines import course_listed, listed, next_step, reported, task
+from robolink.system.terminal import fit, styled
 
+_STYLES = {"✓": "32", "✗": "31", "→": "36"}
+"""Colours of marks at the begin of a line."""
 _PLAIN = {"✓": "+", "✗": "x", "→": ">"}
 """Marks for a terminal that lacks the others."""
 
@@ -142,7 +145,14 @@ def _check(folder: StudentFolder, exercise: Exercise) -> bool:
 def say_all(lines: Iterable[str]) -> None:
     """Write lines, with marks that the terminal has."""
     for each in lines:
-        say(_fit(each))
+        say(_fit(_coloured(each)), colours=True)
+
+
+def _coloured(line: str) -> str:
+    """Return a line whose first mark is in its colour, where there is a terminal; the rest of it is made safe."""
+    text = fit(line)
+    mark = text.lstrip()[:1]
+    return text.replace(mark, styled(mark, _STYLES[mark], sys.stdout), 1) if mark in _STYLES else text
 
 
 def _fit(line: str) -> str:

@@ -9,7 +9,7 @@ import sys
 from typing import Any
 
 from robolink.exceptions import NameValidationException
-from robolink.system.terminal import fit, shown
+from robolink.system.terminal import fit, shown, styled
 
 LONGEST_LINE = 2000
 """Upper bound of an error's length, in characters: an argument that it names can be as long as a file."""
@@ -57,7 +57,8 @@ def complain(error: object, code: int = 1, place: str = "") -> int:
         text = f"{text[: LONGEST_LINE // 2]} ... {text[-LONGEST_LINE // 4 :]}"
     line = shown(text, len(text))
     at = f" (at {place})" if place else ""
-    print(f"robolink: {line}{at}", file=sys.stderr)  # noqa: T201 - this is what the user is told
+    head = styled("robolink:", "1;31", sys.stderr)
+    print(f"{head} {line}{at}", file=sys.stderr)  # noqa: T201 - this is what the user is told
     return code
 
 

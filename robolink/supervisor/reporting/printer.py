@@ -11,12 +11,15 @@ from typing import TextIO
 
 from robolink.supervisor.reporting.background_queue import BackgroundQueue, Troubles
 from robolink.supervisor.reporting.writer import Writer
-from robolink.system.terminal import fit
+from robolink.system.terminal import fit, wants_colour
 
 _COLOURS = ("36", "33", "32", "35", "34", "96", "93", "92", "95", "94")
 OWN_NAME = "launch"
 _LOGGED = re.compile(rb"\[(DEBUG|WARN|ERROR|FATAL)\] ")
 """Beginning of a line of a node's log, in ROS's usual format."""
+_WHOLE = re.compile(rb"(\[(?:DEBUG|INFO|WARN|ERROR|FATAL)\]) \[\d+\.\d+\] (\[([^\]\s]*)\]): ")
+"""Beginning of such a line with its parts: severity, and logger in brackets and without."""
+_FORMAT = "RCUTILS_CONSOLE_OUTPUT_FORMAT"
 _SEVERITIES = {b"DEBUG": b"32", b"WARN": b"33", b"ERROR": b"31", b"FATAL": b"31"}
 """ANSI colours of the severities; nodes do not send them to a launcher, so that log files have none."""
 _PLAIN = re.compile(rb"[\t -~]*")
@@ -29,6 +32,7 @@ class Printer:
         has_colour = wants_colour(output)
         self._has_colour = has_colour
         self._prefixes = prefixes([*names, OWN_NAME], has_colour)
+        self._shortens = output.isatty() and not os.environ.get(_FORMAT)
         self._colours_logs = has_colour and os.environ.get("RCUTILS_COLORIZED_OUTPUT") != "0"
         writer = Writer(output)
         self._queue: BackgroundQueue[bytes] = BackgroundQueue(
@@ -42,6 +46,7 @@ class Printer:
     def line(self, name: str, line: bytes) -> None:
         """Print one line of a process, of all control codes only colours; blocks while too much waits."""
         text = _fit(line.rstrip(b"\r\n"))
+        text = _shortened(name, text) if self._shortens else text
         whole = self._prefixes[name] + (_coloured(text) if self._colours_logs else text) + b"\n"
         self._queue.put(whole, len(whole))
 
@@ -59,6 +64,19 @@ def _fit(line: bytes) -> bytes:
     return line if _PLAIN.fullmatch(line) else fit(line.decode(errors="replace"), colours=True).encode()
 
 
+def _shortened(name: str, line: bytes) -> bytes:
+    """Return a line of a node's log for people: without its time, and without its logger if the process is called so.
+
+    Whoever has set a format has said what to see, and log files keep all.
+    """
+    logged = _WHOLE.match(line)
+    if logged is None:
+        return line
+    severity, logger, bare = logged.groups()
+    who = b" " if bare.decode(errors="replace") == name.strip("/").replace("/", ".") else b" %s: " % logger
+    return severity + who + line[logged.end() :]
+
+
 def _coloured(line: bytes) -> bytes:
     """Return a line in the colour of its severity, if it is of a log and has no colours of its own."""
     logged = _LOGGED.match(line)
@@ -72,12 +90,6 @@ def complain(text: str) -> None:
     with contextlib.suppress(OSError, ValueError, AttributeError):  # closed; or there is none
         sys.stderr.write(f"[{OWN_NAME}] {fit(text)}\n")
         sys.stderr.flush()
-
-
-def wants_colour(output: TextIO) -> bool:
-    """True if colours make sense there: a terminal, and NO_COLOR is not set."""
-    knows_colours = sys.platform != "win32" or "WT_SESSION" in os.environ or "TERM" in os.environ
-    return output.isatty() and knows_colours and not os.environ.get("NO_COLOR")
 
 
 def prefixes(names: Iterable[str], has_colour: bool) -> dict[str, bytes]:

@@ -55,7 +55,8 @@ def test_lines_of_a_log_have_their_severitys_colour_on_a_terminal(monkeypatch: p
         "a [WARN] ",
         "",
     ]
-    coloured = ["\x1b[33m[WARN] [1.0] [n]: é\x1b[0m", "\x1b[31m[ERROR] [1.0] [n]: b\x1b[0m", *lines[2:]]
+    shortened = ["[WARN] [n]: é", "[ERROR] [n]: b", "[INFO] [n]: c", *lines[3:]]
+    coloured = [f"\x1b[33m{shortened[0]}\x1b[0m", f"\x1b[31m{shortened[1]}\x1b[0m", *shortened[2:]]
 
     def printed(output: io.StringIO) -> list[str]:
         printer = Printer(output, ["a"])
@@ -67,7 +68,32 @@ def test_lines_of_a_log_have_their_severitys_colour_on_a_terminal(monkeypatch: p
     assert printed(Terminal()) == coloured
     assert printed(io.StringIO()) == lines
     monkeypatch.setenv("RCUTILS_COLORIZED_OUTPUT", "0")
+    assert printed(Terminal()) == shortened
+    monkeypatch.setenv("RCUTILS_CONSOLE_OUTPUT_FORMAT", "[{severity}] [{time}] [{name}]: {message}")
     assert printed(Terminal()) == lines
+
+
+@pytest.mark.parametrize(
+    ("process", "line", "shown"),
+    [
+        ("world", "[INFO] [1795863973.050000000] [world]: robot at (1, 2)", "[INFO] robot at (1, 2)"),
+        ("ada/world", "[WARN] [1795863973.05] [ada.world]: [1.5] [x]: y", "[WARN] [1.5] [x]: y"),
+        ("world-2", "[INFO] [1795863973.05] [world]: x", "[INFO] [world]: x"),
+        ("world", "[INFO] [now] [world]: x", "[INFO] [now] [world]: x"),
+        ("world", "said [INFO] [1.5] [world]: x", "said [INFO] [1.5] [world]: x"),
+        ("a", "[INFO] [1.5] []: x", "[INFO] []: x"),
+    ],
+)
+def test_a_terminal_has_each_name_once_and_no_epoch(
+    process: str, line: str, shown: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.delenv("RCUTILS_CONSOLE_OUTPUT_FORMAT", raising=False)
+    for output, expected in ((Terminal(), shown), (io.StringIO(), line)):
+        printer = Printer(output, [process])
+        printer.line(process, f"{line}\n".encode())
+        printer.close(PATIENCE)
+        assert output.getvalue() == f"[{process}] {expected}\n"
 
 
 def test_no_color_is_respected(monkeypatch: pytest.MonkeyPatch) -> None:
