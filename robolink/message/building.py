@@ -48,7 +48,7 @@ def build(definition: Definition, resolve: Resolve) -> type[Any]:
     return action_class(type_name, parts, doc, definition.text)
 
 
-def _section_class(definition: Definition, section: Section, text: str, resolve: Resolve) -> type[Message]:
+def _section_class(definition: Definition, section: Section, text: str | None, resolve: Resolve) -> type[Message]:
     fields = {each.name: _resolved(definition, each, resolve) for each in section.fields}
     defaults = {each.name: each.default for each in section.fields if each.default is not None}
     constants = {each.name: (each.type, each.value) for each in section.constants}

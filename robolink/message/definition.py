@@ -84,7 +84,8 @@ class Section(msgspec.Struct, frozen=True):
     """Comment lines at its head, without their ``#``."""
     fields: tuple[Field, ...]
     constants: tuple[Constant, ...]
-    text: str
+    text: str | None
+    """Its part of the file's text; None for a part of an .idl file."""
 
 
 class Definition(msgspec.Struct, frozen=True):
@@ -94,7 +95,8 @@ class Definition(msgspec.Struct, frozen=True):
     """Type name: ``pkg/msg/Name``, ``pkg/srv/Name`` or ``pkg/action/Name``."""
     sections: tuple[Section, ...]
     """One section of a message, two of a service (request, response), three of an action (goal, result, feedback)."""
-    text: str
+    text: str | None
+    """Text of the .msg, .srv or .action file; None for an .idl file, of whose class such a text is made."""
     origin: str
     """Name of the text's source in errors."""
 

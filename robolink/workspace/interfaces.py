@@ -1,4 +1,4 @@
-"""Interface types of a workspace: the `.msg`, `.srv` and `.action` files in `interfaces/PACKAGE/{msg,srv,action}/`.
+"""Interface types of a workspace: `.msg`, `.srv`, `.action` and `.idl` files in `interfaces/PACKAGE/{msg,srv,action}/`.
 
 Those of the packages in its `src/` belong to them. They are known by name (`robolink.interfaces.find`) and importable,
 `from my_msgs.msg import WheelSpeeds`, in every node that `robolink run` or `robolink launch` starts, and anywhere after
@@ -24,6 +24,8 @@ from robolink.workspace.modules import FINDER, Fill
 from robolink.workspace.packages import source_packages
 from robolink.workspace.source import Folder
 
+IDL = ".idl"
+"""Suffix of the files that define a type in OMG IDL, of all three kinds."""
 INTERFACES = "interfaces"
 """Name of the folder of interface packages in a workspace."""
 DEEPEST = 48
@@ -66,8 +68,10 @@ class WorkspaceTypes:
         for workspace in self._workspaces():
             packages = [(name, workspace / INTERFACES / name) for name in _listed(workspace / INTERFACES)]
             for package, folder in (*packages, *source_packages(workspace).items()):
-                shorts = (name.removesuffix(f".{kind}") for name in _listed(folder / kind, f".{kind}"))
-                found.setdefault(package, []).extend(shorts)
+                for suffix in (f".{kind}", IDL):
+                    shorts = (name.removesuffix(suffix) for name in _listed(folder / kind, suffix))
+                    known = found.setdefault(package, [])
+                    known.extend(each for each in shorts if each not in known)
         return {package: shorts for package, shorts in found.items() if shorts}
 
     def folders(self, package: str, kind: str = "") -> list[Path]:
@@ -88,10 +92,10 @@ class WorkspaceTypes:
 
     def get(self, package: str, kind: str, short: str) -> type[Any] | None:
         """Return the class of a type, None if no workspace defines it. Raises DefinitionError."""
-        file = f"{short}.{kind}"
         for folder in self.folders(package, kind):
-            if file in _listed(folder, f".{kind}"):
-                return self._class_of(folder / file, f"{package}/{kind}/{short}")
+            for suffix in (f".{kind}", IDL):  # where both are there, rosidl made the second of the first
+                if short + suffix in _listed(folder, suffix):
+                    return self._class_of(folder / (short + suffix), f"{package}/{kind}/{short}")
         return None
 
     def built_in(self, package: str, kind: str, short: str) -> type[Any]:
@@ -135,8 +139,10 @@ def _listed(folder: Path, suffix: str = "") -> Iterator[str]:
 def _build(path: Path, type_name: str) -> type[Any]:
     from robolink.message.building import build
     from robolink.message.definition import parse
+    from robolink.message.idl import parse_idl
 
-    return build(parse(_read(path), type_name, str(path)), interfaces.find)
+    read = parse_idl if path.suffix == IDL else parse
+    return build(read(_read(path), type_name, str(path)), interfaces.find)
 
 
 def _read(path: Path) -> str:

@@ -9,7 +9,7 @@ RECORDED = recorded()
 
 
 def test_all_types_are_recorded() -> None:
-    assert len(RECORDED) == 248
+    assert len(RECORDED) == 252
     assert {len(data) for data in RECORDED.values()} == {KEPT}
 
 

@@ -47,7 +47,7 @@ def get_interface_path(interface_name: str) -> str:
     """Return the path of the file that defines a type.
 
     A workspace's file is the user's own; that of a standard type is written for this process, and removed after it.
-    There are no .idl files.
+    A type that only an .idl file defines is written as text, too.
 
     Args:
         interface_name: Name such as ``std_msgs/msg/String``, with or without ``.msg`` at its end.
