@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from robolink.system import clocks
+from robolink.system.waits import A_WHILE
 
 HOST = "127.0.0.1"
 
@@ -72,7 +73,7 @@ def listening(
                 waiting.register(greeting.socket, selectors.EVENT_WRITE, greeting)
         deadline = clocks.monotonic() + within
         while waiting.get_map() and (left := deadline - clocks.monotonic()) > 0:
-            for key, _ in waiting.select(left):
+            for key, _ in waiting.select(min(left, A_WHILE)):  # Windows notices a Ctrl-C between two
                 _advance(waiting, key.data, found, greet)
             if first in found and found[first].speaks_zenoh:
                 break
