@@ -22,11 +22,14 @@ Workspace = Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="W
 def new_project(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, or the path of its folder.")],
 ) -> None:
-    """Make a folder that runs and tests at once: a node, a world, a launch file, a test, a CI file."""
+    """Make a folder that runs and tests at once: a node, a world, a launch file, a test, CI, and stubs for editors."""
     from robolink.scaffold import new_project
+    from robolink.scaffold.stubs import write_stubs
 
     made = new_project(name)
     _tell(made)
+    for each in write_stubs(made.folder):
+        say(f"made {shown(made.folder / each)}")
     there = "" if made.folder.samefile(Path.cwd()) else f"  cd {typed(made.folder)}\n"
     say(f"\nnext:\n{there}  robolink simulate {made.name}    # or: launch {made.name}\n  pytest")
 
