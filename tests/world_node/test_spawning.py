@@ -72,7 +72,7 @@ def test_a_robot_is_as_a_text_says(system: System, world: Any) -> None:
         ({"name": "eve", "model": "shape: {circle: .nan}"}, "circle"),
         ({"name": "eve", "model": "shape: {circle: 200}"}, "inside"),
         ({"name": "eve", "model": "a: &a [*a]"}, "model"),
-        ({"name": "eve", "model": "\x00"}, "model"),
+        ({"name": "eve", "model": "\x01"}, "model"),  # a message ends at \x00
         ({"name": "eve", "model": "colour: rde"}, "model:1:9: colour: 'rde' is no colour (did you mean 'red'?)"),
         (
             {"name": "eve", "model": "colour: #ff0000"},
