@@ -15,6 +15,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import IO, NamedTuple
 
+from robolink.learn import keeper
 from robolink.learn.mistakes import line_of
 from robolink.learn.report import Mistake
 from robolink.learn.signing import new_key, opened
@@ -49,6 +50,9 @@ STOP_WITHIN = 0.2
 
 LARGEST = 8 * 2**20
 """Most bytes of an answer: it comes from a process in which a student's program runs."""
+
+_KEEPER = [sys.executable, "-I", "-S", keeper.__file__] if sys.platform == "linux" else []
+"""Words before the command line of a child."""
 
 _PLACE = re.compile(r'^  File "(.*)", line (\d+) in ', re.MULTILINE)
 
@@ -104,7 +108,7 @@ def _run(
         variables, options = lifeline.options()
         since = clocks.time_of_day()
         with subprocess.Popen(
-            command,
+            [*_KEEPER, *command],
             cwd=work,
             env={**environ, **SETTINGS, **variables, MARK: f"apart:{lifeline.mark}"},
             stdin=subprocess.PIPE,
@@ -155,8 +159,12 @@ def _keep(stream: IO[bytes], kept: list[bytes]) -> None:
 
 
 def _kill(process: subprocess.Popen[bytes], mark: str, since: float) -> None:
-    """End a process and all that it has started, in other sessions too where the system shows environments (Linux)."""
-    if sys.platform != "linux":
+    """End a process and all that it has started, in other sessions too where the system can tell (Linux)."""
+    if sys.platform == "linux":
+        with contextlib.suppress(OSError, subprocess.TimeoutExpired):
+            process.terminate()  # it is the keeper, which knows them all
+            process.wait(keeper.PATIENCE + 1.0)
+    else:
         kill_descendants(process.pid, since)
     if sys.platform == "win32":
         with contextlib.suppress(OSError):

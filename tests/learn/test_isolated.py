@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
+import textwrap
 import threading
 import time
 from collections.abc import Callable
@@ -38,6 +40,27 @@ def wait_until(is_so: Callable[[], bool]) -> None:
     while not is_so():
         assert time.monotonic() < deadline
         time.sleep(0.02)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="orphans are adopted on Linux")
+@pytest.mark.parametrize("ending", ["rclpy.spin(node)", "os._exit(0)", "while True: pass"])
+def test_who_has_left_session_parents_and_environment_is_ended_too(ending: str, tmp_path: Path) -> None:
+    leave = """
+    import os
+    if os.fork() == 0:
+        os.setsid()
+        left = os.fork()
+        if left == 0:
+            os.execve("/bin/sleep", ["sleep", "600"], {})
+        os.write(1, f"left {left} behind\\n".encode())
+        os._exit(0)
+    os.wait()
+    """
+    text = SOLUTION.replace("rclpy.spin(node)", textwrap.indent(textwrap.dedent(leave), "    ") + f"    {ending}")
+    report = tried(text, tmp_path, longest=6.0)
+    left = re.search(r"left (\d+) behind", report.printed)
+    assert left is not None, report
+    assert not Path("/proc", left[1]).exists()
 
 
 def test_a_solution_passes_and_what_it_prints_is_shown(tmp_path: Path) -> None:
