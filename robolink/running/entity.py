@@ -194,8 +194,11 @@ class Receiver(Entity):
                 return
         else:
             mailbox.waiting.append(arrived)
-        if not self.listed:
-            self.become_ready()
+        if not self.listed:  # `become_ready` written out, since this runs for every message
+            queue = self._queue_
+            if queue is not None:
+                self.listed = not self.lane
+                queue.ready.append(self)
 
     def become_ready(self) -> None:
         """Have a turn in the next round; as a part of a waitable, one turn more."""
@@ -210,11 +213,13 @@ class Receiver(Entity):
 
     def take(self) -> Any:
         """Return the oldest of what waits, or NOTHING; what waits behind it has its turn in the next round."""
-        waiting, queue = self.mailbox.waiting, self._queue_
-        taken = waiting.popleft() if waiting else NOTHING
-        if self.listed:
-            if waiting and queue is not None:
-                queue.ready.append(self)
-            else:
-                self.listed = False
+        waiting = self.mailbox.waiting
+        if not waiting:
+            self.listed = False
+            return NOTHING
+        taken = waiting.popleft()
+        if not waiting:
+            self.listed = False
+        elif self.listed and self._queue_ is not None:
+            self._queue_.ready.append(self)
         return taken

@@ -96,11 +96,11 @@ class ReadyQueue(Generic[EntityT]):
         """Entities and tasks that have become ready since the round began; any thread may append."""
         self.blocked: deque[EntityT] = deque()
         """Entities whose turn came while their callback group was busy: they go first when something is taken next."""
-        self.unsorted = 0
+        self._unsorted = 0
         """Index in `blocked` of the first entity of the rounds in which nothing could be taken: they count as one."""
-        self.took = False
+        self._took = False
         """True if something was taken in this round."""
-        self.ran_tasks = False
+        self._ran_tasks = False
         """True if tasks were the last to have turns."""
         self.postponed: deque[EntityT] = deque()
         """Tasks to be run again in a moment."""
@@ -192,15 +192,15 @@ class ReadyQueue(Generic[EntityT]):
 
     def begin(self, wanted: Callable[[EntityT], bool] | None = None) -> bool:
         """Give turns to the tasks or, when they have had theirs, begin a round. False if there is nothing to do."""
-        if self.took:
-            self.unsorted, self.took = len(self.blocked), False
+        if self._took:
+            self._unsorted, self._took = len(self.blocked), False
         ready = self.ready
         batch = [ready.popleft() for _ in range(len(ready))]  # one by one, since other threads may append
         batch.sort(key=_place)
         if batch and batch[0].place[0] < OTHER:
             batch = self._apart(batch, wanted)
         else:
-            self.ran_tasks = False
+            self._ran_tasks = False
         self.turns.extend(batch)
         return bool(batch)
 
@@ -208,7 +208,7 @@ class ReadyQueue(Generic[EntityT]):
         """Return those of a sorted batch with tasks or waitables that have their turns now, and put back the others."""
         tasks = [each for each in batch if each.place[0] == TASK]
         others = batch[len(tasks) :]
-        if tasks and not self.ran_tasks:
+        if tasks and not self._ran_tasks:
             turns, left = tasks, others
         else:
             turns, left = _with_one_part_each(others, wanted)
@@ -216,7 +216,7 @@ class ReadyQueue(Generic[EntityT]):
                 left = [*tasks, *left]
             else:
                 turns = tasks
-        self.ran_tasks = turns is tasks
+        self._ran_tasks = turns is tasks
         self.ready.extendleft(reversed(left))
         return turns
 
@@ -225,26 +225,31 @@ class ReadyQueue(Generic[EntityT]):
     def take(self, wanted: Callable[[EntityT], bool] | None = None) -> tuple[EntityT, Any] | None:
         """Take the entity whose turn it is and whose group lets it run, with what it is to execute."""
         with self.lock:
-            if self.blocked:
-                self.unblock()
             turns, ready, blocked = self.turns, self.ready, self.blocked
-            while turns or (len(ready) == 1 and not blocked) or self.begin(wanted):
+            if blocked:
+                self.unblock()
+            while True:
+                is_alone = not turns
                 if turns:
                     entity = turns.popleft()
-                else:  # a round of one, as usual
-                    entity, self.ran_tasks, self.took, self.unsorted = ready.popleft(), False, False, 0
-                group = entity.gate
-                if (wanted is not None and not wanted(entity)) or not (
-                    group._acquire_(False) if group._acquire_ else reserve(group, entity)
-                ):
-                    blocked.append(entity)
+                elif len(ready) == 1 and not blocked:  # a round of one, as usual
+                    entity, self._ran_tasks = ready.popleft(), False
+                elif self.begin(wanted):
                     continue
-                taken = entity.take()
-                if taken is not NOTHING:
-                    self.took = True
-                    return entity, taken
-                group.ending_execution(entity)
-        return None
+                else:
+                    return None
+                group = entity.gate
+                acquire = group._acquire_
+                if (wanted is None or wanted(entity)) and (acquire(False) if acquire else reserve(group, entity)):
+                    taken = entity.take()
+                    if taken is not NOTHING:
+                        self._took = True
+                        return entity, taken
+                    group.ending_execution(entity)
+                else:
+                    if is_alone:
+                        self._took, self._unsorted = False, 0
+                    blocked.append(entity)
 
     def take_at_once(self, arrival: Any, wanted: Callable[[EntityT], bool] | None = None) -> tuple[EntityT, Any] | None:
         """Take what arrived for an entity if nothing else waits; else deliver it, and it waits its turn."""
@@ -269,7 +274,7 @@ class ReadyQueue(Generic[EntityT]):
         """Let what was blocked try again, before all others."""
         blocked = [*self.blocked]
         self.blocked.clear()
-        blocked[self.unsorted :] = sorted(blocked[self.unsorted :], key=_place)
+        blocked[self._unsorted :] = sorted(blocked[self._unsorted :], key=_place)
         self.turns.extendleft(reversed(blocked))
 
 
