@@ -24,6 +24,7 @@ from robolink.host.pace import Pace
 from robolink.host.participants import HostLike, Killed
 from robolink.host.patches.entropy import stream
 from robolink.host.platform import HostedPlatform, abandon
+from robolink.impl.rcutils_logger import RcutilsLogger
 from robolink.logging import get_logger, set_logger_level
 from robolink.running.defaults import Defaults
 from robolink.system.variables import Variables
@@ -219,8 +220,14 @@ class Program:
         if isinstance(error, _ENDS) or (isinstance(error, NotInitializedException) and self._was_interrupted()):
             return INTERRUPTED if is_script else 0
         error = self.error = _lacking_opencv(error) or error
-        get_logger("robolink").error(self._told(error))
+        self._logger().error(self._told(error))
         return 1
+
+    def _logger(self) -> RcutilsLogger:
+        """Return the logger of the only node, by which /rosout and so a bag tells of its end; else robolink's."""
+        nodes = [each for context in self.contexts for each in context.nodes]
+        logger: RcutilsLogger = nodes[0].get_logger() if len(nodes) == 1 else get_logger("robolink")
+        return logger
 
     def _was_interrupted(self) -> bool:
         """Return True if it was interrupted, maybe while a node was made."""
