@@ -185,7 +185,7 @@ class Keystore:
     def names(self) -> list[str]:
         """Return the enclaves that have a key, sorted; raises SecurityError where it is no keystore."""
         self.check()
-        return sorted(enclave_of(each, self.enclaves) for each in self.enclaves.rglob(KEY))
+        return sorted(enclave_of(each, self.enclaves) for each in self.enclaves.rglob(KEY) if each.is_file())
 
     def check(self) -> None:
         """Raise SecurityError if it is not complete."""

@@ -86,7 +86,9 @@ def wanted(environ: Mapping[str, str], domain: int, enclave: str | None = None) 
     if not (folder / KEY).is_file():
         if not enforces:
             return None
-        known = [enclave_of(each, enclaves) for each in enclaves.rglob(KEY)]
+        if (folder / KEY).is_symlink():
+            raise SecurityError(f"the key of enclave '{name}' is a link that leads nowhere: {folder / KEY}")
+        known = [enclave_of(each, enclaves) for each in enclaves.rglob(KEY) if each.is_file()]
         raise SecurityError(
             f"enclave '{name}' has no keys in {store}{nearest(name, known)}: make them with "
             f"'robolink security create_enclave KEYSTORE {name}', or name another by {OVERRIDE}"

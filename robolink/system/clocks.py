@@ -27,8 +27,17 @@ def _finest_now() -> Callable[[], int]:
     return time.time_ns
 
 
-now = _finest_now()
-"""Return the time of day, in nanoseconds since the UNIX epoch."""
+_precise_now = _finest_now()
+
+
+def now() -> int:
+    """Return the time of day, in nanoseconds since the UNIX epoch.
+
+    A system whose date is before 1970, as a board without a battery may have it, is at 0: ROS has no such times.
+    """
+    found = _precise_now()
+    return found if found > 0 else 0
+
 
 steady = time.perf_counter_ns if sys.platform == "win32" else time.monotonic_ns
 """Return the monotonic time in nanoseconds, from some start."""

@@ -22,7 +22,7 @@ from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.networks.asked import FIRST_PORT
 from robolink.parameter_client import AsyncParameterClient
 from robolink.security import session
-from robolink.security.keystore import Keystore
+from robolink.security.keystore import KEY, Keystore
 from robolink.security.policy import Profile, Rule
 from robolink.transport import connect, network
 from robolink.wire import NodeToken
@@ -281,3 +281,13 @@ def test_doctor_looks_with_keys_and_says_who_has_some(store: Keystore, monkeypat
         assert (set(facts.keyed_ports), facts.seen.error) == ({FIRST_PORT + store.domain}, "")
         monkeypatch.delenv("ROS_SECURITY_ENABLE")
         assert "with security" in gather().seen.error
+
+
+def test_a_key_that_is_a_link_to_nothing_is_told(store: Keystore) -> None:
+    key = store.folder("/student") / KEY
+    key.unlink()
+    key.symlink_to(key.with_name("gone.pem"))
+    with pytest.raises(SecurityError) as caught:
+        session.wanted(os.environ, store.domain, "/student")
+    assert str(caught.value) == f"the key of enclave '/student' is a link that leads nowhere: {key}"
+    assert "/student" not in store.names()

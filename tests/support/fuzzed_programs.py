@@ -45,6 +45,8 @@ _STRINGS = _parameters(input_topic="/chatter", output_topic="/out", input_type="
 ARGUMENTS: dict[str, tuple[str, ...]] = {
     "robot_state_publisher robot_state_publisher": _parameters(robot_description=ARM),
     "joint_state_publisher joint_state_publisher": _parameters(source_list="[/more_joints]"),
+    "static_transform_publisher": ("--x", "1", "--frame-id", "map", "--child-frame-id", "odom"),
+    "tf2_ros static_transform_publisher": ("--x", "1", "--frame-id", "map", "--child-frame-id", "odom"),
     "tf2_ros tf2_echo": ("map", "base_link"),
     "topic_tools delay": _parameters(input_topic="/chatter", delay="0.05"),
     "topic_tools demux": _parameters(input_topic="/chatter", output_topics="[/one, /two]"),

@@ -24,6 +24,13 @@ ALLOWED = {
 }
 
 
+@pytest.mark.parametrize("told", [-1, -(10**18)])
+def test_a_date_before_1970_is_1970(told: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clocks, "_precise_now", lambda: told)
+    assert clocks.now() == 0
+    assert clocks.time_of_day() == 0.0
+
+
 def coarse_clocks(source: str) -> Iterator[int]:
     """Yield the lines that name such a clock."""
     for node in ast.walk(ast.parse(source)):

@@ -364,7 +364,9 @@ def _place(error: Exception) -> str:
     place, trace = "", error.__traceback__
     while trace is not None and trace.tb_next is not None:
         file = trace.tb_frame.f_code.co_filename
-        if not file.startswith("<") and not _is_built_in(file) and not is_ours(trace) and is_ours(trace.tb_next):
+        # Parsers written in C have frames with the path of their source on the machine where Python was built.
+        is_source = file.endswith((".py", ".pyw")) or Path(file).is_file()
+        if is_source and not _is_built_in(file) and not is_ours(trace) and is_ours(trace.tb_next):
             place = f"{file}:{trace.tb_lineno}"
         trace = trace.tb_next
     return place

@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robolink.cli.shared.options import Enclave
+from robolink.cli.shared.output import tell
 from robolink.cli.shared.page import announce, end_with_the_terminal
 
 if TYPE_CHECKING:
     from robolink.view.server import Settings
+
+SHORT = 16
+"""Letters of a token from which on nobody guesses it."""
 
 app = typer.Typer(help="Show a running system, or a bag, in the browser.")
 
@@ -59,6 +63,8 @@ def view(
     from robolink.view.server import Settings
 
     end_with_the_terminal()
+    if token and len(token) < SHORT:
+        tell(f"--token is {len(token)} letters: who guesses it may drive; {SHORT} or more are hard to guess")
     settings = Settings(host, port, token, read_only)
     if bag is not None:
         _show_bag(bag, settings, browser, panels)

@@ -55,8 +55,8 @@ class Unsubscribe(_Op, tag="unsubscribe"):
 class ClientChannel(msgspec.Struct, rename="camel"):
     """Channel that a client wants to publish on.
 
-    After `stop_after` seconds without a message, something that drives gets zeros; None is never. With `hold` nobody
-    else may drive on this topic while the channel is there: an emergency stop.
+    After `stop_after` seconds without a message, something that drives gets zeros; None is the server's STOP_AFTER.
+    With `hold` nobody else may drive on this topic while the channel is there: an emergency stop.
     """
 
     id: U32

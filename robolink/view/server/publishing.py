@@ -14,6 +14,11 @@ from robolink.view.protocol.subprotocols import ENCODINGS
 from robolink.view.server.driving import DRIVEN, moves, stop_of
 from robolink.view.sources.live import LiveSource
 
+STOP_AFTER = 1.0
+"""Seconds after which what a client drives stops, if it hears nothing more of it and the client has not said how long.
+
+A page that freezes keeps its connection for a quarter of a minute.
+"""
 MOST_CHANNELS = 500
 """Upper bound of the channels that one client may publish on."""
 
@@ -45,7 +50,7 @@ class _Outgoing:
         self.publisher.publish(payload)
         if self.drives:
             self.moving = message if moves(message) else None
-            self.stops_at = now + (self.stop_after or float("inf"))
+            self.stops_at = now + (self.stop_after or STOP_AFTER)
 
     def _is_held(self) -> bool:
         """Return whether an emergency stop keeps this from moving anything; raises ProtocolError the first time."""

@@ -9,6 +9,7 @@ import pytest
 
 from robolink.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from robolink.serialization import deserialize_message, serialize_message
+from robolink.view.server import publishing
 from robolink.view.server.driving import moves, stop_of
 from tests.support.view_clients import Client, Shown, shown, until
 
@@ -66,6 +67,16 @@ def test_a_stalled_page_stops_the_robot_and_only_once() -> None:
         client.settle()
         until(lambda: len(robot.heard) >= 4)
         assert [moves(each) for each in robot.heard] == [True, False, True, False]
+
+
+def test_a_client_that_says_no_time_and_stalls_stops_the_robot_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(publishing, "STOP_AFTER", 0.1)
+    with shown() as system, system.spinning(), system.client() as client:
+        robot = Listener(system)
+        advertise(client)
+        client.publish(1, forward())
+        until(lambda: len(robot.heard) >= 2)
+        assert [moves(each) for each in robot.heard] == [True, False]
 
 
 def test_a_server_that_ends_stops_the_robots() -> None:

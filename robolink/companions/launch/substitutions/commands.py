@@ -7,19 +7,25 @@ import importlib.util
 import shutil
 import subprocess
 import sys
+import threading
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from robolink.companions.launch.bases import LaunchContext, SomeSubstitutionsType, Substitution
 from robolink.companions.launch.substitutions.failure import SubstitutionFailure
 from robolink.companions.launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+from robolink.system import waits
 from robolink.system.command_words import split_words
+from robolink.system.plainfile import decoded, read_plain
 from robolink.system.terminal import shown
 
 _REACTIONS = ("fail", "ignore", "warn", "capture")
 _SHOWN = 300
 PATIENCE = 120.0
 """Longest run of a command, in seconds."""
+LONGEST = 32 << 20
+"""Most bytes of a command's output, or of a file."""
 
 
 class Command(Substitution):
@@ -46,14 +52,7 @@ class Command(Substitution):
         is_captured = reaction == "capture"
         errors = subprocess.STDOUT if is_captured else subprocess.PIPE
         try:
-            done = subprocess.run(
-                program_of(words, context),
-                stdout=subprocess.PIPE,
-                stderr=errors,
-                env=context.environment,
-                timeout=PATIENCE,
-                check=False,
-            )
+            done = run_bounded(program_of(words, context), errors, context.environment)
         except (OSError, ValueError, subprocess.TimeoutExpired) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise SubstitutionFailure(f"'{shown(text)}' cannot be run: {reason}") from None
@@ -64,6 +63,35 @@ class Command(Substitution):
             last = shown((told or output.strip()).rpartition("\n")[2], _SHOWN)
             raise SubstitutionFailure(f"'{shown(text)}' {how}{': ' if last else ''}{last}")
         return output
+
+
+def run_bounded(words: list[str], errors: int, environment: Mapping[str, str]) -> subprocess.CompletedProcess[bytes]:
+    """Run a command to its end; one that writes more than LONGEST bytes, or takes too long, is killed.
+
+    Raises OSError or ValueError if it cannot be run or writes too much, and subprocess.TimeoutExpired.
+    """
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, env=environment) as process:
+        kept: dict[str, bytes] = {}
+
+        def keep(name: str, stream: IO[bytes]) -> None:
+            kept[name] = stream.read(LONGEST + 1)
+            if len(kept[name]) > LONGEST:
+                process.kill()
+
+        streams = {"out": process.stdout, "err": process.stderr}
+        readers = [threading.Thread(target=keep, args=each, daemon=True) for each in streams.items() if each[1]]
+        for each in readers:
+            each.start()
+        try:
+            process.wait(PATIENCE)
+        except BaseException:
+            process.kill()
+            raise
+        for each in readers:
+            waits.join(each, PATIENCE)
+        if any(len(each) > LONGEST for each in kept.values()):
+            raise ValueError(f"it writes more than {LONGEST:,} bytes")
+        return subprocess.CompletedProcess(words, process.returncode, kept.get("out", b""), kept.get("err"))
 
 
 def program_of(words: list[str], context: LaunchContext) -> list[str]:
@@ -149,7 +177,7 @@ class FileContent(Substitution):
         """Return the content; raises SubstitutionFailure if it cannot be read."""
         path = perform_substitutions(context, self.path)
         try:
-            return Path(path).read_text(encoding="utf-8")
+            return decoded(read_plain(Path(path), LONGEST)).replace("\r\n", "\n")
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise SubstitutionFailure(f"{shown(path)} cannot be read: {reason}") from None
