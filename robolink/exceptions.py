@@ -54,6 +54,10 @@ class EncodeError(MessageError, TypeError):
     """A field's value does not fit its type; the text names the field."""
 
 
+class OutOfRangeError(EncodeError, OverflowError):
+    """A number does not fit the type of its field; as rclpy's, it is an OverflowError."""
+
+
 class DecodeError(MessageError):
     """Bytes that are not a message of the type at hand."""
 

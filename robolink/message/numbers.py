@@ -12,7 +12,7 @@ from array import array
 from collections.abc import Callable
 from typing import Any
 
-from robolink.exceptions import EncodeError
+from robolink.exceptions import EncodeError, OutOfRangeError
 from robolink.message.annotations import FieldType, once_per_type
 
 DTYPES = {
@@ -114,7 +114,11 @@ class Numbers:
                 return self._filled(_as_numpy(_in_a_row(value), self.code))
             return array(self.code, value)
         except (TypeError, ValueError, OverflowError) as error:
-            raise EncodeError(f"{self.where}: expected {self.kind}, got {_shown(value)} ({error})") from None
+            raise self._refused(value, error) from None
+
+    def _refused(self, value: Any, error: Exception) -> EncodeError:
+        kind = OutOfRangeError if isinstance(error, OverflowError) else EncodeError
+        return kind(f"{self.where}: expected {self.kind}, got {_shown(value)} ({error})")
 
     def _filled(self, numbers: Any) -> Any:
         made, view = array(self.code), memoryview(numbers)
@@ -146,7 +150,7 @@ class FixedNumbers(Numbers):
         try:
             found = _as_numpy(value, self.code)
         except (TypeError, ValueError, OverflowError) as error:
-            raise EncodeError(f"{self.where}: expected {self.kind}, got {_shown(value)} ({error})") from None
+            raise self._refused(value, error) from None
         if found.size != self.shape[0]:
             raise EncodeError(f"{self.where}: expected {self.kind}, got {found.size} elements")
         self.dtype = found.dtype

@@ -208,3 +208,10 @@ def test_a_view_of_nothing_is_an_empty_array() -> None:
     for nothing in (memoryview(b""), np.zeros((0, 3), np.uint8)):
         image.data = nothing
         assert image.data == array("B")
+
+
+@pytest.mark.parametrize("value", [[256], [-1], np.array([300])])
+def test_a_number_out_of_range_is_an_overflow_error_as_in_rclpy(value: Any) -> None:
+    with pytest.raises(OverflowError, match=r"Image\.data: expected uint8\[\]") as caught:
+        Image().data = value
+    assert isinstance(caught.value, EncodeError)
