@@ -31,7 +31,7 @@ def new_project(
     for each in write_stubs(made.folder):
         say(f"made {shown(made.folder / each)}")
     there = "" if made.folder.samefile(Path.cwd()) else f"  cd {typed(made.folder)}\n"
-    say(f"\nnext:\n{there}  robolink simulate {made.name}    # or: launch {made.name}\n  pytest")
+    say(f"\nnext:\n{there}  robolink simulate {made.name}    # or: launch {made.name}\n{_pytest()}")
 
 
 @app.command("node")
@@ -45,7 +45,7 @@ def new_node(
     made = new_node(name, workspace=workspace or None)
     _tell(made)
     in_workspace = len(made.files) > 1
-    test = f"\n  pytest {typed(made.folder / made.files[1])}" if in_workspace else ""
+    test = f"\n{_pytest()} {typed(made.folder / made.files[1])}" if in_workspace else ""
     say(f"\nnext:\n  robolink run {made.name if in_workspace else made.files[0]}{test}")
 
 
@@ -73,6 +73,14 @@ def new_stubs(workspace: Workspace = "") -> None:
         say(f"made {shown(folder / each)}")
     for file, line in settings_to_change(folder).items():
         say(f"add this to {shown(folder / file)}: {line}")
+
+
+def _pytest() -> str:
+    """Return the lines that run pytest: the one of this environment, since another one's knows no robolink."""
+    from importlib.util import find_spec
+
+    lacking = "" if find_spec("pytest") else "  pip install pytest\n"
+    return f"{lacking}  python -m pytest"
 
 
 def _tell(made: Made) -> None:

@@ -33,7 +33,13 @@ def test_it_lists_what_it_made_and_what_is_next(here: Path, capsys: Captured) ->
     assert main(["new", "project", "demo"]) == 0
     out = capsys.readouterr().out
     assert f"made {Path('demo/nodes/explorer.py')}\n" in out
-    assert out.endswith("next:\n  cd demo\n  robolink simulate demo    # or: launch demo\n  pytest\n")
+    assert out.endswith("next:\n  cd demo\n  robolink simulate demo    # or: launch demo\n  python -m pytest\n")
+
+
+def test_without_pytest_it_says_how_to_get_it(here: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert main(["new", "project", "demo"]) == 0
+    assert capsys.readouterr().out.endswith("  pip install pytest\n  python -m pytest\n")
 
 
 @pytest.mark.parametrize("path", [".", "./", "../here", "inside/.."])
@@ -57,7 +63,10 @@ def test_a_path_is_shown_as_a_shell_takes_it(here: Path, path: str, typed: str, 
     assert f"next:\n  cd {typed}\n" in capsys.readouterr().out
     assert main(["new", "node", "talker", "--workspace", path]) == 0
     (folder,) = shlex.split(typed)
-    assert shlex.split(capsys.readouterr().out.splitlines()[-1]) == ["pytest", f"{folder}/tests/test_talker.py"]
+    assert shlex.split(capsys.readouterr().out.splitlines()[-1]) == [
+        *("python", "-m", "pytest"),
+        f"{folder}/tests/test_talker.py",
+    ]
 
 
 def test_a_project_needs_a_name(here: Path, capsys: Captured) -> None:
