@@ -93,7 +93,7 @@ class Client(ServiceEnd):
     ) -> None:
         super().__init__(owner.context.inbox, 0, callback_group)
         self.srv_type = service_type(srv_type)
-        self.srv_name = srv_name
+        self.srv_name = self._service_name = srv_name  # `create_...` sets the first to the name as written
         self.qos_profile = qos_profile
         self._context = owner.context
         self._encode = encoder(srv_type.Request)
@@ -154,7 +154,7 @@ class Client(ServiceEnd):
         with executor.waiting_for(self._only_servers(executor)) as would_wait_for_itself:
             if would_wait_for_itself:
                 raise ServiceError(
-                    f"service {self.srv_name} is served only by the callback group that this call keeps busy;"
+                    f"service {self.service_name} is served only by the callback group that this call keeps busy;"
                     " give the service or the caller a callback group of its own, or use call_async"
                 )
             return self._call_in_callback(executor, request, timeout_sec, patient)
@@ -162,11 +162,11 @@ class Client(ServiceEnd):
     def _only_servers(self, executor: Loop) -> list[Entity]:
         """Return the executor's own servers of this service if nobody else serves it and none of them may be free."""
         served = (each for node in executor.get_nodes() for each in node._all_services_())
-        local: list[Entity] = [each for each in served if each.srv_name == self.srv_name]
+        local: list[Entity] = [each for each in served if each.service_name == self.service_name]
         is_free = any(each.callback_group.can_execute(each) for each in local)
         if not local or (is_free and not executor.parallel):
             return []
-        everywhere = self._context.graph.endpoints(EndpointKind.SERVICE, name=self.srv_name)
+        everywhere = self._context.graph.endpoints(EndpointKind.SERVICE, name=self.service_name)
         return local if len(everywhere) <= len(local) else []
 
     def _call_in_callback(self, executor: Loop, request: Message, timeout_sec: float | None, patient: bool) -> Any:
@@ -202,7 +202,9 @@ class Client(ServiceEnd):
             except queue.Empty:
                 raise self._timeout(timeout_sec, reason) from None
             if answer is _RELEASED:
-                raise ExternalShutdownException(f"service {self.srv_name}: the context ended before the answer came")
+                raise ExternalShutdownException(
+                    f"service {self.service_name}: the context ended before the answer came"
+                )
             if answer is None:
                 reason = self._no_answer(bad)
                 if not patient:
@@ -227,7 +229,7 @@ class Client(ServiceEnd):
             answers.put(_RELEASED)
 
     def _timeout(self, timeout_sec: float | None, reason: BaseException | None) -> TimeoutError:
-        text = f"service {self.srv_name}: no answer within {timeout_sec} s"
+        text = f"service {self.service_name}: no answer within {timeout_sec} s"
         return TimeoutError(text if reason is None else f"{text}: {str(reason).partition(': ')[2]}")
 
     def _send_(self, request: bytes, sink: Sink) -> Handle:
@@ -262,7 +264,7 @@ class Client(ServiceEnd):
         if not isinstance(request, self.srv_type.Request):
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
         if self._destroyed:
-            raise self._gone_(f"the client of {self.srv_name}")
+            raise self._gone_(f"the client of {self.service_name}")
         packed = self._encode(request), self._endpoint.attachment()
         if self.introspection is not None:
             asked = unpack_attachment(packed[1])
@@ -321,10 +323,10 @@ class Client(ServiceEnd):
 
     def _no_answer(self, bad: Exception | None) -> ServiceError:
         if bad is None:
-            return ServiceError(f"service {self.srv_name}: nobody serves it, or the server went away")
+            return ServiceError(f"service {self.service_name}: nobody serves it, or the server went away")
         if isinstance(bad, SessionReplacedError):
-            return ServiceError(f"service {self.srv_name}: {bad}")
-        return ServiceError(f"service {self.srv_name}: the answer cannot be read: {bad}")
+            return ServiceError(f"service {self.service_name}: {bad}")
+        return ServiceError(f"service {self.service_name}: the answer cannot be read: {bad}")
 
     def _refuse(self, error: Exception) -> Exception:
         if isinstance(error, SessionReplacedError):
@@ -332,7 +334,7 @@ class Client(ServiceEnd):
         self.malformed += 1
         if self.malformed == 1:
             get_logger(self.logger_name).warning(
-                f"{self.srv_name}: refused an answer that is no {self._endpoint.type_name}: {error}"
+                f"{self.service_name}: refused an answer that is no {self._endpoint.type_name}: {error}"
                 " (the next ones are only counted)"
             )
         return error

@@ -74,8 +74,7 @@ class Duration:
             return NotImplemented
         return self._nanoseconds == other._nanoseconds
 
-    def __hash__(self) -> int:
-        return hash(self._nanoseconds)
+    __hash__ = None  # type: ignore[assignment]  # as in rclpy
 
     def __lt__(self, other: Duration) -> bool:
         if not isinstance(other, Duration):

@@ -179,7 +179,7 @@ class InvalidHandle(RobolinkError, RuntimeError):
     """An entity was used after it had been destroyed."""
 
 
-class NodeNameNonExistentError(RobolinkError, RuntimeError, LookupError):
+class NodeNameNonExistentError(RCLError, LookupError):
     """A node was asked about that is not there."""
 
 

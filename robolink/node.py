@@ -7,7 +7,7 @@ import contextlib
 import itertools
 import weakref
 from types import FunctionType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from robolink.arguments.command_line import Arguments, parse_arguments
 from robolink.arguments.remapping import RemapKind, resolve_name
@@ -19,12 +19,15 @@ from robolink.event_handler import PublisherEventCallbacks as PublisherEventCall
 from robolink.event_handler import SubscriptionEventCallbacks as SubscriptionEventCallbacks
 from robolink.exceptions import NodeNameNonExistentError as NodeNameNonExistentError
 from robolink.exceptions import NotInitializedException
+from robolink.executors import Executor as Executor
 from robolink.expand_topic_name import expand_topic_name
 from robolink.graph.endpoint import Owner
 from robolink.graph.type_mismatch import Disagreements
 from robolink.guard_condition import GuardCondition as GuardCondition
 from robolink.impl.rcutils_logger import RcutilsLogger
 from robolink.interfaces.rcl_interfaces.msg import Log, ParameterEvent
+from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor as ParameterDescriptor
+from robolink.interfaces.rcl_interfaces.msg import SetParametersResult as SetParametersResult
 from robolink.logging import get_logger
 from robolink.node_parts import rosout
 from robolink.node_parts.creation import NodeCreation
@@ -35,6 +38,7 @@ from robolink.parameters.rules import WrittenParameter
 from robolink.publisher import Publisher
 from robolink.qos import (
     QoSProfile,
+    as_profile,
     qos_profile_parameter_events,
     qos_profile_rosout_default,
 )
@@ -53,8 +57,10 @@ from robolink.validate_node_name import validate_node_name
 from robolink.wire import NodeToken
 
 if TYPE_CHECKING:
-    from robolink.executors import Executor
     from robolink.qos_overriding_options import QoSOverridingOptions
+
+MsgType = TypeVar("MsgType")  # names that programs import from here
+SrvType = TypeVar("SrvType")
 
 _number = itertools.count(1).__next__
 
@@ -99,6 +105,7 @@ class Node(NodeParameters, NodeCreation):
         automatically_declare_parameters_from_overrides: True declares every override at once, with its own type.
         enable_logger_service: True starts the services that read and set the levels of loggers
             (`~/get_logger_levels`, `~/set_logger_levels`).
+        rosout_qos_profile: Quality of service of what it logs on /rosout; a number is a depth.
 
     Raises:
         NotInitializedException: (a RuntimeError) if the context is not initialized, or has ended.
@@ -122,6 +129,7 @@ class Node(NodeParameters, NodeCreation):
         allow_undeclared_parameters: bool = False,
         automatically_declare_parameters_from_overrides: bool = False,
         enable_logger_service: bool = False,
+        rosout_qos_profile: QoSProfile | int = qos_profile_rosout_default,
     ) -> None:
         self._context = get_default_context() if context is None else context
         if not self._context.ok():
@@ -134,7 +142,7 @@ class Node(NodeParameters, NodeCreation):
         self._context.track_node(self)
         try:
             if enable_rosout and self._arguments_.rosout_logs is not False:
-                self._publish_logs_()
+                self._publish_logs_(as_profile(rosout_qos_profile))
             self._context.given_parameters.expect(self, self._arguments_.parameter_overrides)
             self._parameter_events_ = self.create_publisher(
                 ParameterEvent, "/parameter_events", qos_profile_parameter_events
@@ -164,8 +172,8 @@ class Node(NodeParameters, NodeCreation):
         self._logger = get_logger(self.get_fully_qualified_name().strip("/").replace("/", "."))
         self._clock = ROSClock(time_base=self._context.time)
 
-    def _publish_logs_(self) -> None:
-        self._rosout_ = Publisher(self._owner_, Log, "/rosout", qos_profile_rosout_default)
+    def _publish_logs_(self, qos_profile: QoSProfile) -> None:
+        self._rosout_ = Publisher(self._owner_, Log, "/rosout", qos_profile)
         rosout.publish_logs_of(self._logger.name, self._rosout_)
 
     def _serve_(self, parameters: bool, logger_levels: bool) -> None:
@@ -184,7 +192,9 @@ class Node(NodeParameters, NodeCreation):
         return base if cli_args is None else parse_arguments(cli_args).over(base)
 
     def _resolve_own_name_(self, name: str, namespace: str | None) -> tuple[str, str]:
-        absolute = "/" + (namespace or "").lstrip("/")
+        if not isinstance(namespace, (str, type(None))):
+            raise TypeError(f"namespace: expected a str or None, got {namespace!r}")
+        absolute = namespace if namespace and namespace.startswith("/") else f"/{namespace or ''}"
         validate_node_name(name)
         validate_namespace(absolute)
         new_name = self._arguments_.node_name(name)

@@ -51,8 +51,9 @@ class ParameterService:
             ("set_parameters", srv.SetParameters, self._set_each, _refused_once),
             ("set_parameters_atomically", srv.SetParametersAtomically, self._set_all, _refused_all),
         ]
+        own = node.get_name()
         for name, srv_type, answer, refusal in services:
-            service = node.create_service(srv_type, f"~/{name}", answer, qos_profile=qos_profile_parameters)
+            service = node.create_service(srv_type, f"{own}/{name}", answer, qos_profile=qos_profile_parameters)
             service.look_first = functools.partial(look_at, srv_type.Response, refusal)
 
     def _alive(self) -> ParameterNode:

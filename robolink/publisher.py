@@ -43,7 +43,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         callback_group: CallbackGroup | None = None,
     ) -> None:
         self.msg_type = msg_type
-        self.topic = topic
+        self.topic = self._topic_name = topic
         self.qos_profile = qos_profile
         self._encode = encoder(message_type(msg_type))
         self._endpoint = Endpoint(owner, EndpointKind.PUBLISHER, topic, msg_type, qos_profile)
@@ -77,7 +77,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         else:
             raise TypeError(_no_message(self.msg_type, msg))
         if self._destroyed:
-            raise self._gone_(f"the publisher of {self.topic}")
+            raise self._gone_(f"the publisher of {self.topic_name}")
         if self._put_numbered is not None:
             self._put_numbered(payload, self._attachment)
             return
@@ -113,7 +113,7 @@ class Publisher(Destroyable, Generic[MsgT]):
     @property
     def topic_name(self) -> str:
         """Fully qualified name of the topic."""
-        return self.topic
+        return self._topic_name
 
     @property
     def logger_name(self) -> str:

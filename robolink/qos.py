@@ -231,6 +231,11 @@ class QoSProfile:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, QoSProfile) and self.to_dict() == other.to_dict()
 
+    def __str__(self) -> str:
+        """Return the profile as rclpy prints it: policies as rmw's numbers. Its repr has their names."""
+        values = {name: int(each) if isinstance(each, QoSPolicyEnum) else each for name, each in self.to_dict().items()}
+        return f"{type(self).__name__}({', '.join(f'{name}={each!s}' for name, each in values.items())})"
+
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(f'{k}={_shown(v)}' for k, v in self.to_dict().items())})"
 
@@ -253,6 +258,20 @@ def _checked(name: str, value: Any) -> Any:
 
 def _shown(value: object) -> str:
     return f"{type(value).__name__}.{value.name}" if isinstance(value, QoSPolicyEnum) else repr(value)
+
+
+def as_profile(profile: QoSProfile | int) -> QoSProfile:
+    """Return `profile`, or for a number a reliable, volatile KEEP_LAST one of that depth.
+
+    Raises TypeError for anything else, and ValueError for a negative number.
+    """
+    if isinstance(profile, QoSProfile):
+        return profile
+    if isinstance(profile, int) and not isinstance(profile, bool):
+        if profile < 0:
+            raise ValueError("history depth must be greater than or equal to zero")
+        return QoSProfile(depth=profile)
+    raise TypeError(f"Expected QoSProfile or int, but received {type(profile)!r}")
 
 
 def resolved(profile: QoSProfile) -> QoSProfile:
@@ -327,6 +346,7 @@ class QoSPresetProfiles(Enum):
     PARAMETER_EVENTS = qos_profile_parameter_events
     ACTION_STATUS_DEFAULT = qos_profile_action_status_default
     BEST_AVAILABLE = qos_profile_best_available
+    ROSOUT_DEFAULT = qos_profile_rosout_default
 
     @classmethod
     def short_keys(cls) -> list[str]:

@@ -68,7 +68,7 @@ class Service(ServiceEnd):
     ) -> None:
         super().__init__(owner.context.inbox, MOST_WAITING, callback_group)
         self.srv_type = service_type(srv_type)
-        self.srv_name = srv_name
+        self.srv_name = self._service_name = srv_name  # `create_...` sets the first to the name as written
         self.callback = callback
         self.qos_profile = qos_profile
         self.malformed = 0
@@ -178,7 +178,7 @@ class Service(ServiceEnd):
             self.introspection.tell(ServiceEventInfo.RESPONSE_SENT, response, *asked)
 
     def _wrong_response(self, response: object) -> str:
-        wanted = f"the callback of service {self.srv_name} must return a {self.srv_type.__name__}.Response"
+        wanted = f"the callback of service {self.service_name} must return a {self.srv_type.__name__}.Response"
         advice = "" if response is not None else f": is `return response` missing at the end of {named(self.callback)}?"
         return f"{wanted}, got {response!r:.80}{advice}"
 
@@ -186,7 +186,7 @@ class Service(ServiceEnd):
         self.malformed += 1
         if self.malformed == 1:
             get_logger(self.logger_name).warning(
-                f"{self.srv_name}: refused a request: {reason} (the next ones are only counted)"
+                f"{self.service_name}: refused a request: {reason} (the next ones are only counted)"
             )
 
     def destroy(self) -> None:

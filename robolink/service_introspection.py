@@ -13,6 +13,7 @@ from robolink.message import Message, Service
 from robolink.publisher import Publisher
 from robolink.qos import QoSProfile
 from robolink.running.entity import Receiver
+from robolink.type_support import in_brackets
 
 SUFFIX = "/_service_event"
 """Suffix of a service's name in that of the topic of its events."""
@@ -73,6 +74,8 @@ class Introspection:
 class ServiceEnd(Receiver):
     """Base of services and clients: a service's type and name, and introspection."""
 
+    __class_getitem__ = in_brackets(2)
+
     srv_type: type[Service]
     srv_name: str
     _endpoint: Endpoint
@@ -107,7 +110,7 @@ class ServiceEnd(Receiver):
     @property
     def service_name(self) -> str:
         """Fully qualified name of the service."""
-        return self.srv_name
+        return self._service_name
 
     @property
     def logger_name(self) -> str:

@@ -9,6 +9,7 @@ from robolink.context import Context
 from robolink.executors import Executor, SingleThreadedExecutor
 from robolink.node import Node
 from robolink.parameter import Parameter
+from robolink.qos import QoSProfile, qos_profile_rosout_default
 from robolink.running.defaults import get_defaults
 from robolink.signals import SignalHandlerOptions, install_signal_handlers, uninstall_signal_handlers
 from robolink.task import Future
@@ -140,6 +141,7 @@ def create_node(
     allow_undeclared_parameters: bool = False,
     automatically_declare_parameters_from_overrides: bool = False,
     enable_logger_service: bool = False,
+    rosout_qos_profile: QoSProfile | int = qos_profile_rosout_default,
 ) -> Node:
     """Return a new node.
 
@@ -155,6 +157,7 @@ def create_node(
         allow_undeclared_parameters: True lets parameters be set that were never declared.
         automatically_declare_parameters_from_overrides: True declares every override at once.
         enable_logger_service: True starts the services that read and set the levels of loggers.
+        rosout_qos_profile: Quality of service of what it logs on /rosout; a number is a depth.
 
     Raises:
         NotInitializedException: (a RuntimeError) if the context is not initialized, or has ended; and all else that
@@ -172,6 +175,7 @@ def create_node(
         allow_undeclared_parameters=allow_undeclared_parameters,
         automatically_declare_parameters_from_overrides=automatically_declare_parameters_from_overrides,
         enable_logger_service=enable_logger_service,
+        rosout_qos_profile=rosout_qos_profile,
     )
 
 

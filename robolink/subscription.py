@@ -15,7 +15,7 @@ from robolink.event_handler import (
     tell_handlers,
     warns_of_types,
 )
-from robolink.exceptions import DecodeError, OverwrittenError, TransportError, WireError
+from robolink.exceptions import DecodeError, OverwrittenError, RCLError, TransportError, WireError
 from robolink.graph.endpoint import Endpoint, Owner
 from robolink.graph.humble import Copies, CopyError, FromHumbleKey
 from robolink.logging import get_logger
@@ -32,6 +32,7 @@ from robolink.wire import EndpointKind, check_attachment, is_attachment, unpack_
 
 if TYPE_CHECKING:
     from robolink.running.ports import Loop
+    from robolink.subscription_content_filter_options import ContentFilterOptions
 
 MsgT = TypeVar("MsgT", bound=Message)
 
@@ -46,12 +47,14 @@ class MessageInfo(TypedDict):
         received_timestamp: Time at which its callback was called, in nanoseconds since the epoch.
         publication_sequence_number: Number of the message, in the order of its publisher's.
         reception_sequence_number: None: this network has no such number.
+        publisher_gid: Global id of the publisher: `implementation_identifier`, and 16 bytes of `data`.
     """
 
     source_timestamp: int
     received_timestamp: int
     publication_sequence_number: int | None
     reception_sequence_number: int | None
+    publisher_gid: dict[str, str | bytes] | None
 
 
 class Subscription(Receiver, Generic[MsgT]):
@@ -91,7 +94,7 @@ class Subscription(Receiver, Generic[MsgT]):
         depth = 0 if qos_profile.history is HistoryPolicy.KEEP_ALL else resolved(qos_profile).depth
         super().__init__(owner.context.inbox, depth, callback_group)
         self.msg_type = msg_type
-        self.topic = topic
+        self.topic = self._topic_name = topic
         self.qos_profile = qos_profile
         self.raw = raw
         self.malformed = 0
@@ -140,7 +143,7 @@ class Subscription(Receiver, Generic[MsgT]):
                 how = wanted(callback, ("message",))
                 name, advice = (callback.__name__, f": {how}") if how else (str(callback), "")
                 raise RuntimeError(
-                    f"{self.topic}: a callback takes the message, or the message and its MessageInfo;"
+                    f"{self.topic_name}: a callback takes the message, or the message and its MessageInfo;"
                     f" {shown(name)} takes neither one argument nor two{advice}"
                 )
             self._callback_type = self.CallbackType.WithMessageInfo
@@ -198,7 +201,7 @@ class Subscription(Receiver, Generic[MsgT]):
         if warn is not None and not self._has_warned:
             self._has_warned = True
             warn(
-                f"{self.topic}: dropped a message: {OverwrittenError()}"
+                f"{self.topic_name}: dropped a message: {OverwrittenError()}"
                 " (the next ones are only counted, in `Subscription.lost`)"
             )
 
@@ -242,6 +245,7 @@ class Subscription(Receiver, Generic[MsgT]):
             received_timestamp=self._endpoint.context.time.now(),
             publication_sequence_number=sender.sequence,
             reception_sequence_number=None,
+            publisher_gid={"implementation_identifier": "rmw_zenoh_cpp", "data": sender.gid},
         )
 
     def _refuse(self, error: Exception) -> None:
@@ -253,7 +257,7 @@ class Subscription(Receiver, Generic[MsgT]):
                 else f"that is no {self._endpoint.type_name}"
             )
             get_logger(self.logger_name).warning(
-                f"{self.topic}: dropped a message {ros}: {error} (the next ones are only counted)"
+                f"{self.topic_name}: dropped a message {ros}: {error} (the next ones are only counted)"
             )
 
     @property
@@ -283,7 +287,7 @@ class Subscription(Receiver, Generic[MsgT]):
 
     def _listen_for_events(self, callbacks: SubscriptionEventCallbacks) -> None:
         group = None if self.callback_group is ANY_TIME else self.callback_group
-        self.event_handlers = callbacks.create_event_handlers(group, self, self.topic)
+        self.event_handlers = callbacks.create_event_handlers(group, self, self.topic_name)
         self._endpoint.warns = warns_of_types(callbacks)
         self._endpoint.on_disagreement = self._on_disagreement
         self._endpoint.on_other = self._on_other
@@ -332,12 +336,35 @@ class Subscription(Receiver, Generic[MsgT]):
     @property
     def topic_name(self) -> str:
         """Fully qualified name of the topic."""
-        return self.topic
+        return self._topic_name
 
     @property
     def logger_name(self) -> str:
         """Name of the node's logger."""
         return self._endpoint.logger_name
+
+    @property
+    def is_cft_enabled(self) -> bool:
+        """False: content filters have no effect on this network, as with rmw_zenoh."""
+        return False
+
+    def set_content_filter(self, filter_expression: str, expression_parameters: list[str]) -> None:
+        """Raise RCLError, as with rmw_zenoh: filters have no effect on this network.
+
+        Args:
+            filter_expression: Expression over the message's fields.
+            expression_parameters: Texts that replace the parameters of the expression.
+        """
+        raise RCLError(f"{self.topic_name}: this network has no content filters: look at each message in the callback")
+
+    def get_content_filter(self) -> ContentFilterOptions:
+        """Raise RCLError, as with rmw_zenoh: filters have no effect on this network."""
+        raise RCLError(f"{self.topic_name}: this network has no content filters")
+
+    def warn_of_filter(self, filter_expression: str) -> None:
+        """Log that a filter, which the program gave for this subscription, has no effect."""
+        logger = get_logger(self.logger_name)
+        logger.warning(f"{self.topic_name}: the content filter '{filter_expression}' has no effect on this network")
 
     def destroy(self) -> None:
         """End the subscription, and undeclare it. Safe to call twice."""

@@ -93,8 +93,7 @@ class Time:
             return NotImplemented
         return self._nanoseconds == self._same_clock(other, "compare")
 
-    def __hash__(self) -> int:
-        return hash((self._nanoseconds, self._clock_type))
+    __hash__ = None  # type: ignore[assignment]  # as in rclpy
 
     def __lt__(self, other: Time) -> bool:
         if not isinstance(other, Time):

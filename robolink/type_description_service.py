@@ -42,7 +42,7 @@ class TypeDescriptionService:
             from robolink.interfaces.type_description_interfaces.srv import GetTypeDescription
 
             group = MutuallyExclusiveCallbackGroup()
-            name = f"~/{SERVICE_NAME}"
+            name = f"{node.get_name()}/{SERVICE_NAME}"
             self._service = node.create_service(GetTypeDescription, name, self._answer, callback_group=group)
 
     def destroy(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import GenericAlias
 from typing import Any, TypeVar
 
 from robolink.exceptions import MessageError, NoTypeSupportImportedException
@@ -15,6 +16,22 @@ SrvResponseT = TypeVar("SrvResponseT", bound=Message)
 SrvEventT = TypeVar("SrvEventT", bound=Message)
 
 
+def in_brackets(count: int) -> Any:
+    """Return a ``__class_getitem__`` for a class whose annotations have `count` types in brackets in rclpy."""
+
+    def alias(cls: type[Any], types: Any) -> GenericAlias:
+        found = types if isinstance(types, tuple) else (types,)
+        if len(found) != count:
+            raise TypeError(f"{cls.__name__}[...] has {count} types, got {len(found)}")
+        return GenericAlias(cls, found)
+
+    return classmethod(alias)
+
+
+class NoTypeError(MessageError, AttributeError):
+    """Something that is not the class of a message, service or action was given for one."""
+
+
 class WrongTypeError(MessageError, RuntimeError):
     """A class is a type of another kind than the one that is asked for."""
 
@@ -25,14 +42,14 @@ def check_for_type_support(msg_or_srv_type: type[Any]) -> None:
     Robolink's own classes have no compiled part: their codec comes from their annotations.
 
     Raises:
-        AttributeError: if it is none.
+        NoTypeError: (an AttributeError and ValueError) if it is not one.
         NoTypeSupportImportedException: (a TypeError) if rosidl has made the class, and its compiled part cannot be
             loaded.
     """
     if isinstance(msg_or_srv_type, type) and hasattr(msg_or_srv_type, "__ros_type__"):
         return
     if not hasattr(msg_or_srv_type, "_TYPE_SUPPORT"):
-        raise AttributeError(f"{msg_or_srv_type!r} is no class of a ROS 2 message, service or action")
+        raise NoTypeError(f"{msg_or_srv_type!r} is not the class of a message, service or action")
     if msg_or_srv_type._TYPE_SUPPORT is None:
         msg_or_srv_type.__import_type_support__()
     if msg_or_srv_type._TYPE_SUPPORT is None:

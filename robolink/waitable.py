@@ -19,6 +19,7 @@ from robolink.service import Service
 from robolink.subscription import Subscription
 from robolink.task import Future
 from robolink.timer import Timer
+from robolink.type_support import in_brackets
 
 WaitableT = TypeVar("WaitableT", bound="Waitable")
 
@@ -91,6 +92,8 @@ class Waitable:
     Waitable overrides `is_ready`, `take_data` and `execute` instead of `entities`. `callback_group` is the group of
     all its callbacks.
     """
+
+    __class_getitem__ = in_brackets(1)
 
     def __init__(self, callback_group: CallbackGroup) -> None:
         self.callback_group = callback_group

@@ -24,6 +24,7 @@ from robolink.qos import QoSProfile, qos_profile_action_status_default, qos_prof
 from robolink.running.entity import Entity, next_number
 from robolink.subscription import MessageInfo, Subscription
 from robolink.task import Future
+from robolink.type_support import in_brackets
 from robolink.waitable import Waitable
 
 if TYPE_CHECKING:
@@ -36,6 +37,8 @@ LATELY = 16
 
 class ActionClient(Waitable):
     """Client of one action."""
+
+    __class_getitem__ = in_brackets(3)
 
     def __init__(
         self,

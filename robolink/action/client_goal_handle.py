@@ -9,6 +9,7 @@ from robolink.interfaces.action_msgs.srv import CancelGoal
 from robolink.interfaces.builtin_interfaces.msg import Time
 from robolink.interfaces.unique_identifier_msgs.msg import UUID
 from robolink.task import Future
+from robolink.type_support import in_brackets
 
 if TYPE_CHECKING:
     from robolink.action.client import ActionClient
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
 class ClientGoalHandle:
     """Handle of a goal on the client's side; made by `ActionClient.send_goal_async`."""
+
+    __class_getitem__ = in_brackets(3)
 
     def __init__(self, action_client: ActionClient, goal_id: UUID, goal_response: Any) -> None:
         self._action_client = action_client

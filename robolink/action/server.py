@@ -33,6 +33,7 @@ from robolink.qos import QoSProfile, qos_profile_action_status_default, qos_prof
 from robolink.running.entity import Entity, next_number
 from robolink.service import RequestHeader
 from robolink.text.tracebacks import formatted
+from robolink.type_support import in_brackets
 from robolink.waitable import Waitable
 
 if TYPE_CHECKING:
@@ -76,6 +77,8 @@ class ActionServer(Waitable):
     `canceled`) and returns the action's ``Result``. It may block while a MultiThreadedExecutor spins, or be a coroutine
     function. A goal whose callback raises, or returns without having ended it, is aborted.
     """
+
+    __class_getitem__ = in_brackets(3)
 
     def __init__(
         self,
@@ -217,8 +220,6 @@ class ActionServer(Waitable):
         with self._lock:
             code, meant = goals_to_cancel(request.goal_info, self._statuses())
         canceling = [each for each in meant if await self._cancel(bytes(each.goal_id.uuid))]
-        if meant and not canceling:
-            code = CancelGoal.Response.ERROR_REJECTED
         response = CancelGoal.Response(return_code=code, goals_canceling=canceling)
         self._answer(self._cancel_service, response, header)
 
@@ -247,7 +248,7 @@ class ActionServer(Waitable):
         try:
             service.send_response(response, header)
         except TransportError as error:
-            self._logger.warning(f"{service.srv_name}: could not answer: {error}")
+            self._logger.warning(f"{service.service_name}: could not answer: {error}")
 
     # Execution
 

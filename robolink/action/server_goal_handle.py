@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from robolink.action.states import ACTIVE, GoalEvent, RCLError, next_status
 from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatus
 from robolink.interfaces.unique_identifier_msgs.msg import UUID
+from robolink.type_support import in_brackets
 
 if TYPE_CHECKING:
     from robolink.action.server import ActionServer
@@ -18,6 +19,8 @@ class ServerGoalHandle:
 
     Once the server has been destroyed, or the goal's result has expired, its methods do nothing.
     """
+
+    __class_getitem__ = in_brackets(3)
 
     def __init__(self, action_server: ActionServer, goal_info: GoalInfo, goal_request: Any) -> None:
         self._action_server = action_server

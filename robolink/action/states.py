@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from enum import Enum
 
-from robolink.exceptions import RobolinkError
+from robolink.exceptions import RCLError
 from robolink.interfaces.action_msgs.msg import GoalStatus
-
-
-class RCLError(RobolinkError, RuntimeError):
-    """An event that cannot happen in a goal's state; rclpy's name."""
 
 
 class GoalEvent(Enum):

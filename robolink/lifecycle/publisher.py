@@ -32,5 +32,5 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher[MsgT]):
         elif not self._warned:
             self._warned = True
             get_logger(self.logger_name).warning(
-                f"dropped a message for {self.topic}: its publisher is not active (the next ones go silently)"
+                f"dropped a message for {self.topic_name}: its publisher is not active (the next ones go silently)"
             )

@@ -14,15 +14,17 @@ from robolink.message import Message
 from robolink.node_parts.entities import NodeEntities
 from robolink.node_parts.graph_questions import NodeGraph
 from robolink.publisher import Publisher
-from robolink.qos import QoSProfile, qos_profile_services_default
+from robolink.qos import QoSProfile, as_profile, qos_profile_services_default
 from robolink.service import Service
 from robolink.subscription import Subscription
 from robolink.timer import Rate, Timer, period_ns
+from robolink.type_support import check_is_valid_msg_type, check_is_valid_srv_type
 
 if TYPE_CHECKING:
     from robolink.context import Context
     from robolink.graph.endpoint import Owner
     from robolink.qos_overriding_options import QoSOverridingOptions
+    from robolink.subscription_content_filter_options import ContentFilterOptions
 
 MsgT = TypeVar("MsgT", bound=Message)
 
@@ -73,14 +75,16 @@ class NodeCreation(NodeEntities, NodeGraph):
             InvalidHandle: (a RuntimeError) if the node has been destroyed.
         """
         name = self.resolve_topic_name(topic)
+        check_is_valid_msg_type(msg_type)
         publisher = publisher_class(
             self._owner_,
             msg_type,
             name,
-            self._overridden_(Publisher, name, _qos(qos_profile), qos_overriding_options),
+            self._overridden_(Publisher, name, as_profile(qos_profile), qos_overriding_options),
             event_callbacks=event_callbacks,
             callback_group=callback_group or self._default_callback_group,
         )
+        publisher.topic = topic  # as written, as in rclpy; `topic_name` is the whole one
         self._keep_(publisher, self._publishers)
         self._attach_handlers_(publisher.event_handlers)
         return publisher
@@ -96,6 +100,7 @@ class NodeCreation(NodeEntities, NodeGraph):
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
+        content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[MsgT]:
         """Create a subscription of a topic.
 
@@ -111,6 +116,8 @@ class NodeCreation(NodeEntities, NodeGraph):
                 with another type.
             qos_overriding_options: Policies that parameters may change; None allows none.
             raw: True calls back with the serialized message (bytes) instead.
+            content_filter_options: Filter for messages. It has no effect here, as with rmw_zenoh: a warning says so,
+                and `is_cft_enabled` is False.
 
         Raises:
             InvalidTopicNameException: (a ValueError) if the name is against ROS 2's rules.
@@ -122,8 +129,12 @@ class NodeCreation(NodeEntities, NodeGraph):
         """
         group = callback_group or self._default_callback_group
         name = self.resolve_topic_name(topic)
-        qos = self._overridden_(Subscription, name, _qos(qos_profile), qos_overriding_options)
+        check_is_valid_msg_type(msg_type)
+        qos = self._overridden_(Subscription, name, as_profile(qos_profile), qos_overriding_options)
         made = Subscription(self._owner_, msg_type, name, callback, group, qos, raw, event_callbacks)
+        made.topic = topic
+        if content_filter_options is not None:
+            made.warn_of_filter(content_filter_options.filter_expression)
         self._add_subscription_(made)
         return made
 
@@ -153,7 +164,10 @@ class NodeCreation(NodeEntities, NodeGraph):
         """
         group = callback_group or self._default_callback_group
         name = self.resolve_service_name(srv_name)
-        return self._add_(Service(self._owner_, srv_type, name, callback, group, qos_profile), self._services)
+        check_is_valid_srv_type(srv_type)
+        made = Service(self._owner_, srv_type, name, callback, group, qos_profile)
+        made.srv_name = srv_name
+        return self._add_(made, self._services)
 
     def create_client(
         self,
@@ -179,7 +193,10 @@ class NodeCreation(NodeEntities, NodeGraph):
         """
         group = callback_group or self._default_callback_group
         name = self.resolve_service_name(srv_name)
-        return self._add_(Client(self._owner_, srv_type, name, qos_profile, group), self._clients)
+        check_is_valid_srv_type(srv_type)
+        made = Client(self._owner_, srv_type, name, qos_profile, group)
+        made.srv_name = srv_name
+        return self._add_(made, self._clients)
 
     def create_timer(
         self,
@@ -243,13 +260,3 @@ class NodeCreation(NodeEntities, NodeGraph):
 
 def _until_its_rate() -> None:
     """Do nothing when a rate's timer is due before there is the rate."""
-
-
-def _qos(profile: QoSProfile | int) -> QoSProfile:
-    if isinstance(profile, QoSProfile):
-        return profile
-    if isinstance(profile, int) and not isinstance(profile, bool):
-        if profile < 0:
-            raise ValueError("history depth must be greater than or equal to zero")
-        return QoSProfile(depth=profile)
-    raise TypeError(f"Expected QoSProfile or int, but received {type(profile)!r}")

@@ -115,6 +115,7 @@ class NodeGraph(Destroyable):
 
     def _by_node_(self, node_name: str, namespace: str, kind: EndpointKind) -> NamesAndTypes:
         graph = self._graph_
+        namespace = namespace or "/"
         if not graph.has_node(node_name, namespace):
             full = join(namespace, node_name)
             raise NodeNameNonExistentError(

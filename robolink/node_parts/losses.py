@@ -95,7 +95,7 @@ class LossReports(Entity):
         node: Any = self.node
         if node is None or self._destroyed or self._queue_ is None:
             return NOTHING
-        counts = [(each.topic, each.gid, Losses(each.dropped, each.lost)) for each in node.subscriptions]
+        counts = [(each.topic_name, each.gid, Losses(each.dropped, each.lost)) for each in node.subscriptions]
         found = [(topic, gid, losses) for topic, gid, losses in counts if losses.total]
         queue, self._queue_ = self._queue_, None
         was_quiet, self._is_quiet = self._is_quiet, all(losses == self._told.get(gid) for _, gid, losses in found)

@@ -47,7 +47,7 @@ class DeadlockWarning:
     def _is_asked_here(self, entity: Entity) -> bool:
         """Return whether it is a service whose answer a client of one of the nodes waits for."""
         name = getattr(entity, "srv_name", None)
-        return any(each.srv_name == name and each.is_waiting for node in self._nodes for each in node.clients)
+        return any(each.service_name == name and each.is_waiting for node in self._nodes for each in node.clients)
 
 
 def _named(entity: Entity) -> str:

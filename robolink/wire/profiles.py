@@ -29,13 +29,18 @@ def format_qos(qos: QoSProfile) -> str:
     >>> format_qos(QoSProfile(depth=10))
     '::,10:,:,:,,'
     """
-    values = tuple(getattr(qos, name) for name in QoSProfile.__slots__)
+    values = tuple(_key(getattr(qos, name)) for name in QoSProfile.__slots__)
     text = _QOS_TEXTS.get(values)
     if text is None:
         text = _formatted_qos(qos)
         if len(_QOS_TEXTS) < MOST_PROFILES:
             _QOS_TEXTS[values] = text
     return text
+
+
+def _key(value: Any) -> Any:
+    """Return what stands for a policy's value in a key of a dictionary: a Duration is not hashable."""
+    return value.nanoseconds if isinstance(value, Duration) else value
 
 
 def _formatted_qos(qos: QoSProfile) -> str:

@@ -281,12 +281,12 @@ def test_windows_have_topics_of_their_own(node: Node) -> None:
     shown = ShownImages()
     for name in ("a b", "a-b", "1", "", "ü", "a b"):
         shown.show(name, PICTURE)
-    topics = sorted(each.topic for each in node.publishers if "imshow" in each.topic)
+    topics = sorted(each.topic_name for each in node.publishers if "imshow" in each.topic_name)
     prefix = "/robot/detector/imshow/"
     assert topics == [f"{prefix}{each}" for each in ("a_b", "a_b_2", "window", "window_1", "window_2")]
     shown.close("a b")
     shown.close("a b")
-    assert f"{prefix}a_b" not in {each.topic for each in node.publishers}
+    assert f"{prefix}a_b" not in {each.topic_name for each in node.publishers}
 
 
 def test_the_end_of_a_node_or_context_is_no_error(cv2: Any, node: Node) -> None:
@@ -297,7 +297,7 @@ def test_the_end_of_a_node_or_context_is_no_error(cv2: Any, node: Node) -> None:
     cv2.destroyAllWindows()
     other = Node("other")
     cv2.imshow("frame", PICTURE)
-    assert "/other/imshow/frame" in {each.topic for each in other.publishers}
+    assert "/other/imshow/frame" in {each.topic_name for each in other.publishers}
     robolink.shutdown()
     cv2.imshow("frame", PICTURE)
     assert cv2.waitKey(1) == -1

@@ -99,7 +99,10 @@ def test_a_profile_is_copied_through_its_dict() -> None:
 def test_repr_is_the_constructor() -> None:
     profile = QoSProfile(depth=7, lifespan=Duration(seconds=1), liveliness=LivelinessPolicy.AUTOMATIC)
     assert eval(repr(profile), vars(qos)) == profile
-    assert str(profile).startswith("QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=7, reliability=")
+    assert repr(profile).startswith("QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=7, reliability=")
+    assert str(profile).startswith(
+        "QoSProfile(history=1, depth=7, reliability=1, durability=2, lifespan=1000000000 nanos"
+    )
 
 
 def test_a_depth_of_zero_is_warned_about() -> None:
@@ -156,7 +159,8 @@ def test_resolved_leaves_nothing_open(preset: QoSProfile) -> None:
     assert full.history is HistoryPolicy.KEEP_LAST
     assert full.reliability in (ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT)
     assert full.durability in (DurabilityPolicy.TRANSIENT_LOCAL, DurabilityPolicy.VOLATILE)
-    assert full.deadline == full.lifespan == full.liveliness_lease_duration == Infinite
+    assert full.deadline == full.liveliness_lease_duration == Infinite
+    assert full.lifespan == (preset.lifespan if preset.lifespan.nanoseconds else Infinite)
     assert full == qos.resolved(full)
 
 

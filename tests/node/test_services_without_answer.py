@@ -179,7 +179,7 @@ def test_a_flood_of_requests_is_bounded(node: Node, server: Node, executor: Sing
 def test_a_malformed_request_is_told_once_and_ends_the_call(
     bus: Bus, node: Node, server: Node, executor: SingleThreadedExecutor, log_lines: list[Record]
 ) -> None:
-    service = next(each for each in server.services if each.srv_name == "/switch")
+    service = next(each for each in server.services if each.service_name == "/switch")
     answers: list[Any] = []
     session = MemoryTransport(bus=bus)
     for payload in (b"", b"\x00\x01\x00\x00\x07"):

@@ -164,7 +164,7 @@ def test_random_bytes_never_end_the_node(
     bus: Bus, node: Node, ask: Asker, log_lines: list[Record], payload: bytes, attachment: bytes
 ) -> None:
     session, answers = MemoryTransport(bus=bus), list[Any]()
-    service = next(each for each in node.services if each.srv_name == "/lab/robot/get_type_description")
+    service = next(each for each in node.services if each.service_name == "/lab/robot/get_type_description")
     session.call(service._endpoint.key, payload, attachment, answers.append)
     spin_for(ask.executor, 0.01)
     assert answers[-1] is None

@@ -59,7 +59,7 @@ def test_what_is_a_type() -> None:
 
 @pytest.mark.parametrize("wrong", [object(), int, ros.Strings(), None, "std_msgs/msg/String"])
 def test_what_is_no_type(wrong: Any) -> None:
-    with pytest.raises(AttributeError, match="is no class of a ROS 2 message, service or action"):
+    with pytest.raises(AttributeError, match="is not the class of a message, service or action"):
         check_for_type_support(wrong)
 
 
@@ -115,7 +115,7 @@ def test_filled_messages_differ() -> None:
 def test_what_cannot_be_bytes() -> None:
     with pytest.raises(EncodeError, match=r"BasicTypes\.int8_value"):
         serialize_message(ros.BasicTypes(int8_value=1000))
-    with pytest.raises(AttributeError, match="is no class of a ROS 2 message"):
+    with pytest.raises(AttributeError, match="is not the class of a message"):
         serialize_message("text")  # type: ignore[arg-type]
     with pytest.raises(RuntimeError, match="is no message class"):
         deserialize_message(b"", SetBool)  # type: ignore[type-var]

@@ -62,7 +62,7 @@ class Diary(robolink.Node):
 
     def report(self) -> dict[str, Any]:
         """Return what was sent and heard, for JSON."""
-        missed = [each.lost + each.dropped for each in self._ears if not each.topic.endswith("/latched")]
+        missed = [each.lost + each.dropped for each in self._ears if not each.topic_name.endswith("/latched")]
         return {"sent": self._sent, "longest": self.longest, "heard": self.heard, "told": sum(missed)}
 
 

@@ -97,7 +97,7 @@ def test_a_listener_ends(robot: Node, seer: Node, executor: SingleThreadedExecut
     listener = TransformListener(buffer, seer)
     listener.unregister()
     listener.unregister()
-    assert [each.topic for each in seer.subscriptions] == []
+    assert [each.topic_name for each in seer.subscriptions] == []
     TransformBroadcaster(robot).sendTransform(transform("a", "b", 1))
     spin_for(executor, 0.1)
     assert buffer.get_all_frame_names() == []

@@ -289,8 +289,8 @@ def life(world: str) -> str:
     with System() as system:
         node = system.start(simulation.SimulatedWorld, parameters={"world": world})
         for publisher in list(node.publishers):
-            if publisher.topic != "/parameter_events":
-                system.node.create_subscription(publisher.msg_type, publisher.topic, digest.update, 1000, raw=True)
+            if publisher.topic_name != "/parameter_events":
+                system.node.create_subscription(publisher.msg_type, publisher.topic_name, digest.update, 1000, raw=True)
         for robot in node.simulation.world.robots:
             prefix = f"/{robot}" if len(node.simulation.world.robots) > 1 else ""
             drive(system, f"{prefix}/cmd_vel", 0.4, 0.3)

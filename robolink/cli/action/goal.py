@@ -40,7 +40,12 @@ CANCELED_WITHIN = 2.0
 _SLICE = 0.25
 """Longest single wait, in seconds: on Windows Ctrl-C does not end a wait."""
 
-REASONS = {0: "no reason given", 1: "the server goes on", 2: "the server does not know it", 3: "it has ended already"}
+REASONS = {
+    0: "the server goes on",
+    1: "the server goes on",
+    2: "the server does not know it",
+    3: "it has ended already",
+}
 """Meaning of the return codes of action_msgs/srv/CancelGoal."""
 
 WHOLE = show.Style(longest=None)

@@ -95,7 +95,7 @@ class ParameterClient:
             return client.try_call(request, timeout_sec=ANSWER_WITHIN)
         except TimeoutError:
             raise ParameterCommandError(
-                f"no answer within {ANSWER_WITHIN:g} s from {client.srv_name}: does the node spin?"
+                f"no answer within {ANSWER_WITHIN:g} s from {client.service_name}: does the node spin?"
             ) from None
         except ExternalShutdownException:
             raise KeyboardInterrupt from None

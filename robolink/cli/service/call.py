@@ -157,7 +157,7 @@ def _sleep(executor: Executor, until: float) -> None:
 
 def _server_of(executor: Executor, client: Client) -> str:
     """Return the name of the node that serves, as far as it is known."""
-    found = executor.context.graph.endpoints(EndpointKind.SERVICE, name=client.srv_name)
+    found = executor.context.graph.endpoints(EndpointKind.SERVICE, name=client.service_name)
     if not found:
-        return f"{client.srv_name}, which nobody serves any more"
-    return f"{client.srv_name} of {found[0].full_node_name}"
+        return f"{client.service_name}, which nobody serves any more"
+    return f"{client.service_name} of {found[0].full_node_name}"

@@ -47,17 +47,18 @@ class Format(NamedTuple):
     def text(self, message: Any, info: MessageInfo) -> str:
         """Return a message as text. `info` comes first if it is wanted, in ros2's order."""
         value = show.field_of(message, self.field) if self.field else message
+        told = {name: each for name, each in info.items() if name != "publisher_gid"}
         if self.image:
             from robolink.cli.shared.picture import drawn
 
             return drawn(value)
         if self.json:
-            return show.as_json({"info": dict(info), "message": value} if self.info else value)
+            return show.as_json({"info": told, "message": value} if self.info else value)
         if self.csv:
-            before = [str(each) for each in info.values()] if self.info else []
+            before = [str(each) for each in told.values()] if self.info else []
             return ",".join([*before, show.as_csv(value, self.style)])
         shown = repr(value) if self.raw else show.as_yaml(value, self.style)
-        before = [show.as_yaml(dict(sorted(info.items())))] if self.info else []
+        before = [show.as_yaml(dict(sorted(told.items())))] if self.info else []
         return "\n---\n".join([*before, shown, ""]).removesuffix("\n")
 
 

@@ -18,6 +18,7 @@ PROFILES = [
     "parameter_events",
     "action_status_default",
     "best_available",
+    "rosout_default",
 ]
 HISTORIES = ["system_default", "keep_last", "keep_all", "unknown"]
 RELIABILITIES = ["system_default", "reliable", "best_effort", "unknown", "best_available"]

@@ -87,7 +87,7 @@ class ShownImages:
         """Return a topic's name for a window, whose name may be any text, that no other window has."""
         name = re.sub(r"[^A-Za-z0-9]+", "_", window).strip("_") or "window"
         name = f"window_{name}" if name[0].isdigit() else name
-        taken = {each.topic.rpartition("/")[2] for _, each in self._publishers.values()}
+        taken = {each.topic_name.rpartition("/")[2] for _, each in self._publishers.values()}
         names = (name if number == 1 else f"{name}_{number}" for number in range(1, len(taken) + 2))
         return f"~/imshow/{next(each for each in names if each not in taken)}"
 
