@@ -153,7 +153,23 @@ __all__ = [
 ]
 
 
+_NOT_RCLPYS = frozenset(["Clock", "Duration", "ExternalShutdownException", "Message", "Node", "Time"])
+"""Names that a program which calls this rclpy has to import from a module on a robot."""
+
+
+def _warn_of_home(name: str, asker: str) -> None:
+    """Warn a program that calls this rclpy: what works here raises on a robot."""
+    if sys.modules.get("rclpy") is not sys.modules[__name__] or asker.partition(".")[0] == "robolink":
+        return
+    import warnings
+
+    home = {"ExternalShutdownException": "executors"}.get(name, _HOMES[name])
+    warnings.warn(f"ROS 2 has no rclpy.{name}: write `from rclpy.{home} import {name}`", stacklevel=3)
+
+
 def __getattr__(name: str) -> Any:
+    if name in _NOT_RCLPYS:
+        _warn_of_home(name, sys._getframe(1).f_globals.get("__name__", ""))
     if name in _HOMES:
         value = getattr(importlib.import_module(f"robolink.{_HOMES[name]}"), name)
     elif name in _ROOMS:

@@ -71,7 +71,10 @@ def init(
     Raises:
         ContextError: (a RuntimeError) if the context was initialized before, or the domain is impossible.
         InvalidROSArgsError: (a ValueError) if `args` cannot be read; UnknownROSArgsError for flags that do not exist.
+        TypeError: if `args` is not a list of texts.
     """
+    if isinstance(args, str) or not all(isinstance(each, str) for each in args or ()):
+        raise TypeError(f"args: expected a list of str, got {args!r}")
     return InitContextManager(args, context, domain_id, signal_handler_options)
 
 

@@ -362,7 +362,7 @@ class Subscription(Receiver, Generic[MsgT]):
         raise RCLError(f"{self.topic_name}: this network has no content filters")
 
     def warn_of_filter(self, filter_expression: str) -> None:
-        """Log that a filter, which the program gave for this subscription, has no effect."""
+        """Log that the filter `filter_expression`, which the program gave, has no effect."""
         logger = get_logger(self.logger_name)
         logger.warning(f"{self.topic_name}: the content filter '{filter_expression}' has no effect on this network")
 

@@ -37,8 +37,10 @@ from robolink.type_support import in_brackets
 from robolink.waitable import Waitable
 
 if TYPE_CHECKING:
+    from robolink.clock import Clock
     from robolink.message import Action
     from robolink.node import Node
+    from robolink.service_introspection import ServiceIntrospectionState
 
 
 class GoalResponse(Enum):
@@ -174,6 +176,20 @@ class ActionServer(Waitable):
         made.lane = self._lane  # a goal comes before it is cancelled
         self._parts.append(made)
         return made
+
+    def configure_introspection(
+        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Publish the requests and responses of the action's three services as events from now on, or no more.
+
+        Args:
+            clock: Clock of the events' stamps.
+            service_event_qos_profile: Quality of service of the events.
+            introspection_state: OFF, METADATA or CONTENTS.
+        """
+        for part in self._parts:
+            if isinstance(part, LateService):
+                part.configure_introspection(clock, service_event_qos_profile, introspection_state)
 
     @property
     def action_type(self) -> type[Action]:

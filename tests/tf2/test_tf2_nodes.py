@@ -84,7 +84,7 @@ def test_a_static_transform_reaches_whoever_comes_later(
 
 def test_topics_and_profiles_may_be_others(seer: Node) -> None:
     listener = TransformListener(Buffer(), seer, qos=7, static_qos=3, tf_topic="/old/tf", tf_static_topic="mine")
-    assert [listener.tf_sub.topic, listener.tf_static_sub.topic] == ["/old/tf", "/mine"]
+    assert [listener.tf_sub.topic, listener.tf_static_sub.topic] == ["/old/tf", "mine"]
     assert [listener.tf_sub.qos_profile.depth, listener.tf_static_sub.qos_profile.depth] == [7, 3]
     default = TransformListener(Buffer(), seer)
     assert [default.tf_sub.topic, default.tf_static_sub.topic] == ["/tf", "/tf_static"]
