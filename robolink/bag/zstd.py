@@ -102,7 +102,7 @@ class _Limited:
     def __init__(self, file: Any, left: int, refusal: str) -> None:
         self._file, self._left, self._refusal = file, left, refusal
 
-    def read(self, size: int) -> bytes:
+    def read(self, size: int = -1, /) -> bytes:
         """Return the next bytes. Raises BagError beyond the limit."""
         part: bytes = self._file.read(size)
         self._left -= len(part)

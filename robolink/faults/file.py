@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from robolink.documents.mistakes import Step
 from robolink.documents.yamlfile import Document, read
@@ -34,8 +34,9 @@ def read_faults(path: str | os.PathLike[str], *, text: str | None = None) -> Doc
             its range, an invalid name, or a fault without effect or that cannot be.
         TypeError: if `path` is not one, but the faults themselves.
     """
-    if not isinstance(path, (str, os.PathLike)):
-        kind = type(path).__name__
+    given: Any = path  # a list of faults is what people try first
+    if not isinstance(given, (str, os.PathLike)):
+        kind = type(given).__name__
         raise TypeError(f"faults are the path of a file, got a {kind}: write them into one, or call `system.faults`")
     document = read(path, FaultsDescription, text=text)
     for steps, message in _problems(document.value):

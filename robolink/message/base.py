@@ -83,7 +83,7 @@ class MessageMeta(msgspec.StructMeta):
             setattr(cls, f"{field.upper()}__DEFAULT", _DefaultOf(field))
         return cls
 
-    def __call__(self, /, *values: Any, **fields: Any) -> Any:
+    def __call__(self: Any, /, *values: Any, **fields: Any) -> Any:
         """Make a message of its fields by name, as in ROS 2. Raises TypeError for one that it does not have."""
         if values:
             first = next(iter(self.__ros_fields__), None)

@@ -44,7 +44,7 @@ class Heir(PortClaim):
     """Claim of a port that another process holds: it is granted when that one has ended."""
 
     def __init__(self, port: int, open_session: Callable[[bool], zenoh.Session]) -> None:
-        self._port, self._open = port, open_session
+        self._port, self._open_session = port, open_session
         self._claim: PortClaim | None = None
         self._sessions: list[zenoh.Session] = []
         self._lock, self._is_over = threading.Lock(), False
@@ -66,7 +66,7 @@ class Heir(PortClaim):
                 return
             try:
                 with lifetime.inside:
-                    self._sessions.append(self._open(True))
+                    self._sessions.append(self._open_session(True))
             except zenoh.ZError:
                 claim.release()
             else:

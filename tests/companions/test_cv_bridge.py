@@ -155,7 +155,7 @@ def test_display_of_other_images() -> None:
     assert labels[0, 0].tolist() == [0, 0, 0]
     assert labels[0, 1:].tolist() == [[255, 248, 240], [215, 235, 250], [0, 0, 0]]  # the first colours by their names
     many = cvtColorForDisplay(np.arange(12, dtype=np.int32).reshape(3, 4), "32SC1", "bgr8")
-    assert (many.dtype, many.min(), many.max()) == (np.uint8, 0, 255)
+    assert (str(many.dtype), many.min(), many.max()) == ("uint8", 0, 255)
     assert cvtColorForDisplay(np.array([[146]], np.int32), "32SC1", "bgr8").tolist() == [[[255, 248, 240]]]
 
 

@@ -103,7 +103,7 @@ def test_sequences_numbers_and_texts() -> None:
     assert [filled(Bool(), each).data for each in (2, 0.0, "on", "No", True)] == [True, False, True, False, True]
     imu = Imu()
     set_message_fields(imu, {"orientation_covariance": ["1"] * 9})
-    assert imu.orientation_covariance.tolist() == [1.0] * 9
+    assert list(imu.orientation_covariance) == [1.0] * 9
     inner = Header(frame_id="x")
     stamped = PointStamped()
     set_message_fields(stamped, {"header": inner})

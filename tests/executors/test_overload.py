@@ -283,8 +283,13 @@ def test_timers_of_one_moment_come_before_what_the_first_of_them_sends() -> None
             self.order: list[str] = []
             publisher = self.create_publisher(Int32, "topic", 10)
             self.create_subscription(Int32, "topic", lambda _: self.order.append("message"), 10)
-            self.create_timer(0.1, lambda: (self.order.append("one"), publisher.publish(Int32())))
+            self.publisher = publisher
+            self.create_timer(0.1, self.first)
             self.create_timer(0.1, lambda: self.order.append("two"))
+
+        def first(self) -> None:
+            self.order.append("one")
+            self.publisher.publish(Int32())
 
     with Host() as host:
         node = host.start_node(Two)

@@ -167,8 +167,8 @@ def test_a_sequence_takes_an_empty_array_of_any_dimensions() -> None:
 @pytest.mark.parametrize("matrix", [np.arange(9.0).reshape(3, 3), np.arange(9.0).reshape(3, 3).T, [[1, 2, 3]] * 3])
 def test_a_fixed_array_takes_a_matrix_row_by_row(matrix: Any) -> None:
     flat = np.asarray(matrix, float).ravel().tolist()
-    imu = Imu(orientation_covariance=matrix)
-    assigned = Imu()
+    imu: Any = Imu(orientation_covariance=matrix)
+    assigned: Any = Imu()
     assigned.orientation_covariance = matrix
     for each in (imu, assigned, decode(Imu, encode(Imu(orientation_covariance=matrix)))):
         assert each.orientation_covariance.shape == (9,)
@@ -177,7 +177,7 @@ def test_a_fixed_array_takes_a_matrix_row_by_row(matrix: Any) -> None:
 
 def test_a_matrix_of_another_size_is_refused() -> None:
     with pytest.raises(EncodeError, match=r"Imu.orientation_covariance: expected float64\[9\], got 36 elements"):
-        Imu().orientation_covariance = np.eye(6)
+        Imu().orientation_covariance = np.eye(6)  # type: ignore[assignment]
 
 
 @pytest.mark.parametrize(

@@ -105,7 +105,8 @@ def _text(bound: int, at: int, dice: random.Random) -> str:
 
 
 def _integer(bits: int, signed: bool, at: int, dice: random.Random) -> int:
-    low, high = (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) if signed else (0, 2**bits - 1)
+    low: int = -(2 ** (bits - 1)) if signed else 0
+    high: int = 2 ** (bits - 1) - 1 if signed else 2**bits - 1
     pool = [low, high, 0, 1, low + dice.getrandbits(bits)]
     return pool[at - 1 if at < 3 else dice.getrandbits(8) % len(pool)]
 
