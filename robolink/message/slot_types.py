@@ -21,13 +21,47 @@ KIND = re.compile("/(msg|srv|action)/")
 """Middle part of a type name, which rosidl leaves out."""
 
 
-class BasicType(msgspec.Struct, frozen=True):
+class AbstractType(msgspec.Struct, frozen=True):
+    """Base class of all types."""
+
+    def has_maximum_size(self) -> bool:
+        """True if the number of elements or characters has an upper bound."""
+        return False
+
+
+class AbstractNestableType(AbstractType, frozen=True):
+    """Base class of types of one value, which can be the elements of a sequence."""
+
+
+class AbstractGenericString(AbstractNestableType, frozen=True):
+    """Base class of all texts."""
+
+
+class AbstractString(AbstractGenericString, frozen=True):
+    """Base class of strings."""
+
+
+class AbstractWString(AbstractGenericString, frozen=True):
+    """Base class of wstrings."""
+
+
+class AbstractNestedType(AbstractType, frozen=True):
+    """Base class of arrays and sequences of `value_type`."""
+
+    value_type: Any
+
+
+class AbstractSequence(AbstractNestedType, frozen=True):
+    """Base class of sequences."""
+
+
+class BasicType(AbstractNestableType, frozen=True):
     """Type of a number, a boolean or an octet."""
 
     typename: str
 
 
-class NamespacedType(msgspec.Struct, frozen=True):
+class NamespacedType(AbstractNestableType, frozen=True):
     """Type of a nested message: ``NamespacedType(("geometry_msgs", "msg"), "Point")``."""
 
     namespaces: tuple[str, ...]
@@ -38,44 +72,56 @@ class NamespacedType(msgspec.Struct, frozen=True):
         return (*self.namespaces, self.name)
 
 
-class UnboundedString(msgspec.Struct, frozen=True):
+class UnboundedString(AbstractString, frozen=True):
     """Type of a string."""
 
 
-class BoundedString(msgspec.Struct, frozen=True):
+class BoundedString(AbstractString, frozen=True):
     """Type of a string of at most `maximum_size` characters."""
 
     maximum_size: int
 
+    def has_maximum_size(self) -> bool:
+        """True."""
+        return True
 
-class UnboundedWString(msgspec.Struct, frozen=True):
+
+class UnboundedWString(AbstractWString, frozen=True):
     """Type of a wstring."""
 
 
-class BoundedWString(msgspec.Struct, frozen=True):
+class BoundedWString(AbstractWString, frozen=True):
     """Type of a wstring of at most `maximum_size` characters."""
 
     maximum_size: int
 
+    def has_maximum_size(self) -> bool:
+        """True."""
+        return True
 
-class Array(msgspec.Struct, frozen=True):
+
+class Array(AbstractNestedType, frozen=True):
     """Type of exactly `size` elements."""
 
-    value_type: Any
     size: int
 
+    def has_maximum_size(self) -> bool:
+        """True."""
+        return True
 
-class BoundedSequence(msgspec.Struct, frozen=True):
+
+class BoundedSequence(AbstractSequence, frozen=True):
     """Type of at most `maximum_size` elements."""
 
-    value_type: Any
     maximum_size: int
 
+    def has_maximum_size(self) -> bool:
+        """True."""
+        return True
 
-class UnboundedSequence(msgspec.Struct, frozen=True):
+
+class UnboundedSequence(AbstractSequence, frozen=True):
     """Type of any number of elements."""
-
-    value_type: Any
 
 
 class SlotTypes:

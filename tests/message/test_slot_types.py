@@ -12,6 +12,10 @@ from robolink.interfaces.geometry_msgs.msg import PoseWithCovariance, Twist
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.message import Message
 from robolink.message.slot_types import (
+    AbstractNestableType,
+    AbstractNestedType,
+    AbstractSequence,
+    AbstractString,
     Array,
     BasicType,
     BoundedSequence,
@@ -92,3 +96,15 @@ def test_messages_are_still_copied_and_pickled() -> None:
     twist = Twist()
     twist.angular.z = -1.0
     assert pickle.loads(pickle.dumps(twist)) == copy.deepcopy(twist) == copy.copy(twist) == twist
+
+
+def test_kinds_of_types_are_told_by_rosidls_base_classes() -> None:
+    number, text, word = BasicType("double"), UnboundedString(), BoundedString(5)
+    few, three, many = BoundedSequence(number, 3), Array(number, 3), UnboundedSequence(text)
+    message = NamespacedType(("geometry_msgs", "msg"), "Pose")
+    assert all(isinstance(each, AbstractNestableType) for each in (number, text, word, message))
+    assert all(isinstance(each, AbstractNestedType) for each in (few, three, many))
+    assert [isinstance(each, AbstractSequence) for each in (few, three, many)] == [True, False, True]
+    assert [isinstance(each, AbstractString) for each in (text, UnboundedWString())] == [True, False]
+    bounded = [each.has_maximum_size() for each in (number, text, word, few, three, many)]
+    assert bounded == [False, False, True, True, True, False]
