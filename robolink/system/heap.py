@@ -1,9 +1,10 @@
-"""Heap tuning: keeps glibc from returning the memory of each large message to the system and faulting it in anew."""
+"""Heap tuning: glibc keeps the memory of large messages for the next one, and gives that of huge ones back later."""
 
 from __future__ import annotations
 
 import contextlib
 import os
+import threading
 from collections.abc import Mapping
 
 LARGE = 64 * 1024
@@ -18,7 +19,59 @@ _MOST_MAPPED = 32 << 20
 _MOST_KEPT = 64 << 20
 """Free memory in bytes that an arena keeps at its top: what ten images of 6 MB in a queue leave behind."""
 
+HUGE = _MOST_MAPPED
+"""Payload size in bytes from which memory is given back once no such message has come for a while."""
+
+PAUSES = (1.0, 10.0)
+"""Seconds without a huge message after which memory is given back, and again: one may have waited in a queue."""
+
 _kept = False
+_huge = threading.Event()
+"""Set when a huge message has come."""
+_giver: threading.Thread | None = None
+
+
+def note(size: int) -> None:
+    """Note that a message of at least LARGE bytes comes or goes: the heap is set up for such ones."""
+    keep()
+    if size >= HUGE:
+        _huge.set()
+        _begin_to_give()
+
+
+def _begin_to_give() -> None:
+    """Start the thread that gives memory back, unless it runs, or there is nothing to give to (not glibc)."""
+    global _giver
+    if _giver is None and _has_glibc():
+        _giver = threading.Thread(target=_give_for_ever, name="robolink heap", daemon=True)
+        _giver.start()
+
+
+def _give_for_ever() -> None:
+    while True:
+        _huge.wait()
+        give_back()
+
+
+def give_back() -> None:
+    """Give freed memory back to the system once no huge message has come for the first of PAUSES, and after the second.
+
+    What Zenoh puts a huge message together from lies in the arenas of several threads, and glibc never trims these by
+    itself: half a gigabyte stayed with a process for good.
+    """
+    for pause in PAUSES:
+        while True:
+            _huge.clear()
+            if not _huge.wait(pause):
+                break
+        _trim()
+
+
+def _trim() -> None:
+    with contextlib.suppress(ImportError, AttributeError, OSError):
+        import ctypes
+
+        ctypes.CDLL(None).malloc_trim(0)
 
 
 def keep(environ: Mapping[str, str] = os.environ) -> None:

@@ -171,7 +171,7 @@ class ZenohTransport(Transport):
                     raise OverwrittenError(sample.attachment)
                 self._pools.look()
             if len(sample[0]) >= heap.LARGE:
-                heap.keep()
+                heap.note(len(sample[0]))
             return sample
         if kind is Sample:
             own: Sample = arrived

@@ -261,7 +261,7 @@ class ZenohOutlet(Declared):
     def _put_large(self, payload: bytes, attachment: bytes) -> None:
         refuse_giant(self.key, payload)
         if len(payload) >= heap.LARGE:
-            heap.keep()
+            heap.note(len(payload))
         self._deliver_here(payload, attachment)
         begin = clocks.monotonic()
         if self._worth_a_copy(begin):

@@ -21,6 +21,10 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int]]:
     class Libc:
         def __init__(self, _: object) -> None: ...
 
+        def malloc_trim(self, pad: int) -> int:
+            made.append((0, pad))
+            return 1
+
         def mallopt(self, name: int, value: int) -> int:
             made.append((name, value))
             return 1
@@ -45,6 +49,21 @@ def test_glibc_keeps_what_is_freed(monkeypatch: pytest.MonkeyPatch, calls: list[
     heap.keep({})
     assert dict(calls) == {-3: 32 << 20, -1: 64 << 20}
     assert len(calls) == 2
+
+
+def test_the_memory_of_huge_messages_is_given_back_once_none_comes_any_more(
+    monkeypatch: pytest.MonkeyPatch, calls: list[tuple[int, int]]
+) -> None:
+    with_libc(monkeypatch, "glibc 2.36")
+    begun: list[None] = []
+    monkeypatch.setattr(heap, "_begin_to_give", lambda: begun.append(None))
+    monkeypatch.setattr(heap, "PAUSES", (0.01, 0.02))
+    heap.note(heap.HUGE - 1)
+    assert not begun
+    heap.note(heap.HUGE)
+    assert len(begun) == 1
+    heap.give_back()
+    assert calls[2:] == [(0, 0), (0, 0)]
 
 
 @pytest.mark.parametrize("answer", ["", ValueError("unrecognized"), OSError("not here")])
