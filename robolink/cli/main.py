@@ -140,7 +140,7 @@ def _complete(args: list[str]) -> int:
 
 @contextlib.contextmanager
 def _answering_bash() -> Iterator[None]:
-    """Have bash's words joined where it has torn `NAME:=VALUE`, and the answer cut to the part that it replaces."""
+    """Context in which bash's parts of `NAME:=VALUE` are one word, and the answer is the part that bash replaces."""
     from robolink.cli.shared.complete import joined_for_bash
 
     words, at, prefix = os.environ.get("COMP_WORDS", ""), os.environ.get("COMP_CWORD", ""), ""

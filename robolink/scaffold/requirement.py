@@ -14,7 +14,7 @@ WHEELS = "wheels"
 
 
 class Requirement(NamedTuple):
-    """How a project gets robolink: on this machine, on others, and in CI."""
+    """Requirement on robolink that can be met on this machine, on others, and in CI."""
 
     line: str
     """Line of requirements.txt."""
