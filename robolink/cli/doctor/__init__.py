@@ -49,6 +49,10 @@ def doctor(
         raise typer.Exit(1)
 
 
+BY_SYMPTOM = "By what one sees: docs/troubleshooting.md"
+"""Last line of what is told where something is not as it should be."""
+
+
 def _lines(verdicts: list[tuple[Check, Verdict]], failed: list[str]) -> list[str]:
     lines = []
     for check, verdict in verdicts:
@@ -57,8 +61,14 @@ def _lines(verdicts: list[tuple[Check, Verdict]], failed: list[str]) -> list[str
         lines += [head + first, *(" " * len(head) + each for each in others)]
     if failed:
         modules = sorted(set(failed))
-        return [*lines, f"\n{len(failed)}/{len(verdicts)} check(s) failed\n", f"Failed modules: {' '.join(modules)}"]
-    return [*lines, f"\n{_passed([verdict.level for _, verdict in verdicts])}\n"]
+        lines += [
+            f"\n{len(failed)}/{len(verdicts)} check(s) failed\n",
+            f"Failed modules: {' '.join(modules)}",
+            BY_SYMPTOM,
+        ]
+        return lines
+    levels = [verdict.level for _, verdict in verdicts]
+    return [*lines, f"\n{_passed(levels)}\n", *([BY_SYMPTOM] if "warning" in levels else [])]
 
 
 def _passed(levels: list[str]) -> str:

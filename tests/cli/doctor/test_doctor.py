@@ -85,7 +85,9 @@ def test_a_sound_system_passes(robot: Node, capsys: Captured) -> None:
     out = capsys.readouterr().out
     assert "WARN  settings        ROBOLINK_TRANSPORT=memory://" in out
     assert "ok    domains         domain 7 has 1 node\n" in out
-    assert out.endswith("\n18 of 20 checks passed, 1 warning, 1 not known\n\n")
+    assert out.endswith(
+        "\n18 of 20 checks passed, 1 warning, 1 not known\n\nBy what one sees: docs/troubleshooting.md\n"
+    )
 
 
 @pytest.mark.parametrize(
@@ -123,7 +125,8 @@ def test_what_is_wrong_fails_and_is_named(robot: Node, capsys: Captured) -> None
     assert "FAIL  topic types     /chatter: /lab/robot publishes std_msgs/msg/String, /lab/robot subscribes to" in out
     assert "FAIL  service types   /lamp: " in out
     assert "WARN  qos             /chatter: " in out
-    assert out.endswith("\n2/20 check(s) failed\n\nFailed modules: middleware\n")
+    failed = "\n2/20 check(s) failed\n\nFailed modules: middleware\n"
+    assert out.endswith(f"{failed}By what one sees: docs/troubleshooting.md\n")
 
 
 def test_warnings_count_when_asked_to(robot: Node, capsys: Captured) -> None:
