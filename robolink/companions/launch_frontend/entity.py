@@ -113,7 +113,7 @@ class Entity:
         return None if text is None else self.parsed(text)
 
     def needed(self, name: str, *kinds: type) -> list[Substitution]:
-        """Return the substitutions in `name`, as `optional` does. Raises DocumentError if it is not there."""
+        """Return the substitutions in `name`, of these `kinds`, as `optional` does. Raises DocumentError if none is."""
         found = self.optional(name, *kinds)
         if found is None:
             raise self.error(f"'{name}' is missing")

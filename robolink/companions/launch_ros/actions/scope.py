@@ -120,7 +120,7 @@ class SetUseSimTime(Action):
         self.value = value
 
     def execute(self, context: LaunchContext) -> None:
-        """Tell in `context` what it is not: robolink's launcher has a node without timers."""
+        """Add a line to `context` that says so: the launcher's own node has no timers here."""
         context.said.append(
             "SetUseSimTime sets the clock of the launcher, and that of no node: SetParameter('use_sim_time', True) does"
         )
