@@ -251,3 +251,11 @@ def test_many_wildcards_are_matched_at_once() -> None:
 def test_a_node_s_name_ends_without_a_slash() -> None:
     with pytest.raises(ParameterFileError, match="'/n/' above ros__parameters ends with a slash, which ROS 2 refuses"):
         values("/n/: {ros__parameters: {x: 1}}")
+
+
+def test_a_file_for_a_thousand_nodes_is_read_in_both_orders() -> None:
+    sections = [f"n{each}: {{ros__parameters: {{x: {each}, all: {each}}}}}" for each in range(1000)]
+    wide = "/**: {ros__parameters: {all: -1, wide: 1}}"
+    before, after = ("\n".join(lines) for lines in ([wide, *sections], [*sections, wide]))
+    assert overrides_for(parse_parameter_file(before, "f"), "/n7") == {"all": 7, "wide": 1, "x": 7}
+    assert overrides_for(parse_parameter_file(after, "f"), "/n7") == {"all": -1, "wide": 1, "x": 7}
