@@ -115,6 +115,7 @@ class Console:
 
 _COLOURS = {
     LoggingSeverity.DEBUG: "\x1b[32m",
+    LoggingSeverity.INFO: "\x1b[0m",
     LoggingSeverity.WARN: "\x1b[33m",
     LoggingSeverity.ERROR: "\x1b[31m",
     LoggingSeverity.FATAL: "\x1b[31m",

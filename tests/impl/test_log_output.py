@@ -31,7 +31,7 @@ RECORD = Record(1_500_000_000, LoggingSeverity.INFO, "talker", "hi", "/a/b.py", 
 @pytest.mark.parametrize(
     ("environ", "severity", "tty", "expected"),
     [
-        ({}, "INFO", True, "[INFO] [1.500000000] [talker]: hi\n"),
+        ({}, "INFO", True, "\x1b[0m[INFO] [1.500000000] [talker]: hi\x1b[0m\n"),
         ({}, "WARN", False, "[WARN] [1.500000000] [talker]: hi\n"),
         ({}, "WARN", True, "\x1b[33m[WARN] [1.500000000] [talker]: hi\x1b[0m\n"),
         ({}, "ERROR", True, "\x1b[31m[ERROR] [1.500000000] [talker]: hi\x1b[0m\n"),

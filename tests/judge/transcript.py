@@ -33,6 +33,7 @@ _MASKS = [
     (r"robolink\.spinning\.", "rclpy."),
     (r"(<|<class ')robolink\.", r"\1rclpy."),
     (r"/\S+/site-packages/(robolink|rclpy)/(\S+):\d+:", r"rclpy/\2:"),
+    (r"RuntimeWarning: Enable tracemalloc .*\n", ""),
     # Times, addresses, numbers of processes and random names.
     (r"\b\d{10}\.\d{6,9}\b", "<time>"),
     (r"\b1[6-9]\d{17}\b", "<ns>"),
