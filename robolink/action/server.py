@@ -142,7 +142,6 @@ class ActionServer(Waitable):
         self._destroyed = False
         self._lane = next_number()
         self._executions = Executions(self._execute_goal)
-        self._executions.lane = self._lane
         self._results = Results(self._answer_result, self._forget, result_timeout, self.callback_group, node)
         self._parts: list[Publisher[Any] | LateService] = []
         try:

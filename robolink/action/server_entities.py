@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from robolink.message import Message
 from robolink.running.entity import NOTHING, Entity
+from robolink.running.ready_queue import TASK
 from robolink.service import RequestHeader, Service
 
 if TYPE_CHECKING:
@@ -60,6 +61,7 @@ class Executions(Entity):
     def attach(self, executor: Loop, has_turn: bool = False) -> None:
         """Attach to an executor; what is due is ready there."""
         super().attach(executor, has_turn)
+        self.place = TASK, 0, 0, 0  # as in rclpy: who waits for the answer has seen what the execution sent at once
         executor._queue_.ready.extend([self] * (len(self._due) - has_turn))
 
     def take(self) -> Any:

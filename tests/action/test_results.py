@@ -282,3 +282,16 @@ def test_wrong_arguments(client: ActionClient, serve: Callable[..., ActionServer
         ActionClient(node, Fibonacci.Goal, "fibonacci")
     with pytest.raises(ValueError, match="topic name"):
         ActionServer(node, Fibonacci, "fibonacci!", fibonacci)
+
+
+def test_what_an_execution_sends_at_once_has_come_when_the_goal_is_accepted(
+    executor: SingleThreadedExecutor, serve: Callable[..., ActionServer], node: Node
+) -> None:
+    """For whoever subscribes and calls by itself, as rclpy's own tests do: executions are tasks, which come first."""
+    serve()
+    impl, heard = Fibonacci.Impl, list[Any]()
+    node.create_subscription(impl.FeedbackMessage, "fibonacci/_action/feedback", heard.append, 10)
+    asking = node.create_client(impl.SendGoalService, "fibonacci/_action/send_goal")
+    request = impl.SendGoalService.Request(goal_id=numbered(3), goal=Fibonacci.Goal(order=3))
+    assert done(executor, asking.call_async(request)).accepted
+    assert heard
