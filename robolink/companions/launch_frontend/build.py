@@ -88,6 +88,11 @@ def _group(entity: Entity) -> Action:
     )
 
 
+def _reset(entity: Entity) -> Action:
+    entity.check((), ("keep",))
+    return actions.ResetLaunchConfigurations(pairs(entity, "keep", "name", "value"))
+
+
 def _timer(entity: Entity) -> Action:
     _only_attributes(entity, ("period", "cancel_on_shutdown"))
     return actions.TimerAction(period=entity.needed("period", float), actions=built(entity.children))
@@ -165,11 +170,11 @@ BUILDERS: dict[str, Build] = {
     "let": _let,
     "log": _log,
     "log_info": _log,
-    "pop_env": lambda entity: actions.PopEnvironment(),
-    "push_env": lambda entity: actions.PushEnvironment(),
+    "pop_env": _with(actions.PopEnvironment),
+    "push_env": _with(actions.PushEnvironment),
     "push_ros_namespace": _push_namespace,
-    "reset": lambda entity: actions.ResetLaunchConfigurations(pairs(entity, "keep", "name", "value")),
-    "reset_env": lambda entity: actions.ResetEnvironment(),
+    "reset": _reset,
+    "reset_env": _with(actions.ResetEnvironment),
     "ros_timer": _timer,
     "set_env": _with(actions.SetEnvironmentVariable, "name", "value"),
     "set_launch_configuration": _let,
