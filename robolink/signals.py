@@ -22,7 +22,11 @@ class Interruptible(Protocol):
         """True from its beginning to its end."""
 
     def interrupt(self, *, by_sigterm: bool = False) -> None:
-        """End the spinning, as Ctrl-C does, or SIGTERM."""
+        """End the spinning, as Ctrl-C does.
+
+        Args:
+            by_sigterm: True if SIGTERM came instead.
+        """
 
 
 class SignalHandlerOptions(IntFlag):

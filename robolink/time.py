@@ -140,7 +140,11 @@ class Time:
 def sent_time(msg: TimeMsg) -> Time:
     """Return the ROS time of a stamp that somebody sent, if a message can have it again.
 
-    Raises ValueError for a time before 1970, and for one whose nanoseconds carry its seconds beyond 32 bits.
+    Args:
+        msg: The stamp.
+
+    Raises:
+        ValueError: for a time before 1970, and for one whose nanoseconds carry its seconds beyond 32 bits.
     """
     time = Time.from_msg(msg)
     if time.nanoseconds // S_TO_NS >= _LIMIT_OF_SECONDS:

@@ -32,7 +32,7 @@ NODES = "robolink.nodes"
 
 
 class ExtensionError(RobolinkError, ImportError):
-    """What another package adds cannot be loaded; the text names the package, the entry point and the reason."""
+    """An entry point of another package that cannot be loaded; names the package, the entry point and the reason."""
 
 
 def added(group: str) -> Mapping[str, EntryPoint]:

@@ -86,7 +86,7 @@ def pose_of(message: PoseMessage) -> Pose:
 
 
 def is_finite(pose: Pose) -> bool:
-    """Return True if a robot can be there: no number of the pose is NaN or infinite."""
+    """Return True if a robot can be at a `pose`: none of its numbers is NaN or infinite."""
     return all(map(math.isfinite, pose))
 
 

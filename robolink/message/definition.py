@@ -29,7 +29,7 @@ LARGEST = 2**32 - 1
 ELEMENT_LINE = re.compile(r"(?P<type>[^\s#]+)(?P<gap>\s*)(?P<name>[^\s=#]*)\s*(?P<rest>.*)")
 TYPE = re.compile(r"(?P<base>[^\[\]<]+)(?:<=(?P<bound>[^\[\]]*))?(?:\[(?P<limit><=)?(?P<size>[^\[\]]*)\])?")
 COUNT = re.compile(r"\+?[0-9](?:_?[0-9]){0,9}")
-"""What Python's int reads of a size, as rosidl does: ``+3`` and ``1_000`` too."""
+"""Size of an array as Python's int reads it, as rosidl does: ``+3`` and ``1_000`` too."""
 VALUE = re.compile(rf"(?P<value>{literals.QUOTED}|\[(?:[^\"'#\]]|{literals.QUOTED})*\])\s*(?:#.*)?")
 NO_TEXT = re.compile("[\0\ud800-\udfff]")
 MEANT = {

@@ -201,7 +201,7 @@ class Receiver(Entity):
                 queue.ready.append(self)
 
     def become_ready(self) -> None:
-        """Have a turn in the next round; as a part of a waitable, one turn more."""
+        """Take a turn in the next round; as a part of a waitable, one turn more."""
         queue = self._queue_
         if queue is None:
             return

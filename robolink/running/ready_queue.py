@@ -191,7 +191,7 @@ class ReadyQueue(Generic[EntityT]):
     # Rounds
 
     def begin(self, wanted: Callable[[EntityT], bool] | None = None) -> bool:
-        """Give turns to the tasks or, when they have had theirs, begin a round. False if there is nothing to do."""
+        """Begin with the tasks or, when they have had their turns, begin a round. False if there is nothing to do."""
         if self._took:
             self._unsorted, self._took = len(self.blocked), False
         ready = self.ready

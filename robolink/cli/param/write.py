@@ -36,7 +36,7 @@ def set_one(node: str, parameter: str, text: str, timeout: float, *, as_json: bo
 
 
 def _tell_of_type(name: str, written: object, type_: int, value: ParameterValue) -> None:
-    """Say that ros2 refuses what was converted here: it sets a value as it is written, of whatever type that is."""
+    """Print that ros2 refuses the value that was converted here: it sends a value of the type that the text has."""
     if type_ != value.type:
         fitting_type, other = type_name(value.type), type_name(type_)
         tell(f"note: {name} is of type {fitting_type}; ros2 takes {written} for one of type {other} and refuses it")

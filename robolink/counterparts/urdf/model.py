@@ -54,7 +54,7 @@ class Robot(NamedTuple):
     links: tuple[str, ...]
     joints: dict[str, Joint]
     notes: tuple[str, ...] = ()
-    """What is odd in it, with file and line, though ROS takes it."""
+    """Lines about oddities that ROS takes all the same, each with file and line."""
 
 
 def placed(joint: Joint, position: float = 0.0) -> Rigid:

@@ -59,7 +59,7 @@ class Parameters:
         """Number of events of each node, by which a change while it is asked is noticed."""
         self._followers: dict[Listener, set[str] | None] = {}
         self._told: dict[ParameterName, dict[str, Any]] = {}
-        """What followers know: an event that says what a client's own request has said before is told to nobody."""
+        """Values that followers know: an event that repeats a client's own request is sent to nobody."""
         self._setting: Counter[tuple[Listener, str]] = Counter()
         """Requests under way, by client and parameter; each is answered once, whenever the event comes."""
         self._slots = asyncio.Semaphore(AT_ONCE)

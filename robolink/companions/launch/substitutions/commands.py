@@ -68,7 +68,15 @@ class Command(Substitution):
 def run_bounded(words: list[str], errors: int, environment: Mapping[str, str]) -> subprocess.CompletedProcess[bytes]:
     """Run a command to its end; one that writes more than LONGEST bytes, or takes too long, is killed.
 
-    Raises OSError or ValueError if it cannot be run or writes too much, and subprocess.TimeoutExpired.
+    Args:
+        words: The command.
+        errors: Where its standard error goes, as subprocess says it.
+        environment: Its environment.
+
+    Raises:
+        OSError: if it cannot be run.
+        ValueError: if it cannot be run, or writes too much.
+        subprocess.TimeoutExpired: if it takes too long.
     """
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, env=environment) as process:
         kept: dict[str, bytes] = {}
