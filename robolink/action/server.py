@@ -14,7 +14,6 @@ from robolink.action.results import Results
 from robolink.action.server_entities import Executions, LateService, run_to_its_end
 from robolink.action.server_goal_handle import ServerGoalHandle as ServerGoalHandle
 from robolink.action.states import GoalEvent as GoalEvent
-from robolink.action.states import RCLError as RCLError
 from robolink.action.statuses import Statuses
 from robolink.callback_groups import CallbackGroup
 from robolink.exceptions import (
@@ -23,6 +22,7 @@ from robolink.exceptions import (
     TransportClosedError,
     TransportError,
 )
+from robolink.exceptions import RCLError as RCLError
 from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatus
 from robolink.interfaces.action_msgs.srv import CancelGoal
 from robolink.interfaces.unique_identifier_msgs.msg import UUID

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from robolink.action.states import ACTIVE, GoalEvent, RCLError, next_status
+from robolink.action.states import ACTIVE, GoalEvent, next_status
+from robolink.exceptions import RCLError
 from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatus
 from robolink.interfaces.unique_identifier_msgs.msg import UUID
 from robolink.type_support import in_brackets
