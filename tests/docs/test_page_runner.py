@@ -133,7 +133,7 @@ PAGES = {
     "a world with a mistake": ("```yaml\nrobots: [{name: r1, sensors: [{lidra: scan}]}]\n```", "did you mean 'lidar'"),
     "a test that fails": ("```python\ndef test_it():\n    assert 1 == 2\n```", "assert 1 == 2"),
     "an example that fails": ("<!-- run: each -->\n```sh\nrobolink run no_such_node\n```", "ended with 1"),
-    "a wrong command that is not run": ("<!-- run: not, no -->\n```sh\nrobolink topic ecko\n```", "No such command"),
+    "a wrong command that is not run": ("<!-- run: not, no -->\n```sh\nrobolink topic ecko\n```", "no command named"),
     "a comment that nobody knows": ("<!-- run: tpye a -->", "nobody knows what"),
 }
 

@@ -53,6 +53,8 @@ FIRST_WORDS = 1.0
 """Seconds that a command which goes on has for its first line, before the next command is typed."""
 LOOKS = {"list", "info", "--status", "doctor"}
 """Words of commands that look and change nothing: a reader types them again when what they look at is not there yet."""
+STARTING = re.compile(r"^robolink: (no node named|gave up after .* nobody serves)", re.MULTILINE)
+"""Errors of a command that asks a node which is still starting, on a busy machine: it is typed again."""
 INTERRUPTED = (0, 130, -2, 0xC000013A)
 ALONE = ("type", "try", "copy", "early", "with", "new")
 """Orders that are no block's own, even where one follows."""
@@ -167,6 +169,10 @@ class Shells:
         program, variables = self.shell.program(words)
         if is_for_here(words[1:]) and "terminal" not in orders:
             ended = run_here(words[1:], self.shell.folder, self.domain, variables)
+            end = time.monotonic() + PATIENCE
+            while self.running and STARTING.search(said(ended)) and not {"fails", "try"} & set(orders):
+                assert time.monotonic() < end, f"'{line}' fails: {said(ended)}"
+                ended = run_here(words[1:], self.shell.folder, self.domain, variables)
             self.last = (line, ended)
             assert "try" in orders or (ended.code != 0) is ("fails" in orders), f"'{line}' fails: {said(ended)}"
             return
