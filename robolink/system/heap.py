@@ -54,7 +54,7 @@ def _give_for_ever() -> None:
 
 
 def give_back() -> None:
-    """Give freed memory back to the system once no huge message has come for the first of PAUSES, and after the second.
+    """Return freed memory to the system once no huge message has come for the first of PAUSES, and after the second.
 
     What Zenoh puts a huge message together from lies in the arenas of several threads, and glibc never trims these by
     itself: half a gigabyte stayed with a process for good.

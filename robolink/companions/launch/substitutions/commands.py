@@ -52,7 +52,7 @@ class Command(Substitution):
         is_captured = reaction == "capture"
         errors = subprocess.STDOUT if is_captured else subprocess.PIPE
         try:
-            done = run_bounded(program_of(words, context), errors, context.environment)
+            done = _run_bounded(program_of(words, context), errors, context.environment)
         except (OSError, ValueError, subprocess.TimeoutExpired) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise SubstitutionFailure(f"'{shown(text)}' cannot be run: {reason}") from None
@@ -65,7 +65,7 @@ class Command(Substitution):
         return output
 
 
-def run_bounded(words: list[str], errors: int, environment: Mapping[str, str]) -> subprocess.CompletedProcess[bytes]:
+def _run_bounded(words: list[str], errors: int, environment: Mapping[str, str]) -> subprocess.CompletedProcess[bytes]:
     """Run a command to its end; one that writes more than LONGEST bytes, or takes too long, is killed.
 
     Args:
