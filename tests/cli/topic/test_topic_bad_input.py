@@ -129,8 +129,8 @@ def test_a_bad_environment_is_one_line_and_1(
 @pytest.mark.parametrize(
     ("args", "report"),
     [
-        (["topic", "ecko"], "No such command 'ecko'. Did you mean 'echo'?"),
-        (["node", "lst"], "No such command 'lst'. Did you mean 'list'?"),
+        (["topic", "ecko"], "no command named 'topic ecko' (did you mean 'echo'?)"),
+        (["node", "lst"], "no command named 'node lst' (did you mean 'list'?)"),
         (["topic", "list", "--show-type"], "No such option: --show-type"),
         (["node", "list", "--jsn"], "No such option: --jsn"),
         (["topic", "list", "extra"], "Got unexpected extra argument"),
