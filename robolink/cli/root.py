@@ -132,7 +132,7 @@ class Root(typer.core.TyperGroup):
         return super().resolve_command(ctx, args)
 
     def _verbs(self, ctx: Context, noun: str) -> list[str]:
-        command = self.get_command(ctx, noun)
+        command: Any = self.get_command(ctx, noun) if noun in COMMANDS else None  # another package's may not even load
         return command.list_commands(ctx) if hasattr(command, "list_commands") else []
 
     def shell_complete(self, ctx: Context, incomplete: str) -> list[Any]:

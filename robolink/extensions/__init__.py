@@ -9,6 +9,9 @@ A package names what it adds in its pyproject.toml, and robolink reads that when
     [project.entry-points."robolink.nodes"]
     patrol = "my_package.patrol:Patrol"       # robolink run patrol
 
+    [project.entry-points."robolink.sensors"]
+    compass = "my_package.compass:COMPASS"    # sensors: [{compass: heading}] in a world file
+
 Reading the entry points of an environment takes some ten milliseconds, so nothing is read for a name that is known.
 What comes with robolink goes first. How to write one: docs/extensions.md.
 """
@@ -29,6 +32,9 @@ COMMANDS = "robolink.commands"
 """Group of commands: NAME for a noun (a typer.Typer), NOUN.VERB for a verb of one (a function, or a typer.Typer)."""
 NODES = "robolink.nodes"
 """Group of nodes that `robolink run NAME` and launch files find: a Node class, or a function without arguments."""
+
+SENSORS = "robolink.sensors"
+"""Group of sensors for world files: a `robolink.sim.sensors.SensorKind`, by the key that names it in a world file."""
 
 
 class ExtensionError(RobolinkError, ImportError):

@@ -1,15 +1,19 @@
-"""Sensors as a world file describes them: a Struct for each kind, and the table `SENSORS` of all kinds.
+"""Sensors as a world file describes them: a Struct for each kind, and the registry of all kinds.
 
 How to add one: "Add a sensor" in docs/development/recipes.md.
 """
 
 from __future__ import annotations
 
+import functools
+import importlib
 from collections.abc import Iterator
-from typing import Annotated, ClassVar, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, TypeAlias
 
 from msgspec import Meta, Struct
 
+from robolink.extensions import SENSORS as GROUP
+from robolink.extensions import ExtensionError, added, load
 from robolink.sim.quantities import Length, Pose, Rate, Share
 
 Deviation: TypeAlias = Annotated[float, Meta(ge=0.0, le=100.0)]
@@ -204,11 +208,92 @@ def _range_problems(limits: tuple[float, float]) -> Iterator[tuple[str, str]]:
         yield "range", f"the nearest, {near:g} m, must be less than the farthest, {far:g} m"
 
 
-SENSORS: dict[str, type[Sensor]] = {
-    each.__struct_fields__[0]: each for each in (Lidar, Bumper, Imu, RangeFinder, Encoders, Camera)
-}
-"""Sensor classes by kind, the key that names it in a world file.
+class SensorKind(NamedTuple):
+    """A kind of sensor: its keys in a world file, what measures, and what the measurement is sent as.
 
-Each has an entry in two more tables, by its class: `DEVICES` in sim/sensing/devices.py and `SENSOR_MESSAGES` in
-world_node/messages.py. tests/world_node/test_sensor_tables.py names the one that is missing.
-"""
+    Parts are objects, or `MODULE:NAME`, which is imported when the part is used: a world file is read without physics,
+    and the simulator knows no messages.
+    """
+
+    description: type[Sensor]
+    """Struct of the keys; the first is the kind."""
+    device: Any
+    """Class or function that makes the device of a description and a `Carrier`: see `sensing.devices.Device`."""
+    message: Any
+    """Message type that it publishes."""
+    convert: Any
+    """Function that makes the message of a value, a std_msgs Header and the description."""
+
+    def part(self, name: str) -> Any:
+        """Return a part, imported if need be.
+
+        Args:
+            name: device, message or convert.
+        """
+        return _imported(getattr(self, name))
+
+
+def _imported(part: Any) -> Any:
+    return _attribute(part) if isinstance(part, str) else part
+
+
+@functools.cache
+def _attribute(place: str) -> Any:
+    module, _, name = place.partition(":")
+    return getattr(importlib.import_module(module), name)
+
+
+def _kind(described: type[Sensor], message: str, convert: str) -> SensorKind:
+    return SensorKind(
+        described,
+        f"robolink.sim.sensing.devices:{described.__name__}Sensor",
+        f"robolink.interfaces.{message}",
+        f"robolink.world_node.messages:{convert}",
+    )
+
+
+SENSORS: dict[str, SensorKind] = {
+    each.description.__struct_fields__[0]: each
+    for each in (
+        _kind(Lidar, "sensor_msgs.msg:LaserScan", "scan_message"),
+        _kind(Bumper, "std_msgs.msg:Bool", "bumper_message"),
+        _kind(Imu, "sensor_msgs.msg:Imu", "imu_message"),
+        _kind(RangeFinder, "sensor_msgs.msg:Range", "range_message"),
+        _kind(Encoders, "sensor_msgs.msg:JointState", "joint_state_message"),
+        _kind(Camera, "sensor_msgs.msg:Image", "image_message"),
+    )
+}
+"""Kinds of sensors that come with robolink, by the key that names them in a world file."""
+
+
+def sensor_kinds() -> dict[str, SensorKind]:
+    """Return all kinds of sensors by their keys: robolink's, then those that other packages add.
+
+    Raises:
+        ExtensionError: If one of those cannot be loaded, or is not a SensorKind.
+    """
+    return {**{name: _added(name) for name in added(GROUP)}, **SENSORS}
+
+
+def sensor_kind(key: str) -> SensorKind | None:
+    """Return the kind of sensor that a key of a world file names; None if it names none.
+
+    Raises:
+        ExtensionError: If another package adds it, and it cannot be loaded or is not a SensorKind.
+    """
+    return SENSORS.get(key) or (_added(key) if key in added(GROUP) else None)
+
+
+def kind_of(sensor: Sensor) -> SensorKind:
+    """Return the kind of a sensor."""
+    found = sensor_kind(sensor.kind)
+    assert found is not None, f"no kind of sensor has the key {sensor.kind}"
+    return found
+
+
+def _added(key: str) -> SensorKind:
+    found = load(GROUP, key)
+    if not isinstance(found, SensorKind):
+        what = type(found).__name__
+        raise ExtensionError(f"'{key}' ({GROUP}) is a {what}; a sensor is a robolink.sim.sensors.SensorKind")
+    return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -30,7 +30,7 @@ from robolink.message import Message
 from robolink.sim import Inertia, Pose, Scan, Shot, Velocity, WheelState
 from robolink.sim.description import GRAVITY
 from robolink.sim.rendering.pinhole import Pinhole
-from robolink.sim.sensors import Bumper, Camera, Encoders, Imu, Lidar, RangeFinder, Sensor
+from robolink.sim.sensors import Bumper, Camera, Encoders, Imu, Lidar, RangeFinder, Sensor, kind_of
 from robolink.world_node.uncertainty import Covariance
 
 NANOSECONDS = 1_000_000_000
@@ -40,12 +40,14 @@ NOTHING_SAID: Covariance = np.zeros(36)
 
 def sensor_type(sensor: Sensor) -> type[Message]:
     """Return the type of message that a sensor publishes."""
-    return SENSOR_MESSAGES[type(sensor)][0]
+    found: type[Message] = kind_of(sensor).part("message")
+    return found
 
 
 def sensor_message(sensor: Sensor, value: Any, header: Header) -> Message:
     """Make the message of a sensor's measurement, of its `sensor_type`."""
-    return SENSOR_MESSAGES[type(sensor)][1](value, header, sensor)
+    made: Message = kind_of(sensor).part("convert")(value, header, sensor)
+    return made
 
 
 def time_message(nanoseconds: int) -> Time:
@@ -183,14 +185,3 @@ def camera_transforms(stamp: Time, base: str, link: str, optical: str, sensor: C
         TransformStamped(header=Header(stamp=stamp, frame_id=base), child_frame_id=link, transform=there),
         TransformStamped(header=Header(stamp=stamp, frame_id=link), child_frame_id=optical, transform=ahead),
     )
-
-
-SENSOR_MESSAGES: dict[type[Sensor], tuple[type[Message], Callable[[Any, Header, Any], Message]]] = {
-    Lidar: (LaserScan, scan_message),
-    Bumper: (Bool, bumper_message),
-    Imu: (ImuMessage, imu_message),
-    RangeFinder: (Range, range_message),
-    Encoders: (JointState, joint_state_message),
-    Camera: (Image, image_message),
-}
-"""Message type and converter by the class of the sensor: one for each entry of `robolink.sim.sensors.SENSORS`."""

@@ -9,7 +9,12 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.main import main
+from robolink.exceptions import DocumentError
 from robolink.extensions import COMMANDS, NODES, ExtensionError, added, load
+from robolink.interfaces.std_msgs.msg import Float64
+from robolink.sim import load_world
+from robolink.sim.schema import world_schema
+from robolink.testing import System
 
 CODE = """\
 import typer
@@ -51,6 +56,38 @@ topic.nodes = demo_extension:nodes
 topic.list = demo_extension:nodes
 broken = demo_extension:lacking
 number = demo_extension:number
+
+[robolink.sensors]
+compass = demo_compass:COMPASS
+"""
+
+
+COMPASS = """\
+import math
+from msgspec import Struct
+from robolink.interfaces.std_msgs.msg import Float64
+from robolink.sim.quantities import Rate
+from robolink.sim.sensors import Sensor, SensorKind
+
+
+class Compass(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
+    compass: str
+    rate: Rate = 10.0
+
+
+class CompassDevice:
+    def __init__(self, description, carrier):
+        self.description, self._carrier = description, carrier
+
+    def measure(self):
+        return self._carrier.pose(self.description).theta
+
+
+def message(value, header, description):
+    return Float64(data=math.degrees(value))
+
+
+COMPASS = SensorKind(Compass, CompassDevice, Float64, message)
 """
 
 
@@ -62,8 +99,10 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: demo-extension\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text(ENTRY_POINTS)
     (tmp_path / "demo_extension.py").write_text(CODE)
+    (tmp_path / "demo_compass.py").write_text(COMPASS)
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.delitem(sys.modules, "demo_extension", raising=False)
+    for each in ("demo_extension", "demo_compass"):
+        monkeypatch.delitem(sys.modules, each, raising=False)
     return tmp_path
 
 
@@ -123,6 +162,28 @@ def test_faults_are_one_line(words: list[str], reason: str, capsys: pytest.Captu
 def test_a_command_of_robolinks_own_goes_first(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["topic", "list", "--help"]) == 0
     assert "List the topics that are published or subscribed to." in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("package")
+def test_a_sensor_of_another_package_measures_in_a_world(system: System, tmp_path: Path) -> None:
+    world = tmp_path / "world.yaml"
+    world.write_text(
+        "robots: [{name: ada, pose: [1, 1, 1.5707963267948966], sensors: [{compass: heading, rate: 5}]}]\n"
+    )
+    system.start("world", parameters={"world": str(world)})
+    heard: list[float] = []
+    system.node.create_subscription(Float64, "/heading", lambda message: heard.append(message.data), 10)
+    system.run(1.0)
+    assert heard == pytest.approx([90.0] * 5)
+    assert "Compass" in world_schema()["definitions"]
+
+
+@pytest.mark.usefixtures("package")
+def test_a_misspelt_sensor_is_answered_with_those_of_other_packages(tmp_path: Path) -> None:
+    world = tmp_path / "world.yaml"
+    world.write_text("robots: [{name: ada, sensors: [{compas: heading}]}]\n")
+    with pytest.raises(DocumentError, match=r"did you mean 'compass'\?.*one of its keys must be compass, lidar"):
+        load_world(str(world))
 
 
 def test_entry_points_are_those_of_the_path_of_now(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,9 +1,8 @@
-"""Each kind of sensor stands in every table that needs it: a missing entry is named with its file and table."""
+"""Each kind of sensor is in the registry, with parts that are there; another package may add one."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -15,56 +14,27 @@ from robolink.serialization import deserialize_message, serialize_message
 from robolink.sim import Pose, RobotDescription, World, WorldDescription
 from robolink.sim import sensors as descriptions
 from robolink.sim.description import Wheel
-from robolink.sim.sensing.devices import DEVICES
-from robolink.sim.sensors import SENSORS, Bumper, Imu, Lidar, Looking, Sensor
-from robolink.world_node.messages import SENSOR_MESSAGES, sensor_message, sensor_type
+from robolink.sim.sensors import SENSORS, Looking, Sensor
+from robolink.world_node.messages import sensor_message, sensor_type
 
 SIMULATOR_PAGE = Path(__file__).parents[2] / "docs" / "simulator.md"
 WHEELS = (Wheel("left", Pose(0.0, 0.1)), Wheel("right", Pose(0.0, -0.1)))
 
 
-def require(table: Iterable[object], name: str, kinds: Iterable[type[object]]) -> None:
-    """Fail with one sentence that names the table's file and the sensors that it lacks."""
-    if lacking := sorted(each.__name__ for each in set(kinds) - set(table)):
-        recipe = "see 'Add a sensor' in docs/development/recipes.md"
-        pytest.fail(f"the table {name} has no entry for {', '.join(lacking)}: {recipe}", pytrace=False)
-
-
-def has_device(*kinds: type[object]) -> None:
-    require(DEVICES, "DEVICES in robolink/sim/sensing/devices.py", kinds)
-
-
-def has_message(*kinds: type[object]) -> None:
-    require(SENSOR_MESSAGES, "SENSOR_MESSAGES in robolink/world_node/messages.py", kinds)
-
-
-def test_every_sensor_is_in_the_table_of_kinds() -> None:
+def test_every_sensor_is_in_the_registry() -> None:
     structs = [each for each in vars(descriptions).values() if isinstance(each, type) and issubclass(each, Sensor)]
-    require(SENSORS.values(), "SENSORS in robolink/sim/sensors.py", set(structs) - {Sensor, Looking})
+    assert {each.description for each in SENSORS.values()} == set(structs) - {Sensor, Looking}
 
 
-def test_every_sensor_has_a_device_that_measures() -> None:
-    has_device(*SENSORS.values())
-
-
-def test_every_sensor_has_a_message() -> None:
-    has_message(*SENSORS.values())
-
-
-def test_no_table_has_more_than_there_are_sensors() -> None:
-    assert (set(DEVICES) | set(SENSOR_MESSAGES)) - set(SENSORS.values()) == set()
-
-
-def test_a_missing_entry_is_named_with_its_table() -> None:
-    with pytest.raises(pytest.fail.Exception, match=r"^the table DEVICES has no entry for Imu: see 'Add a sensor' in "):
-        require([Bumper, Lidar], "DEVICES", [Bumper, Imu, Lidar])
+@pytest.mark.parametrize("kind", SENSORS)
+def test_every_part_of_a_sensor_is_there(kind: str) -> None:
+    row = SENSORS[kind]
+    assert all(callable(row.part(name)) for name in ("device", "message", "convert"))
 
 
 @pytest.mark.parametrize("kind", SENSORS)
 def test_what_a_sensor_measures_becomes_its_message(kind: str) -> None:
-    described: Any = SENSORS[kind]
-    has_device(described)
-    has_message(described)
+    described: Any = SENSORS[kind].description
     sensor = described("topic")
     robot = RobotDescription("robot", Pose(1.0, 2.0, 0.5), wheels=WHEELS, sensors=(sensor,))
     world = World(WorldDescription(robots=(robot,)))
@@ -79,8 +49,7 @@ def test_what_a_sensor_measures_becomes_its_message(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", SENSORS)
 def test_the_manual_has_a_row_for_every_sensor(kind: str) -> None:
-    has_message(SENSORS[kind])
-    wanted = type_name(SENSOR_MESSAGES[SENSORS[kind]][0]).replace("/msg/", "/")
+    wanted = type_name(SENSORS[kind].part("message")).replace("/msg/", "/")
     rows = [line.split("|") for line in SIMULATOR_PAGE.read_text(encoding="utf-8").splitlines()]
     messages = [row[3].strip() for row in rows if len(row) > 3 and row[1].strip() == f"`{kind}`"]
     assert messages == [wanted], (

@@ -22,11 +22,11 @@ class Noun(typer.core.TyperGroup):
     def list_commands(self, ctx: Any) -> list[str]:
         """Return the names of the verbs, those of other packages last."""
         own = super().list_commands(ctx)
-        return [*own, *(each for each in added_names(str(ctx.info_name)) if each not in own)]
+        return [*own, *(each for each in added_names(_name(self, ctx)) if each not in own)]
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return a verb; None for an unknown name."""
-        return super().get_command(ctx, cmd_name) or added_command(cmd_name, str(ctx.info_name))
+        return super().get_command(ctx, cmd_name) or added_command(cmd_name, _name(self, ctx))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Return the command of the first word; end with a usage error that has the nearest name if it is unknown."""
@@ -43,6 +43,11 @@ class Noun(typer.core.TyperGroup):
             args = arranged(args, args.index(verb), known)
         left: list[str] = super().parse_args(ctx, args)
         return left
+
+
+def _name(noun: Noun, context: Any) -> str:
+    """Return the word that a noun was called by; typer asks without a context, too."""
+    return str((context.info_name if context is not None else noun.name) or "")
 
 
 def arranged(args: Sequence[str], verb: int, known: Collection[str]) -> list[str]:

@@ -22,7 +22,7 @@ from robolink.sim.sensing.lidar import Beams, limited, measured
 from robolink.sim.sensing.random_streams import LidarNoise, stream
 from robolink.sim.sensing.range_finder import nearest_in_cone
 from robolink.sim.sensing.scene import Scene
-from robolink.sim.sensors import Bumper, Camera, Encoders, Imu, Lidar, RangeFinder, Sensor
+from robolink.sim.sensors import Bumper, Camera, Encoders, Imu, Lidar, RangeFinder, Sensor, kind_of
 
 
 class Carrier(NamedTuple):
@@ -210,17 +210,7 @@ class CameraSensor:
         return Shot(self._shooter, setting, view, places, scene.step)
 
 
-DEVICES: dict[type[Sensor], Callable[[Any, Carrier], Device]] = {
-    Lidar: LidarSensor,
-    Bumper: BumperSensor,
-    Imu: ImuSensor,
-    RangeFinder: RangeFinderSensor,
-    Encoders: EncodersSensor,
-    Camera: CameraSensor,
-}
-"""Device classes by the class of the sensor's description: one for each entry of `robolink.sim.sensors.SENSORS`."""
-
-
 def device(sensor: Sensor, carrier: Carrier) -> Device:
     """Make the device of a sensor on a robot."""
-    return DEVICES[type(sensor)](sensor, carrier)
+    made: Device = kind_of(sensor).part("device")(sensor, carrier)
+    return made
