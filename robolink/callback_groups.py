@@ -76,4 +76,6 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
 
     def ending_execution(self, entity: Any) -> None:
         """Release the group, which `entity` had reserved, for the next callback."""
+        if not self._busy.locked():
+            raise AssertionError("no callback of this group runs")  # as in rclpy
         self._busy.release()

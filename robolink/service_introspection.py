@@ -6,6 +6,7 @@ import contextlib
 from enum import IntEnum
 
 from robolink.clock import Clock
+from robolink.context import Context
 from robolink.exceptions import InvalidHandle
 from robolink.graph.endpoint import Endpoint
 from robolink.interfaces.service_msgs.msg import ServiceEventInfo
@@ -106,6 +107,11 @@ class ServiceEnd(Receiver):
         elif now is not None:
             self.introspection = None
             now.close()
+
+    @property
+    def context(self) -> Context:
+        """Context of the node."""
+        return self._endpoint.context
 
     @property
     def service_name(self) -> str:

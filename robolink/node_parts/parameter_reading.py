@@ -50,7 +50,7 @@ class ParameterReading(ParameterCallbacks):
         if parameter is None:
             if self._allow_undeclared_parameters:
                 return Parameter(name)
-            raise self._not_declared_(name)
+            raise self._not_declared_(f"{name}")  # a number, by mistake, is not declared either
         descriptor = self._descriptors.get(name)
         if parameter.type_ is Parameter.Type.NOT_SET and descriptor is not None and not descriptor.dynamic_typing:
             raise ParameterUninitializedException(name)

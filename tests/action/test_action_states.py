@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from robolink import Context, Node, VirtualTime
 from robolink.action.cancel import goals_to_cancel
 from robolink.action.server import ActionServer, ServerGoalHandle
-from robolink.action.states import ACTIVE, ENDED, NAMES, GoalEvent, RCLError, is_cancelable, next_status
+from robolink.action.states import ACTIVE, ENDED, NAMES, GoalEvent, is_cancelable, next_status
+from robolink.exceptions import RCLError
 from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatus
 from robolink.interfaces.action_msgs.srv import CancelGoal
 from robolink.interfaces.builtin_interfaces.msg import Time

@@ -28,6 +28,10 @@ _MASKS = [
     (r"\x1b\[.*DATAWRITER.*\n", ""),
     (r"\n?\n>>> \[rcutils\|error_handling(?s:.*?)\n<<<\n", "\n"),
     (r"Exception ignored in: <function Executor.__del__.*\nTraceback.*\nAttributeError.*\n", ""),
+    # What the C library logs beside the error that it raises.
+    (r"\[ERROR\] \[[\d.]+\] \[rcl\]: Failed to parse global arguments\n", ""),
+    (r"\[WARN\] \[[\d.]+\] \[rcl\]: (?:Namespace|Node name) not remapped .*\n", ""),
+    (r"\[WARN\] \[[\d.]+\] \[rcl_lifecycle\]: No transition matching .*\n", ""),
     # Where a warning points to: the caller, or a line of the library.
     (r"(?m)^\S+?:\d+: (\w+Warning): .*\n(?:(?:\t- |Use the Single).*\n)*(?:  .*\n)?", r"<\1>\n"),
     (r"robolink\.spinning\.", "rclpy."),
