@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -174,7 +175,7 @@ def test_a_sensor_of_another_package_measures_in_a_world(system: System, tmp_pat
     heard: list[float] = []
     system.node.create_subscription(Float64, "/heading", lambda message: heard.append(message.data), 10)
     system.run(1.0)
-    assert heard == pytest.approx([90.0] * 5)
+    assert heard == pytest.approx([math.degrees(0.5)] * 5)
     assert "Compass" in world_schema()["definitions"]
 
 
