@@ -30,11 +30,20 @@ class Choice:
         topics: Topics at the beginning.
         selected: The selected one; `NONE` for none.
         on_select: Called with a topic that has been selected.
+        other: Topic at the node's other end: with it as a choice too, its messages would go in a circle.
     """
 
     def __init__(
-        self, node: Node, kinds: Kinds, topics: list[str], selected: str, on_select: Callable[[str], None]
+        self,
+        node: Node,
+        kinds: Kinds,
+        topics: list[str],
+        selected: str,
+        on_select: Callable[[str], None],
+        *,
+        other: str,
     ) -> None:
+        self._other = node.resolve_topic_name(other)
         self.node, self.topics, self.selected, self._on_select = node, topics, selected, on_select
         self.name = node.get_name()
         for service in Kinds._fields:
@@ -99,12 +108,12 @@ class Choice:
         return response
 
     def _fault(self, topic: str) -> str:
-        """Return the reason why a text is not a name of a topic; '' if it is one."""
+        """Return the reason why a text is not a topic to choose; '' if it may be one."""
         try:
-            self.node.resolve_topic_name(topic)
+            full = self.node.resolve_topic_name(topic)
         except InvalidTopicNameException as error:
             return str(error).partition("\n")[0]
-        return ""
+        return "its messages would go in a circle" if full == self._other else ""
 
     def _say(self, text: str) -> None:
         self.node.get_logger().info(text)

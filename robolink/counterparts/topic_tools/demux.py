@@ -26,7 +26,9 @@ class Demux(TopicTool):
         topics = list(self.needed("output_topics", "topics to choose from", list[str]()))
         words = described(f"topic that is selected at first; {NONE} for none")
         first = self.declare_parameter("initial_topic", "", words).value or topics[0]
-        self.choice = Choice(self, Kinds(DemuxAdd, DemuxDelete, DemuxList, DemuxSelect), topics, first, self.on_select)
+        self.choice = Choice(
+            self, Kinds(DemuxAdd, DemuxDelete, DemuxList, DemuxSelect), topics, first, self.on_select, other=self._input
+        )
         self.on_select(first)
 
     def on_select(self, topic: str) -> None:

@@ -27,7 +27,9 @@ class Mux(TopicTool):
         self.output_topic = self.declare_parameter("output_topic", "~/selected", words).value
         words = described(f"topic that is selected at first; {NONE} for none")
         first = self.declare_parameter("initial_topic", "", words).value or topics[0]
-        self.choice = Choice(self, Kinds(MuxAdd, MuxDelete, MuxList, MuxSelect), topics, first, self.on_select)
+        self.choice = Choice(
+            self, Kinds(MuxAdd, MuxDelete, MuxList, MuxSelect), topics, first, self.on_select, other=self.output_topic
+        )
         self.on_select(first)
 
     def on_select(self, topic: str) -> None:
