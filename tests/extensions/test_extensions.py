@@ -168,9 +168,7 @@ def test_a_command_of_robolinks_own_goes_first(capsys: pytest.CaptureFixture[str
 @pytest.mark.usefixtures("package")
 def test_a_sensor_of_another_package_measures_in_a_world(system: System, tmp_path: Path) -> None:
     world = tmp_path / "world.yaml"
-    world.write_text(
-        "robots: [{name: ada, pose: [1, 1, 1.5707963267948966], sensors: [{compass: heading, rate: 5}]}]\n"
-    )
+    world.write_text("robots: [{name: ada, pose: [1, 1, 0.5], sensors: [{compass: heading, rate: 5}]}]\n")
     system.start("world", parameters={"world": str(world)})
     heard: list[float] = []
     system.node.create_subscription(Float64, "/heading", lambda message: heard.append(message.data), 10)
