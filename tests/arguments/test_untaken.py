@@ -36,11 +36,19 @@ MEANT = "'batery' is not the name of a node that gets it (did you mean 'battery'
         ("/left /rihgt", "/left /right", ["'rihgt' is not the name of a node that gets it (did you mean 'right'?)"]),
         ("/ns/battery", "/battery", ["'ns/battery' is not the name of a node that gets it (did you mean 'battery'?)"]),
         ("/*/battery", "/battery", []),
+        ("/** /robot1/arm /robot2/arm", "/robot3/arm", []),
+        ("/** /battary /bat /batery", "/battery", [MEANT]),
         ("", "/battery", []),
     ],
 )  # fmt: skip
 def test_a_section_is_told_of_where_its_name_is_wrong(sections: str, names: str, lines: list[str]) -> None:
     assert told(sections, names) == lines
+
+
+def test_of_many_sections_in_vain_the_first_are_named() -> None:
+    *lines, last = told(" ".join(f"/camera{number}" for number in range(1000)), "/battery")
+    assert lines == [f"'camera{number}' is not the name of a node that gets it ('battery')" for number in range(3)]
+    assert last == "997 other sections are for no node that gets it, either"
 
 
 def test_a_thousand_nodes_are_looked_up_at_once() -> None:
