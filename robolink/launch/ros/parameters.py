@@ -73,6 +73,8 @@ def parameters_of(
         else:
             file = each if isinstance(each, ParameterFile) else ParameterFile(each)
             found = gathered.add_file(file.evaluate(context), file.substituted(context))
+            wide.update(each.name for each in found if "*" in each.pattern)
+            found = [each for each in found if "*" not in each.pattern]
         wide.difference_update(each.name for each in found)
     return Parameters(gathered.values(), frozenset(wide), gathered.words, gathered.files)
 
