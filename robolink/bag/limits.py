@@ -20,8 +20,8 @@ MESSAGES_RATIO = 8
 """Most messages for each packed byte of a chunk with more."""
 FILE = 512 << 20
 """Bytes up to which all that is in a file may have any ratio."""
-FILE_RATIO = 4000
-"""Most bytes for each byte of a file with more: a chunk of 1 MB takes 300 bytes with its indexes, whatever is in it."""
+FILE_RATIO = 12_000
+"""Most bytes for each byte of a file with more: a chunk with a black image of 6 MB takes 500 bytes with its indexes."""
 
 
 def refusal_of_piece(packed: int, size: int) -> str:

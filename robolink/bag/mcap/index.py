@@ -188,11 +188,15 @@ def _block(source: Source, index: ChunkIndex) -> Block:
 
 
 def _leave_out_bombs(source: Source, catalog: Catalog) -> None:
-    """Leave out the chunks of the largest ratios where all chunks together claim more than the file is good for."""
+    """Leave out chunks of large ratios behind those with which all claim as much as the file is good for."""
     claimed, most = sum(each.size for each in catalog.blocks), most_of_file(source.size)
     if claimed <= most:
         return
-    kept = [each for each in catalog.blocks if each.size <= PIECE_RATIO * each.length]
+    kept, left = [], most
+    for each in catalog.blocks:
+        if each.size <= max(left, PIECE_RATIO * each.length):
+            kept.append(each)
+            left -= each.size
     left_out = len(catalog.blocks) - len(kept)
     if left_out:
         catalog.blocks = kept

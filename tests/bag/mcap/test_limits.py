@@ -137,6 +137,15 @@ def test_what_is_packed_well_by_an_honest_recorder_is_read(tmp_path: Path) -> No
         assert reader.problems == []
 
 
+@pytest.mark.usefixtures("low")
+@pytest.mark.parametrize("indexed", [True, False])
+def test_of_a_long_recording_of_black_images_the_first_are_read(tmp_path: Path, indexed: bool) -> None:
+    black = [Chunk(message(each, bytes(50 * KIB)), time=each) for each in range(9)]
+    with Reader(made(tmp_path / "a.mcap", black, indexed=indexed)) as reader:
+        assert [each.log_time for each in reader.messages()] == [0, 1, 2, 3, 4]
+        assert reader.problems
+
+
 def test_zeros_are_no_records() -> None:
     with pytest.raises(Malformed, match="there is no record"):
         list(records(bytes(100)))
