@@ -9,7 +9,7 @@ class ContentFilterOptions(NamedTuple):
     """A filter: an SQL-like expression, and the values of its `%0`, `%1` ...
 
     Args:
-        filter_expression: Expression over the message's fields; '' is no filter.
+        filter_expression: Expression over the message's fields; '' stands for none.
         expression_parameters: Texts that replace the parameters of the expression.
     """
 

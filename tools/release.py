@@ -53,7 +53,7 @@ def collect(version: str, today: date, root: Path = ROOT) -> None:
         root: Folder with changes/ and CHANGELOG.md.
 
     Raises:
-        ValueError: If there are no fragments, or one is not made of entries.
+        ValueError: If changes/ has none, or one is not made of entries.
     """
     if not fragments(root):
         raise ValueError("changes/ has no fragments: there is nothing to release")

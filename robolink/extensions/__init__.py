@@ -61,7 +61,7 @@ def _added(group: str, _path: tuple[str, ...]) -> Mapping[str, EntryPoint]:
 
 
 def load(group: str, name: str) -> Any:
-    """Return what an entry point leads to; None if no package adds this name.
+    """Return the object that an entry point leads to; None if no package adds this name.
 
     Args:
         group: Such as `COMMANDS`.

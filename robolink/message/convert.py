@@ -72,7 +72,7 @@ def _nested(cls: type[Message], value: Any, path: str) -> Message:
 
 
 def converted(kind: FieldType, value: Any, path: str) -> Any:
-    """Return a value of a field that is no message as the field holds it, converted as rosidl_runtime_py does.
+    """Return the value of a field that is not a message as the field holds it, converted as rosidl_runtime_py does.
 
     A string takes any scalar, a number what Python's int and float take (5.7 becomes 5), a bool any number and the
     words that YAML 1.1 has for it (in ros2 every text in quotes is true, 'false' too), a byte a number or the character

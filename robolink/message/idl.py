@@ -122,7 +122,7 @@ class _Parser:
     # ---- what a file defines ---------------------------------------------------------------------------------------
 
     def definition(self, suffixes: tuple[str, ...]) -> Definition:
-        """Return what the file defines of the type."""
+        """Return the file's definition of the type."""
         while self.next.text:
             self._statement()
         wanted = [self.short + suffix for suffix in suffixes]

@@ -96,7 +96,7 @@ def plain(value: Any) -> Any:
 
 
 def shown_data(value: Any, style: Style, kind: FieldType | None = None) -> Any:
-    """Return what is shown as plain data and bytes; what is cut off is never converted, so images cost nothing."""
+    """Return the shown part as plain data and bytes; the rest is never converted, so images cost nothing."""
     if hasattr(value, "__ros_fields__"):
         return {name: shown_data(getattr(value, name), style, each) for name, each in value.__ros_fields__.items()}
     if isinstance(value, dict):

@@ -119,7 +119,7 @@ def as_declared(override: Parameter[Any], descriptor: ParameterDescriptor) -> Pa
 
 
 def leniency(given: Parameter[Any] | None, declared: Parameter[Any]) -> str:
-    """Return what ROS 2 makes of a written override that was taken here as it was meant, or '' if it takes it too."""
+    """Return ROS 2's answer to a written override that was accepted here, or '' if ROS 2 accepts it, too."""
     if not isinstance(given, WrittenParameter):
         return ""
     if given.value == []:

@@ -27,13 +27,13 @@ class Requirement(NamedTuple):
 
 
 def requirement() -> Requirement:
-    """Return what a project made here requires to get the robolink that made it."""
+    """Return the requirement by which a project gets the robolink that made it."""
     found = metadata.distribution("robolink")
     return required(json.loads(found.read_text("direct_url.json") or "{}"), found.version)
 
 
 def required(origin: dict[str, Any], version: str) -> Requirement:
-    """Return what a project requires to get a robolink.
+    """Return the requirement by which a project gets a robolink.
 
     Args:
         origin: Content of its direct_url.json; empty if it came from a package index.

@@ -39,7 +39,7 @@ def format_qos(qos: QoSProfile) -> str:
 
 
 def _key(value: Any) -> Any:
-    """Return what stands for a policy's value in a key of a dictionary: a Duration is not hashable."""
+    """Return a hashable form of a policy's value, for a key of a dictionary: a Duration is not hashable."""
     return value.nanoseconds if isinstance(value, Duration) else value
 
 

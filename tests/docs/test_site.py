@@ -225,7 +225,7 @@ globalThis.document = {
 
 
 @pytest.mark.processes
-@pytest.mark.skipif(shutil.which("node") is None, reason="there is no node")
+@pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
 @pytest.mark.parametrize(
     ("source", "language", "folder"),
     [

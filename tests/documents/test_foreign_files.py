@@ -1,4 +1,4 @@
-"""Files in formats of others are read by their own readers' rules: what those ignore is told, and is no error."""
+"""Files in formats of others are read by their own readers' rules: what those ignore is told, and is not an error."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ class Comparison:
 
 
 def label(line: str) -> str:
-    """Return what a line is about: ``name`` of ``name: 'n'``, all but the message of a log line."""
+    """Return the label of a line: ``name`` of ``name: 'n'``, all but the message of a log line."""
     return line.strip().partition(": ")[0]
 
 

@@ -30,7 +30,7 @@ def copied_to(folder: Path) -> Path:
 
 
 def recording(name: str) -> tuple[str, list[str]]:
-    """Return what the real rclpy printed, and the lines that were not the same each time; of a new program nothing."""
+    """Return the output of the real rclpy, and the lines that were not the same each time; of a new program nothing."""
     if not (RECORDINGS / f"{name}.txt").exists():
         return "", []
     text, _, unsteady = (RECORDINGS / f"{name}.txt").read_text(encoding="utf-8").partition(_UNSTEADY)

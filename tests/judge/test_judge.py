@@ -1,4 +1,4 @@
-"""What robolink prints is what was recorded of the real rclpy, but for what the table in docs/rclpy.md names."""
+"""robolink prints the lines recorded of the real rclpy, but for those that the table in docs/rclpy.md names."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def _run(name: str, folder: Path) -> Comparison:
 
 
 def _faults(result: Comparison, table: list[Row]) -> list[str]:
-    """Return what is not in step: differences that no row names, and labels of rows that no longer differ."""
+    """Return the lines that are not in step: differences without a row, and labels of rows that no longer differ."""
     new = [each for each in result.differences if not any(row.covers(each) for row in table)]
     gone = [label for row in table for label in row.unused(result.differences)]
     return [f"not in the table: `{each.label}`\n{each}" for each in new] + [
@@ -63,7 +63,7 @@ def _faults(result: Comparison, table: list[Row]) -> list[str]:
 @pytest.mark.timeout(240)
 @pytest.mark.parametrize("program", names())
 def test_lines_are_the_real_ones_or_in_the_table(program: str, first: Run, tmp_path: Path) -> None:
-    """What is seen once only, on a machine with much else to do, does not count."""
+    """A difference seen only once, on a machine with much else to do, does not count."""
     table = [row for row in rows() if row.program == program]
     faults = _faults(first(program), table)
     for again in range(2):

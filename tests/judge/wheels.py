@@ -32,7 +32,7 @@ PACKAGES = [
     "ros-rosgraph-msgs==2.3.0",
     "numpy",
 ]
-"""What the programs import, of ROS 2 Kilted."""
+"""Packages of ROS 2 Kilted that the programs import."""
 
 _TRIED = "import rclpy; rclpy.init(); rclpy.create_node('tried'); print('ready')"
 
@@ -48,7 +48,7 @@ def interpreter(environment: Path | None = None) -> list[str]:
         environment: A virtual environment that has it; by default one of the judge's own.
 
     Raises:
-        NoWheelsError: There are no wheels for this system, they could not be installed, or they do not work.
+        NoWheelsError: If this system has none, they could not be installed, or they do not work.
     """
     if environment is None:
         if sys.platform != "linux" or platform.machine() != "x86_64":

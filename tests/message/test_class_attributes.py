@@ -1,4 +1,4 @@
-"""What programs read of message classes and do with them, as rosidl's classes have it."""
+"""Attributes of message classes that programs read, as rosidl's classes have them."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class Talking(Vector3):
     """A message with a method."""
 
     def say(self) -> str:
-        """Say something."""
+        """Return a text."""
         return f"{self.x}"
 
 

@@ -1,4 +1,4 @@
-"""What messages need is imported when an endpoint is made, never in a callback, where it would stop all timers."""
+"""Imports that messages need are made with the endpoint, never in a callback, where they would stop all timers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What wins no race: the world's services and parameters, a forged answer, and the end of a rival."""
+"""Cheating wins no race: the world's services and parameters, a forged answer, and the end of a rival."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The commands of a ROS 2 course, typed in its order with `shim ros2` and `shim colcon`, end with 0.
 
 What a reader types differently is in the table of the page about the course, which is read here. As in test_course.py
-the text is no part of this repository.
+the text is not a part of this repository.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ OF_PYTHON = re.compile(r"pip install|python3? -m venv|source robo_env|cd C:|robo
 
 
 def instead(line: str) -> str:
-    """Return what the page has its reader type for a line of the course; '' for nothing."""
+    """Return the command that the page has its reader type for a line of the course; '' for none."""
     for shown, typed in OTHERWISE:
         for each in re.findall("`(.+?)`", shown):
             pattern = re.escape(each).replace(re.escape("..."), ".*")

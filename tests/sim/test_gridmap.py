@@ -191,7 +191,7 @@ DOUBTED = [
     ({"occupied_thresh": "65"}, "5:18: occupied_thresh: 65 is not a share from 0 to 1"),
     ({"free_thresh": "0.7"}, "6:14: free_thresh: 0.7 is not less than occupied_thresh, 0.65"),
 ]
-"""What nav2's map_io loads, and nobody means."""
+"""Values that nav2's map_io loads, and nobody means."""
 BROKEN = [
     (b"", "neither PGM (P2, P5) nor PNG: save it as one of these"),
     (b"GIF89a....", "neither PGM (P2, P5) nor PNG: save it as one of these"),

@@ -90,7 +90,7 @@ def test_a_process_of_which_the_guardian_was_not_told_yet_is_known_by_its_lifeli
         guardian.close()
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="there are no process groups")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no process groups")
 def test_a_guardian_that_was_killed_is_followed_by_another_one() -> None:
     with closing(Lifeline()) as lifeline:
         guardian = Guardian(patience=0.0)

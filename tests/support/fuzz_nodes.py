@@ -56,7 +56,7 @@ def _say(text: str) -> None:
 def _started(name: str, messages: int, seed: int) -> subprocess.Popen[str]:
     command = [sys.executable, "-m", "tests.support.fuzz_nodes", "--one", name, "--seed", str(seed)]
     command += ["--messages", str(messages)]
-    # Freed memory that glibc keeps in an arena for each thread is no leak.
+    # Freed memory that glibc keeps in an arena for each thread is not a leak.
     environment = {**os.environ, "MALLOC_ARENA_MAX": "1"}
     return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 

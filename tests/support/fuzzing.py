@@ -131,7 +131,7 @@ class Attack:
 
     @property
     def outcome(self) -> Outcome:
-        """What has come of it so far."""
+        """Outcome so far."""
         counts = self.sent, self.calls, self.answers, len(self._met), self.starts
         return Outcome(*counts, round(self.slowest, 2), list(self.ended.values()))
 
@@ -329,7 +329,7 @@ def apart() -> Iterator[None]:
             os.chdir(deep)
             os.environ["HOME"] = str(deep)
             output.console = None
-            setattr(keyboard, "sys", SimpleNamespace(stdin=_Terminal(), platform=sys.platform))  # noqa: B010 - it is no name of its own
+            setattr(keyboard, "sys", SimpleNamespace(stdin=_Terminal(), platform=sys.platform))  # noqa: B010 - the name is the module's, not its own
             keyboard.PosixKeyboard = keyboard.WindowsKeyboard = Typist  # type: ignore[misc,assignment]
             keyboard._in_background = lambda terminal: False
             yield

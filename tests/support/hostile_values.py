@@ -151,7 +151,7 @@ TIMES = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 
 
 def _settle_image(image: Any, dice: random.Random) -> None:
-    """Give an image sizes that belong together, or nearly."""
+    """Set sizes of an image that belong together, or nearly."""
     encodings = {
         "rgb8": 3,
         "bgr8": 3,
@@ -169,14 +169,14 @@ def _settle_image(image: Any, dice: random.Random) -> None:
 
 
 def _settle_grid(grid: Any, dice: random.Random) -> None:
-    """Give a map as many cells as it has place for, or nearly."""
+    """Set as many cells of a map as it has place for, or nearly."""
     grid.info.width, grid.info.height = dice.choice((0, 1, 20, 50)), dice.choice((0, 1, 20, 50))
     count = max(0, grid.info.width * grid.info.height + dice.choice((0, 0, 0, 0, -1, 1)))
     grid.data = [dice.choice((-1, 0, 100, 50))] * count
 
 
 def _settle_scan(scan: Any, dice: random.Random) -> None:
-    """Give a scan beams of a usual kind, some of them odd."""
+    """Set beams of a scan of a usual kind, some of them odd."""
     count = dice.choice((0, 1, 2, 90, 360))
     scan.angle_min, scan.angle_max = -math.pi, math.pi
     scan.angle_increment = math.tau / max(1, count)
@@ -184,13 +184,13 @@ def _settle_scan(scan: Any, dice: random.Random) -> None:
 
 
 def _settle_joints(state: Any, dice: random.Random) -> None:
-    """Give joints that a robot has."""
+    """Return joints that a robot has."""
     state.name = ["shoulder", "extend", "left", "left"][: dice.randrange(5)]
     state.position = [dice.choice((*FLOATS, 0.1, 1.0)) for _ in state.name]
 
 
 def _settle_id(uuid: Any, dice: random.Random) -> None:
-    """Give one of a few ids, so that requests meet goals that there are."""
+    """Return one of a few ids, so that requests meet goals that there are."""
     uuid.uuid = bytes([dice.randrange(6)]) * 16
 
 

@@ -69,7 +69,7 @@ def write_files(folder: Path) -> None:
 
 
 def recorded() -> dict[str, Any]:
-    """Return what ROS 2's launch did with each description, by name."""
+    """Return the outcome of each description by ROS 2's launch, by name."""
     found: dict[str, Any] = json.loads(RECORDED.read_text(encoding="utf-8"))
     return found
 

@@ -343,7 +343,7 @@ def records(content: Buffer) -> Iterator[tuple[int, int, int]]:
             raise Malformed("a record is cut")
         opcode, length = _opening.unpack_from(content, at)
         if not opcode:
-            raise Malformed("there is no record")
+            raise Malformed("a record is missing")
         start = at + OPENING
         at = start + length
         if at > end:

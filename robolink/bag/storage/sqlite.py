@@ -141,7 +141,7 @@ class SqliteReader(StorageReader):
     def problems(self) -> list[str]:
         """Lines for damage that was found, and for rows that have no time, or no bytes."""
         damage = f"{self.path} is damaged ({self._damage}): {self.message_count} messages of it can be read"
-        strange = f"{self.path}: {self._strange} rows are no messages: they are left out"
+        strange = f"{self.path}: {self._strange} rows are not messages: they are left out"
         return ([damage] if self._damage else []) + ([strange] if self._strange else [])
 
     def counts(self) -> list[int]:

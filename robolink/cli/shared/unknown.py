@@ -18,7 +18,7 @@ OTHERS = {
 
 
 def meant(word: str, commands: Sequence[str], verbs: Callable[[str], Iterable[str]]) -> str:
-    """Return what was probably meant by a `word` that is not a command, as the end of an error; '' if nothing is near.
+    """Return the end of an error that names the commands near a `word`; '' if none is near.
 
     Args:
         word: The word.

@@ -97,7 +97,7 @@ def boolean(context: LaunchContext, subs: SomeSubstitutionsType | bool) -> bool:
 
 
 def as_node_reads(value: Any) -> Any:
-    """Return what a node of ROS 2 gets for a text that YAML has read, and any other `value` as it is.
+    """Return the value that a node of ROS 2 gets for a text that YAML has read, and any other `value` as it is.
 
     launch writes it into a parameter file by PyYAML, without quotes unless PyYAML would read something else, and the
     node reads that by rcl, for which `1e5`, `inf` and `y` are a number, another one and a boolean.

@@ -74,7 +74,7 @@ def _actions(node: yaml.SequenceNode, file: str) -> list[Entity]:
 
 
 def _value(node: yaml.Node, file: str) -> Any:
-    """Return what YAML reads: a scalar, or a list of them."""
+    """Return YAML's value of a text: a scalar, or a list of them."""
     if isinstance(node, yaml.SequenceNode):
         return [_value(each, file) for each in node.value]
     line = node.start_mark.line + 1

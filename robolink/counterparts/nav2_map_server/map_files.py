@@ -73,7 +73,7 @@ def path_of(url: str) -> Path:
     if not url.startswith("file://"):
         return Path(url).expanduser() if url == "~" or url.startswith("~/") else Path(url)
     path = unquote(urlparse(url).path)
-    # file:///C:/maps/a.yaml is C:/maps/a.yaml; a URL has a slash before the drive, which is no part of the path
+    # file:///C:/maps/a.yaml is C:/maps/a.yaml; a URL has a slash before the drive, which is not a part of the path
     return Path(path[1:] if re.match(r"/[A-Za-z]:(/|$)", path) else path)
 
 

@@ -107,7 +107,7 @@ class Protos:
             path = scope.folder / address
             if address.endswith(".proto") and path.is_file():
                 return path
-            self.missing[kind] = f"there is no file '{shown(address, 60)}'"
+            self.missing[kind] = f"the file '{shown(address, 60)}' is missing"
         elif kind not in self._known and re.fullmatch(r"[\w.-]+", kind):
             places = (scope.folder / f"{kind}.proto", scope.folder.parent / "protos" / f"{kind}.proto")
             return next((each for each in places if each.is_file()), None)

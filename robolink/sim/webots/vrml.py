@@ -232,7 +232,7 @@ class _Parser:
         return node
 
     def _expanded(self, node: Node) -> Node:
-        """Return what a node of a PROTO's type stands for; any other as it is."""
+        """Return the node that one of a PROTO's type stands for; any other as it is."""
         definition = self._protos.find(node, self._scope) if self._protos else None
         if definition is None:
             return node

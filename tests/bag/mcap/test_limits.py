@@ -147,7 +147,7 @@ def test_of_a_long_recording_of_black_images_the_first_are_read(tmp_path: Path, 
 
 
 def test_zeros_are_no_records() -> None:
-    with pytest.raises(Malformed, match="there is no record"):
+    with pytest.raises(Malformed, match="a record is missing"):
         list(records(bytes(100)))
 
 

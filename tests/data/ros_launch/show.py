@@ -12,7 +12,7 @@ from rclpy.utilities import remove_ros_args
 
 
 def seen(words):
-    """Return what a node with this command line has."""
+    """Return the parameters and names of a node with this command line."""
     found = {"env": {name: value for name, value in sorted(os.environ.items()) if name.startswith("X_")}}
     try:
         found["args"] = remove_ros_args(words)[1:]

@@ -1,4 +1,4 @@
-"""What beginners try, such as rclpy.Node, String("x") and swapped arguments."""
+"""Guesses of beginners, such as rclpy.Node, String("x") and swapped arguments."""
 
 import time
 

@@ -1,4 +1,4 @@
-"""What may be a callback."""
+"""Callables that may be a callback."""
 
 import functools
 

@@ -1,4 +1,4 @@
-"""What is asked of things that have been destroyed, wrong thresholds of jumps, and the timeout of a shutdown."""
+"""Calls to things that have been destroyed, wrong thresholds of jumps, and the timeout of a shutdown."""
 
 import threading
 import time

@@ -1,4 +1,4 @@
-"""What executors do with nodes and tasks, before init and after shutdown too."""
+"""Executors with nodes and tasks, before init and after shutdown too."""
 
 import threading
 import time

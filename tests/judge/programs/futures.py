@@ -1,4 +1,4 @@
-"""What a Future does when it is done, cancelled, fails, or is awaited."""
+"""Futures that are done, are cancelled, fail, or are awaited."""
 
 import gc
 import sys

@@ -1,4 +1,4 @@
-"""What a node sees of the other nodes and their topics, services and actions."""
+"""The graph as a node sees it: other nodes and their topics, services and actions."""
 
 import rclpy
 from probe import show, took, until

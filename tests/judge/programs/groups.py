@@ -1,4 +1,4 @@
-"""What runs at the same time in which callback group."""
+"""Callback groups, and the callbacks that run at the same time."""
 
 import threading
 import time

@@ -1,4 +1,4 @@
-"""What init, shutdown and their context do, in order and out of order, with good and bad arguments."""
+"""init, shutdown and their context, in order and out of order, with good and bad arguments."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""What the sequences and arrays of messages accept, and as what they are kept."""
+"""Sequences and arrays of messages: the values that they accept, and how they are kept."""
 
 import array
 

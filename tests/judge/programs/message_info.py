@@ -1,4 +1,4 @@
-"""What a callback learns about a message, and messages as bytes."""
+"""MessageInfo of a callback, and messages as bytes."""
 
 import array
 

@@ -1,4 +1,4 @@
-"""What declare_parameter and its relatives accept, return and refuse."""
+"""declare_parameter and its relatives: the values that they accept, return and refuse."""
 
 import rclpy
 from probe import show

@@ -1,4 +1,4 @@
-"""What arrives on /rosout."""
+"""Messages on /rosout."""
 
 import rclpy
 from probe import say, show, until

@@ -1,4 +1,4 @@
-"""What serialize_message writes, and what deserialize_message reads."""
+"""Bytes that serialize_message writes and deserialize_message reads."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What create_publisher, create_subscription and publish accept, and what they refuse."""
+"""Arguments that create_publisher, create_subscription and publish accept and refuse."""
 
 import rclpy
 from probe import say, show

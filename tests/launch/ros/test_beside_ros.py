@@ -132,7 +132,7 @@ class Play:
                 self.error = each.reason if each.code else self.error
 
     def node_of(self, entry: Entry) -> dict[str, Any]:
-        """Return what the node of an entry has, as the recording's program says it."""
+        """Return the parameters and names of an entry's node, as the recording's program says them."""
         words = list(arguments(entry))
         env = {**INHERITED, **environment(entry)}
         seen: dict[str, Any] = {
@@ -219,7 +219,7 @@ def test_a_description_does_what_it_does_in_ros(description: Description, here: 
     if description.name not in DIFFERENT:
         assert not found, "\n".join(found)
         return
-    assert found, "there is no difference any more"
+    assert found, "it no longer differs"
     assert DIFFERENT[description.name] in DOCS.read_text(encoding="utf-8").partition("## Differences")[2]
 
 

@@ -130,7 +130,7 @@ def test_one_that_is_a_program_is_left_out(folder: Path, body: str, told: str) -
 
 def test_one_whose_file_is_not_there_and_one_on_the_network_are_told(folder: Path) -> None:
     assert world(folder, "Thing { }", "../protos/Thing.proto").notes == (
-        "there is no file '../protos/Thing.proto', so this is not there: Thing",
+        "the file '../protos/Thing.proto' is missing, so this is not there: Thing",
     )
     arm = (
         "https://raw.githubusercontent.com/cyberbotics/webots/R2023b/projects/robots/universal_robots/protos/UR5e.proto"

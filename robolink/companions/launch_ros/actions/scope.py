@@ -100,7 +100,7 @@ class SetParameter(Action):
 
 
 def _read(name: str, text: str) -> Any:
-    """Return what rcl reads of a parameter's text behind `-p`. Raises LaunchError."""
+    """Return rcl's value of a parameter's text behind `-p`. Raises LaunchError."""
     try:
         return parse_parameter_value(text, "")
     except DocumentError as error:
