@@ -270,7 +270,7 @@ def fault(pose: PoseMessage) -> str:
     if not all(abs(each) <= FARTHEST for each in numbers):
         return f"expected finite numbers, and places within {FARTHEST:g} m, got {pose}"
     if math.hypot(*numbers[3:]) < 1e-3:
-        return "its orientation is all zero, which is no quaternion: w is 1 for no rotation"
+        return "its orientation is all zero, which is not a quaternion: w is 1 for no rotation"
     return ""
 
 

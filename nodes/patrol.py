@@ -27,7 +27,7 @@ AFTER_FAILURE = 1.0
 
 
 class WaypointsError(RobolinkError, ValueError):
-    """A text or a list that is no list of waypoints."""
+    """A text or a list that is not a list of waypoints."""
 
 
 class Waypoint(NamedTuple):

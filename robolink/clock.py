@@ -136,7 +136,7 @@ class Clock:
         time_base: Source of system and steady time; None is the program's own, which may be virtual.
 
     Raises:
-        TypeError: if `clock_type` is no ClockType.
+        TypeError: if `clock_type` is not a ClockType.
     """
 
     def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME, time_base: TimeBase | None = None) -> Clock:
@@ -321,7 +321,7 @@ class ROSClock(Clock):
         self._jump(change, switch, self._override if enabled else self._base.now())
 
     def set_ros_time_override(self, time: Time) -> None:
-        """Set the ROS time to `time`, which holds while /clock is active. Raises TypeError for what is no Time."""
+        """Set the ROS time to `time`, which holds while /clock is active. Raises TypeError for what is not a Time."""
         if not isinstance(time, Time):
             raise TypeError(f"the time must be a {imported_as()}.time.Time, got {time!r:.80}")
 

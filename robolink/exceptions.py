@@ -168,7 +168,7 @@ class NotInitializedException(RobolinkError, RuntimeError):
 
 
 class NoTypeSupportImportedException(RobolinkError, TypeError):
-    """A class that is no message class was given where one is needed."""
+    """A class that is not a message class was given where one is needed."""
 
 
 class RCLError(RobolinkError, RuntimeError):

@@ -93,7 +93,7 @@ def add_handler(handler: Handler) -> None:
 
 
 def remove_handler(handler: Handler) -> None:
-    """Pass log lines to `handler` no more; one that was never added is no error."""
+    """Pass log lines to `handler` no more; one that was never added is not an error."""
     output.remove(handler)
 
 

@@ -350,7 +350,7 @@ class Node(NodeParameters, NodeCreation):
 
         def __getattr__(self, name: str) -> Any:
             if name.startswith("_") and "_context" not in vars(self):
-                text = f"{type(self).__name__} is no node yet: call super().__init__('NAME') first"
+                text = f"{type(self).__name__} is not a node yet: call super().__init__('NAME') first"
                 raise AttributeError(text, name="", obj=None)  # else Python would advise another name of ours
             return super().__getattribute__(name)  # which says what Python says
 

@@ -206,7 +206,7 @@ def parameter_dict_from_yaml_file(
 
     Raises:
         FileNotFoundError: if there is no such file.
-        ParameterFileError: (a RuntimeError) if it is no ROS parameter file, or has no section for any target node.
+        ParameterFileError: (a RuntimeError) if it is not a ROS parameter file, or has no section for any target node.
 
     Warns (RuntimeWarning) of a target node without a section where another one has any.
     """

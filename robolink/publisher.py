@@ -102,7 +102,7 @@ class Publisher(Destroyable, Generic[MsgT]):
 
     @property
     def _is_heard_(self) -> bool:
-        """True if anybody gets what is published: a subscription, or a recorder that is no node."""
+        """True if anybody gets what is published: a subscription, or a recorder that is not a node."""
         return self._outlets.matched
 
     def get_subscription_count(self) -> int:

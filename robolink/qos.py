@@ -167,7 +167,7 @@ class QoSProfile:
         liveliness: How a publisher shows that it is alive; by default SYSTEM_DEFAULT, which is AUTOMATIC.
         liveliness_lease_duration: Duration after which a silent publisher counts as gone; zero (the default) is
             unlimited.
-        avoid_ros_namespace_conventions: True announces that the topic's name is no ROS name; by default False.
+        avoid_ros_namespace_conventions: True announces that the topic's name is not a ROS name; by default False.
 
     Raises:
         InvalidQoSProfileException: (a ValueError) if history and depth are missing, or for a value that a policy

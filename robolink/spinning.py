@@ -192,7 +192,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
     Raises:
         ExternalShutdownException: if the context ends while this waits. After Ctrl-C it is, in the
             main thread, an InterruptedByUser, which is a KeyboardInterrupt too.
-        TypeError: if `node` is no Node.
+        TypeError: if `node` is not a Node.
         Exception: what a callback raises.
     """
     _with_node(node, executor, lambda chosen: chosen.spin())
@@ -208,7 +208,7 @@ def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: floa
 
     Raises:
         ExternalShutdownException: if the context has ended.
-        TypeError: if `node` is no Node.
+        TypeError: if `node` is not a Node.
         Exception: what the callback raises.
     """
     chosen = _resumed(node, executor)
@@ -235,7 +235,7 @@ def spin_until_future_complete(
     Raises:
         ExternalShutdownException: if the context ends while this waits. After Ctrl-C it is, in the
             main thread, an InterruptedByUser, which is a KeyboardInterrupt too.
-        TypeError: if `node` is no Node.
+        TypeError: if `node` is not a Node.
         Exception: what a callback raises.
     """
     _with_node(node, executor, lambda chosen: chosen.spin_until_future_complete(future, timeout_sec))

@@ -29,7 +29,7 @@ class Time:
     Raises:
         ValueError: if the time is negative.
         OverflowError: if it does not fit in 64 signed bits (292 years).
-        TypeError: if `clock_type` is no ClockType.
+        TypeError: if `clock_type` is not a ClockType.
     """
 
     __slots__ = ("_clock_type", "_nanoseconds")

@@ -52,7 +52,7 @@ class TimeSource:
     def attach_node(self, node: TimedNode) -> None:
         """Follow the parameter use_sim_time of `node`, which is declared if it is not yet.
 
-        Raises TypeError for what is no node, or if the parameter is no bool.
+        Raises TypeError for what is not a node, or if the parameter is not a bool.
         """
         if not hasattr(node, "declare_parameter"):
             raise TypeError(f"node: expected a Node, got {type(node)}")

@@ -35,7 +35,7 @@ class TopicEndpointInfo:
         node_name: Name of its node, without namespace.
         node_namespace: Namespace of its node.
         topic_type: Name of the message type, such as `std_msgs/msg/String`.
-        topic_type_hash: Hash of the message type, or the dictionary of its parts; None is no hash.
+        topic_type_hash: Hash of the message type, or the dictionary of its parts; None is not a hash.
         endpoint_type: Kind of the endpoint, or its number.
         endpoint_gid: Global id, 16 numbers from 0 to 255; None is empty.
         qos_profile: Quality of service, or the dictionary of its policies.

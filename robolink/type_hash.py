@@ -26,7 +26,7 @@ class TypeHash:
 
     @classmethod
     def from_text(cls, text: str) -> TypeHash:
-        """Return the hash of `text` such as `RIHS01_df66…`; for what is no hash, as Humble's, one of version -1."""
+        """Return the hash of `text` such as `RIHS01_df66…`; for what is not a hash, as Humble's, one of version -1."""
         version, _, digits = text.removeprefix(_PREFIX).partition("_")
         try:
             return cls(int(version), bytes.fromhex(digits))

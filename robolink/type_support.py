@@ -62,7 +62,7 @@ def check_is_valid_msg_type(msg_type: type[Any]) -> None:
     try:
         message_type(msg_type)
     except MessageError:
-        raise WrongTypeError(f"{msg_type!r} is no message class, but one of a service or action") from None
+        raise WrongTypeError(f"{msg_type!r} is not a message class, but one of a service or action") from None
 
 
 def check_is_valid_srv_type(srv_type: type[Any]) -> None:
@@ -71,4 +71,4 @@ def check_is_valid_srv_type(srv_type: type[Any]) -> None:
     try:
         service_type(srv_type)
     except MessageError:
-        raise WrongTypeError(f"{srv_type!r} is no service class, but one of a message or action") from None
+        raise WrongTypeError(f"{srv_type!r} is not a service class, but one of a message or action") from None

@@ -14,7 +14,7 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]
     """Return True if `name` can be expanded. The expanded name may still be too long: see `validate_full_topic_name`.
 
     Raises InvalidTopicNameException with the index of the bad character (InvalidServiceNameException if
-    `is_service`), and TypeError for what is no str.
+    `is_service`), and TypeError for what is not a str.
     """
     _check_is_text(name)
     problem = find_problem(name, TOPIC_NAME_RULES)

@@ -32,7 +32,7 @@ ANNOUNCED = {".msg": ("",), ".srv": ("",), ".action": ("", "_SendGoal", "_GetRes
 COMMENT = re.compile(r"(?m)#.*$")
 CHAR = re.compile(r"^char\b", re.MULTILINE)
 DEFAULT = re.compile(r"^([\w/\[\]<=]+[ \t]+\w+)[ \t]+[^=\s].*", re.MULTILINE)
-"""A field with a default value, which is no part of the hash and which rosbags does not read."""
+"""A field with a default value, which is not a part of the hash and which rosbags does not read."""
 
 
 def fields_of(text: str, package: str, name: str) -> Typesdict:

@@ -70,7 +70,7 @@ class ActionClient(Waitable):
             status_sub_qos_profile: QoS of the subscription to the goals' states.
 
         Raises:
-            ValueError: if the name is not valid, or the class is no action.
+            ValueError: if the name is not valid, or the class is not an action.
         """
         super().__init__(callback_group or node.default_callback_group)
         self._node, self._action_type = node, checked_action_type(action_type)

@@ -124,7 +124,7 @@ class ActionServer(Waitable):
                 ever.
 
         Raises:
-            ValueError: if the name is not valid, or the class is no action.
+            ValueError: if the name is not valid, or the class is not an action.
             TypeError: if `execute_callback` cannot be called.
         """
         super().__init__(callback_group or node.default_callback_group)

@@ -25,7 +25,7 @@ PARAMETERS_KEY = "ros__parameters"
 
 
 class ParameterFileError(DocumentError, RuntimeError):
-    """A file is no ROS parameter file (rclpy raises `RuntimeError`); the text begins with file:line:column."""
+    """A file is not a ROS parameter file (rclpy raises `RuntimeError`); the text begins with file:line:column."""
 
 
 def read_parameter_file(path: str | os.PathLike[str]) -> list[Override]:
@@ -166,7 +166,7 @@ class _Reader:
     def check_text(self, node: yaml.ScalarNode) -> None:
         """Refuse half a surrogate pair, which an escape can spell and no message can carry."""
         if not node.value.isascii() and any("\ud800" <= each <= "\udfff" for each in node.value):
-            raise self.error(node, "half a surrogate pair is no character")
+            raise self.error(node, "half a surrogate pair is not a character")
 
     def error(self, node: yaml.Node, message: str) -> ParameterFileError:
         return ParameterFileError(shown(message, 200), self.name, *yamltext.place(node.start_mark))

@@ -45,7 +45,7 @@ def contents(path: Path, *, ignores_metadata: bool = False) -> Contents:
     files = files or storage_files(path)
     if not files:
         beside = f"metadata.yaml names {len(problems)}, but " if metadata is not None and problems else ""
-        raise BagError(f"{path} is no bag: {beside}there is no .mcap and no .db3 file in it")
+        raise BagError(f"{path} is not a bag: {beside}there is no .mcap and no .db3 file in it")
     return Contents(files, metadata, problems)
 
 

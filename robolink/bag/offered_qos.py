@@ -36,7 +36,7 @@ def profiles_or_none(text: str) -> tuple[QoSProfile, ...]:
 
 
 def profiles_of_list(data: Any) -> tuple[QoSProfile, ...]:
-    """Return the profiles of a list of mappings, whose values are texts; what is no mapping is left out."""
+    """Return the profiles of a list of mappings, whose values are texts; what is not a mapping is left out."""
     return tuple(_profile(each) for each in data if isinstance(each, dict)) if isinstance(data, list) else ()
 
 

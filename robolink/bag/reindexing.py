@@ -38,7 +38,7 @@ def reindex(path: str | Path, tell: Told = lambda line: None) -> BagMetadata:
     folder = Path(path)
     files = storage_files(folder) if folder.is_dir() else [folder]
     if not files:
-        raise BagError(f"{folder} is no bag: there is no .mcap and no .db3 file in it")
+        raise BagError(f"{folder} is not a bag: there is no .mcap and no .db3 file in it")
     for each in files:
         _mend(each, tell)
     if not folder.is_dir():

@@ -62,7 +62,7 @@ class Selection(NamedTuple):
             try:
                 _compiled(text)
             except re.error as error:
-                raise SelectionError(f"{name}: '{text[:100]}' is no regular expression: {error}") from None
+                raise SelectionError(f"{name}: '{text[:100]}' is not a regular expression: {error}") from None
         return self
 
     def takes(self, topic: str, type_name: str) -> bool:

@@ -33,7 +33,7 @@ def _checked_group(group: str) -> str:
     except ValueError:
         is_group = False
     if not is_group:
-        raise typer.BadParameter(f"'{group[:50]}' is no multicast address: 224.0.0.0 to 239.255.255.255")
+        raise typer.BadParameter(f"'{group[:50]}' is not a multicast address: 224.0.0.0 to 239.255.255.255")
     return group
 
 

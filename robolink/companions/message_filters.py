@@ -329,7 +329,7 @@ def _time(stamp: Any) -> Time:
 
 
 def _nanoseconds(stamp: Any) -> int:
-    """Return any stamp in ns: one before 0 is no Time, but may be somebody's, and two may be the same."""
+    """Return any stamp in ns: one before 0 is not a Time, but may be somebody's, and two may be the same."""
     return int(stamp.nanoseconds if hasattr(stamp, "nanoseconds") else stamp.sec * 10**9 + stamp.nanosec)
 
 

@@ -26,7 +26,7 @@ def workspace_types(fullname: str) -> Fill | None:
     if top in TOPS or top in sys.stdlib_module_names or (dot and kind not in KINDS):
         return None
     real = None if dot else FINDER.real(top)
-    if real is not None and real.loader is not None:  # a folder that is no package has none
+    if real is not None and real.loader is not None:  # a folder that is not a package has none
         return None
     file = _importing_file()
     home = None if file is None else workspace_of(file.parent)

@@ -32,7 +32,7 @@ def open_keyboard(program: str) -> Keyboard:
         program: Name of the program, for the error.
 
     Raises:
-        NoTerminalError: if standard input is no terminal, or the program runs there in the background.
+        NoTerminalError: if standard input is not a terminal, or the program runs there in the background.
     """
     if not sys.stdin or not sys.stdin.isatty():
         raise NoTerminalError(f"{program} reads keys from a terminal, and its standard input is none")

@@ -10,6 +10,7 @@ from robolink.exceptions import RobolinkError
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.node import Node
 from robolink.parameters.descriptors import described
+from robolink.system.words import with_article
 
 FIRST_MESSAGE = 5.0
 """Longest wait for the first message before a warning, in seconds: the robot is often started beside its driver."""
@@ -36,7 +37,7 @@ class SensorController(Node):
     def __init__(self, node_name: str, *, noun: str, topic: str, timeout: float, **options: Any) -> None:
         super().__init__(node_name, **options)
         self.noun, self.topic = noun, self.resolve_topic_name(topic)
-        words = f"seconds without a{'n' if noun[0] in 'aeiou' else ''} {noun} after which the robot stops"
+        words = f"seconds without {with_article(noun)} after which the robot stops"
         seconds = self.declare_parameter("timeout", timeout, described(words, 0.05, 60.0)).value
         self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
         self.watchdog = self.create_timer(max(seconds, FIRST_MESSAGE), self.on_silence)

@@ -19,6 +19,7 @@ from yaml.resolver import Resolver
 from robolink.exceptions import DocumentError
 from robolink.system.plainfile import size
 from robolink.system.terminal import shown
+from robolink.system.words import with_article
 
 try:
     from yaml._yaml import CParser
@@ -254,7 +255,7 @@ class _Builder:
     def _text(self, node: yaml.ScalarNode) -> str:
         text: str = node.value
         if not text.isascii() and any("\ud800" <= each <= "\udfff" for each in text):
-            raise self._error(node, "half a surrogate pair is no character")
+            raise self._error(node, "half a surrogate pair is not a character")
         return text
 
     def _scalar(self, node: yaml.ScalarNode) -> Data:
@@ -265,7 +266,7 @@ class _Builder:
         try:
             return convert(text)
         except (ValueError, KeyError):
-            raise self._error(node, f"'{shown(text)}' is no {node.tag.removeprefix(_TAG)}") from None
+            raise self._error(node, f"'{shown(text)}' is not {with_article(node.tag.removeprefix(_TAG))}") from None
 
     def _check_tag(self, node: yaml.Node, tag: str) -> None:
         if node.tag != _TAG + tag:

@@ -56,7 +56,7 @@ def _code_of_module(name: str, module: ModuleType) -> CodeType:
         return _code_of_module(f"{name}.__main__", module)
     code = getattr(spec.loader, "get_code", lambda name: None)(name) if spec is not None else None
     if spec is None or code is None:
-        raise NodeLoadError(f"{name} is no module that can be run")
+        raise NodeLoadError(f"{name} is not a module that can be run")
     vars(module).update(
         __file__=spec.origin, __spec__=spec, __package__=spec.parent, __loader__=spec.loader, __builtins__=__builtins__
     )

@@ -206,7 +206,7 @@ class Scheduler:
                 run(me)
             except Killed:
                 pass
-            except BaseException as error:  # noqa: BLE001 - what is no program's is told whoever runs the host
+            except BaseException as error:  # noqa: BLE001 - what is not a program's is told whoever runs the host
                 self.fail(error)
             if (me.killed or me.free) and self._is_at_end(me):
                 return None

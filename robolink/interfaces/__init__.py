@@ -55,7 +55,7 @@ def find(name: str, kind: str = "msg") -> type[Any]:
     """Return the class of a type named ``Twist``, ``geometry_msgs/Twist`` or ``geometry_msgs/msg/Twist``.
 
     `kind` is ``msg``, ``srv`` or ``action``; dots may stand for the slashes. Raises NotFoundError, with the nearest
-    name, when there is no such type, and MessageError when the text is no type name, is the name of another kind,
+    name, when there is no such type, and MessageError when the text is not a type name, is the name of another kind,
     stands for several types, or its definition is wrong.
     """
     package, short = _split(name, kind)
@@ -134,7 +134,7 @@ def _split(name: str, kind: str) -> tuple[str, str]:
     said = parts[1] if len(parts) == 3 else kind
     if len(parts) > 3 or said not in KINDS or not all(part.isascii() and part.isidentifier() for part in parts):
         shown = name if len(name) <= 80 else name[:77] + "..."
-        raise MessageError(f"'{shown}' is no type name; it should look like {_EXAMPLES[kind]}")
+        raise MessageError(f"'{shown}' is not a type name; it should look like {_EXAMPLES[kind]}")
     if said != kind:
         raise MessageError(f"'{name}' is the name of {_KIND_TYPES[said]}; {_KIND_TYPES[kind]} is asked for")
     return ("" if len(parts) == 1 else parts[0]), parts[-1]

@@ -84,7 +84,7 @@ def plan(
 
     Raises:
         DocumentError: for a mistake in the file, with `file:line:column`.
-        NotFoundError: for a `workspace` that is no folder.
+        NotFoundError: for a `workspace` that is not a folder.
     """
     entries = read_launch_file(path, given or {}, workspace=workspace, text=text)
     network = network_of(entries, os.environ)

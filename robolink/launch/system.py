@@ -69,7 +69,7 @@ def read_system(
 
     Raises:
         DocumentError: for a mistake in the file, with `file:line`.
-        NotFoundError: for a `workspace` that is no folder.
+        NotFoundError: for a `workspace` that is not a folder.
     """
     path = Path(path)
     if not is_of_ros(path):

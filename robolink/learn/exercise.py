@@ -112,7 +112,7 @@ def read_exercise(folder: Path) -> Exercise:
         folder: Its folder, with exercise.yaml, check.py and a given file; its name is the exercise's, after a number.
 
     Raises:
-        ExerciseError: (a ValueError) if a file is missing, or the folder's name is no name.
+        ExerciseError: (a ValueError) if a file is missing, or the folder's name is not a name.
     """
     named = _NAME.fullmatch(folder.name)
     if named is None:

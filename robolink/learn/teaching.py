@@ -37,7 +37,7 @@ def new_exercise(name: str, folder: str = "", language: Language = "en") -> Path
     """
     if not _NAME.fullmatch(name) or len(name) > LONGEST_NAME:
         raise ExerciseError(
-            f"'{name[:LONGEST_NAME]}' is no name for an exercise: small letters, digits and '_', as in stop_early"
+            f"'{name[:LONGEST_NAME]}' is not a name for an exercise: small letters, digits and '_', as in stop_early"
         )
     here = Path.cwd()
     place = expanded(folder) if folder else here if any(here.glob(f"*/{SETTINGS}")) else here / FOLDER

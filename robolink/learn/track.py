@@ -37,7 +37,7 @@ class _Path:
         self.contacts = 0
 
     def add(self, pose: Pose) -> None:
-        """Add a pose; one that is no number, of a robot that a program has broken, counts as the one before."""
+        """Add a pose; one that is not a number, of a robot that a program has broken, counts as the one before."""
         if self.stands and self.poses:
             return
         is_number = all(map(math.isfinite, pose))

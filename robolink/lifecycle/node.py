@@ -52,7 +52,7 @@ class LifecycleNodeMixin(ManagedEntity):
 
         Raises:
             RuntimeError: if Node is not among the class's bases.
-            TypeError: if `enable_communication_interface` is no bool.
+            TypeError: if `enable_communication_interface` is not a bool.
         """
         if not isinstance(self, Node):
             raise RuntimeError("a LifecycleNodeMixin needs Node beside it among the class's bases")
@@ -221,7 +221,7 @@ class LifecycleNode(LifecycleNodeMixin, Node):
             kwargs: The other keywords of `Node`.
 
         Raises:
-            TypeError: if `enable_communication_interface` is no bool.
+            TypeError: if `enable_communication_interface` is not a bool.
         """
         Node.__init__(self, node_name, **kwargs)
         try:

@@ -147,4 +147,4 @@ def action_type(cls: Any) -> type[Action]:
     """Return `cls` if it is an action class. Raises MessageError otherwise."""
     if isinstance(cls, type) and issubclass(cls, Action):
         return cls
-    raise MessageError(f"{cls!r} is no action class")
+    raise MessageError(f"{cls!r} is not an action class")

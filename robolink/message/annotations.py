@@ -120,7 +120,7 @@ class FieldType(msgspec.Struct, frozen=True):
 
 
 def field_type(annotation: Any, where: str) -> FieldType:
-    """Return the field type of an annotation. Raises MessageError that names `where` if it is no ROS type."""
+    """Return the field type of an annotation. Raises MessageError that names `where` if it is not a ROS type."""
     marks, plain = _split(annotation)
     if typing.get_origin(plain) in (collections.abc.MutableSequence, collections.abc.Sequence, list):
         (element,) = typing.get_args(plain)
@@ -134,7 +134,7 @@ def field_type(annotation: Any, where: str) -> FieldType:
         return FieldType(base=plain.__ros_type__, message=plain)
     base = base or PLAIN.get(plain)
     if base is None:
-        raise MessageError(f"{where}: {annotation!r} is no ROS type (use float64, string, Sequence[...] ...)")
+        raise MessageError(f"{where}: {annotation!r} is not a ROS type (use float64, string, Sequence[...] ...)")
     return FieldType(base=base, string_bound=bound)
 
 

@@ -329,4 +329,4 @@ def message_type(cls: Any) -> type[Message]:
     """Return `cls` if it is a message class, or the one that it extends. Raises MessageError otherwise."""
     if isinstance(cls, type) and hasattr(cls, "__ros_fields__"):
         return next(each for each in cls.__mro__ if "__ros_fields__" in vars(each))
-    raise MessageError(f"{cls!r} is no message class")
+    raise MessageError(f"{cls!r} is not a message class")

@@ -251,7 +251,7 @@ def _kind(type_id: int, where: str) -> tuple[str, str, bool]:
 
 
 def _default(field: FieldDescription, kind: FieldType) -> dict[str, Any]:
-    """Return a field's default. It is no part of the type and its hash: one that does not fit is left out."""
+    """Return a field's default. It is not a part of the type and its hash: one that does not fit is left out."""
     try:
         return {field.name: literals.as_rosidl_said(kind, field.default_value)}
     except ValueError:

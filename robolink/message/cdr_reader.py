@@ -78,7 +78,7 @@ class ReaderSource:
             codecs.lookup("utf-16-le")  # a module, which a callback would import otherwise
             self.constants["narrow"] = narrow
             self.out.add(f"{name} = narrow(data[i:j], {self.order!r}); i = j")
-        else:  # as rclpy: what is no UTF-8 is replaced, a NUL ends the text, and the last one may be missing
+        else:  # as rclpy: what is not UTF-8 is replaced, a NUL ends the text, and the last one may be missing
             text = f"{name} = data[i:j].decode({{}}).partition('\\0')[0]"
             self.out.add(f"try: {text.format('')}")
             self.out.add(f"except UnicodeDecodeError: {text.format(repr('utf-8') + ', ' + repr('replace'))}")

@@ -106,7 +106,7 @@ class WriterSource:
     def _sequence(self, kind: FieldType, value: str) -> None:
         name = self.out.fresh("v")
         self.out.add(f"{name} = {value}")
-        self.out.add(f"if isinstance({name}, str): raise TypeError('a string is no sequence')")
+        self.out.add(f"if isinstance({name}, str): raise TypeError('a string is not a sequence')")
         if kind.shape == "array":
             self.out.add(f"fixed({name}, {kind.size})")
         else:

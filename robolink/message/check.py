@@ -88,7 +88,7 @@ def bools(values: Any) -> bytes:
     """Return a bool sequence's bytes. Raises TypeError for any but True and False (and 1, 0 and numpy's)."""
     for value in values:
         if not _is_bool(value):
-            raise TypeError(f"{value!r} is no bool")
+            raise TypeError(f"{value!r} is not a bool")
     return bytes(bool(value) for value in values)
 
 

@@ -138,7 +138,7 @@ class _Reader:
             stray = NO_TEXT.search(line)
             if stray is not None:
                 what = "a NUL character" if stray[0] == "\0" else f"half a character ({stray[0]!r})"
-                self.fail(number, stray.start() + 1, f"{what}: this is no text file")
+                self.fail(number, stray.start() + 1, f"{what}: this is not a text file")
         return lines
 
     def sections(self, lines: list[str], kind: str, suffixes: tuple[str, ...]) -> tuple[Section, ...]:
@@ -214,7 +214,7 @@ class _SectionReader:
         assert found is not None  # any text matches that neither begins with a space nor with #
         type_text, name, rest = found["type"], found["name"], found["rest"]
         if not name:
-            self.reader.fail(number, indent + 1, f"'{shown(type_text)}' alone is no field: write a type and a name")
+            self.reader.fail(number, indent + 1, f"'{shown(type_text)}' alone is not a field: write a type and a name")
         column = found.start("rest") + 1
         value, behind = _split_comment(rest)
         kind = self._type(type_text, number, indent + 1, constant=value.startswith("="))
@@ -258,7 +258,7 @@ def field_type(text: str, package: str) -> FieldType:
     """Parse a type of a field in a message of `package`, such as ``string<=5[<=3]``. Raises MessageError."""
     found = TYPE.fullmatch(text)
     if found is None:
-        raise MessageError(f"'{shown(text)}' is no type: write float64, float64[], float64[3], float64[<=3] ...")
+        raise MessageError(f"'{shown(text)}' is not a type: write float64, float64[], float64[3], float64[<=3] ...")
     base = found["base"] if found["base"] in TYPE_IDS else _nested(found["base"], package)
     bound = 0
     if found["bound"] is not None:
@@ -287,13 +287,13 @@ def _nested(text: str, package: str) -> str:
     if len(parts) == 1:
         if text[:1].islower():
             meant = f" (did you mean '{MEANT[text]}'?)" if text in MEANT else nearest(text[:80], TYPE_IDS)
-            raise MessageError(f"'{shown(text)}' is no type{meant}")
+            raise MessageError(f"'{shown(text)}' is not a type{meant}")
         full_name = f"{package}/msg/{text}"
     else:
         full_name = f"{parts[0]}/msg/{parts[1]}" if len(parts) == 2 else text
     _, kind, short = split_type_name(full_name)
     if kind != "msg" and not is_part(kind, short):
-        raise MessageError(f"'{full_name}' is no message type: only messages can be fields")
+        raise MessageError(f"'{full_name}' is not a message type: only messages can be fields")
     return full_name
 
 

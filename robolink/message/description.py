@@ -47,7 +47,7 @@ class FieldDescription(msgspec.Struct, frozen=True):
     string_capacity: int = 0
     nested_type_name: str = ""
     default_value: str = ""
-    """Default as rosidl writes it: Python's str of the value. It is no part of the type and of its hash."""
+    """Default as rosidl writes it: Python's str of the value. It is not a part of the type and of its hash."""
 
 
 class TypeDescription(msgspec.Struct, frozen=True):

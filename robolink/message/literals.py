@@ -14,6 +14,7 @@ import msgspec
 
 from robolink.message.annotations import NUMERIC, FieldType
 from robolink.system.terminal import quoted, shown
+from robolink.system.words import with_article
 
 INTEGER = re.compile(r"[+-]?(?:[0-9](?:_?[0-9])*|0[xX](?:_?[0-9a-fA-F])+|0[oO](?:_?[0-7])+|0[bB](?:_?[01])+)")
 DIGITS = "[0-9](?:_?[0-9])*"
@@ -38,7 +39,7 @@ def read(kind: FieldType, text: str) -> Any:
     if kind.shape == "one":
         return _one(kind, text)
     if not (text.startswith("[") and text.endswith("]") and len(text) > 1):
-        raise ValueError(f"'{shown(text)}' is no array: write [1, 2]")
+        raise ValueError(f"'{shown(text)}' is not an array: write [1, 2]")
     return elements(kind, text[1:-1])
 
 
@@ -50,7 +51,7 @@ def elements(kind: FieldType, text: str) -> list[Any]:
     while at < len(text):
         found = ELEMENT.match(text, at)
         if found is None:
-            raise ValueError(f"element {len(values)}: '{shown(text[at:].strip())}' is no {one}")
+            raise ValueError(f"element {len(values)}: '{shown(text[at:].strip())}' is not {with_article(str(one))}")
         try:
             values.append(_one(one, found[1].rstrip()))
         except ValueError as error:
@@ -68,11 +69,11 @@ def _one(kind: FieldType, text: str) -> Any:
         return checked(kind, _string(text))
     if kind.base == "bool":
         if text.lower() not in BOOLS:
-            raise ValueError(f"'{shown(text)}' is no bool: write true or false")
+            raise ValueError(f"'{shown(text)}' is not a bool: write true or false")
         return BOOLS[text.lower()]
     if NUMERIC.get(kind.base) in ("f", "d"):
         if not FLOAT.fullmatch(text):
-            raise ValueError(f"'{shown(text)}' is no {kind.base}: write a number such as 0.5 or 1e-3")
+            raise ValueError(f"'{shown(text)}' is not {with_article(kind.base)}: write a number such as 0.5 or 1e-3")
         if math.isinf(float(text)) and any(each.isdigit() for each in text):
             raise ValueError(f"{shown(text)} is too large for {kind.base}")
         return checked(kind, float(text))
@@ -81,7 +82,7 @@ def _one(kind: FieldType, text: str) -> Any:
 
 def _integer(base: str, text: str) -> int:
     if len(text) > LONGEST_NUMBER or not INTEGER.fullmatch(text):
-        raise ValueError(f"'{shown(text)}' is no {base}: write a whole number such as 10, -3 or 0x1F")
+        raise ValueError(f"'{shown(text)}' is not {with_article(base)}: write a whole number such as 10, -3 or 0x1F")
     try:
         return int(text)  # leading zeros do not make it octal
     except ValueError:
@@ -154,7 +155,7 @@ def as_rosidl_said(kind: FieldType, text: str) -> Any:
     """Parse what `as_rosidl_says` formatted. Raises ValueError."""
     if kind.shape != "one":
         if not (text.startswith("(") and text.endswith(")")):
-            raise ValueError(f"'{shown(text)}' is no default of {kind}")
+            raise ValueError(f"'{shown(text)}' is not a default of {kind}")
         return elements(kind, text[1:-1])
     return checked(kind, text) if kind.base in ("string", "wstring") else _one(kind, text)
 

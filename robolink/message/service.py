@@ -100,4 +100,4 @@ def service_type(cls: Any) -> type[Service]:
     """Return `cls` if it is a service class. Raises MessageError otherwise."""
     if isinstance(cls, type) and issubclass(cls, Service):
         return cls
-    raise MessageError(f"{cls!r} is no service class")
+    raise MessageError(f"{cls!r} is not a service class")

@@ -31,13 +31,13 @@ def wrong_name(what: str, name: str) -> str:
     """Return what is wrong with the name of a `what` (a key of PATTERNS); '' if it is right.
 
     >>> wrong_name("field", "maxSpeed")
-    "'maxSpeed' is no field name: a-z, digits and single underscores, as in max_speed"
+    "'maxSpeed' is not a field name: a-z, digits and single underscores, as in max_speed"
     """
     if len(name) > LONGEST:
         return f"'{shown(name)}' is {len(name)} characters long; a name has at most {LONGEST}"
     if re.fullmatch(PATTERNS[what], name):
         return ""
-    return f"'{shown(name)}' is no {what} name: {RIGHT[what]}"
+    return f"'{shown(name)}' is not a {what} name: {RIGHT[what]}"
 
 
 def split_type_name(name: str) -> tuple[str, str, str]:
@@ -47,7 +47,7 @@ def split_type_name(name: str) -> tuple[str, str, str]:
     """
     parts = name.split("/")
     if len(parts) != 3 or parts[1] not in ("msg", "srv", "action"):
-        raise MessageError(f"'{shown(name)}' is no full type name; it should look like my_msgs/msg/WheelSpeeds")
+        raise MessageError(f"'{shown(name)}' is not a full type name; it should look like my_msgs/msg/WheelSpeeds")
     package, kind, short = parts
     wrong = wrong_name("package", package) or (not is_part(kind, short) and wrong_name("type", short))
     if wrong:

@@ -86,7 +86,7 @@ def mistakes(limits: Limits) -> Iterator[tuple[tuple[Step, ...], str, bool]]:
             return
     for steps, name in limits.topics:
         if wrong := problem(name):
-            yield steps, f"'{name[:80]}' is no full name of a topic: {wrong}", steps[0] != "control"
+            yield steps, f"'{name[:80]}' is not a full name of a topic: {wrong}", steps[0] != "control"
         elif steps[0] == "rate" and "*" in name:
             yield steps, f"'{name}': name each topic: all that fit a pattern would share one rate, and one starve", True
     for name, rate in limits.rate.items():
@@ -103,7 +103,7 @@ def _mistakes_of_links(limits: Limits) -> Iterator[tuple[tuple[Step, ...], str, 
         yield ("interfaces",), "name at least one, such as wlan0, or leave `interfaces` out", False
     for at, each in enumerate(limits.interfaces or ()):
         if not _INTERFACE.fullmatch(each):
-            yield ("interfaces", at), f"'{each[:80]}' is no name of an interface, such as wlan0", False
+            yield ("interfaces", at), f"'{each[:80]}' is not a name of an interface, such as wlan0", False
     if limits.buffer and not SMALLEST_BUFFER <= limits.buffer <= LARGEST:
         reason = (
             f"expected bytes, {SMALLEST_BUFFER:,} to {LARGEST:,}, or 0 for the system's choice, got {limits.buffer}"

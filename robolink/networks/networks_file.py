@@ -154,7 +154,7 @@ def _check(document: Document[dict[str, str | Peers]], name: str, meant: str | P
     for index, each in enumerate(meant.peers):
         if hosts.parse(each) is None:
             wrong = hosts.mistake(each) or "write HOST or HOST:PORT"
-            raise document.error([name, "peers", index], f"'{each[:80]}' is no host: {wrong}")
+            raise document.error([name, "peers", index], f"'{each[:80]}' is not a host: {wrong}")
         _check_no_name(document, [name, "peers", index], each)
     for steps, message, is_key in mistakes(meant.limits) if meant.limits else ():
         raise document.error([name, "limits", *steps], message, key=is_key)
@@ -163,7 +163,7 @@ def _check(document: Document[dict[str, str | Peers]], name: str, meant: str | P
 def _check_way(document: Document[dict[str, str | Peers]], steps: list[Step], meant: str) -> None:
     if meant not in (*NAMES, *ALIASES) and not _is_way(meant):
         wrong = hosts.mistake(meant) or "write HOST[:PORT], tls/HOST[:PORT] or a file (.json5)"
-        raise document.error(steps, f"'{meant[:80]}' is no network: {wrong}")
+        raise document.error(steps, f"'{meant[:80]}' is not a network: {wrong}")
     _check_no_name(document, steps, meant)
 
 

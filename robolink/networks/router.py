@@ -35,7 +35,7 @@ def endpoint_of(text: str, option: str) -> str:
             return text
     host = hosts.parse(_WORDS.get(text, text))
     if host is None:
-        raise TransportError(f"{option}: '{text[:80]}' is no address: write HOST, HOST:PORT or tls/HOST:PORT")
+        raise TransportError(f"{option}: '{text[:80]}' is not an address: write HOST, HOST:PORT or tls/HOST:PORT")
     return host.endpoint(host.port or ROUTER_PORT)
 
 

@@ -69,7 +69,7 @@ class NodeCreation(NodeEntities, NodeGraph):
 
         Raises:
             InvalidTopicNameException: (a ValueError) if the name is against ROS 2's rules.
-            MessageError: (a ValueError) if `msg_type` is no message class.
+            MessageError: (a ValueError) if `msg_type` is not a message class.
             UnsupportedEventTypeError: (a RuntimeError) if there is a callback for an event that this network lacks.
             InvalidQosOverridesError: (a RuntimeError) if a parameter makes the profile invalid.
             InvalidHandle: (a RuntimeError) if the node has been destroyed.
@@ -121,7 +121,7 @@ class NodeCreation(NodeEntities, NodeGraph):
 
         Raises:
             InvalidTopicNameException: (a ValueError) if the name is against ROS 2's rules.
-            MessageError: (a ValueError) if `msg_type` is no message class.
+            MessageError: (a ValueError) if `msg_type` is not a message class.
             RuntimeError: if the callback takes neither one argument nor two.
             UnsupportedEventTypeError: (a RuntimeError) if there is a callback for an event that this network lacks.
             InvalidQosOverridesError: (a RuntimeError) if a parameter makes the profile invalid.
@@ -159,7 +159,7 @@ class NodeCreation(NodeEntities, NodeGraph):
 
         Raises:
             InvalidServiceNameException: (a ValueError) if the name is against ROS 2's rules.
-            MessageError: (a ValueError) if `srv_type` is no service class.
+            MessageError: (a ValueError) if `srv_type` is not a service class.
             InvalidHandle: (a RuntimeError) if the node has been destroyed.
         """
         group = callback_group or self._default_callback_group
@@ -188,7 +188,7 @@ class NodeCreation(NodeEntities, NodeGraph):
 
         Raises:
             InvalidServiceNameException: (a ValueError) if the name is against ROS 2's rules.
-            MessageError: (a ValueError) if `srv_type` is no service class.
+            MessageError: (a ValueError) if `srv_type` is not a service class.
             InvalidHandle: (a RuntimeError) if the node has been destroyed.
         """
         group = callback_group or self._default_callback_group

@@ -39,7 +39,7 @@ class ParameterReading(ParameterCallbacks):
     def get_parameters(self, names: list[str]) -> Parameters:
         """Return the parameters `names` as they are at one moment.
 
-        Raises what `get_parameter` raises, and TypeError if a name is no str.
+        Raises what `get_parameter` raises, and TypeError if a name is not a str.
         """
         check_names(names)
         parameters = self._parameters

@@ -258,7 +258,7 @@ def describing(parameter: Parameter[Any], descriptor: ParameterDescriptor) -> Pa
 
 
 def check_names(names: Sequence[str]) -> None:
-    """Raise TypeError for a name that is no str."""
+    """Raise TypeError for a name that is not a str."""
     for name in names:
         if not isinstance(name, str):
             raise TypeError(f"a parameter's name must be a str, got {name!r}")

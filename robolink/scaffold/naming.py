@@ -33,7 +33,7 @@ def checked(kind: str, name: str, taken: Collection[str] = ()) -> str:
     """
     if not _PATTERN.fullmatch(name) or len(name) > LONGEST:
         raise ScaffoldError(
-            f"'{name[:LONGEST]}' is no name for a {kind}: a letter, then letters, digits, '_' or '-',"
+            f"'{name[:LONGEST]}' is not a name for a {kind}: a letter, then letters, digits, '_' or '-',"
             f" {LONGEST} at most; such as my_{kind}"
         )
     if any(keyword.iskeyword(each) or keyword.issoftkeyword(each) for each in (name.lower(), name.capitalize())):

@@ -70,10 +70,10 @@ def _check(wanted: NewPackage) -> None:
     for kind, name in names.items():
         fit = checked_module if kind == "package" and wanted.build_type == PYTHON else checked
         if (name or kind == "package") and not fit(kind, name).isidentifier():
-            raise ScaffoldError(f"'{name}' is no name for a {kind}: Python imports no '-', take '_'")
+            raise ScaffoldError(f"'{name}' is not a name for a {kind}: Python imports no '-', take '_'")
     for each in wanted.dependencies:
         if not _DEPENDENCY.fullmatch(each):
-            raise ScaffoldError(f"'{each[:60]}' is no name of a package to depend on")
+            raise ScaffoldError(f"'{each[:60]}' is not a name of a package to depend on")
     if wanted.node and wanted.node == wanted.library:
         raise ScaffoldError(f"the node and the library cannot both be called '{wanted.node}'")
     _check_texts(wanted)

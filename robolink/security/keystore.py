@@ -183,7 +183,7 @@ class Keystore:
         return denied == {rule.kind for rule in EVERYTHING}
 
     def names(self) -> list[str]:
-        """Return the enclaves that have a key, sorted; raises SecurityError where it is no keystore."""
+        """Return the enclaves that have a key, sorted; raises SecurityError where it is not a keystore."""
         self.check()
         return sorted(enclave_of(each, self.enclaves) for each in self.enclaves.rglob(KEY) if each.is_file())
 

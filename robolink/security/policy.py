@@ -80,7 +80,9 @@ def _enclaves(root: Element) -> Policy:
         for enclave in _children(enclaves, "enclave"):
             path = _attribute(enclave, "path")
             if path != "/" and (wrong := find_problem(path, FULL_NAME_RULES, MAX_NAMESPACE)):
-                raise enclave.mistake(f"'{path[:80]}' is no enclave: {wrong.message} (at index {wrong.invalid_index})")
+                raise enclave.mistake(
+                    f"'{path[:80]}' is not an enclave: {wrong.message} (at index {wrong.invalid_index})"
+                )
             if path in found:
                 raise enclave.mistake(f"enclave '{path}' is there twice")
             found[path] = [

@@ -56,7 +56,9 @@ def colour_of(text: str) -> Colour:
     digits = match[1] if match else NAMES.get(text.lower())
     if digits is None:
         near = nearest(text.lower(), NAMES)
-        raise ValueError(f"'{shown(text, 40)}' is no colour{near}: write '#rrggbb' in quotes, or a name such as orange")
+        raise ValueError(
+            f"'{shown(text, 40)}' is not a colour{near}: write '#rrggbb' in quotes, or a name such as orange"
+        )
     return int(digits[:2], 16), int(digits[2:4], 16), int(digits[4:], 16)
 
 

@@ -57,7 +57,7 @@ class DrawingError(RobolinkError, ValueError):
 def check_picture(path: Path) -> None:
     """Raise `DrawingError` if no picture can be drawn into such a file, or if matplotlib is not installed."""
     if path.suffix.lower() not in FORMATS:
-        raise DrawingError(f"'{path.name}' is no picture that can be drawn: end its name in {', '.join(FORMATS)}")
+        raise DrawingError(f"'{path.name}' is not a picture that can be drawn: end its name in {', '.join(FORMATS)}")
     try:
         import matplotlib as _  # noqa: F401
     except ImportError:

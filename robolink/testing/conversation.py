@@ -22,7 +22,7 @@ class Conversation:
         self._publishers: dict[tuple[str, type[Message]], Publisher[Any]] = {}
 
     def publish(self, topic: str, message: Message, qos: QoSProfile | int) -> None:
-        """Publish a message. Raises TypeError if `message` is no message."""
+        """Publish a message. Raises TypeError if `message` is not a message."""
         __tracebackhide__ = True
         if not isinstance(topic, str) or isinstance(message, type) or not hasattr(message, "__ros_fields__"):
             raise TypeError(f"publish takes a topic and a message, got {topic!r} and {message!r}")

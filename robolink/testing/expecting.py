@@ -68,7 +68,7 @@ class Expecting:
         """Wait for a message that meets a condition: return it, if it came, and the number that was looked at."""
         __tracebackhide__ = True
         if isinstance(predicate, type):
-            raise TypeError(f"{predicate.__name__} is no condition: give it as type={predicate.__name__}")
+            raise TypeError(f"{predicate.__name__} is not a condition: give it as type={predicate.__name__}")
         met: list[Any] = []
         tried, recorder = 0, self._story.recorder
         with recorder.listening(name) as queue:

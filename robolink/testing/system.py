@@ -162,7 +162,7 @@ class System(SystemWithBags):
             qos: Profile or depth of the publisher, which is made at the first message of a topic and kept.
 
         Raises:
-            TypeError: if `topic` is no text, or `message` no message.
+            TypeError: if `topic` is not text, or `message` no message.
         """
         __tracebackhide__ = True
         self._check_open()

@@ -177,7 +177,7 @@ def _module_as_base(text: str, frame: FrameType) -> str:
         statement = home_of(name.capitalize(), _style(frame)) if isinstance(value, ModuleType) else ""
         if statement:
             return f"{name} is a module, and {name.capitalize()} the class: `{statement}`"
-    return "a module is no class"
+    return "a module is not a class"
 
 
 _ADVISERS: tuple[tuple[type[BaseException], Callable[[Any, FrameType], str]], ...] = (

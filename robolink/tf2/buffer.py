@@ -33,7 +33,7 @@ class Buffer(BufferCore, BufferInterface):
             it there is no service.
 
     Raises:
-        TypeError: if `cache_time` is no duration.
+        TypeError: if `cache_time` is not a duration.
     """
 
     def __init__(self, cache_time: Duration | None = None, node: Node | None = None) -> None:

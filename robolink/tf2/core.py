@@ -40,7 +40,7 @@ class BufferCore:
         cache_time: Duration for which transforms are kept; 10 s by default.
 
     Raises:
-        TypeError: if `cache_time` is no duration.
+        TypeError: if `cache_time` is not a duration.
     """
 
     def __init__(self, cache_time: Any = None) -> None:
@@ -59,7 +59,7 @@ class BufferCore:
             authority: Name of its source, for warnings and lists of frames.
 
         Raises:
-            TypeError: if `transform` is no TransformStamped.
+            TypeError: if `transform` is not a TransformStamped.
         """
         self._set(transform, authority, static=False)
 
@@ -71,7 +71,7 @@ class BufferCore:
             authority: Name of its source, for warnings and lists of frames.
 
         Raises:
-            TypeError: if `transform` is no TransformStamped.
+            TypeError: if `transform` is not a TransformStamped.
         """
         self._set(transform, authority, static=True)
 

@@ -70,7 +70,7 @@ def _coordinates(cloud: PointCloud2, data: bytearray) -> list[NDArray[Any]]:
 def _column(cloud: PointCloud2, field: PointField, data: bytearray, row_step: int) -> NDArray[Any]:
     kind = FLOATS.get(field.datatype)
     if kind is None or field.count > 1:
-        raise PointCloudError(f"the field {field.name} is no single float (datatype {field.datatype})")
+        raise PointCloudError(f"the field {field.name} is not a single float (datatype {field.datatype})")
     dtype = np.dtype((">" if cloud.is_bigendian else "<") + kind)
     if field.offset + dtype.itemsize > cloud.point_step:
         raise PointCloudError(f"the field {field.name} reaches beyond the {cloud.point_step} bytes of a point")

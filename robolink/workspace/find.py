@@ -214,7 +214,7 @@ def list_faults(*, workspace: Folder = None) -> list[Path]:
 def user_workspace(workspace: Folder = None) -> Path | None:
     """Return the user's workspace: `workspace`, else that of ROBOLINK_WORKSPACE, the nearest, the sourced one, or None.
 
-    Raises `NotFoundError` if one is named that is no folder.
+    Raises `NotFoundError` if one is named that is not a folder.
     """
     asked = workspace or os.environ.get(VARIABLE)
     if not asked:

@@ -169,7 +169,7 @@ def use_interfaces(workspace: Folder = None) -> None:
     >>> from my_msgs.msg import WheelSpeeds  # interfaces/my_msgs/msg/WheelSpeeds.msg
 
     `workspace` is a folder that is searched first; then the user's workspace, that of ROBOLINK_WORKSPACE or the
-    nearest, and the built-in one. Raises NotFoundError if one is named that is no folder.
+    nearest, and the built-in one. Raises NotFoundError if one is named that is not a folder.
     """
     if workspace is not None:
         found = user_workspace(workspace)

@@ -19,7 +19,7 @@ MOST_FILES = 2000
 
 
 def parsed(text: str) -> ast.Module | None:
-    """Return the syntax tree of a program's `text`; None if it is no Python."""
+    """Return the syntax tree of a program's `text`; None if it is not Python."""
     try:
         return ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):

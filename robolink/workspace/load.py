@@ -36,7 +36,7 @@ NODE_BASES = ("Node", "ScanController", "ImageController")
 
 
 class NodeLoadError(RobolinkError, ImportError):
-    """A file holds no node, or none that can be chosen, or is no Python."""
+    """A file holds no node, or none that can be chosen, or is not Python."""
 
 
 def load_node(source: NodeSource, *, script: ScriptMaker | None = None) -> Runnable:
@@ -52,7 +52,7 @@ def load_node(source: NodeSource, *, script: ScriptMaker | None = None) -> Runna
             that the script's imports are found; by default it is run as Python does.
 
     Raises:
-        NodeLoadError: if the file has no node, or several, or is no Python.
+        NodeLoadError: if the file has no node, or several, or is not Python.
         NotFoundError: if it lacks the attribute. Whatever the file itself raises is raised as it is.
     """
     if source.path is None:
@@ -121,7 +121,7 @@ def load_module(path: Path) -> ModuleType:
     """Load the Python file at `path` as a module, named by its whole path; return the same one the second time.
 
     Its folder is appended to `sys.path`, so that it finds its neighbours, and the types of its workspace can be
-    imported. Raises `NodeLoadError` for a file that is no Python, and whatever the file itself raises.
+    imported. Raises `NodeLoadError` for a file that is not Python, and whatever the file itself raises.
     """
     path = path.resolve()
     name = str(path)

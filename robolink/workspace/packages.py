@@ -95,7 +95,7 @@ def hides(top: Path, folder: Path) -> bool:
 
 
 def has_packages(folder: Path, but: Path) -> bool:
-    """True if a `folder` that is no package has packages directly in it, beside `but`, and none is a copy of that."""
+    """True if a `folder` that is not a package has packages directly in it beside `but`, none a copy of that."""
     inside = [each for each in _folders_in(folder)[:MOST_BESIDE] if each != but and (each / "package.xml").is_file()]
     names = [package_name_of(each) for each in inside if _is_package(each)]
     return bool(names) and package_name_of(but) not in names and not _is_package(folder)

@@ -58,5 +58,5 @@ def test_actions_are_selected_with_their_topics_and_events() -> None:
 def test_nothing_selected_and_a_wrong_expression_are_told() -> None:
     with pytest.raises(SelectionError, match="nothing is selected"):
         Selection(include_hidden=True).checked()
-    with pytest.raises(SelectionError, match=r"exclude_regex: '\(' is no regular expression"):
+    with pytest.raises(SelectionError, match=r"exclude_regex: '\(' is not a regular expression"):
         Selection(all_topics=True, exclude_regex="(").checked()

@@ -50,7 +50,7 @@ def test_who_is_there_already_is_not_sent_there(
     monkeypatch.chdir(here / "here")
     assert main(["new", "project", path]) == (0 if path != "inside/.." else 1)
     out, err = capsys.readouterr()
-    assert "next:\n  robolink simulate here    # or: launch here\n" in out if not err else "'..' is no name" in err
+    assert "next:\n  robolink simulate here    # or: launch here\n" in out if not err else "'..' is not a name" in err
     assert "cd " not in out
 
 
@@ -71,7 +71,7 @@ def test_a_path_is_shown_as_a_shell_takes_it(here: Path, path: str, typed: str, 
 
 def test_a_project_needs_a_name(here: Path, capsys: Captured) -> None:
     assert main(["new", "project", ""]) == 1
-    assert capsys.readouterr().err.startswith("robolink: '' is no name for a project: ")
+    assert capsys.readouterr().err.startswith("robolink: '' is not a name for a project: ")
     assert list(here.iterdir()) == []
 
 
@@ -88,7 +88,7 @@ def test_a_node_and_a_world_in_a_project(here: Path, capsys: Captured, monkeypat
 
 def test_what_is_wrong_is_one_line(here: Path, capsys: Captured) -> None:
     assert main(["new", "node", "2nd"]) == 1
-    assert capsys.readouterr().err.startswith("robolink: '2nd' is no name for a node: ")
+    assert capsys.readouterr().err.startswith("robolink: '2nd' is not a name for a node: ")
 
 
 @pytest.mark.processes

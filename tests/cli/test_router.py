@@ -38,7 +38,9 @@ def test_addresses(text: str, endpoint: str) -> None:
 
 @pytest.mark.parametrize("text", ["", "a b", "tcp/10.0.0.1", "x/y:1", "host:99999", "off"])
 def test_no_addresses(text: str) -> None:
-    with pytest.raises(TransportError, match=r"--listen: '.*' is no address: write HOST, HOST:PORT or tls/HOST:PORT"):
+    with pytest.raises(
+        TransportError, match=r"--listen: '.*' is not an address: write HOST, HOST:PORT or tls/HOST:PORT"
+    ):
         endpoint_of(text, "--listen")
 
 

@@ -168,7 +168,7 @@ def test_a_filter_goes_on_from_where_the_reader_is(tmp_path: Path) -> None:
     assert reader.read_next()[2] == MESSAGES[4].stamp
     reader.reset_filter()
     assert all_of(reader) == as_read(MESSAGES[5:])
-    with pytest.raises(RuntimeError, match="is no regular expression"):
+    with pytest.raises(RuntimeError, match="is not a regular expression"):
         reader.set_filter(StorageFilter(regex="("))
 
 

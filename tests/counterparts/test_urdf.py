@@ -84,7 +84,7 @@ XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro">'
     [
         ("", "r:1:1: no XML: no element found"),
         ("<robot>", "r:1:8: no XML: no element found"),
-        ("<sdf/>", "r:1: expected <robot>, got <sdf>: this is no URDF"),
+        ("<sdf/>", "r:1: expected <robot>, got <sdf>: this is not URDF"),
         (robot(links=""), "r:1: a robot needs a <link>"),
         ("<robot><link/></robot>", 'r:1: <link> needs name="..."'),
         (robot(links="a b a"), "r:2: a second link 'a'; the first is in line 2"),

@@ -130,7 +130,7 @@ def test_a_plugin_that_is_not_there(
     ("text", "reason"),
     [
         ("no such robot", "robot_description: expected the path of a .urdf or .xacro file, got 'no such robot'"),
-        ("<car/>", "robot_description:1: expected <robot>, got <car>: this is no URDF"),
+        ("<car/>", "robot_description:1: expected <robot>, got <car>: this is not URDF"),
         (urdf("<device/>"), "robot_description:3: a <device> needs its name in the world"),
         (urdf("<plugin/>"), "robot_description:3: a <plugin> needs its class"),
         ("<robot><webots></robot>", "robot_description:1"),

@@ -80,11 +80,12 @@ BAD = {
         "1:39: messages[0].until: expected a time later than 9 s, when it begins, got 9"
     ),
     "messages: [{topic: a b, loss: 1}]": (
-        "1:20: messages[0].topic: 'a b' is no name: it has a-z, A-Z, digits, _ and /,"
+        "1:20: messages[0].topic: 'a b' is not a name: it has a-z, A-Z, digits, _ and /,"
         " and * or ** for what may stand there"
     ),
     "messages: [{to: [a, ''], loss: 1}]": (
-        "1:21: messages[0].to[1]: '' is no name: it has a-z, A-Z, digits, _ and /, and * or ** for what may stand there"
+        "1:21: messages[0].to[1]: '' is not a name: it has a-z, A-Z, digits, _ and /,"
+        " and * or ** for what may stand there"
     ),
     "partitions: [{between: [[a]]}]": (
         "1:24: partitions[0].between: expected two groups of nodes or more, such as [[world], [follower]]"

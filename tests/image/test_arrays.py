@@ -1,4 +1,4 @@
-"""Images of messages as arrays that can be drawn on, arrays as messages, and what is no image."""
+"""Images of messages as arrays that can be drawn on, arrays as messages, and what is not an image."""
 
 from __future__ import annotations
 

@@ -321,7 +321,7 @@ def test_an_action_is_described_as_rosidl_does() -> None:
 
 def test_what_is_no_action() -> None:
     assert action_type(Fetch) is Fetch
-    with pytest.raises(MessageError, match="is no action class"):
+    with pytest.raises(MessageError, match="is not an action class"):
         action_type(SetBool)
     with pytest.raises(MessageError, match="action Fetch needs a message class Result"):
         type("Fetch", (Action,), {"Goal": Fetch.Goal})

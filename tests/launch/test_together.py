@@ -132,7 +132,7 @@ def test_a_level_for_all_loggers_is_for_those_of_the_node(make: Callable[..., An
     [
         ("Needy", "r0/it: Needy.__init__ needs 'what': give a default value"),
         ("Wrong", "r0/it: "),
-        ("main", "r0/it: {file}:main is no Node class, and needs a process of its own: leave `process` out"),
+        ("main", "r0/it: {file}:main is not a Node class, and needs a process of its own: leave `process` out"),
         ("Talker --ros-args -x", "r0/it: unknown ROS arguments: ['-x']"),
     ],
 )

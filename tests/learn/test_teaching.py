@@ -61,7 +61,7 @@ def test_they_are_numbered_and_made_where_the_others_are(here: Path, monkeypatch
 
 @pytest.mark.parametrize("name", ["", "Two", "2", "a b", "../up", "é", "a" * 61])
 def test_names_that_are_none(name: str, here: Path) -> None:
-    with pytest.raises(ExerciseError, match="is no name for an exercise"):
+    with pytest.raises(ExerciseError, match="is not a name for an exercise"):
         new_exercise(name)
     assert list(here.iterdir()) == []
 

@@ -181,7 +181,7 @@ def test_types_that_grow_by_doubling_are_refused() -> None:
 
 @pytest.mark.parametrize("name", ["_x", "Units", "\u00fcnits", "a__b", "x_", "a" * 256])
 def test_a_python_class_has_fields_that_ros_can_name(name: str) -> None:
-    with pytest.raises(MessageError, match=r"my_msgs/msg/Foo: .* (no field name|characters long)"):
+    with pytest.raises(MessageError, match=r"my_msgs/msg/Foo: .* (not a field name|characters long)"):
         MessageMeta("Foo", (Message,), {**BODY, "__annotations__": {name: float64}}, type_name="my_msgs/msg/Foo")
 
 
@@ -189,7 +189,7 @@ BODY = {"__module__": __name__, "__qualname__": "Foo"}
 
 
 def test_a_python_class_has_constants_that_ros_can_name() -> None:
-    with pytest.raises(MessageError, match="'left' is no constant name: A-Z"):
+    with pytest.raises(MessageError, match="'left' is not a constant name: A-Z"):
 
         class Wrong(Message):
             left: ClassVar[uint8] = 1

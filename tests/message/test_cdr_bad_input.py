@@ -297,9 +297,9 @@ def test_an_unknown_field_is_refused() -> None:
 
 def test_what_is_no_message_is_refused() -> None:
     wrong: Any = "fast"
-    with pytest.raises(MessageError, match="<class 'str'> is no message class"):
+    with pytest.raises(MessageError, match="<class 'str'> is not a message class"):
         encode(wrong)
-    with pytest.raises(MessageError, match="<class 'str'> is no message class"):
+    with pytest.raises(MessageError, match="<class 'str'> is not a message class"):
         decode(type(wrong), b"")
 
 

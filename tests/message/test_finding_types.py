@@ -122,7 +122,7 @@ def test_find_what_is_not_there(name: str, kind: str, text: str) -> None:
     "name", ["", "/", "Twist ", "/Twist", "geometry_msgs/", "a/b/c/d", "a/foo/B", "1st", "Twist\n", "Größe"]
 )
 def test_find_refuses_what_is_no_name(name: str) -> None:
-    with pytest.raises(MessageError, match="no type name; it should look like Twist, geometry_msgs/Twist"):
+    with pytest.raises(MessageError, match="not a type name; it should look like Twist, geometry_msgs/Twist"):
         find(name)
 
 

@@ -90,7 +90,7 @@ def test_the_types_of_ros_that_only_an_idl_file_defines() -> None:
         ("struct Odd { char x; };", "'char' is not a type of rosidl"),
         ("struct Odd { long double x; };", "'long double' is not a type of rosidl"),
         ("struct Odd { long x; long x; };", "a second 'x'"),
-        ("struct Odd { long maxSpeed; };", "'maxSpeed' is no field name"),
+        ("struct Odd { long maxSpeed; };", "'maxSpeed' is not a field name"),
         ("struct Odd { long x[0]; };", "'0': a size or bound is a whole number from 1"),
         ("struct Odd { long x[2][2]; };", "ROS has no arrays of arrays"),
         ("struct Odd { sequence<sequence<long>> x; };", "ROS has no sequences of sequences"),
@@ -100,9 +100,9 @@ def test_the_types_of_ros_that_only_an_idl_file_defines() -> None:
         ("struct Odd { @default (value=1) geometry_msgs::msg::Point x; };", "only primitive types and arrays of them"),
         ("enum Odd { A, B };", "'enum' is not read here"),
         ("module a { " * 20, "modules more than 8 deep"),
-        ("const long lower = 3;", "'lower' is no constant name"),
+        ("const long lower = 3;", "'lower' is not a constant name"),
         ("@verbatim(", "expected more, got the end of the file"),
-        ('struct Odd { @default (value="(1") sequence<long> x; };', "is no default of"),
+        ('struct Odd { @default (value="(1") sequence<long> x; };', "is not a default of"),
     ],
 )
 def test_what_is_wrong_is_told_with_its_place(text: str, said: str) -> None:

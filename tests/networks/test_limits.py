@@ -31,8 +31,11 @@ ONE = '{"control": ["/cmd_vel"], "rate": {"/camera/image": 2.0}, "size": {"/map"
         ("{size: {/a: 0}}", "1:13: size./a: expected bytes, 1 to 1,073,741,824, got 0"),
         ("{buffer: -1}", "1:10: buffer: expected bytes, 1,024 to 1,073,741,824, or 0 for the system's choice, got -1"),
         ("{interfaces: []}", "1:14: interfaces: name at least one, such as wlan0, or leave `interfaces` out"),
-        ("{control: [cmd_vel]}", "1:12: control[0]: 'cmd_vel' is no full name of a topic: a name is /a/b; a * stands"),
-        ("{rate: {a: 2}}", "1:9: rate.a: 'a' is no full name of a topic: a name is /a/b; a * stands"),
+        (
+            "{control: [cmd_vel]}",
+            "1:12: control[0]: 'cmd_vel' is not a full name of a topic: a name is /a/b; a * stands",
+        ),
+        ("{rate: {a: 2}}", "1:9: rate.a: 'a' is not a full name of a topic: a name is /a/b; a * stands"),
         ("{rate: {/a/*: 2}}", "1:9: rate./a/*: '/a/*': name each topic: all that fit a pattern would share one rate"),
         ("{rate: [/a]}", "1:8: rate: expected mapping, got list"),
         ("{rate", "1:6: expected ',' or '}'"),
@@ -126,7 +129,7 @@ def test_a_network_of_the_file_has_its_own(tmp_path: Path) -> None:
     [
         ("far: {network: lan, limits: {rate: {/a: 0}}}", "networks.yaml:1:41: far.limits.rate./a: expected messages"),
         ("far: {network: lan, peers: [a]}", "networks.yaml:1:7: far.network: either `network`, or `peers` and `lan`"),
-        ("far: {network: 'a b'}", "networks.yaml:1:16: far.network: 'a b' is no network"),
+        ("far: {network: 'a b'}", "networks.yaml:1:16: far.network: 'a b' is not a network"),
         ("far: {limits: {}}", "networks.yaml:1:6: far.peers: name at least one host"),
     ],
 )

@@ -66,11 +66,11 @@ def test_a_node_that_has_not_called_its_base_class_is_told_to(context: Context) 
             pass
 
     report = r"call super\(\).__init__\('NAME'\) first"
-    with pytest.raises(AttributeError, match=f"Early is no node yet: {report}") as caught:
+    with pytest.raises(AttributeError, match=f"Early is not a node yet: {report}") as caught:
         Early()
     assert formatted(caught.value).endswith("first")  # and advises no name that the caller has not written
     executor = SingleThreadedExecutor(context=context)
-    with pytest.raises(AttributeError, match=f"Never is no node yet: {report}"):
+    with pytest.raises(AttributeError, match=f"Never is not a node yet: {report}"):
         executor.add_node(Never())
     with pytest.raises(AttributeError, match="'Node' object has no attribute '_create'"):
         getattr(Node("made", context=context), "_create")  # noqa: B009 - mypy would see it

@@ -1,6 +1,6 @@
 """The programs of a ROS 2 course run as they stand in its text, beside the simulated world.
 
-The text is no part of this repository: ../shared/course, or the folder that ROBOLINK_COURSE names. Where it is absent
+The text is not a part of this repository: ../shared/course, or what ROBOLINK_COURSE names. Where it is absent
 these tests are skipped. What it does with Webots runs in the simulated world, which reads its world file. Not run are
 its programs that draw with matplotlib, which opens windows and is no dependency of robolink.
 """

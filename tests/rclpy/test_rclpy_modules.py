@@ -117,7 +117,7 @@ def test_what_cannot_be_bytes() -> None:
         serialize_message(ros.BasicTypes(int8_value=1000))
     with pytest.raises(AttributeError, match="is not the class of a message"):
         serialize_message("text")  # type: ignore[arg-type]
-    with pytest.raises(RuntimeError, match="is no message class"):
+    with pytest.raises(RuntimeError, match="is not a message class"):
         deserialize_message(b"", SetBool)  # type: ignore[type-var]
 
 

@@ -215,7 +215,7 @@ def test_an_empty_folder_becomes_a_project(here: Path) -> None:
 @pytest.mark.parametrize("name", ["", "2nd", "my node", "é", "../up", "a" * (LONGEST + 1), "\x1b[2J", "-x"])
 def test_names_that_are_none(here: Path, name: str) -> None:
     for make in (new_node, new_world):
-        with pytest.raises(ScaffoldError, match="is no name for a"):
+        with pytest.raises(ScaffoldError, match="is not a name for a"):
             make(name)
     assert list(here.iterdir()) == []
 

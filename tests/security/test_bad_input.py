@@ -68,8 +68,8 @@ def test_a_certificate_that_cannot_be_is_told(
 @pytest.mark.parametrize(
     ("wrong", "line"),
     [
-        ({"path": "../../evil"}, ":2: '../../evil' is no enclave: must be absolute"),
-        ({"path": "robot"}, ":2: 'robot' is no enclave: must be absolute"),
+        ({"path": "../../evil"}, ":2: '../../evil' is not an enclave: must be absolute"),
+        ({"path": "robot"}, ":2: 'robot' is not an enclave: must be absolute"),
         ({"ns": "/a b"}, ":3: ns is a namespace such as / or /arm, got '/a b': must not contain characters"),
         ({"ns": "//"}, ":3: ns is a namespace such as / or /arm, got '//': must not end with '/'"),
         ({"node": "my node"}, ":3: node is a name such as driver, got 'my node': must not contain characters"),

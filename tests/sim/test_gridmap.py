@@ -282,7 +282,7 @@ def test_what_is_wrong_with_a_map_is_told_beside_the_rest(write: Write) -> None:
     path.write_text("map: {yaml: map.yaml}\nrobots: [{name: '7', pose: [0, 0]}]")
     first, second = check_world(path).errors
     assert "map.yaml:1:8: image:" in str(first)
-    assert "world.yaml:2:17: robots[0].name: '7' is no name" in str(second)
+    assert "world.yaml:2:17: robots[0].name: '7' is not a name" in str(second)
 
 
 # --- images ---------------------------------------------------------------------------------------------------

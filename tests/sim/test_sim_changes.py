@@ -104,7 +104,7 @@ def test_what_the_others_live_does_not_depend_on_who_comes_and_goes() -> None:
         ({"pose": Pose(6.0, 1.0)}, "inside of another robot or an obstacle"),
         ({"pose": Pose(math.nan, 1.0)}, r"can't stand at \[nan, 1, 0\]: expected finite numbers, at most 100000 m"),
         ({"pose": Pose(1e9, 1.0)}, "expected finite numbers"),
-        ({"name": "not a name"}, "is no name"),
+        ({"name": "not a name"}, "is not a name"),
         ({"shape": Shape()}, "expected"),
         ({"drive": Drive(v_max=50.0)}, "v_max.*could pass through walls"),
         ({"sensors": (Lidar("scan", rate=7.0),)}, "7 Hz"),

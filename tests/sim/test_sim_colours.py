@@ -28,14 +28,17 @@ def test_a_colour_is_hexadecimal_or_a_name(text: str, colour: tuple[int, int, in
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("yelow", "'yelow' is no colour (did you mean 'yellow'?): write '#rrggbb' in quotes, or a name such as orange"),
-        ("#ff", "'#ff' is no colour: write"),
-        ("#ff00000", "is no colour"),
-        ("#gg0000", "is no colour"),
-        ("ff0000", "is no colour"),
-        ("", "'' is no colour"),
-        ("#ff0000\n", "is no colour"),
-        ("#\u0661\u0661\u0661\u0661\u0661\u0661", "is no colour"),
+        (
+            "yelow",
+            "'yelow' is not a colour (did you mean 'yellow'?): write '#rrggbb' in quotes, or a name such as orange",
+        ),
+        ("#ff", "'#ff' is not a colour: write"),
+        ("#ff00000", "is not a colour"),
+        ("#gg0000", "is not a colour"),
+        ("ff0000", "is not a colour"),
+        ("", "'' is not a colour"),
+        ("#ff0000\n", "is not a colour"),
+        ("#\u0661\u0661\u0661\u0661\u0661\u0661", "is not a colour"),
     ],
 )
 def test_what_is_no_colour_is_told_what_is(text: str, expected: str) -> None:

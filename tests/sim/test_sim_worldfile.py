@@ -185,7 +185,7 @@ BAD = {
     SENSOR % "lidar: scan, imu: imu": "1:44: robots[0].sensors[0]: one sensor cannot be both lidar and imu",
     ROBOT % "sensors: [scan]": "1:44: robots[0].sensors[0]: expected a mapping such as {lidar: scan}, got 'scan'",
     SENSOR % "lidar: 3": "1:52: robots[0].sensors[0].lidar: expected str, got '3'",
-    SENSOR % "lidar: 'my scan'": "1:52: robots[0].sensors[0].lidar: 'my scan' is no name: a-z, A-Z, digits and '_'",
+    SENSOR % "lidar: 'my scan'": "1:52: robots[0].sensors[0].lidar: 'my scan' is not a name: a-z, A-Z, digits and '_'",
     SENSOR % "lidar: scan}, {imu: scan": "1:65: robots[0].sensors[1].imu: two sensors publish on 'scan': give this one",
     SENSOR % "lidar: odom": "sensors[0].lidar: the simulation itself has a topic 'odom': take another name",
     ROBOT % "wheels: [{motor: a, at: [0, 0.1]}, {motor: b, at: [0, -0.1]}], sensors: [{lidar: joint_states}]": (
@@ -193,7 +193,7 @@ BAD = {
     ),
     SENSOR % "lidar: tf_static": "sensors[0].lidar: the simulation itself has a topic 'tf_static'",
     SENSOR
-    % "lidar: scan, rate: 7": "sensors[0].rate: 7 Hz is no whole number of steps of 0.01 s: take 6.66667 or 7.14286",
+    % "lidar: scan, rate: 7": "sensors[0].rate: 7 Hz is not a whole number of steps of 0.01 s: take 6.66667 or 7.14286",
     SENSOR % "lidar: scan, range: [5, 2]": "sensors[0].range: the nearest, 5 m, must be less than the farthest, 2 m",
     SENSOR % "lidar: scan, fov: 400": "sensors[0].fov: expected float <= 360.0, got '400'",
     SENSOR
@@ -201,11 +201,11 @@ BAD = {
     SENSOR
     % "encoders: wheels": "1:44: robots[0].sensors[0]: encoders count the turns of wheels, and this robot has no",
     # rates and names
-    ROBOT % "odom: {rate: 30}": "30 Hz is no whole number of steps of 0.01 s: take 25 or 33.3333",
-    ROBOT % "odom: {rate: 200}": "200 Hz is no whole number of steps of 0.01 s: take 100",
-    ROBOT % "ground_truth: {rate: 30}": "robots[0].ground_truth.rate: 30 Hz is no whole number of steps",
-    "robots: [{name: 7up, pose: [3, 3]}]": "1:17: robots[0].name: '7up' is no name",
-    'robots: [{name: "r\\n", pose: [3, 3]}]': r"'r\n' is no name",
+    ROBOT % "odom: {rate: 30}": "30 Hz is not a whole number of steps of 0.01 s: take 25 or 33.3333",
+    ROBOT % "odom: {rate: 200}": "200 Hz is not a whole number of steps of 0.01 s: take 100",
+    ROBOT % "ground_truth: {rate: 30}": "robots[0].ground_truth.rate: 30 Hz is not a whole number of steps",
+    "robots: [{name: 7up, pose: [3, 3]}]": "1:17: robots[0].name: '7up' is not a name",
+    'robots: [{name: "r\\n", pose: [3, 3]}]': r"'r\n' is not a name",
     "robots: [{name: r, pose: [1, 1]}, {name: r, pose: [3, 3]}]": "1:42: robots[1].name: two robots are called 'r'",
     # places
     "world: {size: [4, 4]}\nrobots: [{name: r, pose: [5, 1]}]": "2:26: robots[0].pose: [5, 1] lies outside of the",

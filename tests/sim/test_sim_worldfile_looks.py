@@ -100,22 +100,22 @@ def test_a_map_has_walls_of_a_height_and_a_colour(tmp_path: Path) -> None:
     assert (wall.height, wall.colour) == (2.5, "teal")
     found = scenery(load_world(tmp_path / "w.yaml")).fixed.faces
     assert {(each.b, each.colour) for each in found} == {((0.0, 0.0, 2.5), (0, 128, 128))}
-    with pytest.raises(DocumentError, match=r"1:29: map\.colour: 'x' is no colour"):
+    with pytest.raises(DocumentError, match=r"1:29: map\.colour: 'x' is not a colour"):
         load_world(write(tmp_path, "map: {yaml: m.yaml, colour: x}"))
 
 
 SIGN = "signs: [{%s}]"
 PAINT = "paint: [{%s}]"
 BAD = {
-    "walls: [{polyline: [[0, 0], [1, 0]], colour: rde}]": "1:46: walls[0].colour: 'rde' is no colour (did you",
+    "walls: [{polyline: [[0, 0], [1, 0]], colour: rde}]": "1:46: walls[0].colour: 'rde' is not a colour (did you",
     "walls: [{polyline: [[0, 0], [1, 0]], colour: }]": "walls[0].colour: this colour is empty: one that begins with # "
     "stands in quotes, '#ff0000'",
     "walls: [{polyline: [[0, 0], [1, 0]], height: 0}]": "walls[0].height: expected float >= 0.001, got '0'",
     "obstacles: [{circle: 1, pose: [0, 0], colour: 3}]": "obstacles[0].colour: expected str",
-    "obstacles: [{circle: 1, pose: [0, 0], colour: '#12345'}]": "1:47: obstacles[0].colour: '#12345' is no colour",
-    "robots: [{name: r, pose: [0, 0], colour: reddish}]": "1:42: robots[0].colour: 'reddish' is no colour",
+    "obstacles: [{circle: 1, pose: [0, 0], colour: '#12345'}]": "1:47: obstacles[0].colour: '#12345' is not a colour",
+    "robots: [{name: r, pose: [0, 0], colour: reddish}]": "1:42: robots[0].colour: 'reddish' is not a colour",
     "robots: [{name: r, pose: [0, 0], colour: null}]": "robots[0].colour: this colour is empty",
-    "world: {floor: {colour: x}}": "1:25: world.floor.colour: 'x' is no colour",
+    "world: {floor: {colour: x}}": "1:25: world.floor.colour: 'x' is not a colour",
     "world: {floor: {colour: }}": "world.floor.colour: this colour is empty",
     "world: {floor: {origin: [1, 1]}}": "1:17: world.floor.origin: this is where an 'image' lies, and there is none",
     "world: {floor: {image: f.png}}": "world.floor.image: missing key 'resolution' beside it",
@@ -134,7 +134,7 @@ BAD = {
     PAINT % "line: [[0, 0], [1, 0]], pose: [1, 1]": "1:34: paint[0].pose: only an outline has 'pose'",
     PAINT % "circle: 1, dashes: [1, 1]": "1:21: paint[0].dashes: only a 'line' has 'dashes'",
     PAINT % "circle: 1, width: 1": "paint[0].width: only a 'line' has 'width'",
-    PAINT % "circle: 1, colour: ''": "paint[0].colour: '' is no colour",
+    PAINT % "circle: 1, colour: ''": "paint[0].colour: '' is not a colour",
     PAINT % "polygon: [[0, 0], [1, 0], [2, 0]]": "paint[0].polygon: its corners lie in one line",
     f"world: {{size: [4, 4]}}\n{PAINT}"
     % "circle: 1, pose: [5, 1]": "paint[0].pose: [5, 1] lies outside of the world's",
@@ -143,7 +143,7 @@ BAD = {
     SIGN % "pose: [1, 1], tag: 16h5/0, image: s.png": "signs[0]: expected one of 'tag' and 'image', got tag and image",
     SIGN % "tag: 36h11/3": "signs[0]: missing key 'pose'",
     SIGN % "pose: [1, 1], tag: 36h12/3": "1:29: signs[0].tag: '36h12/3' has no known family (did you mean '36h11'?)",
-    SIGN % "pose: [1, 1], tag: 16h5/30": "signs[0].tag: '16h5/30' is no tag of 16h5: expected 16h5/0 to 16h5/29",
+    SIGN % "pose: [1, 1], tag: 16h5/30": "signs[0].tag: '16h5/30' is not a tag of 16h5: expected 16h5/0 to 16h5/29",
     SIGN % "pose: [1, 1], tag: 3": "signs[0].tag: expected str",
     SIGN % "pose: [1, 1], tag: 36h11/3, z: 0.1": "signs[0].z: with its margin it is 0.25 m high, and would reach below "
     "the floor: at least 0.125",

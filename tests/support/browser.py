@@ -150,7 +150,7 @@ class Browser:
             self.problems.append(" ".join(str(each.get("description", each.get("value"))) for each in params["args"]))
         elif message.get("method") == "Log.entryAdded" and params["entry"]["level"] == "error":
             told = f"{params['entry']['text']} {params['entry'].get('url', '')}"
-            if "favicon.ico" not in told:  # which Chromium asks for beside a file that is no page
+            if "favicon.ico" not in told:  # which Chromium asks for beside a file that is not a page
                 self.problems.append(told)
 
     def open(self, address: str) -> None:

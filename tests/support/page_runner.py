@@ -133,7 +133,7 @@ class Shells:
         path.write_text(block.text, encoding="utf-8")
 
     def check(self, block: Block) -> None:
-        """Run or read a block that is no file."""
+        """Run or read a block that is not a file."""
         if program := program_for(block, self.shell.folder):
             if program[: len(ROBOLINK)] == ROBOLINK:
                 self.type(["robolink", *program[len(ROBOLINK) :]], "ends")

@@ -59,7 +59,7 @@ def main():
         (lambda faults: faults.lose("count", -0.2), "loss: expected float >= 0.0, got -0.2"),
         (lambda faults: faults.lose("count", "much"), "loss: expected float, got 'much'"),
         (lambda faults: faults.lose("count", 0.9, burst=2), "burst: a loss of 0.9 leaves no room"),
-        (lambda faults: faults.lose("a b", 0.5), "'a b' is no name"),
+        (lambda faults: faults.lose("a b", 0.5), "'a b' is not a name"),
         (lambda faults: faults.lose(String, 0.5), "expected a name or several, got .*String"),
         (lambda faults: faults.lose("count", 0.5, during=0), "during: expected seconds, more than 0, got 0"),
         (lambda faults: faults.delay("count", -1), "latency: expected float >= 0.0, got -1"),
@@ -177,9 +177,9 @@ def test_a_main_that_was_imported_is_started_like_its_file(tested: System, tmp_p
 
 def test_a_class_in_place_of_a_condition(tested: System) -> None:
     tested.start(Counter)
-    with pytest.raises(TypeError, match="Int32 is no condition: give it as type=Int32"):
+    with pytest.raises(TypeError, match="Int32 is not a condition: give it as type=Int32"):
         tested.expect("count", Int32)  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="Int32 is no condition: give it as type=Int32"):
+    with pytest.raises(TypeError, match="Int32 is not a condition: give it as type=Int32"):
         tested.expect_none("count", Int32)  # type: ignore[arg-type]
 
 

@@ -247,7 +247,7 @@ def test_a_cloud_that_is_none_is_an_error(changed: Any, said: str) -> None:
 def test_coordinates_are_single_floats(datatype: int, count: int) -> None:
     bad = cloud([[1, 2, 3]])
     bad.fields[1].datatype, bad.fields[1].count = datatype, count
-    with pytest.raises(PointCloudError, match="the field x is no single float"):
+    with pytest.raises(PointCloudError, match="the field x is not a single float"):
         do_transform_cloud(bad, transform("map", "lidar"))
 
 

@@ -196,7 +196,7 @@ def test_a_broken_file(tmp_path: Path, text: str, problem: str) -> None:
             {"ZENOH_CONFIG_OVERRIDE": "scouting/delay={"},
             "ZENOH_CONFIG_OVERRIDE: 'scouting/delay={': line 1, column 2: expected identifier or string",
         ),
-        (  # a byte that is no UTF-8, as os.environ has it
+        (  # a byte that is not UTF-8, as os.environ has it
             {"ZENOH_CONFIG_OVERRIDE": "scouting/delay=\udcff\x1b[2J"},
             (
                 "ZENOH_CONFIG_OVERRIDE: 'scouting/delay=\\udcff\\x1b[2J': "

@@ -72,7 +72,7 @@ def test_run_imports_them_and_a_wrong_file_is_one_line(home: Path, write: Write)
     refused = robolink("run", "left", cwd=home)
     assert (refused.returncode, refused.stderr) == (
         1,
-        f"robolink: {wrong}:2:1: 'float' is no type (did you mean 'float32'?) (at {left}:1)\n",
+        f"robolink: {wrong}:2:1: 'float' is not a type (did you mean 'float32'?) (at {left}:1)\n",
     )
 
 

@@ -73,12 +73,12 @@ def test_a_robot_is_as_a_text_says(system: System, world: Any) -> None:
         ({"name": "eve", "model": "shape: {circle: 200}"}, "inside"),
         ({"name": "eve", "model": "a: &a [*a]"}, "model"),
         ({"name": "eve", "model": "\x01"}, "model"),  # a message ends at \x00
-        ({"name": "eve", "model": "colour: rde"}, "model:1:9: colour: 'rde' is no colour (did you mean 'red'?)"),
+        ({"name": "eve", "model": "colour: rde"}, "model:1:9: colour: 'rde' is not a colour (did you mean 'red'?)"),
         (
             {"name": "eve", "model": "colour: #ff0000"},
             "model:1:1: colour: this colour is empty: one that begins with #",
         ),
-        ({"name": "eve", "model": "signs: [{tag: 36h11/900, pose: [0, 0]}]"}, "signs[0].tag: '36h11/900' is no tag"),
+        ({"name": "eve", "model": "signs: [{tag: 36h11/900, pose: [0, 0]}]"}, "signs[0].tag: '36h11/900' is not a tag"),
         ({"name": "eve", "model": "signs: [{image: no.png, pose: [0, 0]}]"}, "model:1:17: signs[0].image: no file 'no"),
     ],
 )

@@ -222,7 +222,7 @@ class Reader:
         if MAGIC.startswith(begin):
             raise McapError(f"it is cut after {len(begin)} bytes: no message is in it")
         other = next((words for start, words in OTHERS.items() if begin.startswith(start)), "")
-        raise McapError("it is no MCAP file" + (f", but {other}" if other else f": it begins with {begin[:8]!r}"))
+        raise McapError("it is not an MCAP file" + (f", but {other}" if other else f": it begins with {begin[:8]!r}"))
 
 
 def open_mcap(path: str | Path) -> Reader:

@@ -38,7 +38,7 @@ def reindex(path: str | Path, *, compression: str | None = None) -> Report:
         path: Path of the file.
         compression: How its chunks are packed: ``""``, ``"zstd"`` or ``"lz4"``; None for as they are.
 
-    Raises McapError if the file is no MCAP, is being recorded now, or the new one cannot be written.
+    Raises McapError if the file is not an MCAP, is being recorded now, or the new one cannot be written.
     """
     path = Path(path)
     with Reader(path) as reader:

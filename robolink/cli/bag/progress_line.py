@@ -11,7 +11,7 @@ from robolink.system.terminal import fit
 
 
 class ProgressLine:
-    """Last line of the terminal, written anew each time; nothing where standard error is no terminal.
+    """Last line of the terminal, written anew each time; nothing where standard error is not a terminal.
 
     While a `with` lasts, lines of the log erase it before they are written.
     """

@@ -120,5 +120,5 @@ def _no_answer(service: str) -> RobolinkError:
 def _parameter(text: str) -> ParameterMsg:
     name, assigned, value = text.partition(":=")
     if not (name and assigned):
-        raise ComponentError(f"'{text[:100]}' is no parameter: expected NAME:=VALUE")
+        raise ComponentError(f"'{text[:100]}' is not a parameter: expected NAME:=VALUE")
     return Parameter(name, value=parse_parameter_value(value)).to_parameter_msg()

@@ -36,14 +36,14 @@ class Files:
         count: Number of files.
 
     Raises:
-        SaveError: if the name is no image's, lacks {} for several, or its folder is not there.
+        SaveError: if the name is not an image's, lacks {} for several, or its folder is not there.
         ImageError: for a .jpg without OpenCV.
     """
 
     def __init__(self, pattern: str, count: int) -> None:
         suffix = Path(pattern).suffix.lower()
         if suffix not in PNG + JPEG:
-            raise SaveError(f"'{pattern}' is no image that can be saved: end its name in .png or .jpg")
+            raise SaveError(f"'{pattern}' is not an image that can be saved: end its name in .png or .jpg")
         if count > 1 and "{}" not in pattern:
             raise SaveError(f"'{pattern}' is one file, not {count}: write {{}} where the number shall be")
         folder = Path(pattern).absolute().parent

@@ -26,10 +26,10 @@ def type_named(name: str) -> type[Any]:
     """Return the class of a message, service or action type; one that is not installed is asked of nodes that use it.
 
     ``Twist``, ``geometry_msgs/Twist`` and ``geometry_msgs/msg/Twist`` mean the same. Raises NotFoundError with the
-    nearest name, and MessageError for what is no type name or means several types.
+    nearest name, and MessageError for what is not a type name or means several types.
     """
     if len(name) > LONGEST:
-        raise MessageError(f"'{name[:77]}...' is no type name: it has {len(name)} characters")
+        raise MessageError(f"'{name[:77]}...' is not a type name: it has {len(name)} characters")
     try:
         return _installed(name.replace(".", "/"))
     except NotFoundError as error:

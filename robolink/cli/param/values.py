@@ -58,7 +58,7 @@ def plain(value: ParameterValue) -> Any:
 def read(text: str, descriptor: ParameterDescriptor | None) -> ParameterValue:
     """Return the value of a text that was typed, for a parameter of this descriptor if that is known.
 
-    A text that is no single value of YAML is a string. Where the parameter's type is fixed, the value takes it if it
+    A text that is not a single value of YAML is a string. Where the parameter's type is fixed, the value takes it if it
     can: 1 is a double then, and 123 a string.
     """
     try:

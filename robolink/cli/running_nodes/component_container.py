@@ -118,7 +118,7 @@ def source_of(package: str, plugin: str) -> NodeSource:
 
     Raises:
         NotFoundError: if there is no such executable.
-        NodeLoadError: if it is no Node class.
+        NodeLoadError: if it is not a Node class.
     """
     try:
         source = find_executable(package, plugin)

@@ -84,5 +84,5 @@ def make(member: Member, source: NodeSource, context: Context) -> Node:
 def _node_class(source: NodeSource) -> type[Node]:
     found = load_node(source)
     if not isinstance(found, type):
-        raise NodeLoadError(f"{source.spec} is no Node class, and needs a process of its own: leave `process` out")
+        raise NodeLoadError(f"{source.spec} is not a Node class, and needs a process of its own: leave `process` out")
     return found

@@ -153,7 +153,7 @@ def _tell_of_unnamed(source: NodeSource) -> None:
 
 
 def _lacking(name: str, asked: str, folder: Path | None, workspace: str | None) -> RobolinkError | None:
-    """Return the error for a name that is no node's; None if there is nothing to add to that.
+    """Return the error for a name that is not a node's; None if there is nothing to add to that.
 
     `asked` is the word after it, '' if there is none; `folder` is that of the user's own package of this name.
     """
@@ -296,7 +296,7 @@ def _start(source: NodeSource, args: list[str]) -> Any:
 
 
 def _tell_of_unread(args: list[str], *, nobody_reads: bool) -> None:
-    """Warn of words without effect: parameters without `-p`, and any for a Node class, which is no program."""
+    """Warn of words without effect: parameters without `-p`, and any for a Node class, which is not a program."""
     for each in args:
         if ":=" in each:
             complain(f"'{each}' does nothing without an option: -p {each} sets a parameter, -r renames")

@@ -22,7 +22,7 @@ _WINDOWS_LOOK = 0.02
 def keys() -> Iterator[Read]:
     """Switch the terminal to single keys (cbreak) for the block, and restore it afterwards.
 
-    Where standard input is no terminal, or another job's, the function that is yielded only waits.
+    Where standard input is not a terminal, or another job's, the function that is yielded only waits.
     """
     waiting: list[str] = []
 

@@ -25,7 +25,7 @@ _SHADES = 255.0
 
 
 class PictureError(RobolinkError, ValueError):
-    """A message that is no picture which can be shown, or a terminal that cannot show it."""
+    """A message that is not a picture which can be shown, or a terminal that cannot show it."""
 
 
 def check_terminal(is_terminal: bool) -> None:
@@ -88,7 +88,7 @@ def _colours(*channels: int) -> Callable[[NDArray[Any]], Pixels]:
 
 
 def _stretched(values: NDArray[Any]) -> Pixels:
-    """Return shades of grey from the least to the largest value; what is no number is black."""
+    """Return shades of grey from the least to the largest value; what is not a number is black."""
     single = values[..., 0].astype(np.float64)
     finite = np.isfinite(single)
     low, high = (single[finite].min(), single[finite].max()) if finite.any() else (0.0, 0.0)

@@ -13,7 +13,7 @@ _TYPE = re.compile(r"[A-Za-z]\w*(?:[/.][A-Za-z]\w*){0,2}", re.ASCII)
 
 
 class InputError(RobolinkError, ValueError):
-    """Standard input is closed, or is no text."""
+    """Standard input is closed, or is not text."""
 
 
 class GivenRequest(NamedTuple):
@@ -28,12 +28,12 @@ class GivenRequest(NamedTuple):
 
 
 def is_type(text: str) -> bool:
-    """True if a text can name a type: then it is no YAML of a message."""
+    """True if a text can name a type: then it is not YAML of a message."""
     return _TYPE.fullmatch(text) is not None
 
 
 def read_stdin(what: str) -> str:
-    """Return standard input, which is a `what`: "request" or "goal". Raises InputError if it is no text."""
+    """Return standard input, which is a `what`: "request" or "goal". Raises InputError if it is not text."""
     if sys.stdin is None:
         raise InputError("--stdin: there is no standard input")
     if sys.stdin.isatty():

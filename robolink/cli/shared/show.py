@@ -46,7 +46,7 @@ def check_path(msg_type: type[Message], path: str) -> FieldType:
         is_sequence = kind.shape != "one"
         if isinstance(step, int):
             if not is_sequence:
-                raise EncodeError(f"--field {path}: what stands before [{step}] is no sequence")
+                raise EncodeError(f"--field {path}: what stands before [{step}] is not a sequence")
             kind = FieldType(base=kind.base, message=kind.message, string_bound=kind.string_bound)
             continue
         fields = {} if kind.message is None or is_sequence else kind.message.__ros_fields__

@@ -65,7 +65,7 @@ def _action_of(context: Context, action: str, type_: str) -> type[Action]:
     try:
         parts = {part: cls.__ros_fields__[name].message for part, (cls, name) in fields.items()}
     except KeyError as error:
-        raise MessageError(f"{action} is no action: a part of it has no field {error}") from None
+        raise MessageError(f"{action} is not an action: a part of it has no field {error}") from None
     made = action_class(type_, parts, doc=None, text=None)
     if [*map(type_hash, _parts_of(made))] != [*map(type_hash, (goal, result, feedback))]:
         raise MessageError(f"{action} is no {type_}: its parts do not belong together")

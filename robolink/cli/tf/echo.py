@@ -22,7 +22,7 @@ ASKER = "robolink tf"
 
 
 class RateError(RobolinkError, ValueError):
-    """The rate is no positive number."""
+    """The rate is not a positive number."""
 
 
 class Wish(NamedTuple):

@@ -90,7 +90,7 @@ class _Checker:
         return FilterError(text, len(before) + 1)
 
     def _kind(self, node: ast.expr) -> FieldType | None:
-        """Return the type of a field such as ``m.poses[0].x``; None for what is no field of a message."""
+        """Return the type of a field such as ``m.poses[0].x``; None for what is not a field of a message."""
         if isinstance(node, ast.Name):
             return self._root if node.id == "m" else None
         if isinstance(node, ast.Subscript):

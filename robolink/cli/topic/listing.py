@@ -84,7 +84,7 @@ def find_topics(type_: str, *, count: bool, hidden: bool, json: bool) -> None:
     """List the topics of a type: ``Twist``, ``geometry_msgs/Twist`` or ``geometry_msgs/msg/Twist``."""
     if _TYPE.fullmatch(type_) is None:
         raise MessageError(
-            f"'{shown(type_, 80)}' is no type name; it should look like Twist, geometry_msgs/Twist or"
+            f"'{shown(type_, 80)}' is not a type name; it should look like Twist, geometry_msgs/Twist or"
             " geometry_msgs/msg/Twist"
         )
     with looking() as context:

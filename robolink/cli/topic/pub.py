@@ -93,7 +93,7 @@ def run(topic: str, type_name: str, values: str | None, wish: Wish) -> None:
 
 
 def read_input() -> str:
-    """Return standard input to its end. Raises DocumentError if it is no text, or too long."""
+    """Return standard input to its end. Raises DocumentError if it is not text, or too long."""
     raw = b"" if sys.stdin is None else sys.stdin.buffer.read(LONGEST_INPUT + 1)
     if len(raw) > LONGEST_INPUT:
         raise DocumentError(f"more than {LONGEST_INPUT // 2**20} MiB", INPUT)

@@ -65,7 +65,7 @@ class CvBridge:
         names = self.cvdepth_to_numpy_depth
         depth = CV_MAT_DEPTHWrap(cvtype)
         if depth not in names:
-            raise CvBridgeError(f"{cvtype} is no type of images")
+            raise CvBridgeError(f"{cvtype} is not a type of images")
         return names[depth], CV_MAT_CNWrap(cvtype)
 
     def encoding_to_cvtype2(self, encoding: str) -> int:

@@ -290,7 +290,7 @@ class PinholeCameraModel:
         return np.asarray(self.K)
 
     def _turned(self) -> NDArray[np.float64]:
-        """Return the matrix from rays of the raw camera to the rectified image; no R at all is no rotation."""
+        """Return the matrix from rays of the raw camera to the rectified image; no R at all is not a rotation."""
         self.focal(0), self.focal(1)
         rotation = np.asarray(self.R) if self.R.any() else np.eye(3)
         return np.asarray(np.asarray(self.projection())[:, :3] @ rotation)

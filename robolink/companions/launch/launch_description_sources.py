@@ -38,7 +38,7 @@ _FRONTEND_SUFFIXES = (".xml", ".launch", ".yaml", ".yml")
 
 
 class InvalidLaunchFileError(LaunchError):
-    """A file is no launch file, or one of a kind that cannot be read."""
+    """A file is not a launch file, or one of a kind that cannot be read."""
 
 
 class InvalidPythonLaunchFileError(InvalidLaunchFileError):
@@ -148,7 +148,7 @@ def read_launch_file(path: Path) -> LaunchDescription:
     if not path.is_file():
         raise LaunchFileNotFoundError(path)
     if path.suffix not in _FRONTEND_SUFFIXES:
-        raise InvalidLaunchFileError(f"{path} is no launch file: expected .py, {', '.join(_FRONTEND_SUFFIXES)}")
+        raise InvalidLaunchFileError(f"{path} is not a launch file: expected .py, {', '.join(_FRONTEND_SUFFIXES)}")
     parse: Callable[[Path], LaunchDescription] = importlib.import_module(_FRONTEND).parse
     return parse(path)
 

@@ -21,7 +21,7 @@ AS_TEXT = "ParameterValue(..., value_type=str) keeps it a text"
 def value_in(text: str) -> Any:
     """Return the value that `text` spells in YAML: a scalar, or a list of one type.
 
-    Raises LaunchError for what is no YAML, and for a date, a null, a mapping and a list of several types.
+    Raises LaunchError for what is not YAML, and for a date, a null, a mapping and a list of several types.
     """
     if not text:
         return text

@@ -36,7 +36,7 @@ class TestProcess(Action):
         **kwargs: Those of ROS 2, of no effect.
     """
 
-    __test__ = False  # it is no class of tests for pytest
+    __test__ = False  # it is not a class of tests for pytest
 
     def __init__(self, *args: Any, condition: Condition | None = None, **kwargs: Any) -> None:
         super().__init__(condition=condition)

@@ -111,7 +111,7 @@ class QoS:
         return self._with(liveliness_lease_duration=duration)
 
     def avoid_ros_namespace_conventions(self, avoids: bool) -> QoS:
-        """Set whether the topic's name is no ROS name."""
+        """Set whether the topic's name is not a ROS name."""
         return self._with(avoid_ros_namespace_conventions=avoids)
 
     def _with(self, **policies: Any) -> QoS:
@@ -131,7 +131,7 @@ class QoS:
 def to_rclcpp_qos_vector(serialized: str, version: int = 9) -> list[QoS]:
     """Return the profiles of a YAML text, in numbers or in words; `version` is for rosbag2's sake.
 
-    Raises RuntimeError for a text that is no YAML.
+    Raises RuntimeError for a text that is not YAML.
     """
     try:
         return [QoS.of(each) for each in profiles_of_text(serialized)]

@@ -121,7 +121,7 @@ class SequentialReader:
             try:
                 re.compile(text)
             except re.error as error:
-                raise BagError(f"'{text[:100]}' is no regular expression: {error}") from None
+                raise BagError(f"'{text[:100]}' is not a regular expression: {error}") from None
         self._filter = storage_filter
         self._begin(self._position, self._done)
 

@@ -27,7 +27,7 @@ def message_to_yaml(
         flow_style: True writes {a: [1, 2]} instead of blocks.
 
     Raises:
-        MessageError: if `msg` is no message.
+        MessageError: if `msg` is not a message.
     """
     return as_yaml(_message(msg), Style(truncate_length, not no_arr, not no_str, flow_style)) + "\n"
 
@@ -42,7 +42,7 @@ def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool
         no_str: True only describes texts.
 
     Raises:
-        MessageError: if `msg` is no message.
+        MessageError: if `msg` is not a message.
     """
     return as_csv(_message(msg), Style(truncate_length, not no_arr, not no_str))
 
@@ -59,7 +59,7 @@ def message_to_ordereddict(
         no_str: True only describes texts.
 
     Raises:
-        MessageError: if `msg` is no message.
+        MessageError: if `msg` is not a message.
     """
     style = Style(truncate_length, not no_arr, not no_str)
     ordered: OrderedDict[str, Any] = _ordered(shown_data(_message(msg), style))

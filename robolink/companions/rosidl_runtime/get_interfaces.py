@@ -53,7 +53,7 @@ def get_interface_path(interface_name: str) -> str:
         interface_name: Name such as ``std_msgs/msg/String``, with or without ``.msg`` at its end.
 
     Raises:
-        MessageError: (a ValueError) if it is no type's name.
+        MessageError: (a ValueError) if it is not a type's name.
         NotFoundError: (a LookupError) if there is no such type.
     """
     parts = interface_name.split("/")

@@ -44,7 +44,7 @@ class JointStatePublisher(Node):
 
     Raises:
         DependentJointError: if parameters below dependent_joints say nothing that can be.
-        DocumentError: if the description is no robot; the text has the line.
+        DocumentError: if the description is not a robot; the text has the line.
     """
 
     def __init__(self, description: str = "", **options: Any) -> None:

@@ -45,7 +45,7 @@ class RobotStatePublisher(Node):
 
     Raises:
         DescriptionError: if there is no description.
-        DocumentError: if the description is no robot; the text has the line.
+        DocumentError: if the description is not a robot; the text has the line.
     """
 
     def __init__(self, file: Path | None = None, **options: Any) -> None:
@@ -209,7 +209,7 @@ def positions(robot: Robot, given: dict[str, float]) -> dict[str, float]:
 
 
 def check(changed: list[Parameter[Any]]) -> SetParametersResult:
-    """Refuse a description that is no robot, and a frequency out of its range."""
+    """Refuse a description that is not a robot, and a frequency out of its range."""
     for each in changed:
         if reason := refusal(each.name, each.value):
             return SetParametersResult(successful=False, reason=reason)

@@ -34,7 +34,7 @@ class NoTerminalWindowError(RobolinkError, OSError):
 def terminal_room() -> Iterator[int]:
     """Clear the terminal for a picture, above a region in which the log scrolls; yield the picture's width and height.
 
-    They are in half blocks. Raises NoTerminalWindowError if standard output is no terminal, or too small a one.
+    They are in half blocks. Raises NoTerminalWindowError if standard output is not a terminal, or too small a one.
     """
     size = _size()
     os.system("")

@@ -80,7 +80,7 @@ def robot_of(root: Element, *, anywhere: bool = False) -> Robot:
     if anywhere:
         root = _first_robot(root) or root
     if root.tag != "robot":
-        raise root.mistake(f"expected <robot>, got <{shown(root.tag)}>: this is no URDF")
+        raise root.mistake(f"expected <robot>, got <{shown(root.tag)}>: this is not URDF")
     try:
         robot = _robot(root)
     except DocumentError as error:

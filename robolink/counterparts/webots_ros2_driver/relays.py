@@ -134,7 +134,7 @@ def period(rate: str) -> float:
     """Return the period in seconds of a rate in Hz; 0 for no rate.
 
     Raises:
-        DeviceError: for a text that is no positive number.
+        DeviceError: for a text that is not a positive number.
     """
     try:
         value = float(rate or "inf")

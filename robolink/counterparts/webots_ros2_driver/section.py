@@ -60,7 +60,7 @@ def read_section(description: str, mappings: Iterable[str] = ()) -> Section:
         return Section([], [])
     root = _root(description, mappings)
     if root.tag != "robot":
-        raise root.mistake(f"expected <robot>, got <{shown(root.tag)}>: this is no URDF")
+        raise root.mistake(f"expected <robot>, got <{shown(root.tag)}>: this is not URDF")
     webots = next(root.all("webots"), None)
     if webots is None:
         return Section([], [])

@@ -61,7 +61,7 @@ def make_condition(condition: Any, lock: Any = None) -> None:
 
 
 class Lock:
-    """Replacement of `threading.Lock`; code that is no program's gets Python's.
+    """Replacement of `threading.Lock`; code that is not a program's gets Python's.
 
     Who comes while others wait for it lets them go first: else whoever takes it again and again would keep it for ever.
     """
@@ -121,7 +121,7 @@ class Lock:
 
 
 class RLock(threading._PyRLock):  # type: ignore[name-defined,misc] # Python's own, written in Python
-    """Replacement of `threading.RLock`; code that is no program's gets Python's."""
+    """Replacement of `threading.RLock`; code that is not a program's gets Python's."""
 
     def __new__(cls) -> Any:
         """Return a lock of this class, or Python's."""
@@ -146,7 +146,7 @@ class _OfRLock(Lock):
 
 
 class SimpleQueue:
-    """Replacement of `queue.SimpleQueue`; code that is no program's gets Python's."""
+    """Replacement of `queue.SimpleQueue`; code that is not a program's gets Python's."""
 
     def __new__(cls) -> Any:
         """Return a queue of this class, or Python's; of a derived class always an object of that."""

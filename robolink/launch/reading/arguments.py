@@ -86,7 +86,7 @@ def _declared(file: LaunchFile) -> dict[str, Argument]:
 def _argument(file: LaunchFile, name: str, data: Any) -> Argument:
     steps = ["arguments", name]
     if not name.isidentifier():
-        raise file.error(steps, f"'{name}' is no name for an argument: letters, digits and '_'", key=True)
+        raise file.error(steps, f"'{name}' is not a name for an argument: letters, digits and '_'", key=True)
     if name in _OTHERS:
         raise file.error(steps, f"{{{name}}} is {_OTHERS[name]}: give the argument another name", key=True)
     if data is None:  # `speed:` with nothing behind it
@@ -185,4 +185,4 @@ def _data(name: str, text: str) -> Any:
     try:
         return parse(text, name="")
     except DocumentError as error:
-        raise DocumentError(f"{shown(name)}:={shown(text)} is no YAML: {error.message}") from None
+        raise DocumentError(f"{shown(name)}:={shown(text)} is not YAML: {error.message}") from None

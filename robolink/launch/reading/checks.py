@@ -34,7 +34,7 @@ def check_node(section: Section, said: NodeDescription) -> None:
         example = "a node, such as `node: world`" if key == "node" else "a program, such as `run: [python, -V]`"
         raise section.error([key], f"nothing to start: name {example}")
     if said.node and said.run:
-        raise section.error(["run"], "either `node` or `run`: a command is no node", key=True)
+        raise section.error(["run"], "either `node` or `run`: a command is not a node", key=True)
     if said.run:
         for key, instead in _FOR_NODES.items():
             if key in section:
@@ -58,7 +58,7 @@ def check_shared(section: Section, said: Any) -> None:
         section.check(parse_remap_rule, f"{match}:={replacement}", "remappings", match, key=True)
     for name in said.env:
         if not name or "=" in name or "\0" in name:
-            raise section.error(["env", name], f"'{name}' is no name for a variable", key=True)
+            raise section.error(["env", name], f"'{name}' is not a name for a variable", key=True)
     _check_texts(section, "env", said.env.items())
     if isinstance(said.respawn, Respawn):
         _check_respawn(section, said.respawn)
@@ -122,7 +122,7 @@ def _check_process_name(name: str) -> None:
 
 
 def _check_enclave(name: str) -> None:
-    """Raise an error if this is no name of an enclave."""
+    """Raise an error if this is not a name of an enclave."""
     from robolink.security.keystore import checked_enclave  # few files name any
 
     checked_enclave(name)

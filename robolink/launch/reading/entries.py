@@ -62,7 +62,7 @@ def read_launch_file(
 
     Raises:
         DocumentError: for a mistake in the file, with `file:line:column`.
-        NotFoundError: for a `workspace` that is no folder.
+        NotFoundError: for a `workspace` that is not a folder.
     """
     return _read(LaunchFile(Path(path), text), given, workspace, _raised)
 

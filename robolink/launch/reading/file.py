@@ -56,7 +56,7 @@ class LaunchFile:
             raise self._told(self._reader.explained(data, type_, error, steps)) from None
 
     def written(self, steps: Sequence[Step]) -> str | None:
-        """Return the value there letter by letter, such as `012`; None if it is no single value."""
+        """Return the value there letter by letter, such as `012`; None if it is not a single value."""
         return self._reader.written(steps)
 
     def mentioned(self, steps: Sequence[Step]) -> str:

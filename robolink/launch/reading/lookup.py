@@ -209,7 +209,7 @@ def why_no_command(program: str) -> str:
 
 
 def _first(candidates: Iterable[Path]) -> Path | None:
-    """Return the first candidate that exists and is no folder; other problems show when it is read."""
+    """Return the first candidate that exists and is not a folder; other problems show when it is read."""
     return next((each for each in candidates if each.exists() and not each.is_dir()), None)
 
 

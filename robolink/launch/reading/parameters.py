@@ -96,7 +96,7 @@ def _inline(said: dict[str, Any], place: Place) -> Iterator[tuple[Override, Plac
         if name in known:
             raise at.error(f"parameter '{shown(name)}' is given twice", key=True)
         if not name or any(each in ":*=" or each.isspace() or not each.isprintable() for each in name):
-            raise at.error(f"'{shown(name)}' is no name for a parameter", key=True)
+            raise at.error(f"'{shown(name)}' is not a name for a parameter", key=True)
         known.add(name)
         _check_value(value, at)
         yield Override("/**", name, value), at

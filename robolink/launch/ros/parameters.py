@@ -154,7 +154,7 @@ def _read(path: Path, text: str | None, say: Say) -> list[Override] | None:
 def _checked(name: str, value: Any) -> Any:
     """Return a value, if it arrives at the node as it is; raises LaunchError otherwise."""
     if not name or any(each in ":*=" or each.isspace() or not each.isprintable() for each in name):
-        raise LaunchError(f"'{shown(name)}' is no name for a parameter")
+        raise LaunchError(f"'{shown(name)}' is not a name for a parameter")
     if value is None:
         raise LaunchError(f"parameter '{shown(name)}' cannot be None: give a value, or leave it out")
     for each in value if isinstance(value, list) else [value]:

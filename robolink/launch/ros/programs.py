@@ -59,7 +59,7 @@ def program_of(package: str, executable: str, home: Path | None) -> Program:
             return Program(absent=_why_no_package(package, executable, home, error))
         if (folder / "CMakeLists.txt").is_file() and not closest(executable, executables(folder), _ALIKE):
             return Program(
-                absent=f"{package} {executable} is no Python program here, and robolink builds nothing with CMake"
+                absent=f"{package} {executable} is not Python program here, and robolink builds nothing with CMake"
             )
         raise
 

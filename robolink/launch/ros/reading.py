@@ -38,7 +38,7 @@ def visited(
 
     Raises:
         DocumentError: for a mistake, with the file and line of the user's code.
-        NotFoundError: for a `workspace` that is no folder.
+        NotFoundError: for a `workspace` that is not a folder.
     """
     path = path.absolute()
     home = home_of(path, workspace)

@@ -70,7 +70,7 @@ def robot_problems(robot: RobotDescription, dt: float) -> Iterator[Problem]:
 
 
 def _bad_name(name: str) -> str:
-    return f"'{shown(name)}' is no name: a-z, A-Z, digits and '_', a letter first, {_LONGEST_NAME} at most"
+    return f"'{shown(name)}' is not a name: a-z, A-Z, digits and '_', a letter first, {_LONGEST_NAME} at most"
 
 
 def _outline_problems(robot: RobotDescription) -> Iterator[Problem]:
@@ -194,4 +194,4 @@ def _rate_problems(rate: float, dt: float) -> Iterator[Problem]:
         return
     steps = math.floor(1.0 / (rate * dt))
     fitting = " or ".join(f"{1.0 / (dt * whole):.6g}" for whole in (steps + 1, steps) if whole)
-    yield Problem("", f"{rate:g} Hz is no whole number of steps of {dt:g} s: take {fitting}")
+    yield Problem("", f"{rate:g} Hz is not a whole number of steps of {dt:g} s: take {fitting}")

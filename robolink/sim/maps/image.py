@@ -23,7 +23,7 @@ _BLOCK = 1_000_000
 
 
 class ImageError(RobolinkError, ValueError):
-    """A file that is no image, or none that can be read here; the text says why."""
+    """A file that is not an image, or none that can be read here; the text says why."""
 
 
 class Image(NamedTuple):

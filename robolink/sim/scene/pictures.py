@@ -38,7 +38,7 @@ def read_picture(path: str) -> Picture:
 
     Raises:
         OSError: if it cannot be read.
-        ImageError: if it is no picture, a broken or a huge one, or a JPEG without OpenCV.
+        ImageError: if it is not a picture, a broken or a huge one, or a JPEG without OpenCV.
         ValueError: if the path is none.
     """
     if "\0" in path:

@@ -80,7 +80,7 @@ def tag_of(text: str) -> Tag:
     last = len(known[name].codes) - 1
     digits = digits.strip()
     if not slash or not digits.isascii() or not digits.isdigit() or len(digits) > 9 or int(digits) > last:
-        raise ValueError(f"'{shown(text, 40)}' is no tag of {name}: expected {name}/0 to {name}/{last}")
+        raise ValueError(f"'{shown(text, 40)}' is not a tag of {name}: expected {name}/0 to {name}/{last}")
     return Tag(name, int(digits))
 
 

@@ -174,7 +174,7 @@ def _settled(
 
 
 def _light(description: WorldDescription, things: list[Standing], robots: Sequence[Node]) -> Iterator[str]:
-    """Yield a note about things so light that robots may push them through walls; here that is no error."""
+    """Yield a note about things so light that robots may push them through walls; here that is not an error."""
     found = [_origin(each.path, things, robots) for each in mass_problems(description.robots, description.obstacles)]
     names = [node.called for node in found if node is not None]
     if names:

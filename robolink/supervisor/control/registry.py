@@ -88,7 +88,7 @@ def _check(folder: Path) -> None:
     if sys.platform != "win32":
         found = folder.lstat()
         if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid():
-            raise RuntimeFolderError(f"{folder} is no folder of this user: remove it")
+            raise RuntimeFolderError(f"{folder} is not a folder of this user: remove it")
         if found.st_mode & 0o077:
             raise RuntimeFolderError(f"{folder} can be opened by others: chmod 700 it")
 

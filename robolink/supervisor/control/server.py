@@ -95,7 +95,7 @@ class Control:
     def __enter__(self) -> Control:
         try:
             self._listener = _Listener(self._registration)
-        except (OSError, ValueError, RobolinkError) as error:  # ValueError: a folder whose name is no text
+        except (OSError, ValueError, RobolinkError) as error:  # ValueError: a folder whose name is not text
             self._controlled.say(f"no other shell can ask for the status, restart or stop: {error}")
         else:
             self._controlled.leavings += self._listener.files

@@ -54,7 +54,7 @@ class Imports:
 
 
 def parse(path: Path) -> ast.Module:
-    """Parse a file as Python does. Raises SyntaxError, for any file that is no Python, and OSError."""
+    """Parse a file as Python does. Raises SyntaxError, for any file that is not Python, and OSError."""
     text = path.read_bytes()
     try:
         with warnings.catch_warnings():

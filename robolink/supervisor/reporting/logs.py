@@ -193,7 +193,7 @@ def _new_folder(home: Path, name: str) -> Path:
     try:
         home.mkdir(0o700, parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):
-        raise NotADirectoryError(f"{home} is no folder: name one by ROBOLINK_LOG_DIR") from None
+        raise NotADirectoryError(f"{home} is not a folder: name one by ROBOLINK_LOG_DIR") from None
     for serial in range(1, 1000):
         folder = home / (name if serial == 1 else f"{name}_{serial}")
         with contextlib.suppress(FileExistsError):

@@ -37,7 +37,7 @@ export function yawOf(pose) {
   return Math.atan2(2 * (pose.qw * pose.qz + pose.qx * pose.qy), 1 - 2 * (pose.qy * pose.qy + pose.qz * pose.qz));
 }
 
-/** Pose of a geometry_msgs/Pose. A quaternion of zeros, as many nodes leave it, is no rotation. */
+/** Pose of a geometry_msgs/Pose. A quaternion of zeros, as many nodes leave it, is not a rotation. */
 export function poseOf({ position, orientation: q }) {
   const length = Math.hypot(q.x, q.y, q.z, q.w);
   const rotation = length ? { qx: q.x / length, qy: q.y / length, qz: q.z / length, qw: q.w / length } : { qx: 0, qy: 0, qz: 0, qw: 1 };

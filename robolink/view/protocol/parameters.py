@@ -106,7 +106,7 @@ def _typed(wish: ParameterWish, known: int) -> tuple[int, Any]:
     if isinstance(value, list):
         return _list(wish, known, wants_float)
     if type(value) not in _SCALARS:
-        raise ProtocolError(f"{wish.name}: {str(value)[:60]} is no value of a parameter")
+        raise ProtocolError(f"{wish.name}: {str(value)[:60]} is not a value of a parameter")
     if type(value) is int and wants_float:
         return KINDS.PARAMETER_DOUBLE, float(value)
     return _SCALARS[type(value)], _in_range(wish, value)

@@ -236,7 +236,7 @@ def _decode_json(raw: str) -> Request:
     except msgspec.ValidationError as error:
         raise ProtocolError(_why(raw, error)) from None
     except (msgspec.DecodeError, UnicodeEncodeError) as error:
-        raise ProtocolError(f"a message that is no JSON: {error}") from None
+        raise ProtocolError(f"a message that is not JSON: {error}") from None
     return decoded
 
 
@@ -244,7 +244,7 @@ def _why(raw: str, error: msgspec.ValidationError) -> str:
     try:
         op = msgspec.json.decode(raw)["op"]
     except msgspec.DecodeError as broken:  # behind the first wrong value
-        return f"a message that is no JSON: {broken}"
+        return f"a message that is not JSON: {broken}"
     except (TypeError, KeyError, RecursionError):
         return "a JSON message without 'op'"
     if op not in _OP_NAMES:

@@ -81,7 +81,7 @@ class Calling:
 
 
 def _request(cls: type[Service], call: ServiceCall, name: str) -> bytes:
-    """Return the serialized request; raises RobolinkError for what is no request of the type."""
+    """Return the serialized request; raises RobolinkError for what is not a request of the type."""
     made: Any = cls.Request
     try:
         if call.encoding == "json":

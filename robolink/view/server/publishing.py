@@ -39,7 +39,7 @@ class _Outgoing:
             system.held[self.publisher.topic] += 1
 
     def publish(self, payload: bytes, now: float) -> None:
-        """Publish what a client sent. Raises RobolinkError if it is no message of the type."""
+        """Publish what a client sent. Raises RobolinkError if it is not a message of the type."""
         if self.encoding == "json":
             message = from_builtins(self.cls, json_of(payload, self.publisher.topic))
             payload = encode(message)
@@ -138,7 +138,7 @@ def json_of(payload: bytes, what: str) -> Any:
     try:
         return msgspec.json.decode(payload)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise ProtocolError(f"{what}: a message that is no JSON: {error}") from None
+        raise ProtocolError(f"{what}: a message that is not JSON: {error}") from None
 
 
 def _class_of(system: LiveSource, name: str) -> type[Any]:

@@ -109,6 +109,6 @@ def _checked(name: str) -> str:
     for path in (PurePosixPath(name), PureWindowsPath(name)):
         if path.anchor or ".." in path.parts or not path.name or "\0" in name:
             raise ProtocolError(
-                f"record: {name[:200]!r} is no name for a bag in the folder where the server was started"
+                f"record: {name[:200]!r} is not a name for a bag in the folder where the server was started"
             )
     return name

@@ -102,10 +102,10 @@ def test_files_of_mcap_s_own_writer(tmp_path: Path, compression: CompressionType
         (b"", "it is empty"),
         (b"\x89MCAP", "it is cut after 5 bytes"),
         (b"\x89MCAP1\r\n" + bytes(30), "its format is MCAP version 1; robolink reads version 0"),
-        (b"SQLite format 3\0" + bytes(100), "it is no MCAP file, but an SQLite database"),
+        (b"SQLite format 3\0" + bytes(100), "it is not an MCAP file, but an SQLite database"),
         (b"#ROSBAG V2.0\n", "but a bag of ROS 1"),
         (b"\x28\xb5\x2f\xfd" + bytes(30), "packed with zstd as a whole"),
-        (b"Hello, world", "it is no MCAP file: it begins with b'Hello, w'"),
+        (b"Hello, world", "it is not an MCAP file: it begins with b'Hello, w'"),
     ],
 )
 def test_other_files_are_named(tmp_path: Path, content: bytes, words: str) -> None:

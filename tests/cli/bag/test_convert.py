@@ -170,7 +170,7 @@ def test_what_is_wrong_in_the_yaml_is_told(text: str, words: str, capsys: Captur
         ([], "convert what into what?"),
         (["old", "old"], "'old' exists already"),
         (["olld", "new"], "no bag 'olld' (did you mean 'old'?)"),
-        (["old", "new", "--regex", "("], "is no regular expression"),
+        (["old", "new", "--regex", "("], "is not a regular expression"),
         (["old", "new", "--compression-mode", "file"], "needs the format zstd"),
         (["old", "new", "-s", "sqlite3", "--compression", "zstd"], "a file of sqlite3 has no zstd inside"),
         (["old", "new", "-s", "sqlite"], "(did you mean 'sqlite3'?)"),

@@ -179,7 +179,7 @@ def test_times_and_sizes_have_rosbag2s_form() -> None:
     ("make", "words"),
     [
         (lambda: None, "no bag 'bag'"),
-        (lambda: Path("bag").mkdir(), "bag is no bag: there is no .mcap and no .db3 file in it"),
+        (lambda: Path("bag").mkdir(), "bag is not a bag: there is no .mcap and no .db3 file in it"),
         (lambda: Path("bag").write_bytes(b""), "bag is empty"),
         (lambda: Path("bag").write_text("hello, this is not a bag"), "is neither an MCAP file nor a sqlite3 database"),
         (lambda: Path("bag").write_bytes(b"#ROSBAG V2.0\n"), "is a bag of ROS 1: rosbags-convert"),

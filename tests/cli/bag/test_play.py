@@ -197,7 +197,7 @@ def test_ros2s_flags_become_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: 
         ("bag -r 0", "rate: expected"),
         ("bag --clock 0", "--clock: expected a number of Hz above 0"),
         ("bag --topics /none", "no topic is selected"),
-        ("bag -e (", "regex: '(' is no regular expression"),
+        ("bag -e (", "regex: '(' is not a regular expression"),
         ("bag -d -1", "expected 0 to"),
         ("bag --playback-duration nan", "take numbers of seconds"),
         ("bag --playback-until-sec 1 --playback-until-nsec 1", "do not go together"),

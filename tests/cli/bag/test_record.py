@@ -213,7 +213,7 @@ def test_a_full_disk_is_one_line_and_the_bag_has_what_was_written(
     ("words", "said"),
     [
         ("-o bag", "record what? name topics, or give -a, --all-topics"),
-        ("-e ( -o bag", "regex: '(' is no regular expression"),
+        ("-e ( -o bag", "regex: '(' is not a regular expression"),
         ("-a -o there", "'there' exists already"),
         ("-a --use-sim-time --no-discovery", "do not go together"),
         ("-a --max-bag-files 3", "--max-bag-files says something with"),

@@ -155,7 +155,7 @@ def test_all_that_is_asked_for_is_sent(asked: list[LoadNode.Request]) -> None:
     [
         ("list /lab/robo", "(did you mean '/lab/robot'?)"),
         ("load /lab/robot demo tlker", "/lab/robot did not load demo tlker: no such thing"),
-        ("load /lab/robot demo talker -p rate", "'rate' is no parameter: expected NAME:=VALUE"),
+        ("load /lab/robot demo talker -p rate", "'rate' is not a parameter: expected NAME:=VALUE"),
         ("unload /lab/robot 8", "/lab/robot did not unload 8: no such number"),
         ("types no_such_package", "no package named 'no_such_package'"),
     ],

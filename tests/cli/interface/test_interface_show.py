@@ -98,8 +98,8 @@ def test_show_refuses_what_contradicts_itself(capsys: Captured) -> None:
         ("geometry_msg/Twist", "no interface package named 'geometry_msg' (did you mean 'geometry_msgs'?)"),
         ("geometry_msg/msg/Twist", "no interface package named 'geometry_msg' (did you mean 'geometry_msgs'?)"),
         ("Empty", "several types are named 'Empty'"),
-        ("a/b/c/d", "'a/b/c/d' is no type name"),
-        ("../../etc/passwd", "is no type name"),
+        ("a/b/c/d", "'a/b/c/d' is not a type name"),
+        ("../../etc/passwd", "is not a type name"),
         ("x" * 5000, "it has 5000 characters"),
     ],
 )  # fmt: skip
@@ -111,7 +111,7 @@ def test_show_of_what_is_no_type(workspace: Workspace, capsys: Captured, name: s
 
 def test_a_definition_that_is_wrong_is_named_with_its_place(workspace: Workspace, capsys: Captured) -> None:
     workspace("Broken.msg", "int32 ok\nflot64 x\n")
-    assert "Broken.msg:2:1: 'flot64' is no type" in refused(capsys, "show", "lab_msgs/msg/Broken")
+    assert "Broken.msg:2:1: 'flot64' is not a type" in refused(capsys, "show", "lab_msgs/msg/Broken")
 
 
 def test_show_as_json_tells_all(workspace: Workspace, capsys: Captured) -> None:

@@ -200,7 +200,7 @@ def test_a_teacher_s_exercises(here: Path, monkeypatch: pytest.MonkeyPatch, caps
     assert main(["learn"]) == 0
     assert "01_stop_early.py  Ande para a frente\n" in capsys.readouterr().out
     assert main(["learn", "new", "Bad Name"]) == 1
-    assert capsys.readouterr().err.startswith("robolink: 'Bad Name' is no name for an exercise")
+    assert capsys.readouterr().err.startswith("robolink: 'Bad Name' is not a name for an exercise")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="the quotes of a POSIX shell")

@@ -55,8 +55,8 @@ def test_what_is_sent_goes_to_the_group(monkeypatch: pytest.MonkeyPatch) -> None
     ("words", "code", "report"),
     [
         ("receive --timeout 0.01", 1, "nothing came within 0.01 s"),
-        ("send --group 192.168.0.1", 2, "is no multicast address"),
-        ("receive --group x", 2, "'x' is no multicast address"),
+        ("send --group 192.168.0.1", 2, "is not a multicast address"),
+        ("receive --group x", 2, "'x' is not a multicast address"),
         ("send --port 0", 2, "--port"),
     ],
 )

@@ -108,11 +108,11 @@ def test_it_is_made_elsewhere(src: Path) -> None:
     [
         ("my-pkg", "Python imports no '-', take '_'"),
         ("class", "is a word of Python"),
-        ("../x", "is no name for a package"),
+        ("../x", "is not a name for a package"),
         ("pkg_there", "is there already: take another name"),
-        ("pkg_x --node-name 1", "'1' is no name for a node"),
+        ("pkg_x --node-name 1", "'1' is not a name for a node"),
         ("pkg_x --node-name a --library-name a", "cannot both be called 'a'"),
-        ("pkg_x --dependencies rclpy <x>", "'<x>' is no name of a package to depend on"),
+        ("pkg_x --dependencies rclpy <x>", "'<x>' is not a name of a package to depend on"),
         ("std_msgs --build-type ament_python", "a package 'std_msgs' comes with robolink"),
         ("robolink --build-type ament_python", "take another name, such as my_robolink"),
         ("random --build-type ament_python", "'random' is a module of Python: take another name, such as my_random"),
@@ -132,7 +132,7 @@ def test_what_cannot_be_made_is_one_line(words: str, report: str, capsys: Captur
 def test_a_package_without_a_name_is_not_made(build_type: str, capsys: Captured) -> None:
     assert main(["pkg", "create", "", "--build-type", build_type]) == 1
     err = capsys.readouterr().err
-    assert ("'' is no name for a package" in err, err.count("\n")) == (True, 1)
+    assert ("'' is not a name for a package" in err, err.count("\n")) == (True, 1)
     assert list(Path().iterdir()) == []
 
 

@@ -33,7 +33,7 @@ BAD: list[tuple[str, list[str], str]] = [
         ["pub", "/x", "geometry_msgs/Twis"],
         "no message type named 'Twis' in geometry_msgs (did you mean 'T",
     ),
-    ("no type", ["pub", "/x", "a b"], "'a b' is no type name; it should look like Twist, geometry_msgs/Twist or"),
+    ("no type", ["pub", "/x", "a b"], "'a b' is not a type name; it should look like Twist, geometry_msgs/Twist or"),
     ("echo type", ["topic", "echo", "/x", "Odometri"], "no message type named 'Odometri' (did you mean 'Odometry'?)"),
     (
         "field",

@@ -190,7 +190,7 @@ def test_find_of_a_type_that_no_topic_has_says_what_is_near(node: Node, capsys: 
     assert main(["topic", "find", "Twst"]) == 0
     assert capsys.readouterr() == ("", "no topic is of type Twst (did you mean 'Twist'?)\n")
     assert main(["topic", "find", "a b"]) == 1
-    assert capsys.readouterr().err.startswith("robolink: 'a b' is no type name; it should look like Twist")
+    assert capsys.readouterr().err.startswith("robolink: 'a b' is not a type name; it should look like Twist")
 
 
 def test_what_cannot_be_read_hides_nothing_else(node: Node, capsys: Captured) -> None:

@@ -219,8 +219,8 @@ def test_the_longer_side_has_the_size(workspace: Path) -> None:
 @pytest.mark.parametrize(
     ("args", "report"),
     [
-        (["hall", "hall.gif"], "'hall.gif' is no picture that can be drawn: end its name in .png, .svg, .pdf"),
-        (["hall", "hall"], "'hall' is no picture that can be drawn"),
+        (["hall", "hall.gif"], "'hall.gif' is not a picture that can be drawn: end its name in .png, .svg, .pdf"),
+        (["hall", "hall"], "'hall' is not a picture that can be drawn"),
         (["hell", "hall.png"], "no world named 'hell'"),
         (["hall", "no/where/hall.png"], "No such file or directory"),
     ],

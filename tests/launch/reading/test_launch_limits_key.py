@@ -37,7 +37,7 @@ def test_an_argument_may_be_a_rate() -> None:
     [
         ("limits: {rate: {/a: 0}}", "lab.yaml:1:21: limits.rate./a: expected messages a second"),
         ("limits: {rat: {/a: 1}}", "lab.yaml:1:10: limits.rat: unknown key 'rat' (did you mean 'rate'?)"),
-        ("limits: {control: [cmd_vel]}", "lab.yaml:1:20: limits.control[0]: 'cmd_vel' is no full name of a topic"),
+        ("limits: {control: [cmd_vel]}", "lab.yaml:1:20: limits.control[0]: 'cmd_vel' is not a full name of a topic"),
         ("limits: [/a]", "lab.yaml:1:9: limits: expected mapping"),
         ("limit: {}", "lab.yaml:1:1: limit: unknown key 'limit' (did you mean 'limits'?)"),
     ],

@@ -76,7 +76,7 @@ GIVEN = [
     ({"sped": "1"}, "configs/lap.yaml:1:12: arguments.sped: no argument is called 'sped' (did you mean 'speed'?)"),
     ({"speed": "4"}, "configs/lap.yaml:1:20: arguments.speed: 'speed' is one of 1, 2, got '4'"),
     ({"speed": ""}, "configs/lap.yaml:1:20: arguments.speed: 'speed' is one of 1, 2, got ''"),
-    ({"speed": "[1"}, "speed:=[1 is no YAML: expected ',' or ']', but got the end of the text"),
+    ({"speed": "[1"}, "speed:=[1 is not YAML: expected ',' or ']', but got the end of the text"),
 ]
 
 

@@ -102,7 +102,7 @@ ACTIONS = [
         "EmitEvent(event=events.process.SignalProcess(signal_number=999, process_matcher=print))",
         "no signal here is 999: signals are such as SIGINT or SIGTERM",
     ),
-    ("ForEach('{a: 1', function=print)", "'{{a: 1' is no YAML: "),
+    ("ForEach('{a: 1', function=print)", "'{{a: 1' is not YAML: "),
     ("ForEach('a', function=print)", "a mapping such as {{name: ada}} is expected, got 'a'"),
     ("ExecuteProcess(cmd='ls -l')", "cmd is a list of words, such as ['ls', '-l'], got the text 'ls -l'"),
     ("Node(package='bot', executable='talker', name='a b')", "'a b' must not contain characters other than a-z"),

@@ -70,11 +70,11 @@ def test_a_tag_has_a_family_and_a_number(text: str, tag: tuple[str, int]) -> Non
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("36h11", "'36h11' is no tag of 36h11: expected 36h11/0 to 36h11/586"),
-        ("36h11/587", "'36h11/587' is no tag of 36h11: expected 36h11/0 to 36h11/586"),
-        ("36h11/-1", "'36h11/-1' is no tag of 36h11: expected 36h11/0 to 36h11/586"),
-        ("36h11/3.0", "'36h11/3.0' is no tag of 36h11"),
-        ("36h11/\u0663", "is no tag of 36h11"),
+        ("36h11", "'36h11' is not a tag of 36h11: expected 36h11/0 to 36h11/586"),
+        ("36h11/587", "'36h11/587' is not a tag of 36h11: expected 36h11/0 to 36h11/586"),
+        ("36h11/-1", "'36h11/-1' is not a tag of 36h11: expected 36h11/0 to 36h11/586"),
+        ("36h11/3.0", "'36h11/3.0' is not a tag of 36h11"),
+        ("36h11/\u0663", "is not a tag of 36h11"),
         ("36h12/3", "'36h12/3' has no known family (did you mean '36h11'?): expected one of 16h5, 25h9,"),
         ("", "'' has no known family"),
     ],

@@ -32,7 +32,7 @@ def test_a_launcher_without_a_folder_says_so_once_and_runs(
     (said,) = supervisor.said
     assert said == (
         "no other shell can ask for the status, restart or stop: "
-        f"{folder / 'robolink'} is no folder of this user: remove it"
+        f"{folder / 'robolink'} is not a folder of this user: remove it"
     )
 
 
@@ -55,7 +55,7 @@ def test_a_folder_of_another_user_is_refused(folder: Path, monkeypatch: pytest.M
     monkeypatch.setattr(os, "getuid", lambda: 12345)
     monkeypatch.setattr(tempfile, "gettempdir", lambda: str(folder))
     (folder / "robolink-12345").mkdir(mode=0o700)
-    with pytest.raises(RuntimeFolderError, match="robolink-12345 is no folder of this user"):
+    with pytest.raises(RuntimeFolderError, match="robolink-12345 is not a folder of this user"):
         runtime_folder()
 
 
@@ -70,7 +70,7 @@ def test_a_folder_that_others_may_open_is_refused(folder: Path) -> None:
 @posix_only
 def test_a_link_in_its_place_is_refused(folder: Path, tmp_path: Path) -> None:
     (folder / "robolink").symlink_to(tmp_path)
-    with pytest.raises(RuntimeFolderError, match="is no folder of this user"):
+    with pytest.raises(RuntimeFolderError, match="is not a folder of this user"):
         runtime_folder()
 
 

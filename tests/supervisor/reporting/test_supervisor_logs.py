@@ -145,7 +145,7 @@ def test_a_folder_that_cannot_be_made_is_told_once(tmp_path: Path) -> None:
     run.line("a", b"x\n")
     run.say("y")
     run.close()
-    assert troubles == [f"no logs are kept: {tmp_path}/file/log is no folder: name one by ROBOLINK_LOG_DIR"]
+    assert troubles == [f"no logs are kept: {tmp_path}/file/log is not a folder: name one by ROBOLINK_LOG_DIR"]
     assert run.folder is None
 
 

@@ -40,9 +40,9 @@ def test_anything_is_decoded_or_refused_in_one_line(raw: str | bytes) -> None:
 @given(
     st.sampled_from(requests._OP_NAMES), st.dictionaries(st.sampled_from(["subscriptions", "id", "channels"]), VALUES)
 )
-@example("subscribe", {"subscriptions": None, "id": float("inf")})  # Python writes Infinity, which is no JSON
+@example("subscribe", {"subscriptions": None, "id": float("inf")})  # Python writes Infinity, which is not JSON
 def test_no_fields_of_an_operation_break_the_decoder(op: str, fields: dict[str, Any]) -> None:
-    assert refusal(json.dumps({"op": op, **fields})).startswith((op, "a message that is no JSON", "OK"))
+    assert refusal(json.dumps({"op": op, **fields})).startswith((op, "a message that is not JSON", "OK"))
 
 
 @given(

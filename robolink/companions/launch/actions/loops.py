@@ -39,7 +39,7 @@ class ForEach(Action):
         self.input_values, self.function = normalize_to_list_of_substitutions(input_values), _checked(function)
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Return the entities for the values in `context`. Raises LaunchError for what is no mapping."""
+        """Return the entities for the values in `context`. Raises LaunchError for what is not a mapping."""
         texts = [each for each in performed(context, self.input_values).split(";") if each.strip()]
         _check_count(len(texts))
         return [each for text in texts for each in self.function(**_mapping(text)) or ()]
@@ -67,7 +67,7 @@ class ForLoop(Action):
         self.length, self.function, self.name = length, _checked(function), name
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Return the entities for the length in `context`. Raises LaunchError for a length that is no number."""
+        """Return the entities for the length in `context`. Raises LaunchError for a length that is not a number."""
         length = self.length if isinstance(self.length, int) else _length(performed(context, self.length))
         if length < 0:
             raise LaunchError(f"{_LENGTH}, got one below")
@@ -101,7 +101,7 @@ def _mapping(text: str) -> dict[str, Any]:
     try:
         found = parse(text, name="")
     except DocumentError as error:
-        raise LaunchError(f"'{shown(text.strip(), 60)}' is no YAML: {error.message}") from None
+        raise LaunchError(f"'{shown(text.strip(), 60)}' is not YAML: {error.message}") from None
     if not isinstance(found, dict):
         raise LaunchError(f"a mapping such as {{name: ada}} is expected, got '{shown(text.strip(), 60)}'")
     return found

@@ -88,7 +88,7 @@ class LocalSubstitution(Substitution):
         while at < len(self.expression):
             step = _STEP.match(self.expression, at)
             if step is None:
-                raise SubstitutionFailure(f"'{self.expression}' is no name with attributes and keys")
+                raise SubstitutionFailure(f"'{self.expression}' is not a name with attributes and keys")
             at, name = step.end(), next(each for each in step.groups() if each is not None)
             try:
                 value = (

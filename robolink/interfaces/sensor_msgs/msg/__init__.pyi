@@ -173,7 +173,7 @@ class LaserScan(robolink.message.Message):
     """One sweep of a planar laser scanner, in metres, radians and seconds.
 
     Beam i points to ``angle_min + i * angle_increment``, counter-clockwise about the frame's z axis from its
-    x axis. A range below `range_min` or above `range_max` is no measurement. ``header.stamp`` is the time of
+    x axis. A range below `range_min` or above `range_max` is not a measurement. ``header.stamp`` is the time of
     the first beam, `time_increment` passes from beam to beam and `scan_time` from scan to scan. `intensities`
     have the device's own unit and may be empty.
     """

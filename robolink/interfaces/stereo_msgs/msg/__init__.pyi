@@ -13,7 +13,7 @@ class DisparityImage(robolink.message.Message):
 
     `image` holds 32-bit floats. A disparity d stands for a depth of ``f * t / d``, where `f` is the focal length in
     pixels and `t` the distance of the two cameras in metres. Disparities were searched from `min_disparity` to
-    `max_disparity` pixels, in steps of `delta_d`; what is below the smallest is no measurement, nor is what lies
+    `max_disparity` pixels, in steps of `delta_d`; what is below the smallest is not a measurement, nor is what lies
     outside `valid_window`.
     """
     header: robolink.interfaces.std_msgs.msg.Header

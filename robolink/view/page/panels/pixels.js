@@ -28,7 +28,7 @@ function channels({ width, height, step, data }, out, [size, red, green, blue, a
   }
 }
 
-/** Grey from the least to the greatest value of the image; what is no number is dark blue. */
+/** Grey from the least to the greatest value of the image; what is not a number is dark blue. */
 function deep({ width, height, step, data, is_bigendian: big }, out, [size, get]) {
   const view = new DataView(data.buffer, data.byteOffset, data.byteLength), values = new Float64Array(width * height);
   let low = Infinity, high = -Infinity;
