@@ -51,11 +51,11 @@ def read(path: str | os.PathLike[str], text: str | None = None) -> WebotsWorld:
     from robolink.sim.webots.convert import convert
     from robolink.sim.webots.protos import Protos
     from robolink.sim.webots.scene_tree import KNOWN_TYPES
-    from robolink.sim.webots.vrml import LONGEST, parse
-    from robolink.sim.webots.vrml_node import Notes
+    from robolink.sim.webots.vrml import parse, parse_proto
+    from robolink.sim.webots.vrml_node import LONGEST, Notes
 
     name, repaired = os.fspath(path), Notes()
-    protos = Protos(repaired, KNOWN_TYPES)
+    protos = Protos(repaired, KNOWN_TYPES, parse_proto)
     nodes = parse(yamlfile.read_text(path, LONGEST) if text is None else text, name, protos)
     description, notes = convert(nodes, name, protos.missing)
     return WebotsWorld(description, (*notes, *(each.removeprefix(f"{name}:") for each in repaired)))

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 from robolink.documents import yamlfile
-from robolink.sim.webots.vrml_node import Field, Node, Notes, Source
+from robolink.sim.webots.vrml_node import LONGEST, Field, Node, Notes, Source
 from robolink.system.terminal import shown
 
 OWN = Path(__file__).parent / "protos"
@@ -55,10 +55,13 @@ class Protos:
     Args:
         notes: Where to tell of fields that a PROTO does not have.
         known: Types of nodes that need no definition, unless one lies beside the world.
+        parse: Parser of a PROTO's file, `vrml.parse_proto`, which finds the PROTOs of its own nodes here.
     """
 
-    def __init__(self, notes: Notes, known: Collection[str]) -> None:
-        self.notes = notes
+    def __init__(
+        self, notes: Notes, known: Collection[str], parse: Callable[[Source, Scope, Protos], Definition]
+    ) -> None:
+        self.notes, self._parse = notes, parse
         self.missing: dict[str, str] = {}
         """Why PROTOs are not read, by their names."""
         self.work = 0
@@ -114,15 +117,13 @@ class Protos:
         return None
 
     def _definition(self, path: Path, kind: str) -> Definition | None:
-        from robolink.sim.webots.vrml import LONGEST, parse_proto
-
         if path not in self._read:
             source = Source(yamlfile.read_text(path, LONGEST), os.fspath(path), self.notes)
             if _TEMPLATE.search(source.text):
                 self.missing[kind] = "its definition is a program, which is not run"
                 self._read[path] = None
             else:
-                self._read[path] = parse_proto(source, Scope(path.parent, {}), self)
+                self._read[path] = self._parse(source, Scope(path.parent, {}), self)
         return self._read[path]
 
 

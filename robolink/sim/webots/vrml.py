@@ -15,12 +15,9 @@ from robolink.documents.foreign import unknown_key
 from robolink.exceptions import DocumentError, nearest
 from robolink.sim.webots.known_fields import KNOWN_FIELDS
 from robolink.sim.webots.protos import Definition, Protos, Scope
-from robolink.sim.webots.vrml_node import DEEPEST, MOST, Field, Node, Source, Value
+from robolink.sim.webots.vrml_node import DEEPEST, LONGEST, MOST, Field, Node, Source, Value
 from robolink.system.plainfile import size
 from robolink.system.terminal import shown
-
-LONGEST = 6_000_000
-"""Most characters, and bytes, of a world."""
 
 MOST_WORDS = 500_000
 """Most words, brackets and strings of a world; a list of only numbers, as of a mesh, counts as one."""

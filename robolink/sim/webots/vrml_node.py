@@ -10,6 +10,8 @@ from robolink.system.terminal import shown
 
 Value: TypeAlias = "float | str | bool | Node | None"
 
+LONGEST = 6_000_000
+"""Most characters, and bytes, of a world."""
 DEEPEST = 60
 """Deepest nesting of nodes, with those that USE brings in."""
 
