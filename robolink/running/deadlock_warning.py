@@ -46,11 +46,11 @@ class DeadlockWarning:
 
     def _is_asked_here(self, entity: Entity) -> bool:
         """Return whether it is a service whose answer a client of one of the nodes waits for."""
-        name = getattr(entity, "srv_name", None)
+        name = getattr(entity, "service_name", None)
         return any(each.service_name == name and each.is_waiting for node in self._nodes for each in node.clients)
 
 
 def _named(entity: Entity) -> str:
     kind = type(entity).__name__.lower()
-    name = getattr(entity, "topic_name", None) or getattr(entity, "srv_name", None)
+    name = getattr(entity, "topic_name", None) or getattr(entity, "service_name", None)
     return f"the {kind} of {name}" if name else f"a {kind}"

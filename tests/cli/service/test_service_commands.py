@@ -279,7 +279,7 @@ def test_a_server_whose_callback_fails(node: Node, log_lines: list[Any], capsys:
     thread.join()
     executor.shutdown()
     assert capsys.readouterr().err == "robolink: service /lab/arm: nobody serves it, or the server went away\n"
-    assert "no arm" in str(log_lines)
+    assert log_lines == []  # who catches the exception has not lost it
 
 
 @pytest.mark.parametrize(
