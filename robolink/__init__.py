@@ -13,6 +13,8 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from types import FrameType
+
     from robolink.clock import Clock
     from robolink.context import Context
     from robolink.control.pid import Pid
@@ -157,9 +159,15 @@ _NOT_RCLPYS = frozenset(["Clock", "Duration", "ExternalShutdownException", "Mess
 """Names that a program which calls this rclpy has to import from a module on a robot."""
 
 
-def _warn_of_home(name: str, asker: str) -> None:
-    """Warn a program that calls this rclpy: what works here raises on a robot."""
-    if sys.modules.get("rclpy") is not sys.modules[__name__] or asker.partition(".")[0] == "robolink":
+def _warn_of_home(name: str, frame: FrameType | None) -> None:
+    """Warn a program that calls this rclpy, not robolink: what works here raises on a robot."""
+    while frame is not None and frame.f_globals.get("__name__") == "importlib._bootstrap":
+        frame = frame.f_back  # `from rclpy import Node`
+    if frame is None or sys.modules.get("rclpy") is not sys.modules[__name__]:
+        return
+    names = frame.f_code.co_names
+    is_robolinks = "robolink" in names and "rclpy" not in names
+    if is_robolinks or frame.f_globals.get("__name__", "").partition(".")[0] == "robolink":
         return
     import warnings
 
@@ -169,7 +177,7 @@ def _warn_of_home(name: str, asker: str) -> None:
 
 def __getattr__(name: str) -> Any:
     if name in _NOT_RCLPYS:
-        _warn_of_home(name, sys._getframe(1).f_globals.get("__name__", ""))
+        _warn_of_home(name, sys._getframe(1))
     if name in _HOMES:
         value = getattr(importlib.import_module(f"robolink.{_HOMES[name]}"), name)
     elif name in _ROOMS:

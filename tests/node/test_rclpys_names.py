@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from typing import Any
 
 import pytest
@@ -112,3 +113,15 @@ def test_what_rclpy_does_not_have_at_its_top_is_told(monkeypatch: pytest.MonkeyP
     monkeypatch.delitem(vars(robolink), "Duration", raising=False)
     with pytest.warns(UserWarning, match=r"no rclpy.Duration: write `from rclpy.duration import Duration`"):
         assert robolink.Duration(seconds=1).nanoseconds == 10**9
+
+
+@pytest.mark.parametrize(("package", "warns"), [("robolink", False), ("rclpy", True)])
+def test_a_name_that_only_robolink_has_is_told_to_programs_of_rclpy(
+    package: str, warns: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "rclpy", robolink)
+    monkeypatch.delitem(vars(robolink), "Node", raising=False)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        exec(compile(f"from {package} import Node", "program.py", "exec"), {"__name__": "program"})
+    assert [str(each.message)[:23] for each in told] == ["ROS 2 has no rclpy.Node"] * warns
