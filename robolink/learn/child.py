@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import sys
 import threading
 import time
@@ -24,6 +25,8 @@ SLOW = 10.0
 
 _OURS = ("world", "test", "robolink")
 """Loggers whose lines a student does not need."""
+_END = re.compile(r"\S+ raised(?: while it was made)?:\nTraceback ")
+"""Log message of a program's end by an exception (host/program.py), which the report tells."""
 
 
 class Child:
@@ -96,7 +99,7 @@ def _show_own_lines() -> None:
     from robolink.text.tracebacks import without_own_frames
 
     def show(record: Record) -> None:
-        if record.name.partition(".")[0] not in _OURS:
+        if record.name.partition(".")[0] not in _OURS and not _END.match(record.message):
             text = without_own_frames(record.message)
             print(f"[{record.severity.name}] {record.name}: {text}", flush=True)  # noqa: T201
 
