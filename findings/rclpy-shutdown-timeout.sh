@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # rclpy 9.1.2 (Kilted): `MultiThreadedExecutor.shutdown(timeout_sec=0.1)` waits for the callback under way, however long
-# that takes, and returns True. Its documentation: "timeout_sec: Seconds to wait [...] Don't wait if 0", and False if the
-# timeout expires first. One would guess that a program which gives 0.1 s gets its thread back after 0.1 s.
+# that takes, and returns True, while it is documented to wait for at most that time, and to return False then. One would
+# guess that a program which gives 0.1 s gets its thread back after 0.1 s.
 #
 # Seen with Python 3.11, Linux x86_64: a callback of 0.8 s; shutdown(timeout_sec=0.1) takes 0.6 s and returns True. With
 # `wait_for_threads=False` it returns at once, and says True as well, though the callback still runs.
