@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from robolink.cli.running_nodes import runner
@@ -47,13 +47,32 @@ def _spin(members: Sequence[Member], sources: Sequence[NodeSource]) -> None:
         contextlib.ExitStack() as stack,
     ):
         executor = robolink.get_global_executor()  # what a node gets that spins itself
+        nodes: dict[int, str] = {}
         for member, source in zip(members, sources, strict=True):
             node = make(member, source, begun.context)
             stack.callback(node.destroy_node)
             executor.add_node(node)
+            nodes[id(node)] = member.name
         # Which node would make another one later, in a callback, cannot be told: that one gets no arguments.
         begun.context.arguments, sys.argv = Arguments(), sys.argv[:1]
-        executor.spin()
+        try:
+            executor.spin()
+        except Exception as error:
+            if name := _whose(error, nodes):
+                tell(f"robolink: {name} raised in a callback:")
+            raise
+
+
+def _whose(error: Exception, nodes: Mapping[int, str]) -> str:
+    """Return the name of the node in whose method an exception was raised; '' if it is none's.
+
+    A traceback says the file and the line, which are the same for all nodes of a class.
+    """
+    trace, found = error.__traceback__, ""
+    while trace is not None:
+        found = nodes.get(id(trace.tb_frame.f_locals.get("self")), found)
+        trace = trace.tb_next
+    return found
 
 
 def make(member: Member, source: NodeSource, context: Context) -> Node:
