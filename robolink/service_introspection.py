@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from enum import IntEnum
+from typing import Any, cast
 
 from robolink.clock import Clock
 from robolink.context import Context
@@ -79,6 +80,7 @@ class ServiceEnd(Receiver):
 
     srv_type: type[Service]
     srv_name: str
+    _service_name: str
     _endpoint: Endpoint
 
     introspection: Introspection | None = None
@@ -111,7 +113,8 @@ class ServiceEnd(Receiver):
     @property
     def context(self) -> Context:
         """Context of the node."""
-        return self._endpoint.context
+        context: Context = cast("Any", self._endpoint.context)  # an endpoint knows a part of it
+        return context
 
     @property
     def service_name(self) -> str:

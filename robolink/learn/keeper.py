@@ -31,6 +31,7 @@ def keep(words: list[str]) -> int:
     """
     import ctypes
 
+    assert sys.platform == "linux"  # which tells type checkers, too
     ctypes.CDLL(None).prctl(_ADOPT, ctypes.c_ulong(1), 0, 0, 0)
     signal.signal(signal.SIGTERM, _end)
     child = os.fork()
@@ -50,6 +51,7 @@ def _end(*_: object) -> None:
 
 
 def _end_all() -> None:
+    assert sys.platform == "linux"
     deadline = time.monotonic() + PATIENCE
     while time.monotonic() < deadline:
         for each in _descendants():

@@ -31,6 +31,9 @@ class ServingNode(Protocol):
     def context(self) -> ContextLike:
         """The context that it lives in."""
 
+    def get_name(self) -> str:
+        """Return its name, without the namespace."""
+
     def get_logger(self) -> RcutilsLogger:
         """Return the logger that carries the node's name."""
 
