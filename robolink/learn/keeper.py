@@ -31,7 +31,8 @@ def keep(words: list[str]) -> int:
     """
     import ctypes
 
-    assert sys.platform == "linux"  # which tells type checkers, too
+    if sys.platform != "linux":
+        return 1
     ctypes.CDLL(None).prctl(_ADOPT, ctypes.c_ulong(1), 0, 0, 0)
     signal.signal(signal.SIGTERM, _end)
     child = os.fork()
@@ -51,7 +52,8 @@ def _end(*_: object) -> None:
 
 
 def _end_all() -> None:
-    assert sys.platform == "linux"
+    if sys.platform != "linux":
+        return
     deadline = time.monotonic() + PATIENCE
     while time.monotonic() < deadline:
         for each in _descendants():
