@@ -10,6 +10,7 @@ from robolink.callback_groups import CallbackGroup
 from robolink.exceptions import (
     DecodeError,
     ExternalShutdownException,
+    InvalidHandle,
     ServiceError,
     SessionReplacedError,
     TransportError,
@@ -367,7 +368,12 @@ class Client(ServiceEnd):
         Returns:
             True if somebody serves it.
         """
-        return self._context.wait_until(self.service_is_ready, timeout_sec)
+        try:
+            return self._context.wait_until(self.service_is_ready, timeout_sec)
+        except InvalidHandle:
+            if self._context.ok():
+                raise
+            return False  # the context ended between two looks, and destroyed this client
 
     def destroy(self) -> None:
         """End the client, and abandon its calls. Safe to call twice."""

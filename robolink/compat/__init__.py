@@ -58,6 +58,7 @@ def activate(mode: str = AUTO) -> bool:
     if mode not in MODES:
         raise CompatError(f"{VARIABLE}: expected {', '.join(MODES)}, got '{mode}'")
     if is_active():
+        set_ros_version()  # somebody may have changed the environment since
         return True
     loaded = sys.modules.get("rclpy")
     is_foreign = loaded is not None and loaded is not sys.modules["robolink"]

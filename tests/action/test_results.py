@@ -278,7 +278,7 @@ def test_wrong_arguments(client: ActionClient, serve: Callable[..., ActionServer
             ask(UUID())  # type: ignore[arg-type] # what is tested
     with pytest.raises(TypeError, match="must be callable"):
         server.register_execute_callback(None)  # type: ignore[arg-type] # what is tested
-    with pytest.raises(ValueError, match="no action class"):
+    with pytest.raises(ValueError, match="not an action class"):
         ActionClient(node, Fibonacci.Goal, "fibonacci")
     with pytest.raises(ValueError, match="topic name"):
         ActionServer(node, Fibonacci, "fibonacci!", fibonacci)

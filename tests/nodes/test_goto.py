@@ -35,7 +35,7 @@ def message(**fields: float) -> Any:
 
 FAULTS = {
     "expected finite numbers": [{"x": math.nan}, {"y": math.inf}, {"qz": math.nan}, {"x": -1e9}],
-    "no quaternion": [{"qw": 0.0}],
+    "not a quaternion": [{"qw": 0.0}],
 }
 
 

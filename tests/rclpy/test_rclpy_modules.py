@@ -73,7 +73,7 @@ def test_what_is_no_type(wrong: Any) -> None:
     ],
 )
 def test_a_type_of_another_kind(check: Any, wrong: type[Any]) -> None:
-    with pytest.raises(RuntimeError, match=r"is no (message|service) class, but one of"):
+    with pytest.raises(RuntimeError, match=r"is not a (message|service) class, but one of"):
         check(wrong)
 
 

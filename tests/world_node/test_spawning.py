@@ -53,8 +53,8 @@ def test_a_robot_is_as_a_text_says(system: System, world: Any) -> None:
     ("fields", "reason"),
     [
         ({"name": "ada"}, "ada"),
-        ({"name": ""}, "no name"),
-        ({"name": "a/b"}, "no name"),
+        ({"name": ""}, "not a name"),
+        ({"name": "a/b"}, "not a name"),
         ({"name": "eve", "x": math.nan}, "finite"),
         ({"name": "eve", "x": -5.0}, "outside of the world's size"),
         ({"name": "eve", "x": 2.0, "y": 2.0}, "another robot"),

@@ -74,7 +74,7 @@ def test_service_call(encoding: str) -> None:
 @pytest.mark.parametrize(
     ("raw", "part"),
     [
-        ("{", "no JSON"),
+        ("{", "not JSON"),
         ("{}", "without 'op'"),
         ('{"op":"subscrib"}', "subscribe"),
         ('{"op":"subscribe"}', "subscribe: Object missing required field `subscriptions`"),

@@ -27,7 +27,7 @@ def test_each_mistake_is_told_in_one_line_up_to_a_number() -> None:
         client.settle()
         told = [each["message"] for each in client.heard if each["op"] == "status"]
         assert len(told) == MOST_MISTAKES + 1
-        assert "no JSON" in told[0]
+        assert "not JSON" in told[0]
         assert "no longer told" in told[-1]
 
 

@@ -312,7 +312,7 @@ def test_thousands_of_names_are_one_answer_and_nobody_waits_for_it() -> None:
 @pytest.mark.parametrize(
     ("name", "value", "why"),
     [
-        ("/robot.speed", {"a": 1}, "no value of a parameter"),
+        ("/robot.speed", {"a": 1}, "not a value of a parameter"),
         ("/robot.names", ["a", 1], "of one type"),
         ("/robot.count", 2**70, "64 bits"),
         ("robot", 1, "names no parameter"),

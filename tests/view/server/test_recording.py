@@ -37,7 +37,7 @@ def test_a_recording_is_begun_and_ended_by_the_page(tmp_path: Path, monkeypatch:
 def test_a_bag_is_not_written_anywhere_else(name: str) -> None:
     with shown() as system, system.client() as client:
         client.send("record", command="start", path=name)
-        assert "no name for a bag" in client.wait_for("status", level=2)["message"]
+        assert "not a name for a bag" in client.wait_for("status", level=2)["message"]
 
 
 def test_a_recording_needs_the_token() -> None:
