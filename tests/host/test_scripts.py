@@ -14,6 +14,7 @@ import pytest
 from robolink import logging
 from robolink.host import Host
 from robolink.launch.shared_process import Member
+from robolink.system.variables import set_ros_version
 from tests.support.hosts import Counter, Listener, Stage, start_files, traced
 from tests.support.scripts import CLIENT, MIXED, PARALLEL, SCRIPTS, SERVER, THREADED
 
@@ -214,6 +215,7 @@ try:
 except EOFError:
     sys.exit(5)
 """
+    set_ros_version()  # as it is when a program has been loaded, whatever another test has taken out
     argv, environ = sys.argv, dict(os.environ)
     programs = [stage.start(name, text, name, env={"SPECIAL": name}) for name in ("one", "two")]
     assert (sys.argv, dict(os.environ)) == (argv, environ)

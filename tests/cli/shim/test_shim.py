@@ -148,6 +148,7 @@ def test_a_launcher_of_others_stays(windows: Path, capsys: Captured, monkeypatch
     assert (windows / "ros2.exe").read_bytes() == real
     (windows / "robolink.exe").unlink()
     monkeypatch.setattr(writing, "scripts_folder", lambda: windows)
+    monkeypatch.setattr("shutil.which", lambda _: None)  # from 3.12 on it asks Windows itself
     assert shim("colcon", folder=windows) == 1
     assert "nor on the PATH: pip makes it" in capsys.readouterr().err
 
