@@ -1,6 +1,6 @@
 """Generator of a picture: what the cameras of simulated robots see, side by side, without noise.
 
-Usage: python tools/camera_picture.py docs/camera.png
+Usage: python tools/camera_picture.py docs/pictures/simulated_camera.png
 """
 
 from __future__ import annotations

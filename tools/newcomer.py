@@ -30,7 +30,7 @@ from tests.support.page_shell import lines_of
 from tests.support.page_words import goes_on
 from tools.docs_site.markdown import Block, blocks
 
-PAGE = Path(__file__).resolve().parent.parent / "docs" / "en" / "learn" / "first_robot.md"
+PAGE = Path(__file__).resolve().parent.parent / "docs" / "learn" / "first_robot.md"
 LIMIT = 60.0
 """Longest time from the first command until the robot moves, in s, without waiting for packages."""
 PATIENCE = 600.0

@@ -1,6 +1,6 @@
 """Generator of a picture: the path of a node that drives in a simulated world, in virtual time.
 
-Usage: python tools/picture.py wall_follower corners docs/follow.svg --seconds 95
+Usage: python tools/picture.py wall_follower corners docs/pictures/follow.svg --seconds 95
 """
 
 from __future__ import annotations

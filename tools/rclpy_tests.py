@@ -1,7 +1,7 @@
-"""Runner of rclpy's own tests against robolink; writes docs/rclpy.md from the results.
+"""Runner of rclpy's own tests against robolink; writes docs/reference/rclpy.md from the results.
 
     git clone https://github.com/ros2/rclpy
-    python tools/rclpy_tests.py rclpy [--file test_node.py] [--transport memory] [--markdown docs/rclpy.md]
+    python tools/rclpy_tests.py rclpy [--file test_node.py] [--transport memory] [--markdown docs/reference/rclpy.md]
 
 The files are copied to a folder that is removed afterwards: nothing is written into the checkout. Each runs in a
 process of its own, where `robolink.compat` stands for rclpy and the message packages; by default over Zenoh, as
@@ -37,7 +37,10 @@ REASONS = Path(__file__).with_name("rclpy_reasons.yaml")
 SHIM = "robolink.compat"
 TYPES = ROOT / "tests" / "data" / "workspace" / "src" / "test_msgs"
 """Package of the types that rclpy's tests import, on the path of each; it uses helpers of the tests."""
-BEGIN, END = "<!-- from here on: python tools/rclpy_tests.py CHECKOUT --markdown docs/rclpy.md -->", "<!-- to here -->"
+BEGIN, END = (
+    "<!-- from here on: python tools/rclpy_tests.py CHECKOUT --markdown docs/reference/rclpy.md -->",
+    "<!-- to here -->",
+)
 
 PASSED, FAILED, NOT_APPLICABLE = "passed", "failed", "not applicable"
 
@@ -250,7 +253,7 @@ def show(outcomes: Outcomes, console: Console) -> None:
 
 
 def markdown(outcomes: Outcomes, reasons: dict[str, Reason]) -> str:
-    """The generated part of docs/rclpy.md."""
+    """The generated part of docs/reference/rclpy.md."""
     lines = ["| file | passed | failed | not applicable |", "|---|---:|---:|---:|"]
     lines += [f"| {row.file} | " + " | ".join(str(number) for number in row[1:]) + " |" for row in rows(outcomes)]
     for verdict in (FAILED, NOT_APPLICABLE):

@@ -1,6 +1,6 @@
 """Generator of the manual's picture of turtlesim: turtles that have drawn, in headless Chromium.
 
-Usage: python tools/turtlesim_picture.py docs/turtlesim.png
+Usage: python tools/turtlesim_picture.py docs/pictures/turtlesim.png
 """
 
 from __future__ import annotations

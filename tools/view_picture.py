@@ -1,7 +1,7 @@
 """Generator of the pictures of the page: a simulated robot, or an exercise, seen in headless Chromium.
 
-Usage: python tools/view_picture.py docs/view.png [--system wander] [--seconds 30] [--theme dark]
-       python tools/view_picture.py docs/exercises.png --exercise stop --theme light --height 640
+Usage: python tools/view_picture.py docs/pictures/view.png [--system wander] [--seconds 30] [--theme dark]
+       python tools/view_picture.py docs/pictures/exercises.png --exercise stop --theme light --height 640
 """
 
 from __future__ import annotations

@@ -80,7 +80,7 @@ OF_ROS2 = {
     "extension_points": "'robolink --help' lists the commands, those of other packages too",
     "extensions": "'robolink --help' lists the commands, those of other packages too",
     "plugin": "plugins of pluginlib are C++; 'robolink pkg executables' lists what can be run",
-    "test": "tests are pytest's, in virtual time (docs/testing.md)",
+    "test": "tests are pytest's, in virtual time (docs/reference/testing.md)",
     "trace": "it records traces of C++ with LTTng; 'robolink top' shows what nodes use and what topics carry",
 }
 """Commands of ros2 that robolink lacks, each with what to do instead."""

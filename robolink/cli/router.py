@@ -65,9 +65,9 @@ def opening(listens: Sequence[str], connects: Sequence[str], enclave: str = "") 
     far = [each for each in listens if not on_this_machine(each)]
     lines = [f"robolink router: listens at {', '.join(listens)}; Ctrl-C ends it"]
     if enclave:
-        lines.append(f"only enclaves of the keystore of '{enclave}' get in, each with its rights (docs/security.md)")
+        lines.append(f"only enclaves of the keystore of '{enclave}' get in, with their rights (docs/why/security.md)")
     elif far:
-        lines.append("whoever reaches it there may hear and command all nodes behind it (docs/networks.md)")
+        lines.append("whoever reaches it there may hear and command all nodes behind it (docs/reference/networks.md)")
     if not far:
         lines.append("only this machine reaches it; --listen lan opens it to others")
     return [*lines, *(f"connects to {each}" for each in connects)]

@@ -45,7 +45,7 @@ ROOMS = {
 """Modules by name; '' is a package with nothing in it. A name below another is below its module."""
 
 INSTEAD = {
-    "launch_pytest": "pytest runs tests of launch_testing, and robolink.testing has system.launch() (docs/testing.md)",
+    "launch_pytest": "pytest runs its tests, robolink.testing has system.launch() (docs/reference/testing.md)",
     "launch.exit_handler": "that is ROS 2 before Bouncy (2018): Node(respawn=True, on_exit=...) is what it has now",
     "launch.legacy": "that is ROS 2 before Bouncy (2018): launch.actions and launch_ros.actions are what it has now",
     "tf2_kdl": "tf2_geometry_msgs transforms the types of geometry_msgs, tf_transformations has the matrices",

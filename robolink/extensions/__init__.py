@@ -13,7 +13,7 @@ A package names what it adds in its pyproject.toml, and robolink reads that when
     compass = "my_package.compass:COMPASS"    # sensors: [{compass: heading}] in a world file
 
 Reading the entry points of an environment takes some ten milliseconds, so nothing is read for a name that is known.
-What comes with robolink goes first. How to write one: docs/extensions.md.
+What comes with robolink goes first. How to write one: docs/reference/extensions.md.
 """
 
 from __future__ import annotations

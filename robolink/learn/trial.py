@@ -46,7 +46,7 @@ class Trial:
 
     @property
     def system(self) -> System:
-        """System under test, made when it is first used: all that docs/testing.md has, in virtual time."""
+        """System under test, made when it is first used: all that docs/reference/testing.md has, in virtual time."""
         if self._system is None:
             from robolink.testing import System
 

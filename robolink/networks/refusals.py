@@ -12,7 +12,7 @@ WITHIN = 1.0
 
 WANTS_KEYS = (
     "which lets nobody in without keys: set ROS_SECURITY_ENABLE=true and ROS_SECURITY_KEYSTORE here, "
-    "as they are set there (docs/security.md)"
+    "as they are set there (docs/why/security.md)"
 )
 HAS_NO_KEYS = (
     "which has no keys, while ROS_SECURITY_ENABLE is true here: end it and start it again with security, "

@@ -7,15 +7,15 @@ from fnmatch import fnmatchcase
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.workspace.source import canonical
 
-_ANYWHERE = "on a machine with ROS 2 it sees the same topics (docs/ros2.md)"
-_THERE = "run it on a machine with ROS 2: it meets robolink's nodes (docs/ros2.md)"
+_ANYWHERE = "on a machine with ROS 2 it sees the same topics (docs/reference/ros2.md)"
+_THERE = "run it on a machine with ROS 2: it meets robolink's nodes (docs/reference/ros2.md)"
 _WORLD = (
     "'robolink run world' simulates a robot with the topics of a TurtleBot3 instead: "
-    "/cmd_vel, /scan, /odom, /tf, /imu (docs/simulator.md)"
+    "/cmd_vel, /scan, /odom, /tf, /imu (docs/reference/simulator.md)"
 )
-_WEBOTS = "Webots' driver; 'robolink run world' reads Webots' worlds and robots instead (docs/webots.md)"
+_WEBOTS = "Webots' driver; 'robolink run world' reads Webots' worlds and robots instead (docs/reference/webots.md)"
 _URDF_ROBOT = (
-    "a world takes its robots from its own file; give its .wbt file a Robot node of that shape (docs/webots.md)"
+    "a world takes its robots from its own file: put a Robot node into its .wbt file (docs/reference/webots.md)"
 )
 _NAVIGATION = "a server of Nav2, in C++; 'robolink launch goto' drives to the goals of Nav2's action instead"
 _FILTER = f"a Kalman filter in C++; the world's /odom needs none, for a real robot {_THERE}"
@@ -24,7 +24,7 @@ _CAMERA = f"driver of a camera, in C++; some lines with cv2.VideoCapture and cv_
 _MAPS = f"makes maps, in C++; {_THERE}"
 
 PROGRAMS = {
-    ("rmw_zenoh_cpp", "rmw_zenohd"): "robolink needs no router, and meets one that runs (docs/ros2.md)",
+    ("rmw_zenoh_cpp", "rmw_zenohd"): "robolink needs no router, and meets one that runs (docs/reference/ros2.md)",
     ("gazebo_ros", "spawn_entity"): f"puts a robot into Gazebo; {_WORLD}",
     ("gazebo_ros", "gzclient"): "Gazebo's window; 'robolink view' shows the world in the browser instead",
     ("ros_gz_sim", "create"): f"puts a robot into Gazebo; {_WORLD}",
@@ -103,8 +103,8 @@ PACKAGES = {
     "mavros": f"bridge to flight controllers, in C++; {_THERE}",
     "px4*": f"PX4's parts, in C++; {_THERE}",
     "micro_ros_agent": f"bridge to microcontrollers with micro-ROS, in C++; {_THERE}",
-    "foxglove_bridge": "'robolink view' speaks Foxglove's protocol itself, at ws://localhost:8765 (docs/view.md)",
-    "rosbridge_server": f"bridge to roslibjs; 'robolink view' is for Foxglove's clients (docs/view.md), else {_THERE}",
+    "foxglove_bridge": "'robolink view' speaks Foxglove's protocol at ws://localhost:8765 (docs/reference/view.md)",
+    "rosbridge_server": f"for roslibjs; view serves Foxglove's clients (docs/reference/view.md), else {_THERE}",
     "image_proc": f"corrects images, in C++; cv2.undistort and image_geometry do the same in a node, else {_THERE}",
     "depth_image_proc": f"makes point clouds of depth images, in C++; {_THERE}",
     "stereo_image_proc": f"makes point clouds of two cameras' images, in C++; {_THERE}",

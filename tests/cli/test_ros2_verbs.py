@@ -66,7 +66,7 @@ def test_no_advice_is_for_what_works() -> None:
 
 @pytest.mark.parametrize("advice", [*OF_ROS2.values(), *VERBS_OF_ROS2.values()])
 def test_what_is_advised_is_there(advice: str, capsys: Captured) -> None:
-    commands, pages = re.findall(r"'robolink ([^']+)'", advice), re.findall(r"docs/\w+\.md", advice)
+    commands, pages = re.findall(r"'robolink ([^']+)'", advice), re.findall(r"docs/[\w/]+\.md", advice)
     assert commands or pages
     for command in commands:
         words = [each for each in shlex.split(command) if re.fullmatch("[a-z_]+", each)]

@@ -73,7 +73,7 @@ def test_what_nobody_knows_has_nothing_instead() -> None:
 
 @pytest.mark.parametrize("advice", [each for each in ADVICE if "'robolink " in each or "docs/" in each])
 def test_what_is_advised_is_there(advice: str, capsys: Captured) -> None:
-    commands, pages = re.findall(r"'robolink ([^']+)'", advice), re.findall(r"docs/\w+\.md", advice)
+    commands, pages = re.findall(r"'robolink ([^']+)'", advice), re.findall(r"docs/[\w/]+\.md", advice)
     assert commands or pages, "it advises nothing that can be looked for"
     for command in commands:
         words = [each for each in shlex.split(command) if each.isalpha() and each.islower()]

@@ -65,7 +65,7 @@ def test_zenoh_accepts_the_settings() -> None:
 def test_it_says_who_can_reach_it() -> None:
     assert router.opening(["tcp/127.0.0.1:7447"], [])[1].startswith("only this machine reaches it")
     assert router.opening(["tcp/0.0.0.0:7447"], ["tcp/10.0.0.1:7447"])[1:] == [
-        "whoever reaches it there may hear and command all nodes behind it (docs/networks.md)",
+        "whoever reaches it there may hear and command all nodes behind it (docs/reference/networks.md)",
         "connects to tcp/10.0.0.1:7447",
     ]
 
@@ -73,7 +73,7 @@ def test_it_says_who_can_reach_it() -> None:
 def test_it_says_who_gets_in_with_keys() -> None:
     assert router.opening(["tls/0.0.0.0:7447"], ["tls/10.0.0.1:7447"], "/router") == [
         "robolink router: listens at tls/0.0.0.0:7447; Ctrl-C ends it",
-        "only enclaves of the keystore of '/router' get in, each with its rights (docs/security.md)",
+        "only enclaves of the keystore of '/router' get in, with their rights (docs/why/security.md)",
         "connects to tls/10.0.0.1:7447",
     ]
     assert router.opening(["tls/127.0.0.1:7447"], [], "/router")[2].startswith("only this machine reaches it")

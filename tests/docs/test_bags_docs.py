@@ -1,4 +1,4 @@
-"""docs/bags.md: it has every verb of `robolink bag`; its blocks are run by test_pages_run.py."""
+"""docs/reference/bags.md: it has every verb of `robolink bag`; its blocks are run by test_pages_run.py."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import typer.main
 
 from robolink.cli.bag import app
 
-PAGE = (Path(__file__).parents[2] / "docs" / "bags.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "bags.md").read_text(encoding="utf-8")
 VERBS: Any = typer.main.get_command(app).commands  # type: ignore[attr-defined]
 
 

@@ -1,4 +1,4 @@
-"""docs/behaviour_trees.md: py_trees' own timers in virtual time; its blocks are run by test_pages_run.py."""
+"""docs/howto/behaviour_trees.md: py_trees' own timers in virtual time; its blocks are run by test_pages_run.py."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""docs/camera.md: its figures are those of the tests; its blocks are run by test_pages_run.py."""
+"""docs/reference/camera.md: its figures are those of the tests; its blocks are run by test_pages_run.py."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tests.support.opencvs_conversions import ENCODINGS
 
-PAGE = (Path(__file__).parents[2] / "docs" / "camera.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "camera.md").read_text(encoding="utf-8")
 
 
 def test_so_many_pairs_are_compared() -> None:

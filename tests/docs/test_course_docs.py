@@ -1,4 +1,4 @@
-"""docs/course_camera.md: its programs do in other worlds what it says; its blocks are run by test_pages_run.py."""
+"""docs/reference/course_camera.md: its programs do in other worlds what it says; test_pages_run.py runs its blocks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from robolink.testing import System
 from tools.docs_site.markdown import blocks
 
-PAGE = (Path(__file__).parents[2] / "docs" / "course_camera.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "course_camera.md").read_text(encoding="utf-8")
 FILES = {each.title: each.text for each in blocks(PAGE) if each.title}
 WORLD = FILES["line.yaml"]
 

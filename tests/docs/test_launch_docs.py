@@ -1,4 +1,4 @@
-"""docs/launch.md: it has every option and every key; its blocks are run by test_pages_run.py."""
+"""docs/reference/launch.md: it has every option and every key; its blocks are run by test_pages_run.py."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from robolink.launch.reading.description import (
 )
 from robolink.testing import System
 
-PAGE = (Path(__file__).parents[2] / "docs" / "launch.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "launch.md").read_text(encoding="utf-8")
 FILES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
 
 

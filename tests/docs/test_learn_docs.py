@@ -1,4 +1,4 @@
-"""docs/learn.md: its tables name all verbs and races; its blocks are run by test_pages_run.py."""
+"""docs/reference/exercises.md: its tables name all verbs and races; its blocks are run by test_pages_run.py."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from robolink.cli.root import command
 from robolink.learn.trial import Trial
 from robolink.race.races import RACES
 
-TEXT = (Path(__file__).parents[2] / "docs" / "learn.md").read_text(encoding="utf-8")
+TEXT = (Path(__file__).parents[2] / "docs" / "reference" / "exercises.md").read_text(encoding="utf-8")
 
 
 def test_every_verb_is_named() -> None:

@@ -1,4 +1,4 @@
-"""docs/modules.md: each module that it names is there; its imports are run by test_pages_run.py."""
+"""docs/reference/modules.md: each module that it names is there; its imports are run by test_pages_run.py."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import importlib.util
 import re
 from pathlib import Path
 
-PAGE = (Path(__file__).parents[2] / "docs" / "modules.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "modules.md").read_text(encoding="utf-8")
 
 
 def test_the_modules_of_the_table_are_there() -> None:

@@ -9,10 +9,10 @@ import pytest
 from tests.support.domains import free_domain
 from tests.support.page_runner import Shells
 from tools.docs_site.markdown import blocks
-from tools.docs_site.pages import DOCS, ROOT, Page, pages
+from tools.docs_site.pages import ROOT, Page, pages
 
 SITE = [each for each in pages("en") if each.source is not None]
-WRITTEN = [*SITE, Page("en", "README.md", ROOT / "README.md"), Page("en", "course.md", DOCS / "course.md")]
+WRITTEN = [*SITE, Page("en", "README.md", ROOT / "README.md")]
 RUN = [each for each in WRITTEN if blocks(each.text())]
 REASONS = {
     "installs packages",

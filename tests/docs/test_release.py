@@ -33,7 +33,7 @@ def test_the_long_description_has_no_relative_links() -> None:
     assert re.search(r"\]\((?!https?://)", README)  # or this test proves nothing
     text = described()
     assert re.findall(r"\]\((?!https?://)[^)]*\)", text) == []
-    assert "docs/testing.md has the rest" in text
+    assert "docs/reference/testing.md has the rest" in text
     assert re.findall(r"\]\(https://[^)]+\)", text) == re.findall(r"\]\(https://[^)]+\)", README)
 
 

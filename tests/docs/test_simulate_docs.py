@@ -1,4 +1,4 @@
-"""docs/simulate.md: it has every option and key, and faults that come along fit (test_pages_run.py runs its blocks)."""
+"""docs/reference/simulate.md: it has every option and key, and faults fit; test_pages_run.py runs its blocks."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from robolink.simulate import simulate
 from robolink.workspace import find_faults, find_launch
 from tests.support.simulations import workspace
 
-PAGE = (Path(__file__).parents[2] / "docs" / "simulate.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "simulate.md").read_text(encoding="utf-8")
 
 
 def test_it_has_every_option() -> None:

@@ -20,7 +20,7 @@ from robolink.sim.schema import world_schema
 
 ROOT = Path(__file__).parents[2]
 CONFIGS = ROOT / "configs"
-PAGE = (ROOT / "docs" / "launch.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "reference" / "launch.md").read_text(encoding="utf-8")
 SHOWN = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
 
 

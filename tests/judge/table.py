@@ -1,4 +1,4 @@
-"""The table of differences in docs/rclpy.md: which lines of which program may differ from the real rclpy, and why."""
+"""The table of differences in docs/reference/rclpy.md: lines that may differ from the real rclpy, and why."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tests.judge.comparison import Difference
 
-PAGE = Path(__file__).parents[2] / "docs" / "rclpy.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "rclpy.md"
 REASONS = ("By design", "The real one is worse", "Not yet")
 
 _TABLE = re.compile(r"<!-- differences: from here on -->(.*)<!-- differences: to here -->", re.DOTALL)

@@ -1,4 +1,4 @@
-"""robolink prints the lines recorded of the real rclpy, but for those that the table in docs/rclpy.md names."""
+"""robolink prints the lines recorded of the real rclpy, but for the table's in docs/reference/rclpy.md names."""
 
 from __future__ import annotations
 

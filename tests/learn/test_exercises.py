@@ -18,7 +18,7 @@ from robolink.learn.report import Report
 SOLUTIONS = Path(__file__).parent / "solutions"
 COURSE = read_course()
 LONGEST = 2.0
-"""Most seconds of a processor that a check may take; a process to check in takes 0.3 more (docs/learn.md)."""
+"""Most seconds of a processor that a check may take; a process takes 0.3 more (docs/reference/exercises.md)."""
 
 FAILS = {
     "01_walk": "a step in direction 90 ended at (-0.13, 0.27), and not at (0.00, 0.30)",

@@ -27,7 +27,7 @@ pytestmark = [
     *pytestmark,
     pytest.mark.skipif(sys.platform == "win32", reason="the course's commands are bash's"),
 ]
-PAGE = DOCS / "en/learn/ros2_course.md"
+PAGE = DOCS / "learn/ros2_course.md"
 FIRST_WORDS = "sudo|wget|pip|python3?|cd|mkdir|source|echo|ros2|colcon|webots|rm|robo_env"
 TYPED = re.findall(rf"^(?:{FIRST_WORDS})\b.*", TEXT, re.MULTILINE)
 OTHERWISE = re.findall(r"^\| (`.*`) \| (.*) \|$", PAGE.read_text(encoding="utf-8"), re.MULTILINE)

@@ -11,7 +11,7 @@ from types import ModuleType
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "rclpy.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "reference" / "rclpy.md").read_text(encoding="utf-8")
 
 
 def _tool() -> ModuleType:

@@ -41,7 +41,7 @@ def test_without_keys_beside_one_that_has_some(store: Keystore, monkeypatch: pyt
         connect("zenoh://", store.domain)
     assert str(caught.value) == (
         f"port {port} is taken by a process with security, which lets nobody in without keys: set "
-        "ROS_SECURITY_ENABLE=true and ROS_SECURITY_KEYSTORE here, as they are set there (docs/security.md)"
+        "ROS_SECURITY_ENABLE=true and ROS_SECURITY_KEYSTORE here, as they are set there (docs/why/security.md)"
     )
     with pytest.raises(TransportError) as caught:
         connect("zenoh://", store.domain, network="127.0.0.1")

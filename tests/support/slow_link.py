@@ -22,7 +22,7 @@ from tests.support import stalls
 from tests.support.machines import HERE, Machines
 
 LIMITS = "{control: [/cmd_vel], rate: {/camera/image: 2}}"
-"""The setting of docs/networks.md."""
+"""The setting of docs/reference/networks.md."""
 
 RATES = {"/cmd_vel": 20.0, "/camera/image": 15.0}
 IMAGE = 60_000

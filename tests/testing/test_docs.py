@@ -1,4 +1,4 @@
-"""docs/testing.md: it has the names that there are; its blocks are run by tests/docs/test_pages_run.py."""
+"""docs/reference/testing.md: it has the names that there are; its blocks are run by tests/docs/test_pages_run.py."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from robolink.testing import System
 from robolink.testing.faults import Faults
 
-DOCS = (Path(__file__).parents[2] / "docs" / "testing.md").read_text(encoding="utf-8")
+DOCS = (Path(__file__).parents[2] / "docs" / "reference" / "testing.md").read_text(encoding="utf-8")
 
 
 def test_what_its_tables_name_is_there() -> None:

@@ -17,7 +17,7 @@ from robolink.sim.description import Wheel
 from robolink.sim.sensors import SENSORS, Looking, Sensor
 from robolink.world_node.messages import sensor_message, sensor_type
 
-SIMULATOR_PAGE = Path(__file__).parents[2] / "docs" / "simulator.md"
+SIMULATOR_PAGE = Path(__file__).parents[2] / "docs" / "reference" / "simulator.md"
 WHEELS = (Wheel("left", Pose(0.0, 0.1)), Wheel("right", Pose(0.0, -0.1)))
 
 
@@ -53,5 +53,5 @@ def test_the_manual_has_a_row_for_every_sensor(kind: str) -> None:
     rows = [line.split("|") for line in SIMULATOR_PAGE.read_text(encoding="utf-8").splitlines()]
     messages = [row[3].strip() for row in rows if len(row) > 3 and row[1].strip() == f"`{kind}`"]
     assert messages == [wanted], (
-        f"docs/simulator.md: the table of sensors needs a row | `{kind}` | what it measures | {wanted} |"
+        f"docs/reference/simulator.md: the table of sensors needs a row | `{kind}` | what it measures | {wanted} |"
     )

@@ -144,8 +144,7 @@ def contents(index: Page) -> str:
 
 def pictures() -> dict[Path, str]:
     """Return the place on the site of each picture of docs/."""
-    files = [each for folder in (DOCS, DOCS / "pictures") for each in folder.glob("*") if each.suffix in PICTURES]
-    return {each: f"pictures/{each.name}" for each in files}
+    return {each: f"pictures/{each.name}" for each in (DOCS / "pictures").glob("*") if each.suffix in PICTURES}
 
 
 def configuration(language: str) -> str:

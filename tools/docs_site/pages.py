@@ -44,9 +44,14 @@ def listing() -> dict[str, Any]:
     return read
 
 
+def folder(language: str) -> Path:
+    """Return the folder of the pages of a language: English is docs/ itself."""
+    return DOCS if language == "en" else DOCS / language
+
+
 def pages(language: str) -> list[Page]:
     """List the written pages of a language, the home page first, in the order of the menu."""
-    made = [Page(language, "index.md", DOCS / language / "index.md")]
+    made = [Page(language, "index.md", folder(language) / "index.md")]
     for part, described in listing()["parts"].items():
         for entry in described["pages"]:
             name, source = next(iter(entry.items())) if isinstance(entry, dict) else (entry, None)
@@ -56,12 +61,10 @@ def pages(language: str) -> list[Page]:
 
 def _page(language: str, address: str, source: str | None) -> Page:
     is_translated = language == "en" or not address.startswith(f"{ENGLISH}/")
-    own = DOCS / (language if is_translated else "en") / address
+    own = folder(language if is_translated else "en") / address
     if source == GENERATED:
         return Page(language, address, None, is_translated)
-    if source is None or own.exists():
-        return Page(language, address, own, is_translated)
-    return Page(language, address, ROOT / source, is_translated)
+    return Page(language, address, own, is_translated)
 
 
 def addresses() -> dict[Path, str]:

@@ -92,7 +92,7 @@ def driven(described: Drive) -> str:
 
 def write_files_of(page: str, folder: Path) -> None:
     """Write the files that a page shows; '' for none."""
-    for block in blocks((DOCS / "en" / page).read_text(encoding="utf-8")) if page else []:
+    for block in blocks((DOCS / page).read_text(encoding="utf-8")) if page else []:
         if block.title:
             (folder / block.title).write_text(block.text, encoding="utf-8")
 

@@ -49,7 +49,7 @@ def doctor(
         raise typer.Exit(1)
 
 
-BY_SYMPTOM = "By what one sees: docs/troubleshooting.md"
+BY_SYMPTOM = "By what one sees: docs/reference/troubleshooting.md"
 """Last line of what is told where something is not as it should be."""
 
 

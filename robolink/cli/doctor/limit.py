@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 LONGEST = 600
 """Upper bound of a line's length, in characters."""
 
-_MANUAL = "none; docs/networks.md has examples for a launch file, networks.yaml and ROBOLINK_LIMITS"
+_MANUAL = "none; docs/reference/networks.md has examples for a launch file, networks.yaml and ROBOLINK_LIMITS"
 
 
 def limit(

@@ -29,7 +29,7 @@ def announce(server: View, browser: bool, panels: str) -> None:
 
         others = f"http://{socket.gethostname()}:{server.port}/?{address.partition('?')[2]}"
         tell(f"others on the network open {others}: whoever has the token can drive the robots")
-        tell("the connection is not encrypted: who listens on the network can read the token (docs/view.md)")
+        tell("the connection is not encrypted: who listens on the network can read the token (docs/reference/view.md)")
     if browser and not open_in_browser(address):
         tell("no browser here: open the address above")
 

@@ -86,7 +86,7 @@ def test_a_sound_system_passes(robot: Node, capsys: Captured) -> None:
     assert "WARN  settings        ROBOLINK_TRANSPORT=memory://" in out
     assert "ok    domains         domain 7 has 1 node\n" in out
     assert out.endswith(
-        "\n18 of 20 checks passed, 1 warning, 1 not known\n\nBy what one sees: docs/troubleshooting.md\n"
+        "\n18 of 20 checks passed, 1 warning, 1 not known\n\nBy what one sees: docs/reference/troubleshooting.md\n"
     )
 
 
@@ -126,7 +126,7 @@ def test_what_is_wrong_fails_and_is_named(robot: Node, capsys: Captured) -> None
     assert "FAIL  service types   /lamp: " in out
     assert "WARN  qos             /chatter: " in out
     failed = "\n2/20 check(s) failed\n\nFailed modules: middleware\n"
-    assert out.endswith(f"{failed}By what one sees: docs/troubleshooting.md\n")
+    assert out.endswith(f"{failed}By what one sees: docs/reference/troubleshooting.md\n")
 
 
 def test_warnings_count_when_asked_to(robot: Node, capsys: Captured) -> None:

@@ -31,7 +31,7 @@ def test_what_is_in_force() -> None:
         "first     /clock",
     ]
     (line,) = command.lines(InForce("", None), None)
-    assert line.startswith("limits    none; docs/networks.md")
+    assert line.startswith("limits    none; docs/reference/networks.md")
 
 
 def test_names_that_fit_nothing() -> None:

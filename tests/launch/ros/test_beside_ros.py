@@ -19,7 +19,7 @@ from robolink.supervisor.director import Add, Director, End, Request, Tell
 from robolink.utilities import remove_ros_args
 from tests.support.launch_descriptions import INHERITED, Description, descriptions, recorded, write_files
 
-DOCS = Path(__file__).parents[3] / "docs" / "ros_launch.md"
+DOCS = Path(__file__).parents[3] / "docs" / "reference" / "ros_launch.md"
 PROGRAM = "import rclpy\nfrom rclpy.node import Node\n\n\nclass Show(Node):\n    pass\n\n\ndef main():\n    pass\n"
 RECORDED = recorded()
 DIFFERENT = {
@@ -37,7 +37,7 @@ DIFFERENT = {
     "yaml_respawn_true.launch.yaml": "`respawn: true`",
     "xml_choice_extra.launch.xml": "Unknown attributes of `<choice>`",
 }
-"""Descriptions of which ours makes something else, each with the words that docs/ros_launch.md has for it."""
+"""Descriptions of which ours makes something else, each with the words that docs/reference/ros_launch.md has for it."""
 PROCESSES = ("command.launch.py", "xml_command.launch.xml")
 """Descriptions that run commands."""
 

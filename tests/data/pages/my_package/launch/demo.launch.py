@@ -43,7 +43,7 @@ def generate_launch_description():
     # the values of the arm's description are known to moveit_configs_utils alone;
     # what reads them is left out where that is not installed, and the rest of
     # the system runs: a place in the world, and a node that talks
-    # (docs/ros_launch.md shows what is told)
+    # (docs/reference/ros_launch.md shows what is told)
     return LaunchDescription(
         [
             chatter,
