@@ -26,8 +26,8 @@ from robolink.wire import graph_pattern
 if TYPE_CHECKING:
     from robolink.host.host import Host
     from robolink.host.program import Program
+    from robolink.launch.entry import Entry
     from robolink.launch.planning import Launched
-    from robolink.launch.reading.entry import Entry
     from robolink.launch.system import Direct
 
 

@@ -10,10 +10,10 @@ from robolink.text.suggestions import lazily
 
 if TYPE_CHECKING:
     from robolink.launch.command import launch
+    from robolink.launch.entry import Entry
     from robolink.launch.planning import Launched, plan, processes
     from robolink.launch.reading.description import LaunchDescription, NodeDescription
     from robolink.launch.reading.entries import read_launch_file
-    from robolink.launch.reading.entry import Entry
 
 __all__ = [
     "Entry",
@@ -27,7 +27,7 @@ __all__ = [
 ]
 
 _HOMES = {
-    "Entry": "reading.entry",
+    "Entry": "entry",
     "LaunchDescription": "reading.description",
     "Launched": "planning",
     "NodeDescription": "reading.description",

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 from robolink.exceptions import RobolinkError
 from robolink.launch import protection
+from robolink.launch.entry import Entry
 from robolink.launch.planning import Launched, as_process, core_errors, processes
 from robolink.launch.readiness import waiting
-from robolink.launch.reading.entry import Entry
 from robolink.networks.asked import domain_id
 from robolink.supervisor import Process, RunLogs, Supervisor
 from robolink.supervisor.processes.fork_server import ForkServer

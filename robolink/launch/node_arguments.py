@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from robolink.documents.yamlfile import spell
-from robolink.launch.reading.entry import Entry, NodeToStart
+from robolink.launch.entry import Entry, NodeToStart
 from robolink.workspace import VARIABLE
 
 

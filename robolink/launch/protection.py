@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 
 from robolink.exceptions import SecurityError
-from robolink.launch.reading.entry import Entry
+from robolink.launch.entry import Entry
 
 
 def check_keys(enclave: str, started: Mapping[str, bool]) -> None:

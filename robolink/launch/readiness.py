@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from robolink.arguments.remapping import RemapKind, parse_remap_rule, remap_name
 from robolink.exceptions import RobolinkError, WireError
-from robolink.launch.reading.entry import Entry
+from robolink.launch.entry import Entry
 from robolink.system import waits
 from robolink.system.plainfile import LONGEST_SOURCE, read_plain
 

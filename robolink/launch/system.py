@@ -9,12 +9,12 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 from robolink.exceptions import DocumentError
+from robolink.launch.entry import Entry
 from robolink.launch.looking.sections import section_notes
+from robolink.launch.lookup import is_of_ros
 from robolink.launch.reading.arguments import ArgumentHelp
 from robolink.launch.reading.arguments import arguments_of as own_arguments_of
 from robolink.launch.reading.entries import read_launch_file, read_with_mistakes
-from robolink.launch.reading.entry import Entry
-from robolink.launch.reading.kinds import is_of_ros
 from robolink.launch.reading.record import record_of as own_record_of
 from robolink.supervisor.director import Director
 from robolink.workspace import Folder

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from robolink.workspace.packages import import_roots, source_packages
 
 if TYPE_CHECKING:
+    from robolink.launch.entry import Entry
     from robolink.launch.planning import Launched
-    from robolink.launch.reading.entry import Entry
 
 
 def files_of(launched: Iterable[Launched]) -> dict[str, list[Path]]:

@@ -18,7 +18,7 @@ import pytest
 
 from robolink.companions.launch_testing.parametrize import PARAMETERS
 from robolink.exceptions import RobolinkError
-from robolink.launch.reading.lookup import home_of
+from robolink.launch.lookup import home_of
 from robolink.launch.ros.surroundings import surroundings
 from robolink.testing.launch_test import LaunchTest, bound
 

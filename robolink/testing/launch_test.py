@@ -21,7 +21,7 @@ from robolink.companions.launch.events.process import ProcessExited, ProcessIO, 
 from robolink.companions.launch_testing import ActiveIoHandler, ActiveProcInfoHandler
 from robolink.companions.launch_testing.actions import ReadyEvent, ReadyToTest
 from robolink.exceptions import DocumentError, RobolinkError, nearest
-from robolink.launch.reading.lookup import home_of
+from robolink.launch.lookup import home_of
 from robolink.launch.ros.surroundings import surroundings
 from robolink.launch.system import read_description
 from robolink.system import waits

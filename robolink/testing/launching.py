@@ -36,7 +36,7 @@ def read(file: str | PathLike[str], arguments: Mapping[str, Any], values: Mappin
 
 def _found(file: str) -> Path:
     """Find a launch file by its path or name, or by a package and a name in it, as in ``my_robot bot.launch.py``."""
-    from robolink.launch.reading.lookup import find
+    from robolink.launch.lookup import find
 
     words = file.split()
     return find(words) if len(words) == 2 and not Path(file).exists() else find_launch(file)

@@ -17,9 +17,9 @@ from robolink.documents.yamlfile import DocumentNotFoundError, spell
 from robolink.exceptions import DocumentError
 from robolink.impl.logging_severity import LoggingSeverity
 from robolink.launch import plan, shared_process
+from robolink.launch.entry import Entry
 from robolink.launch.planning import core_errors, processes
 from robolink.launch.reading.entries import read_launch_file
-from robolink.launch.reading.entry import Entry
 from robolink.supervisor import Process
 from robolink.supervisor.rules import Restarts, Rules
 from robolink.system.own_command import own_command

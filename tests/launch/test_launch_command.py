@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from robolink.cli.main import COMPLETION, main
-from robolink.launch.reading.lookup import find
+from robolink.launch.lookup import find
 from robolink.supervisor import Process
 from robolink.workspace import VARIABLE
 from tests.support.commands import Command

@@ -13,11 +13,11 @@ import pytest
 from robolink.arguments.command_line import parse_arguments
 from robolink.bag.reader import open_bag
 from robolink.exceptions import DocumentError
+from robolink.launch.entry import Entry
 from robolink.launch.looking.look import End, Look
 from robolink.launch.looking.validate import Report, judged
 from robolink.launch.planning import plan, processes
 from robolink.launch.reading.entries import read_launch_file
-from robolink.launch.reading.entry import Entry
 from robolink.security.keystore import Keystore
 from robolink.security.policy import Profile, Rule
 from tests.support.domains import free_domain

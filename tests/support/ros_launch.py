@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from robolink.launch.reading.entry import Entry
+from robolink.launch.entry import Entry
 from robolink.launch.system import System, read_system
 from robolink.workspace import VARIABLE
 

@@ -27,7 +27,7 @@ from robolink.cli.root import COMMANDS
 from robolink.cli.tf import tree
 from robolink.control.keyboard import WindowsKeyboard
 from robolink.impl import log_output
-from robolink.launch.reading import lookup
+from robolink.launch import lookup
 from robolink.running import timebase
 from robolink.supervisor.processes import affinity, process
 from robolink.supervisor.processes.process import Child

@@ -18,7 +18,7 @@ from robolink.cli.shared.options import enclave as enclave_option
 from robolink.cli.shared.output import say, tell
 
 if TYPE_CHECKING:
-    from robolink.launch.reading.entry import Entry
+    from robolink.launch.entry import Entry
 
 BY_DATE = "rosbag2_DATE"
 """Value of a `--record` without a folder."""
@@ -280,7 +280,7 @@ def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
 
 def _nothing(asked: LaunchFile, notes: Sequence[str]) -> int:
     """Report that a launch file starts nothing, which is a failure if something of it cannot run here."""
-    from robolink.launch.reading.kinds import is_of_ros
+    from robolink.launch.lookup import is_of_ros
 
     for note in notes:
         tell(f"robolink: {note}")

@@ -22,7 +22,7 @@ class LaunchFile(NamedTuple):
 
 def launch_file(ctx: typer.Context, words: Sequence[str], workspace: str | None) -> LaunchFile:
     """Find the launch file that the words mean. Wrong usage ends the command; raises `NotFoundError`."""
-    from robolink.launch.reading.lookup import find
+    from robolink.launch.lookup import find
 
     names = [each for each in words if ASSIGN not in each]
     given = {name: value for name, _, value in (each.partition(ASSIGN) for each in words if ASSIGN in each)}

@@ -6,9 +6,9 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from robolink.exceptions import DocumentError, RobolinkError
+from robolink.launch.entry import Entry
 from robolink.launch.looking.look import End, Look
 from robolink.launch.protection import unprotected
-from robolink.launch.reading.entry import Entry
 from robolink.networks.asked import domain_id
 from robolink.security import session
 from robolink.security.rights import Rights

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
+from robolink.launch.entry import Entry
 from robolink.launch.looking.look import Look
 from robolink.launch.looking.uses import Kind, Use, uses_of
-from robolink.launch.reading.entry import Entry
 
 
 class Channel(NamedTuple):

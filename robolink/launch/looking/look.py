@@ -20,8 +20,8 @@ from typing import IO, Any
 import msgspec
 
 from robolink.exceptions import RobolinkError
+from robolink.launch.entry import Entry
 from robolink.launch.node_arguments import arguments, environment
-from robolink.launch.reading.entry import Entry
 from robolink.supervisor.rules import described
 from robolink.system.own_command import own_command
 

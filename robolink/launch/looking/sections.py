@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from robolink.arguments.parameter_file import read_parameter_file
 from robolink.arguments.untaken import untaken
 from robolink.exceptions import DocumentError
-from robolink.launch.reading.entry import Entry
+from robolink.launch.entry import Entry
 from robolink.workspace.find import YAML
 
 

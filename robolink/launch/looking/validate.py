@@ -10,12 +10,12 @@ import msgspec
 from robolink.arguments.remapping import parse_remap_rule
 from robolink.exceptions import DocumentError, nearest
 from robolink.expand_topic_name import expand_topic_name
+from robolink.launch.entry import Entry
 from robolink.launch.looking.enclaves import enclave_errors, enclave_notes
 from robolink.launch.looking.look import Look, looks_of
 from robolink.launch.looking.uses import Use, uses_of
 from robolink.launch.planning import core_errors, processes
 from robolink.launch.readiness import awaited
-from robolink.launch.reading.entry import Entry
 
 
 class Report(NamedTuple):

@@ -15,17 +15,18 @@ from msgspec.structs import replace
 
 from robolink.documents.limits import MOST_MISTAKES, first_mistakes
 from robolink.exceptions import DocumentError
-from robolink.launch.reading import limits, lookup, slow_links
+from robolink.launch import lookup
+from robolink.launch.entry import Entry
+from robolink.launch.lookup import is_of_ros
+from robolink.launch.reading import limits, slow_links
 from robolink.launch.reading.arguments import read_given, values_of
 from robolink.launch.reading.checks import check_node, check_shared, check_terminal, check_words
 from robolink.launch.reading.conditions import decided, is_wanted
 from robolink.launch.reading.description import GroupDescription, IncludeDescription, NodeDescription
 from robolink.launch.reading.drafts import Draft, Refuse, entries_of
-from robolink.launch.reading.entry import Entry
 from robolink.launch.reading.file import LaunchFile
 from robolink.launch.reading.inherited import Inherited
 from robolink.launch.reading.keys import unknown_keys
-from robolink.launch.reading.kinds import is_of_ros
 from robolink.launch.reading.parameters import given_in
 from robolink.launch.reading.record import recorded
 from robolink.launch.reading.section import Place, Section, copies

@@ -11,7 +11,8 @@ from robolink.arguments.overrides import Override
 from robolink.arguments.parameter_file import parse_parameter_value, read_parameter_file
 from robolink.documents.yamlfile import spell
 from robolink.exceptions import DocumentError
-from robolink.launch.reading import limits, lookup
+from robolink.launch import lookup
+from robolink.launch.reading import limits
 from robolink.launch.reading.section import Place, Section
 from robolink.launch.reading.substitution import Step
 from robolink.system.terminal import shown

@@ -11,7 +11,7 @@ from robolink.companions.launch.bases import LaunchContext
 from robolink.companions.launch.utilities import performed
 from robolink.companions.launch_ros.actions import ComposableNodeContainer, LoadComposableNodes
 from robolink.companions.launch_ros.descriptions import ComposableNode
-from robolink.launch.reading.entry import Entry
+from robolink.launch.entry import Entry
 from robolink.launch.ros.entries import EntryMaker, Naming, Wanted, namespace_of, placed
 from robolink.launch.ros.programs import component_of
 from robolink.system.terminal import shown

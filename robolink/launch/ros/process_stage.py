@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-from robolink.launch.reading.entry import Entry
+from robolink.launch.entry import Entry
 from robolink.launch.ros.node_thread import NodeThread
 from robolink.supervisor import Process, Supervisor
 from robolink.supervisor.director import Request

@@ -36,8 +36,8 @@ from robolink.companions.launch_ros.actions import ComposableNodeContainer, Life
 from robolink.companions.launch_ros.descriptions import ComposableNode
 from robolink.companions.launch_ros.old_names import old_names_note
 from robolink.exceptions import DocumentError
+from robolink.launch.entry import Entry
 from robolink.launch.reading import limits
-from robolink.launch.reading.entry import Entry
 from robolink.launch.ros.absent import Absent, AbsentError
 from robolink.launch.ros.components import components, container_of, target_of
 from robolink.launch.ros.entries import EntryMaker, ends_launch, placed

@@ -8,7 +8,7 @@ import pytest
 
 from robolink.cli.main import main
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
-from robolink.launch.reading.lookup import find
+from robolink.launch.lookup import find
 from robolink.testing import System
 from robolink.workspace.counterparts import counterpart_folder
 

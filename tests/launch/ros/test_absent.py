@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from robolink.exceptions import DocumentError
-from robolink.launch.reading.lookup import home_of
+from robolink.launch.lookup import home_of
 from robolink.launch.ros.surroundings import surroundings
 from tests.support.ros_launch import FIRST, read, write
 

@@ -13,7 +13,7 @@ import pytest
 from robolink.cli.main import main
 from robolink.exceptions import NotFoundError
 from robolink.interfaces.std_msgs.msg import String
-from robolink.launch.reading.entry import Entry
+from robolink.launch.entry import Entry
 from robolink.launch.ros import visit
 from robolink.launch.ros.reactions import Reactions
 from robolink.launch.system import read_system

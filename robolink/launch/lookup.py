@@ -1,17 +1,19 @@
-"""Look-up of launch files, nodes, parameter files and commands by name or path."""
+"""Look-up of launch files of all kinds, nodes, parameter files and commands by name or path."""
 
 from __future__ import annotations
 
+import codecs
 import itertools
+import re
 import shutil
 import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
-from robolink.launch.reading.kinds import PROGRAMS, YAML
 from robolink.system.own_command import own_command
 from robolink.system.paths import expanded
+from robolink.system.plainfile import read_plain
 from robolink.workspace import (
     Folder,
     NodeSource,
@@ -27,6 +29,13 @@ from robolink.workspace import (
     workspace_of,
 )
 
+YAML = (".yaml", ".yml")
+PROGRAMS = (".py", ".xml", ".launch")
+"""Suffixes of the launch files that only ROS 2 has."""
+_LAUNCH_KEY = re.compile(rb"[\"']?launch[\"']?\s*:")
+_NO_KEY = re.compile(rb"\s*(?:#.*|---.*|%.*)?")
+"""Lines that may stand before the first key."""
+_LONGEST = 10_000_000
 LAUNCH_FOLDER = "launch"
 """Folder of the launch files in a ROS 2 package."""
 
@@ -43,6 +52,18 @@ _MOST_NAMED, _MOST_FILES = 8, 5000
 
 class LaunchKindError(RobolinkError, ValueError):
     """The name of a launch file is that of a node or a package."""
+
+
+def is_of_ros(path: Path) -> bool:
+    """True for a launch file of ROS 2: Python, XML, or YAML whose first key is `launch`."""
+    if path.suffix in PROGRAMS:
+        return True
+    try:
+        lines = read_plain(path, _LONGEST).removeprefix(codecs.BOM_UTF8).splitlines()
+    except (OSError, ValueError):  # whoever reads it says what is wrong
+        return False
+    first = next((each for each in lines if not _NO_KEY.fullmatch(each)), b"")
+    return _LAUNCH_KEY.match(first) is not None
 
 
 def find(names: Sequence[str], *, workspace: Folder = None) -> Path:
