@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, ClassVar
 
 from robolink import logging
 from robolink.impl.log_output import DEFAULT_FORMAT, Record, compile_format
+from robolink.launch.entry import NODE
 from robolink.launch.planning import processes
 from robolink.launch.readiness import Readiness
-from robolink.launch.ros.stage import NODE
 from robolink.node import Node
 from robolink.running.defaults import get_defaults
 from robolink.supervisor.director import Add, Director, Request, Signal, Stop, Tell
@@ -26,9 +26,8 @@ from robolink.wire import graph_pattern
 if TYPE_CHECKING:
     from robolink.host.host import Host
     from robolink.host.program import Program
-    from robolink.launch.entry import Entry
+    from robolink.launch.entry import Direct, Entry
     from robolink.launch.planning import Launched
-    from robolink.launch.system import Direct
 
 
 _AS_LINE = compile_format(DEFAULT_FORMAT)

@@ -26,7 +26,7 @@ from robolink.system.own_command import own_command
 from robolink.workspace import VARIABLE
 
 if TYPE_CHECKING:
-    from robolink.launch.system import Direct
+    from robolink.launch.entry import Direct
     from robolink.supervisor.director import Director
     from robolink.supervisor.events import Event
     from robolink.supervisor.monitoring.file_watch import Watch

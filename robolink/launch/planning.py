@@ -9,10 +9,9 @@ from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 from robolink.exceptions import DocumentError, RobolinkError
-from robolink.launch.entry import Entry
+from robolink.launch.entry import Entry, Respawn
 from robolink.launch.node_arguments import arguments, environment
 from robolink.launch.readiness import Awaited, awaited
-from robolink.launch.reading.description import Respawn
 from robolink.launch.reading.entries import read_launch_file
 from robolink.launch.shared_process import COMMAND, Member, written
 from robolink.networks.asked import NETWORK

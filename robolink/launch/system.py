@@ -6,13 +6,12 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from robolink.exceptions import DocumentError
-from robolink.launch.entry import Entry
+from robolink.launch.entry import ArgumentHelp, Stage, System
 from robolink.launch.looking.sections import section_notes
 from robolink.launch.lookup import is_of_ros
-from robolink.launch.reading.arguments import ArgumentHelp
 from robolink.launch.reading.arguments import arguments_of as own_arguments_of
 from robolink.launch.reading.entries import read_launch_file, read_with_mistakes
 from robolink.launch.reading.record import record_of as own_record_of
@@ -21,31 +20,10 @@ from robolink.workspace import Folder
 
 if TYPE_CHECKING:
     from robolink.companions.launch import LaunchDescription
-    from robolink.launch.ros.stage import Stage
     from robolink.launch.ros.visit import Visit
 
-_NOTHING: Mapping[str, str] = MappingProxyType({})
-
-
 T = TypeVar("T")
-
-
-class Direct(Protocol):
-    """Maker of the director of a launch file with timers or event handlers; it is called once."""
-
-    def __call__(self, stage: Stage[T]) -> Director[T]:
-        """Return the director; `stage` runs its system."""
-
-
-class System(NamedTuple):
-    """Result of reading a launch file."""
-
-    entries: list[Entry]
-    """Nodes and commands to start at once."""
-    notes: list[str] = []
-    """Lines for people: what is left out, and what the launch file itself wants to be printed."""
-    direct: Direct | None = None
-    """Maker of what goes on while the system runs; None where nothing does."""
+_NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
 def read_system(

@@ -28,7 +28,7 @@ from robolink.simulate.undeclared import undeclared
 from robolink.transport.base import NumberingOutlet
 
 if TYPE_CHECKING:
-    from robolink.launch.system import Direct
+    from robolink.launch.entry import Direct
     from robolink.node import Node
     from robolink.sim import Robot
     from robolink.simulate.recording import SimulatedRecording

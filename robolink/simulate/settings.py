@@ -15,8 +15,7 @@ from robolink.launch import Entry
 from robolink.text.names import meant
 
 if TYPE_CHECKING:
-    from robolink.launch.ros.stage import Stage
-    from robolink.launch.system import System
+    from robolink.launch.entry import Stage, System
     from robolink.node import Node
     from robolink.supervisor.director import Director, Request
 

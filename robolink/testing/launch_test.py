@@ -30,8 +30,7 @@ from robolink.transport.free_domain import free_domain
 from robolink.utilities import try_shutdown
 
 if TYPE_CHECKING:
-    from robolink.launch.ros.stage import Stage
-    from robolink.launch.system import Direct
+    from robolink.launch.entry import Direct, Stage
     from robolink.supervisor.events import Exited
 
 NETWORK = "localhost"

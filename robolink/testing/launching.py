@@ -15,7 +15,7 @@ from robolink.workspace import find_launch, find_node, two_words
 
 if TYPE_CHECKING:
     from robolink.launch import Entry
-    from robolink.launch.system import System as LaunchSystem
+    from robolink.launch.entry import System as LaunchSystem
     from robolink.testing.stage import Wanted
 
 

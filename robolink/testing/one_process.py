@@ -32,7 +32,7 @@ from robolink.transport.memory import MemoryTransport
 
 if TYPE_CHECKING:
     from robolink.launch import Launched
-    from robolink.launch.system import System as LaunchSystem
+    from robolink.launch.entry import System as LaunchSystem
     from robolink.logging import Record
     from robolink.message import Message
     from robolink.running.timebase import TimeBase

@@ -32,7 +32,7 @@ from robolink.transport.zenoh import ZenohTransport
 from robolink.wire import NodeToken, graph_pattern
 
 if TYPE_CHECKING:
-    from robolink.launch.system import System as LaunchSystem
+    from robolink.launch.entry import System as LaunchSystem
     from robolink.message import Message
     from robolink.supervisor.events import Exited
     from robolink.task import Future

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 from robolink.testing.node_names import Named
 
 if TYPE_CHECKING:
-    from robolink.launch.system import System as LaunchSystem
+    from robolink.launch.entry import System as LaunchSystem
     from robolink.logging import Record
     from robolink.message import Message
     from robolink.node import Node

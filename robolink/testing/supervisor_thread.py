@@ -25,7 +25,7 @@ from robolink.system import clocks, waits
 
 if TYPE_CHECKING:
     from robolink.launch import Entry
-    from robolink.launch.system import Direct
+    from robolink.launch.entry import Direct
     from robolink.supervisor.director import Director
 
 TOLD_WITHIN = 5.0

@@ -10,14 +10,13 @@ import msgspec
 import typer.main
 
 from robolink.cli.launching.launch import app
+from robolink.launch.entry import Respawn, StartAfter
 from robolink.launch.reading.description import (
     Argument,
     GroupDescription,
     IncludeDescription,
     LaunchDescription,
     NodeDescription,
-    Respawn,
-    StartAfter,
 )
 from robolink.testing import System
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from robolink.launch.entry import Entry
-from robolink.launch.system import System, read_system
+from robolink.launch.entry import Entry, System
+from robolink.launch.system import read_system
 from robolink.workspace import VARIABLE
 
 HEAD = """\

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from robolink.faults import FaultsDescription
     from robolink.launch import Entry
-    from robolink.launch.system import Direct
+    from robolink.launch.entry import Direct
     from robolink.simulate.repeat import SeedRun
     from robolink.simulate.run import Watching
 

@@ -11,6 +11,7 @@ import msgspec
 
 from robolink.documents.yamlfile import parse
 from robolink.exceptions import DocumentError, nearest
+from robolink.launch.entry import ArgumentHelp
 from robolink.launch.reading.conditions import as_bool
 from robolink.launch.reading.description import Argument
 from robolink.launch.reading.file import LaunchFile
@@ -20,15 +21,6 @@ from robolink.system.terminal import shown
 
 _FIELDS = Argument.__struct_fields__
 _OTHERS = {HERE: "the launch file's folder", NUMBER: "the number of a copy"}
-
-
-class ArgumentHelp(msgspec.Struct, frozen=True):
-    """Help text of a launch argument; `default` is None where a value is required."""
-
-    name: str
-    default: str | None
-    description: str
-    choices: tuple[str, ...]
 
 
 def arguments_of(path: str | os.PathLike[str], *, text: str | None = None) -> list[ArgumentHelp]:

@@ -8,9 +8,9 @@ from typing import Any, get_args
 
 from robolink.arguments.remapping import parse_remap_rule
 from robolink.documents.yamlfile import spell
-from robolink.launch.entry import Entry
+from robolink.launch.entry import Entry, Respawn, When
 from robolink.launch.reading import limits
-from robolink.launch.reading.description import NodeDescription, Respawn, When
+from robolink.launch.reading.description import NodeDescription
 from robolink.launch.reading.section import Section
 from robolink.launch.reading.substitution import Step
 from robolink.validate_namespace import validate_namespace

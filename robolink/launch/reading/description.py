@@ -2,52 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import msgspec
 
+from robolink.launch.entry import LogLevel, OnExit, Respawn, StartAfter, When
 from robolink.networks.limits import Limits
 
 MOST_COPIES = 10_000
 
 Count = Annotated[int, msgspec.Meta(ge=1, le=MOST_COPIES)]
-Seconds = Annotated[float, msgspec.Meta(ge=0.0)]
 Scalar: TypeAlias = str | int | float | bool
 Core = Annotated[int, msgspec.Meta(ge=0)]
 Condition: TypeAlias = bool | int | str
 """Type of a condition: true, yes, on and 1, or false, no, off and 0."""
-When = Literal["never", "on_failure", "always"]
-OnExit = Literal["shutdown", "ignore"]
-LogLevel = Literal["debug", "info", "warn", "error", "fatal"]
 Parameters: TypeAlias = dict[str, Any] | str | list[str | dict[str, Any]]
 """Type of `parameters`: values by name (nested names are joined by dots), a parameter file, or a list of these, of
 which the later ones win."""
-
-
-class Respawn(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """Restart policy of a process, with exponential backoff.
-
-    A restart waits `delay` seconds, twice as long each time, up to `delay_max`. After `most` starts `within` so many
-    seconds the process is given up, and its end counts as an end.
-    """
-
-    when: When = "on_failure"
-    delay: Seconds = 1.0
-    delay_max: Seconds = 30.0
-    most: Annotated[int, msgspec.Meta(ge=1)] = 5
-    within: Seconds = 60.0
-
-
-class StartAfter(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """A readiness condition that holds a process back; exactly one of the keys.
-
-    `node`: a node is announced, by its name in this launch file or its full name. `topic`: somebody publishes it.
-    `service`: somebody serves it. Relative names are in the namespace of the node that waits.
-    """
-
-    node: str = ""
-    topic: str = ""
-    service: str = ""
 
 
 class NodeDescription(msgspec.Struct, forbid_unknown_fields=True, frozen=True):

@@ -8,8 +8,8 @@ from pathlib import Path, PurePath
 from typing import Any, TypeAlias
 
 from robolink.exceptions import DocumentError
-from robolink.launch.entry import Entry, NodeToStart
-from robolink.launch.reading.description import NodeDescription, Respawn
+from robolink.launch.entry import Entry, NodeToStart, Respawn
+from robolink.launch.reading.description import NodeDescription
 from robolink.launch.reading.inherited import Inherited
 from robolink.launch.reading.parameters import Given, Parameter, parameters_for
 from robolink.launch.reading.section import Place, Section

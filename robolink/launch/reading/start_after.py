@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from robolink.exceptions import NameValidationException
 from robolink.expand_topic_name import expand_topic_name
-from robolink.launch.reading.description import StartAfter
+from robolink.launch.entry import StartAfter
 from robolink.launch.reading.inherited import Placed
 from robolink.system.terminal import shown
 from robolink.text.names import near

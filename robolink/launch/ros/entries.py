@@ -20,9 +20,8 @@ from robolink.companions.launch.utilities import performed
 from robolink.companions.launch_ros.actions import Node
 from robolink.companions.launch_ros.actions.scope import NAMESPACE, REMAPS, joined
 from robolink.exceptions import DocumentError, NameValidationException
-from robolink.launch.entry import Entry, NodeToStart
+from robolink.launch.entry import Entry, NodeToStart, OnExit, Respawn
 from robolink.launch.lookup import command_of, source_of
-from robolink.launch.reading.description import OnExit, Respawn
 from robolink.launch.ros.parameters import parameters_of, texts_of
 from robolink.launch.ros.programs import Program, program_of
 from robolink.supervisor.rules import NO_LIMIT

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from robolink.exceptions import RobolinkError
-from robolink.launch.ros.stage import NODE
+from robolink.launch.entry import NODE
 from robolink.system import waits
 
 if TYPE_CHECKING:

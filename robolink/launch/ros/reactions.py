@@ -19,7 +19,7 @@ from robolink.companions.launch.utilities import is_true
 from robolink.companions.launch_ros.actions.lifecycle import LifecycleNode, transitions
 from robolink.companions.launch_ros.events.lifecycle import ChangeState, StateTransition
 from robolink.exceptions import DocumentError
-from robolink.launch.ros.stage import Stage
+from robolink.launch.entry import Stage
 from robolink.launch.ros.surroundings import roots_of, surroundings
 from robolink.launch.ros.visit import Started, Visit
 from robolink.supervisor.director import Add, End, Request, Signal, Stop, Tell

@@ -12,8 +12,8 @@ from robolink.companions.launch.described import FILES, Described, described
 from robolink.companions.launch.launch_description_sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
 from robolink.companions.launch.utilities import perform_substitutions
 from robolink.exceptions import DocumentError, nearest
+from robolink.launch.entry import ArgumentHelp
 from robolink.launch.lookup import home_of
-from robolink.launch.reading.arguments import ArgumentHelp
 from robolink.launch.ros.entries import EntryMaker
 from robolink.launch.ros.surroundings import surroundings
 from robolink.launch.ros.visit import Visit

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from robolink.launch import read_launch_file
-from robolink.launch.reading.arguments import ArgumentHelp, arguments_of
+from robolink.launch.entry import ArgumentHelp
+from robolink.launch.reading.arguments import arguments_of
 
 TEXT = """
 arguments:

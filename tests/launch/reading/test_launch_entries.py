@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from robolink.exceptions import DocumentError
-from robolink.launch.reading.description import Respawn, StartAfter
+from robolink.launch.entry import Respawn, StartAfter
 from tests.support.launch_configs import entries
 
 

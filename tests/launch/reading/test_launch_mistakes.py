@@ -13,14 +13,8 @@ from hypothesis import strategies as st
 from robolink.documents.yamlfile import spell
 from robolink.exceptions import DocumentError
 from robolink.launch import plan, read_launch_file
-from robolink.launch.reading.description import (
-    GroupDescription,
-    IncludeDescription,
-    LaunchDescription,
-    NodeDescription,
-    Respawn,
-    StartAfter,
-)
+from robolink.launch.entry import Respawn, StartAfter
+from robolink.launch.reading.description import GroupDescription, IncludeDescription, LaunchDescription, NodeDescription
 from tests.support.launchfiles import make_workspace
 
 INCLUDED = {

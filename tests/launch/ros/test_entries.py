@@ -8,9 +8,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from robolink.launch.entry import Entry
+from robolink.launch.entry import Entry, Respawn
 from robolink.launch.planning import as_process, processes
-from robolink.launch.reading.description import Respawn
 from robolink.launch.ros import entries
 from robolink.supervisor.rules import NO_LIMIT
 from robolink.system.own_command import own_command

@@ -14,8 +14,8 @@ from robolink.companions.launch.frontend.parse_substitution import parse_substit
 from robolink.companions.launch_frontend.entity import words_of
 from robolink.exceptions import DocumentError
 from robolink.interfaces.std_msgs.msg import String
+from robolink.launch.entry import System as LaunchSystem
 from robolink.launch.lookup import is_of_ros
-from robolink.launch.system import System as LaunchSystem
 from robolink.launch.system import arguments_of, read_system
 from robolink.testing import System
 from tests.support.launched_systems import said
