@@ -11,7 +11,7 @@ import msgspec
 
 from robolink.learn.exercise import Exercise, read_exercise
 from robolink.learn.languages import Language
-from robolink.learn.process import run_apart
+from robolink.grading.process import run_apart
 from robolink.learn.report import Report
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def serve(folder: Path, file: Path, answer: Path, language: Language) -> None:
         language: Language of the sentences.
     """
     from robolink.learn.checking import check  # late: whoever asks for a check needs none of it
-    from robolink.learn.child import Child
+    from robolink.grading.child import Child
 
     child = Child(answer)
 

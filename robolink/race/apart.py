@@ -13,7 +13,7 @@ from pathlib import Path
 
 import msgspec
 
-from robolink.learn.process import run_apart
+from robolink.grading.process import run_apart
 from robolink.learn.report import Mistake
 from robolink.race.races import RACES, Race
 from robolink.race.result import Result
@@ -111,7 +111,7 @@ def serve(name: str, program: str, seed: int, answer: Path) -> None:
         seed: Seed of the world and of all chance.
         answer: File for the result.
     """
-    from robolink.learn.child import Child  # late: whoever asks for a run needs none of it
+    from robolink.grading.child import Child  # late: whoever asks for a run needs none of it
     from robolink.race.driving import Drive
 
     child = Child(answer)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from robolink.exceptions import NotFoundError
 from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
-from robolink.learn.mistakes import mistake_in, mistake_of
+from robolink.grading.mistakes import mistake_in, mistake_of
 from robolink.learn.report import Mistake
 from robolink.race.races import Race
 from robolink.race.result import Result

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from robolink.learn.checking import check
 from robolink.learn.exercise import Exercise, chosen, read_course, read_exercise
 from robolink.learn.lines import WIDTH, reported
-from robolink.learn.mistakes import mistake_in
+from robolink.grading.mistakes import mistake_in
 from robolink.learn.report import LONGEST, Line, Mistake, Report
 from robolink.learn.trial import Trial
 

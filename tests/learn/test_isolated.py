@@ -18,9 +18,9 @@ from robolink.cli.shared.output import say
 from robolink.learn.exercise import Exercise, chosen, read_course
 from robolink.learn.isolated import check_apart
 from robolink.learn.lines import reported
-from robolink.learn.process import MOST_PRINTED, SETTINGS, TRACE, kill_descendants, why_no_answer
+from robolink.grading.process import MOST_PRINTED, SETTINGS, TRACE, kill_descendants, why_no_answer
 from robolink.learn.report import Mistake, Report
-from robolink.learn.watchdog import Watchdog, memory_of_this_process
+from robolink.grading.watchdog import Watchdog, memory_of_this_process
 from robolink.supervisor.processes.guardian import is_alive
 
 HELLO = chosen(read_course(), "hello")
@@ -155,7 +155,7 @@ def test_where_code_stands_that_lets_no_other_thread_run(tmp_path: Path) -> None
         SOLUTION.replace("    rclpy.spin(node)", "    print('before')\n    number = 9**9**9"), encoding="utf-8"
     )
     program = (
-        "import sys; from pathlib import Path; from robolink.learn import isolated, watchdog; watchdog.FROZEN = 3;"
+        "import sys; from pathlib import Path; from robolink.learn import isolated; from robolink.grading import watchdog; watchdog.FROZEN = 3;"
         " isolated.serve(*map(Path, sys.argv[1:]), 'en')"
     )
     words = [sys.executable, "-c", program, str(HELLO.folder), str(file), str(answer)]

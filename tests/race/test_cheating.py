@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from robolink.learn import signing
+from robolink.grading import signing
 from robolink.learn.report import Mistake
 from robolink.race.apart import race_all, run_one
 from robolink.race.driving import Drive

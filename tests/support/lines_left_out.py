@@ -20,7 +20,7 @@ from robolink.learn.exercise import Exercise, chosen, read_course
 from robolink.learn.lines import reported
 from robolink.learn.report import Mistake, Report
 from robolink.learn.trial import Trial
-from robolink.learn.watchdog import Watchdog
+from robolink.grading.watchdog import Watchdog
 
 SOLUTIONS = Path(__file__).parents[1] / "learn" / "solutions"
 

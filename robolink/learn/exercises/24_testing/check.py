@@ -8,7 +8,7 @@ from types import ModuleType
 from robolink import Node
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.learn.mistakes import mistake_of
+from robolink.grading.mistakes import mistake_of
 from robolink.learn.trial import SEED, Trial
 from robolink.testing import System
 

@@ -15,10 +15,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import IO, NamedTuple
 
-from robolink.learn import keeper
-from robolink.learn.mistakes import line_of
+from robolink.grading import keeper
+from robolink.grading.mistakes import line_of
 from robolink.learn.report import Mistake
-from robolink.learn.signing import new_key, opened
+from robolink.grading.signing import new_key, opened
 from robolink.supervisor.processes.guardian import marked, signal_group
 from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.system import clocks, waits

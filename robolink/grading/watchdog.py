@@ -12,7 +12,7 @@ from types import FrameType
 from typing import IO, Protocol
 
 from robolink.host.patches.clocks import is_sleep
-from robolink.learn.mistakes import line_of
+from robolink.grading.mistakes import line_of
 from robolink.learn.report import Mistake
 from robolink.system import clocks
 

@@ -14,10 +14,10 @@ from typing import NoReturn
 
 import msgspec
 
-from robolink.learn.process import TRACE
+from robolink.grading.process import TRACE
 from robolink.learn.report import Mistake
-from robolink.learn.signing import signed, take_key
-from robolink.learn.watchdog import MOST_MEMORY, STUCK, Watchdog, Watched, memory_of_this_process
+from robolink.grading.signing import signed, take_key
+from robolink.grading.watchdog import MOST_MEMORY, STUCK, Watchdog, Watched, memory_of_this_process
 from robolink.supervisor.processes.lifeline import watch_lifeline
 
 SLOW = 10.0
