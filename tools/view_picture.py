@@ -21,8 +21,8 @@ from typing import Any
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
+from robolink.grading.languages import Language  # noqa: E402
 from robolink.learn.folder import start_folder  # noqa: E402
-from robolink.learn.languages import Language  # noqa: E402
 from tests.support.browser import Browser, chromium  # noqa: E402
 from tests.support.domains import free_domain  # noqa: E402
 

@@ -6,24 +6,66 @@ import ast
 import linecache
 import traceback
 from pathlib import Path
+from typing import Literal
+
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from robolink.exceptions import RobolinkError
-from robolink.learn.report import Mistake
 from robolink.system.plainfile import LONGEST_SOURCE, read_plain
 from robolink.testing.expectations import NodeFailure
 from robolink.text.callbacks import place_of
 from robolink.text.tracebacks import advised
 
+Kind = Literal[
+    "syntax",
+    "empty",
+    "exception",
+    "elsewhere",
+    "stuck",
+    "stuck somewhere",
+    "asleep",
+    "too large",
+    "input",
+    "ended",
+    "ended all",
+    "file",
+    "lacks",
+    "types",
+    "use",
+    "check",
+    "no program",
+]
+
+LONGEST_TEXT = 1000
+"""Longest text of a mistake or a sentence, in letters."""
 LONGEST = 500
 """Longest text of an exception that is shown, in letters."""
 
 
+def fit_text(text: str) -> str:
+    r"""Return a text cut to `LONGEST_TEXT`, with `\ud800` for a surrogate, which JSON lacks."""
+    short = text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]} ..."
+    return short.encode("utf-8", "backslashreplace").decode()
+
+
+class Mistake(Struct, frozen=True):
+    """Mistake that ended a check: its kind, its text, and the line of the student's file with its code."""
+
+    kind: Kind
+    text: str = ""
+    line: int = 0
+    code: str = ""
+
+    def __post_init__(self) -> None:
+        force_setattr(self, "text", fit_text(self.text))
+        force_setattr(self, "code", fit_text(self.code))
+
+
 def mistake_in(file: Path) -> Mistake | None:
-    """Return what keeps a file from being run at all, a syntax error for example; None for one that can be run."""
+    """Return the mistake that keeps a file from being run at all, such as a syntax error; None if it can be run."""
     try:
-        text = read_plain(file, LONGEST_SOURCE).decode(
-            "utf-8-sig"
-        )  # with the mark that Windows' editors may begin with
+        text = read_plain(file, LONGEST_SOURCE).decode("utf-8-sig")  # Windows' editors may begin with a mark
     except OSError as error:
         return Mistake("file", f"{file.name}: {error.strerror or error}")
     except UnicodeDecodeError:

@@ -1,8 +1,14 @@
-"""Child process for a student's program, as its parent sees it: output is bounded, and nothing of it is left."""
+"""Child process for a student's program, as its parent sees it: output is bounded, and nothing of it is left.
+
+Its answer is signed. The key comes over standard input before any code of a program runs: it guards against what a
+program writes in a file, its own or a rival's; a program that looks through the memory of its own process finds it.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import hashlib
+import hmac
 import os
 import re
 import signal
@@ -16,9 +22,7 @@ from types import MappingProxyType
 from typing import IO, NamedTuple
 
 from robolink.grading import keeper
-from robolink.grading.mistakes import line_of
-from robolink.learn.report import Mistake
-from robolink.grading.signing import new_key, opened
+from robolink.grading.mistakes import Mistake, line_of
 from robolink.supervisor.processes.guardian import marked, signal_group
 from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.system import clocks, waits
@@ -50,6 +54,11 @@ STOP_WITHIN = 0.2
 
 LARGEST = 8 * 2**20
 """Most bytes of an answer: it comes from a process in which a student's program runs."""
+
+KEY = 32
+"""Bytes of a key."""
+SIGNATURE = 32
+"""Bytes of a signature, which is before what it signs."""
 
 _KEEPER = [sys.executable, "-I", "-S", keeper.__file__] if sys.platform == "linux" else []
 """Words before the command line of a child."""
@@ -220,3 +229,32 @@ def why_no_answer(trace: Path, file: Path, in_time: bool) -> Mistake:
     name = str(file).encode("ascii", "backslashreplace").decode()  # as faulthandler writes it
     line = next((int(found[2]) for found in _PLACE.finditer(text) if found[1] == name[: len(found[1])]), 0)
     return Mistake("stuck", "", line, line_of(file, line)) if line else Mistake("stuck somewhere")
+
+
+def new_key() -> bytes:
+    """Return a key for one child process."""
+    return os.urandom(KEY)
+
+
+def take_key() -> bytes:
+    """Return the key that this process got over its standard input, which is empty from then on; b"" if it got none."""
+    key = b""
+    with contextlib.suppress(OSError, ValueError):
+        while len(key) < KEY and (part := os.read(0, KEY - len(key))):
+            key += part
+        nothing = os.open(os.devnull, os.O_RDONLY)
+        os.dup2(nothing, 0)
+        os.close(nothing)
+        sys.stdin = open(0, encoding="utf-8", closefd=False)  # noqa: SIM115 - as long as the process
+    return key
+
+
+def signed(answer: bytes, key: bytes) -> bytes:
+    """Return an answer with its signature before it."""
+    return hmac.digest(key, answer, hashlib.sha256) + answer
+
+
+def opened(content: bytes, key: bytes) -> bytes:
+    """Return the answer in what was written; b"" if another one than the key's holder has written it."""
+    signature, answer = content[:SIGNATURE], content[SIGNATURE:]
+    return answer if hmac.compare_digest(signature, hmac.digest(key, answer, hashlib.sha256)) else b""

@@ -10,12 +10,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from robolink.grading.child import where_asleep
+from robolink.grading.languages import Language
+from robolink.grading.mistakes import Mistake, mistake_elsewhere, mistake_in, mistake_of
 from robolink.learn.exercise import CHECK, Exercise, ExerciseError
-from robolink.learn.languages import Language
-from robolink.grading.mistakes import mistake_elsewhere, mistake_in, mistake_of
-from robolink.learn.report import Mistake, Report
+from robolink.learn.report import Report
 from robolink.learn.trial import Told, Trial
-from robolink.grading.watchdog import where_asleep
 from robolink.testing.expectations import NodeFailure
 
 _LACKING = re.compile(r"module 'student' has no attribute '(\w+)'.*", re.DOTALL)

@@ -12,7 +12,7 @@ from msgspec import Struct
 
 from robolink.documents.yamlfile import load, read_text
 from robolink.exceptions import NotFoundError, RobolinkError
-from robolink.learn.languages import Language
+from robolink.grading.languages import Language
 
 BUILT_IN = Path(__file__).parent / "exercises"
 """Folder of the exercises that come with robolink."""

@@ -1,25 +1,60 @@
-"""Folder of a student: the files of the exercises, as they were given and as they are now, and the progress."""
+"""Folder of a student: the files of the exercises, the progress, and a watch that checks what is saved."""
 
 from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import msgspec
+from msgspec import Struct
+
 from robolink.exceptions import DocumentError, NotFoundError, RobolinkError, closest
+from robolink.grading.languages import STUDENT_FILE, Language, default_language, student_file
 from robolink.learn.exercise import Exercise, chosen, read_course
-from robolink.learn.languages import Language, default_language, words
-from robolink.learn.progress import FILE, Progress, load_progress, save_progress
+from robolink.learn.words import words
+from robolink.supervisor.monitoring.file_watch import Changes
 from robolink.system.paths import expanded, is_file
-from robolink.system.whole_files import write_new
+from robolink.system.whole_files import write_new, write_whole
 
 DEFAULT = "learn_robolink"
 """Name of the folder that `start` makes."""
+LARGEST = 1_000_000
+"""Most bytes of a file with a student's progress."""
+EVERY = 0.2
+"""Period of its looks at the files, in seconds."""
 
 
 class NoFolderError(RobolinkError, LookupError):
     """The working directory is in no folder of exercises."""
+
+
+class Progress(Struct):
+    """Content of the file."""
+
+    language: Language = "en"
+    source: str = ""
+    """Folder of a teacher's exercises; '' for those that come with robolink."""
+    done: list[str] = []
+    """Names of the exercises that are done."""
+    hints: dict[str, int] = {}
+    """Number of hints that were shown, by exercise."""
+
+    def finish(self, name: str) -> None:
+        """Note that an exercise is done."""
+        if name not in self.done:
+            self.done.append(name)
+
+    def forget(self, name: str) -> None:
+        """Note that an exercise is as it was at the beginning."""
+        self.done = [each for each in self.done if each != name]
+        self.hints.pop(name, None)
+
+    def next_hint(self, name: str, most: int) -> int:
+        """Count a hint, and return its number, from 1 on; `most` again after the last, and 0 if there are none."""
+        self.hints[name] = min(max(self.hints.get(name, 0), 0) + 1, most)
+        return self.hints[name]
 
 
 class StudentFolder:
@@ -124,9 +159,8 @@ class StudentFolder:
 
 def find_folder() -> StudentFolder | None:
     """Return the student's folder at or above the working directory; None if there is none."""
-    here = Path.cwd()
-    found = next((each for each in (here, *here.parents) if is_file(each / FILE)), None)
-    return None if found is None else StudentFolder(found, load_progress(found))
+    file = student_file()
+    return None if file is None else StudentFolder(file.parent, load_progress(file.parent))
 
 
 def the_folder() -> StudentFolder:
@@ -145,7 +179,7 @@ def _where_to_go() -> str:
 
 def folder_below() -> str:
     """Return the name of a student's folder in the working directory, preferably the usual one; '' for none."""
-    names = sorted(each.parent.name for each in Path.cwd().glob(f"*/{FILE}"))
+    names = sorted(each.parent.name for each in Path.cwd().glob(f"*/{STUDENT_FILE}"))
     return DEFAULT if DEFAULT in names else next(iter(names), "")
 
 
@@ -162,7 +196,7 @@ def start_folder(path: str = "", *, language: Language | None = None, source: st
         folder = Path.cwd() / DEFAULT if found is None else found.path
     else:
         folder = expanded(path).absolute()
-    is_old = is_file(folder / FILE)
+    is_old = is_file(folder / STUDENT_FILE)
     progress = load_progress(folder) if is_old else Progress(language or default_language())
     progress.language = language or progress.language
     if source:
@@ -178,3 +212,43 @@ def _free(path: Path) -> Path:
         number += 1
         free = path.with_name(f"{path.stem}.mine{number}{path.suffix}")
     return free
+
+
+def load_progress(folder: Path) -> Progress:
+    """Read the progress of a folder. Raises DocumentError if the file cannot be read."""
+    path = folder / STUDENT_FILE
+    try:
+        with path.open("rb") as file:
+            return msgspec.json.decode(file.read(LARGEST), type=Progress)
+    except (OSError, msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise DocumentError(
+            f"{reason}; delete this file and run `robolink learn start {folder}`: your programs stay", str(path)
+        ) from None
+
+
+def save_progress(folder: Path, progress: Progress) -> None:
+    """Write the progress of a folder, as a whole or not at all. Raises OSError."""
+    write_whole(folder / STUDENT_FILE, msgspec.json.format(msgspec.json.encode(progress)) + b"\n")
+
+
+class Watch:
+    """Watcher of a student's files.
+
+    Args:
+        folder: The student's folder.
+        check: Called with each exercise whose file was saved.
+        changes: Change detection; by default by the files' times and sizes.
+    """
+
+    def __init__(
+        self, folder: StudentFolder, check: Callable[[Exercise], object], *, changes: Changes | None = None
+    ) -> None:
+        self._check, self._changes = check, changes or Changes()
+        self._exercises: dict[Path, Exercise] = {folder.file_of(each): each for each in folder.course}
+        self._changes.follow(self._exercises)
+
+    def look(self) -> None:
+        """Poll once, and check what was saved."""
+        for path in sorted(self._changes.look()):
+            self._check(self._exercises[path])

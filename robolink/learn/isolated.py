@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from robolink.learn.exercise import Exercise, read_exercise
-from robolink.learn.languages import Language
+from robolink.grading.languages import Language
 from robolink.grading.process import run_apart
+from robolink.learn.exercise import Exercise, read_exercise
 from robolink.learn.report import Report
 
 if TYPE_CHECKING:
@@ -63,8 +63,8 @@ def serve(folder: Path, file: Path, answer: Path, language: Language) -> None:
         answer: File for the report.
         language: Language of the sentences.
     """
-    from robolink.learn.checking import check  # late: whoever asks for a check needs none of it
     from robolink.grading.child import Child
+    from robolink.learn.checking import check  # late: whoever asks for a check needs none of it
 
     child = Child(answer)
 

@@ -6,10 +6,12 @@ import textwrap
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from robolink.grading.languages import Language
+from robolink.grading.mistakes import Mistake
 from robolink.learn.exercise import Exercise
 from robolink.learn.folder import StudentFolder
-from robolink.learn.languages import Language, words
-from robolink.learn.report import Mistake, Report
+from robolink.learn.report import Report
+from robolink.learn.words import words
 
 WIDTH = 78
 """Widest line of a report, in letters."""

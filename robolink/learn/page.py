@@ -9,14 +9,13 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from robolink.exceptions import NotFoundError, RobolinkError
+from robolink.grading.languages import LANGUAGES, STUDENT_FILE, Language
 from robolink.learn.exercise import Exercise
-from robolink.learn.folder import StudentFolder
+from robolink.learn.folder import EVERY, StudentFolder, Watch
 from robolink.learn.isolated import check_apart
-from robolink.learn.languages import LANGUAGES, Language, words
 from robolink.learn.lines import findings, printed_lines
-from robolink.learn.progress import FILE
 from robolink.learn.report import Report
-from robolink.learn.watching import EVERY, Watch
+from robolink.learn.words import words
 from robolink.supervisor.monitoring.file_watch import Changes
 from robolink.supervisor.monitoring.periodic import PeriodicThread
 from robolink.system import waits
@@ -249,7 +248,7 @@ class _Watcher(PeriodicThread):
         self._exercises = exercises
         self._watch = Watch(exercises._folder, exercises.saved)
         self._progress = Changes()
-        self._progress.follow([exercises._folder.path / FILE])
+        self._progress.follow([exercises._folder.path / STUDENT_FILE])
 
     def look(self) -> None:
         """Poll once."""

@@ -2,40 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 from msgspec import Struct
 from msgspec.structs import force_setattr
 
-Kind = Literal[
-    "syntax",
-    "empty",
-    "exception",
-    "elsewhere",
-    "stuck",
-    "stuck somewhere",
-    "asleep",
-    "too large",
-    "input",
-    "ended",
-    "ended all",
-    "file",
-    "lacks",
-    "types",
-    "use",
-    "check",
-    "no program",
-]
-
-
-LONGEST = 1000
-"""Longest text of a report, in letters."""
-
-
-def fit_text(text: str) -> str:
-    r"""Return a text that fits into a report: cut to `LONGEST`, and with `\ud800` for a surrogate, which JSON lacks."""
-    short = text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
-    return short.encode("utf-8", "backslashreplace").decode()
+from robolink.grading.mistakes import Mistake, fit_text
 
 
 class Line(Struct, frozen=True):
@@ -46,19 +16,6 @@ class Line(Struct, frozen=True):
 
     def __post_init__(self) -> None:
         force_setattr(self, "text", fit_text(self.text))
-
-
-class Mistake(Struct, frozen=True):
-    """Mistake that ended a check: its kind, its text, and the line of the student's file with its code."""
-
-    kind: Kind
-    text: str = ""
-    line: int = 0
-    code: str = ""
-
-    def __post_init__(self) -> None:
-        force_setattr(self, "text", fit_text(self.text))
-        force_setattr(self, "code", fit_text(self.code))
 
 
 class Body(Struct, frozen=True):

@@ -8,9 +8,10 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from robolink.grading.languages import Language
 from robolink.learn.exercise import LONGEST_NAME, SETTINGS, Exercise, ExerciseError
-from robolink.learn.languages import Language, words
 from robolink.learn.report import Report
+from robolink.learn.words import words
 from robolink.scaffold.rendering import rendered
 from robolink.scaffold.writing import written
 from robolink.system.paths import expanded

@@ -9,8 +9,8 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import nearest
+from robolink.grading.languages import Language
 from robolink.learn.exercise import Exercise, ExerciseError
-from robolink.learn.languages import Language
 from robolink.learn.report import Line, Track
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import msgspec
 
+from robolink.grading.mistakes import Mistake
 from robolink.grading.process import run_apart
-from robolink.learn.report import Mistake
 from robolink.race.races import RACES, Race
 from robolink.race.result import Result
 from robolink.system import waits

@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robolink.exceptions import NotFoundError
+from robolink.grading.mistakes import Mistake, mistake_in, mistake_of
 from robolink.interfaces.rcl_interfaces.msg import SetParametersResult
-from robolink.grading.mistakes import mistake_in, mistake_of
-from robolink.learn.report import Mistake
 from robolink.race.races import Race
 from robolink.race.result import Result
 from robolink.workspace import find_node

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from msgspec import Struct
 
-from robolink.learn.report import Mistake
+from robolink.grading.mistakes import Mistake
 from robolink.race.races import Race
 
 

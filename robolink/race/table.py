@@ -5,9 +5,10 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
-from robolink.learn.languages import Language, words
+from robolink.grading.languages import MISTAKES, Language, Words, text_of
 from robolink.race.maze import SIZE
 from robolink.race.races import Race
 from robolink.race.result import Result, ranked
@@ -17,6 +18,35 @@ SHOWN = 16
 """Digits of a hash that the table for people shows."""
 
 COLUMNS = ["place", "program", "score", "unit", "progress", "contacts", "seed", "hash", "error"]
+
+WORDS: Words = {
+    **MISTAKES,
+    "no program": (
+        "no {text} here, nor one other Python file alone",
+        "aqui não há {text}, nem um único outro arquivo Python",
+    ),
+    "race": ("{name}, seed {seed}: {rule}", "{name}, semente {seed}: {rule}"),
+    "rule line": (
+        "the time of one lap along the line, and 5 s for each contact",
+        "o tempo de uma volta pela linha, e mais 5 s por contato",
+    ),
+    "rule maze": (
+        "the time to the middle of the far corner, ({end}, {end}), and 5 s for each contact",
+        "o tempo até o meio do canto oposto, ({end}, {end}), e mais 5 s por contato",
+    ),
+    "rule follow": (
+        "metres along the wall in 120 s, 0.3 to 0.8 m away from it, less 5 m for each contact",
+        "metros ao longo da parede em 120 s, de 0.3 a 0.8 m dela, menos 5 m por contato",
+    ),
+    "contact": ("{count} contact", "{count} contato"),
+    "contacts": ("{count} contacts", "{count} contatos"),
+    "progress": ("{share:.0%} of the way", "{share:.0%} do caminho"),
+    "raced": ("{program} is done", "{program} terminou"),
+}
+"""Words of races, in English and Portuguese."""
+
+words = partial(text_of, WORDS)
+"""Returns a text: `words(language, key, **values)`."""
 
 
 def table(race: Race, results: Sequence[Result], seed: int, language: Language = "en") -> Iterator[str]:

@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 import yaml
 
-from robolink.learn.languages import _WORDS
 from tools.docs_site.build import SEARCH_NEEDS, SERVE, finished, script
 from tools.docs_site.markdown import LINK, blocks, headings, outside_blocks, slugs, with_site_tables
 from tools.docs_site.pages import DOCS, LANGUAGES, Page, addresses, pages
@@ -159,7 +158,9 @@ def portuguese_texts() -> dict[str, str]:
     )
     for file in (*root.glob("robolink/learn/exercises/*/exercise.yaml"), *root.glob("robolink/view/page/**/*.js")):
         texts[str(file.relative_to(root))] = file.read_text(encoding="utf-8")
-    texts["words of robolink learn"] = "\n".join(portuguese for _, portuguese in _WORDS.values())
+    for file in root.glob("robolink/*/*.py"):
+        if re.search(r"^\w+: Words = ", source := file.read_text(encoding="utf-8"), re.MULTILINE):
+            texts[str(file.relative_to(root))] = source
     return texts
 
 

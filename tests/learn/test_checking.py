@@ -12,11 +12,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robolink.grading.mistakes import LONGEST_TEXT, Mistake, mistake_in
 from robolink.learn.checking import check
 from robolink.learn.exercise import Exercise, chosen, read_course, read_exercise
 from robolink.learn.lines import WIDTH, reported
-from robolink.grading.mistakes import mistake_in
-from robolink.learn.report import LONGEST, Line, Mistake, Report
+from robolink.learn.report import Line, Report
 from robolink.learn.trial import Trial
 
 COURSE = read_course()
@@ -53,12 +53,12 @@ def test_what_json_lacks_is_in_a_report_in_escapes(tmp_path: Path) -> None:
     assert msgspec.json.decode(msgspec.json.encode(report), type=Report) == report
     assert report.mistake is not None
     assert report.mistake.text.startswith("ValueError: \\ud800xxx")
-    assert len(report.mistake.text) < 2 * LONGEST
+    assert len(report.mistake.text) < 2 * LONGEST_TEXT
 
 
 def test_a_line_without_end_is_cut(tmp_path: Path) -> None:
     report = tried("x = '" + "a" * 100_000, tmp_path)
-    assert max(map(len, reported(HELLO, report, "en"))) < LONGEST
+    assert max(map(len, reported(HELLO, report, "en"))) < LONGEST_TEXT
 
 
 def test_a_mistake_without_words_has_its_name(tmp_path: Path) -> None:

@@ -10,9 +10,9 @@ from typing import TypeGuard
 
 import pytest
 
+from robolink.grading.languages import LANGUAGES, Language
 from robolink.learn.checking import check
 from robolink.learn.exercise import Exercise, read_course
-from robolink.learn.languages import LANGUAGES, Language
 from robolink.learn.report import Report
 
 SOLUTIONS = Path(__file__).parent / "solutions"

@@ -9,12 +9,20 @@ from pathlib import Path
 import pytest
 
 from robolink.exceptions import DocumentError, NotFoundError
+from robolink.grading.languages import STUDENT_FILE
 from robolink.learn.exercise import Exercise, ExerciseError, chosen, read_course, read_exercise
-from robolink.learn.folder import NoFolderError, StudentFolder, find_folder, start_folder, the_folder
-from robolink.learn.languages import default_language, language_of
+from robolink.learn.folder import (
+    NoFolderError,
+    Progress,
+    StudentFolder,
+    Watch,
+    find_folder,
+    load_progress,
+    save_progress,
+    start_folder,
+    the_folder,
+)
 from robolink.learn.lines import listed
-from robolink.learn.progress import FILE, Progress, load_progress, save_progress
-from robolink.learn.watching import Watch
 from robolink.supervisor.monitoring.file_watch import Changes
 
 DEEP = b'{"x":' + b"[" * 100_000
@@ -62,7 +70,7 @@ def test_two_commands_at_once_lose_nothing_of_each_other(folder: StudentFolder) 
 
 def test_progress_that_was_broken_meanwhile_is_written_again(folder: StudentFolder) -> None:
     folder.finish(folder.course[0])
-    (folder.path / FILE).write_text("{")
+    (folder.path / STUDENT_FILE).write_text("{")
     folder.finish(folder.course[1])
     assert the_folder().done == 2
 
@@ -148,7 +156,7 @@ def test_without_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     [b"", b"{", b"[]", b'{"language": "fr"}', b'{"done": 3}', b"\xff\xfe", b"{}" * 10, b'{"x":' + b"[" * 100_000],
 )
 def test_progress_that_cannot_be_read_is_one_line(content: bytes, tmp_path: Path) -> None:
-    (tmp_path / FILE).write_bytes(content)
+    (tmp_path / STUDENT_FILE).write_bytes(content)
     with pytest.raises(DocumentError, match="delete this file") as told:
         load_progress(tmp_path)
     assert "\n" not in str(told.value)
@@ -158,18 +166,7 @@ def test_progress_survives_a_round_trip(tmp_path: Path) -> None:
     progress = Progress("pt", "", ["hello"], {"hello": 2})
     save_progress(tmp_path, progress)
     assert load_progress(tmp_path) == progress
-    assert [each.name for each in tmp_path.iterdir()] == [FILE]
-
-
-@pytest.mark.parametrize(("name", "found"), [("pt_BR.UTF-8", "pt"), ("en_GB", "en"), ("de_DE", None), ("", None)])
-def test_languages_of_locales(name: str, found: str | None) -> None:
-    assert language_of(name) == found
-    assert default_language({"LANG": name}) == (found or "en")
-
-
-def test_the_locale_s_variables_have_an_order() -> None:
-    assert default_language({"LANG": "pt_BR.UTF-8", "LC_ALL": "en_US.UTF-8"}) == "en"
-    assert default_language({"LANG": "en_US.UTF-8", "LC_MESSAGES": "pt_BR.UTF-8"}) == "pt"
+    assert [each.name for each in tmp_path.iterdir()] == [STUDENT_FILE]
 
 
 @pytest.mark.parametrize("count", [-5, 10**18])

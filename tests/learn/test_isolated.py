@@ -15,12 +15,12 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.shared.output import say
+from robolink.grading.mistakes import Mistake
+from robolink.grading.process import MOST_PRINTED, SETTINGS, TRACE, why_no_answer
 from robolink.learn.exercise import Exercise, chosen, read_course
 from robolink.learn.isolated import check_apart
 from robolink.learn.lines import reported
-from robolink.grading.process import MOST_PRINTED, SETTINGS, TRACE, kill_descendants, why_no_answer
-from robolink.learn.report import Mistake, Report
-from robolink.grading.watchdog import Watchdog, memory_of_this_process
+from robolink.learn.report import Report
 from robolink.supervisor.processes.guardian import is_alive
 
 HELLO = chosen(read_course(), "hello")
@@ -155,7 +155,8 @@ def test_where_code_stands_that_lets_no_other_thread_run(tmp_path: Path) -> None
         SOLUTION.replace("    rclpy.spin(node)", "    print('before')\n    number = 9**9**9"), encoding="utf-8"
     )
     program = (
-        "import sys; from pathlib import Path; from robolink.learn import isolated; from robolink.grading import watchdog; watchdog.FROZEN = 3;"
+        "import sys; from pathlib import Path; from robolink.grading import child; from robolink.learn import isolated;"
+        "child.FROZEN = 3;"
         " isolated.serve(*map(Path, sys.argv[1:]), 'en')"
     )
     words = [sys.executable, "-c", program, str(HELLO.folder), str(file), str(answer)]
@@ -165,21 +166,6 @@ def test_where_code_stands_that_lets_no_other_thread_run(tmp_path: Path) -> None
     assert not answer.exists()
     mistake = why_no_answer(tmp_path / TRACE, file, in_time=True)
     assert (mistake.kind, mistake.code) == ("stuck", "    number = 9**9**9")
-
-
-def test_a_process_that_is_killed_from_outside_is_stuck_somewhere(tmp_path: Path) -> None:
-    assert why_no_answer(tmp_path / TRACE, tmp_path, in_time=False) == Mistake("stuck somewhere")
-    assert why_no_answer(tmp_path / TRACE, tmp_path, in_time=True) == Mistake("ended all")
-
-
-def test_the_line_is_found_in_folders_of_any_name(tmp_path: Path) -> None:
-    file = tmp_path / "Área" / "ação" / HELLO.file
-    file.parent.mkdir(parents=True)
-    file.write_text("one\ntwo\n", encoding="utf-8")
-    with (tmp_path / TRACE).open("w", encoding="ascii") as trace:
-        code = compile("import faulthandler\nfaulthandler.dump_traceback(trace)", str(file), "exec")
-        exec(code, {"trace": trace})
-    assert why_no_answer(tmp_path / TRACE, file, in_time=True) == Mistake("stuck", "", 2, "two")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="it has no FIFOs")
@@ -240,38 +226,3 @@ def test_what_a_program_prints_is_fit_for_a_terminal(tmp_path: Path, capsys: pyt
     for line in reported(HELLO, report, "en"):
         say(line)
     assert "\x1b" not in capsys.readouterr().out
-
-
-def test_what_a_program_has_started_is_found_by_its_parents(tmp_path: Path) -> None:
-    """Where no session and no mark leads to it, as on Windows."""
-    import psutil
-
-    inner = "import time; print(1, flush=True); time.sleep(600)"
-    middle = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {inner!r}])"
-    since = time.time() - 5.0  # Linux knows the beginning of a process less exactly
-    with subprocess.Popen([sys.executable, "-c", middle], stdout=subprocess.PIPE) as started:
-        assert started.stdout is not None
-        assert started.stdout.readline().strip() == b"1"
-        [child] = psutil.Process(started.pid).children()
-        kill_descendants(started.pid, time.time() + 3600.0)
-        assert child.is_running()
-        kill_descendants(started.pid, since)
-        assert child.wait(30.0) is not None or not child.is_running()
-        started.wait(30.0)
-
-
-def test_a_program_that_takes_all_memory_ends_where_no_system_limits_it(tmp_path: Path) -> None:
-    class Run:
-        file = tmp_path / "growing.py"
-
-        def moment(self) -> tuple[float, int]:
-            return time.monotonic(), 0
-
-    found: list[Mistake] = []
-    sizes = iter([2**20, 3 * 2**30, 5 * 2**30])
-    watchdog = Watchdog(Run(), found.append, memory=lambda: next(sizes))
-    watchdog.start()
-    watchdog.join(30.0)
-    assert found == [Mistake("too large", "4 GB")]
-    assert any("needs more than 4 GB" in each for each in reported(HELLO, Report([], found[0]), "en"))
-    assert 2**20 < memory_of_this_process()() < 4 * 2**30

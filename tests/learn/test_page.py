@@ -13,12 +13,13 @@ from typing import Any
 import pytest
 
 from robolink.exceptions import NotFoundError, RobolinkError
+from robolink.grading.languages import Language
+from robolink.grading.mistakes import Mistake
 from robolink.learn.exercise import Exercise
 from robolink.learn.folder import StudentFolder, start_folder
-from robolink.learn.languages import Language
 from robolink.learn.lines import reported
 from robolink.learn.page import PageExercises
-from robolink.learn.report import Line, Mistake, Report
+from robolink.learn.report import Line, Report
 from robolink.view.exercises import Operation
 from robolink.view.protocol.requests import LearnCommand
 

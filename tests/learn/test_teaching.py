@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from robolink.exceptions import DocumentError
+from robolink.grading.languages import Language
 from robolink.learn.checking import check
 from robolink.learn.exercise import Exercise, ExerciseError, read_course, read_exercise
-from robolink.learn.languages import Language
 from robolink.learn.report import Report
 from robolink.learn.teaching import new_exercise, proofs
 

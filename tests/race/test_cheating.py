@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from robolink.grading import signing
-from robolink.learn.report import Mistake
+from robolink.grading.mistakes import Mistake
 from robolink.race.apart import race_all, run_one
 from robolink.race.driving import Drive
 from robolink.race.races import RACES
@@ -89,10 +88,3 @@ def test_who_is_ended_by_another_one_runs_again(tmp_path: Path) -> None:
     victim, _ = race_all(FOLLOW, programs, 1, on_done=lambda each: done.append(each.program))
     assert (victim.score, victim.mistake) == (0.0, None)
     assert sorted(done) == sorted(programs)
-
-
-def test_only_the_holder_of_the_key_signs() -> None:
-    key, other = signing.new_key(), signing.new_key()
-    assert signing.opened(signing.signed(b"{}", key), key) == b"{}"
-    for forged in (b"", b"{}", signing.signed(b"{}", other), signing.signed(b"{}", key)[:-1] + b"]"):
-        assert signing.opened(forged, key) == b""

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from robolink.exceptions import NotFoundError
-from robolink.learn.report import Mistake
+from robolink.grading.mistakes import Mistake
 from robolink.race.apart import race_all, run_one
 from robolink.race.driving import Drive
 from robolink.race.programs import programs_of

@@ -15,12 +15,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from robolink import logging
+from robolink.grading.child import Watchdog
+from robolink.grading.mistakes import Mistake
 from robolink.learn.checking import check
 from robolink.learn.exercise import Exercise, chosen, read_course
 from robolink.learn.lines import reported
-from robolink.learn.report import Mistake, Report
+from robolink.learn.report import Report
 from robolink.learn.trial import Trial
-from robolink.grading.watchdog import Watchdog
 
 SOLUTIONS = Path(__file__).parents[1] / "learn" / "solutions"
 

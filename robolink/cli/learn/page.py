@@ -6,11 +6,12 @@ from robolink.cli.learn.work import folder_here, say_all
 from robolink.cli.shared.output import say
 from robolink.cli.shared.page import announce, end_with_the_terminal
 from robolink.cli.shared.session import node_of, opened
+from robolink.grading.languages import Language
 from robolink.learn.exercise import Exercise
-from robolink.learn.languages import Language, words
 from robolink.learn.lines import reported
 from robolink.learn.page import PageExercises
 from robolink.learn.report import Report
+from robolink.learn.words import words
 from robolink.view.server import Settings, View
 from robolink.view.sources.live import LiveSource
 

@@ -12,7 +12,7 @@ app = typer.Typer()
 @app.command()
 def serve(folder: Path, file: Path, language: str, answer: Path) -> None:
     """Check a program in this process, and write the report into a file."""
+    from robolink.grading.languages import language_of
     from robolink.learn.isolated import serve
-    from robolink.learn.languages import language_of
 
     serve(folder, file, answer, language_of(language) or "en")

@@ -7,10 +7,11 @@ from pathlib import Path
 from robolink.cli.learn.work import say_all
 from robolink.cli.shared.output import say
 from robolink.cli.shared.typed_paths import shown, typed
+from robolink.grading.languages import Language
 from robolink.learn.exercise import SETTINGS, read_course
 from robolink.learn.isolated import check_apart
-from robolink.learn.languages import Language, words
 from robolink.learn.teaching import FOLDER, new_exercise, proofs
+from robolink.learn.words import words
 from robolink.system.paths import expanded
 
 

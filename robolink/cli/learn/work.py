@@ -10,11 +10,12 @@ from pathlib import Path
 from robolink.cli.shared.output import say
 from robolink.cli.shared.typed_paths import typed
 from robolink.exceptions import RobolinkError
+from robolink.grading.languages import Language, default_language
 from robolink.learn.exercise import Exercise, read_course
 from robolink.learn.folder import StudentFolder, find_folder, folder_below, start_folder, the_folder
 from robolink.learn.isolated import check_apart
-from robolink.learn.languages import Language, default_language, words
 from robolink.learn.lines import course_listed, listed, next_step, reported, task
+from robolink.learn.words import words
 from robolink.system.terminal import fit, styled
 
 _STYLES = {"✓": "32", "✗": "31", "→": "36"}
@@ -77,7 +78,7 @@ def check_all(language: Language | None) -> bool:
 
 def watch(name: str, language: Language | None) -> None:
     """Check the exercises whose files are saved, and the named one (default: the next) at once."""
-    from robolink.learn.watching import EVERY, Watch
+    from robolink.learn.folder import EVERY, Watch
 
     folder = folder_here(language)
     say(words(folder.language, "watching"))

@@ -47,13 +47,13 @@ def race(
     if as_json and as_csv:
         raise typer.BadParameter("--json and --csv do not go together")
     from robolink.cli.shared.languages import spoken
-    from robolink.learn.languages import words
-    from robolink.learn.report import Mistake
+    from robolink.grading.mistakes import Mistake
     from robolink.race import table
     from robolink.race.apart import race_all
     from robolink.race.programs import programs_of, without_program
     from robolink.race.races import RACES as RULES
     from robolink.race.result import Result
+    from robolink.race.table import words
 
     rules, tongue = RULES[name], spoken(language)
     programs = programs_of(name, files)

@@ -5,24 +5,20 @@ from __future__ import annotations
 import typer
 
 from robolink.exceptions import nearest
-from robolink.learn.folder import find_folder
-from robolink.learn.languages import LANGUAGES, Language, default_language
+from robolink.grading.languages import LANGUAGES, Language, language_here
 
 
-def language_of(asked: str | None) -> Language | None:
-    """Return the language that was asked for; None for none. Raises a usage error for any other word."""
-    if not asked:
+def language_of(requested: str | None) -> Language | None:
+    """Return the language of an option; None for an empty one. Raises a usage error for an unknown word."""
+    if not requested:
         return None
     for each in LANGUAGES:
-        if asked == each:
+        if requested == each:
             return each
-    raise typer.BadParameter(f"'{asked[:100]}' is none of {', '.join(LANGUAGES)}{nearest(asked[:100], LANGUAGES)}")
+    short = requested[:100]
+    raise typer.BadParameter(f"'{short}' is none of {', '.join(LANGUAGES)}{nearest(short, LANGUAGES)}")
 
 
-def spoken(asked: str | None) -> Language:
-    """Return the language that is spoken here: the one that was asked for, the student's folder's, or the locale's."""
-    language = language_of(asked)
-    if language is not None:
-        return language
-    folder = find_folder()
-    return default_language() if folder is None else folder.language
+def spoken(requested: str | None) -> Language:
+    """Return the language of an option, else of the student's folder, else of the locale."""
+    return language_of(requested) or language_here()

@@ -10,9 +10,10 @@ import pytest
 from robolink.cli.learn import work
 from robolink.cli.learn.completion import exercise_names
 from robolink.cli.main import main
+from robolink.grading.languages import Language
+from robolink.grading.mistakes import Mistake
 from robolink.learn.exercise import Exercise, read_course
-from robolink.learn.languages import Language
-from robolink.learn.report import Line, Mistake, Report
+from robolink.learn.report import Line, Report
 
 Captured = pytest.CaptureFixture[str]
 SOLUTIONS = Path(__file__).parents[2] / "learn" / "solutions"

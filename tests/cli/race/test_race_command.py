@@ -10,7 +10,7 @@ import pytest
 
 from robolink.cli.main import main
 from robolink.cli.race import RACES
-from robolink.learn.report import Mistake
+from robolink.grading.mistakes import Mistake
 from robolink.race import apart, races
 from robolink.race.result import Result
 

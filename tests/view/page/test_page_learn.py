@@ -10,11 +10,12 @@ from typing import Any
 
 import pytest
 
+from robolink.grading.languages import Language
+from robolink.grading.mistakes import Mistake
 from robolink.learn.exercise import Exercise
 from robolink.learn.folder import StudentFolder, start_folder
-from robolink.learn.languages import Language
 from robolink.learn.page import PageExercises
-from robolink.learn.report import Body, Contact, Line, Mistake, Report, Track
+from robolink.learn.report import Body, Contact, Line, Report, Track
 from tests.support.browser import Browser, needs_chromium
 from tests.support.pages import Page, opened
 from tests.support.view_clients import shown

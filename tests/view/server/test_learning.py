@@ -9,9 +9,9 @@ import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
+from robolink.grading.languages import Language
 from robolink.learn.exercise import Exercise
 from robolink.learn.folder import start_folder
-from robolink.learn.languages import Language
 from robolink.learn.page import PageExercises
 from robolink.learn.report import Line, Report
 from tests.support.view_clients import shown

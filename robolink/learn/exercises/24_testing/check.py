@@ -6,9 +6,9 @@ from collections.abc import Callable
 from types import ModuleType
 
 from robolink import Node
+from robolink.grading.mistakes import mistake_of
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.grading.mistakes import mistake_of
 from robolink.learn.trial import SEED, Trial
 from robolink.testing import System
 
