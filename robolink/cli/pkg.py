@@ -142,15 +142,13 @@ def executables(
 
 def _executables_of(package: str) -> dict[str, NodeSource]:
     """Return the executables that a package names, those that have a counterpart, and those that were installed."""
-    from robolink.workspace import counterparts_of, executable_of, find_package, named_executables
+    from robolink.workspace import find_package, named_executables, sources_of
     from robolink.workspace.installed import installed_executables
 
     folder = find_package(package)
     found = {each.name: each for each in (named_executables(folder) if folder is not None else ())}
-    for name in (*counterparts_of(package), *installed_executables(package)):
-        source = executable_of(package, name, folder)
-        if source is not None:
-            found.setdefault(name, source)
+    for each in (sources_of(package), installed_executables(package)):
+        found = {**each, **found}
     return found
 
 

@@ -1,1 +1,1 @@
-"""Counterparts of executables of ROS packages, a sub-package for each: see `robolink.workspace.counterparts`."""
+"""Counterparts of executables of ROS packages, a sub-package for each: see `robolink.workspace.programs`."""

@@ -1,63 +1,139 @@
-"""Extensions: parts of robolink that other installed packages bring, found by their entry points.
-
-A package names what it adds in its pyproject.toml, and robolink reads that when its own table lacks a name:
+"""Registries: each a table of what comes with robolink, and a group of entry points by which other packages add to it.
 
     [project.entry-points."robolink.commands"]
     hello = "my_package.hello:app"            # robolink hello
     "topic.nodes" = "my_package.nodes:nodes"  # robolink topic nodes
 
-    [project.entry-points."robolink.nodes"]
-    patrol = "my_package.patrol:Patrol"       # robolink run patrol
+    [project.entry-points."robolink.programs"]
+    "my_robot.drive" = "my_package.drive:Drive"  # robolink run my_robot drive
 
-    [project.entry-points."robolink.sensors"]
-    compass = "my_package.compass:COMPASS"    # sensors: [{compass: heading}] in a world file
-
-Reading the entry points of an environment takes some ten milliseconds, so nothing is read for a name that is known.
-What comes with robolink goes first. How to write one: docs/reference/extensions.md.
+There are five: commands, programs, sensors, interfaces and nodes. How to write one: docs/reference/extensions.md.
 """
 
 from __future__ import annotations
 
 import functools
 import sys
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robolink.exceptions import RobolinkError
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
+T = TypeVar("T")
+
+
+class ExtensionError(RobolinkError, ImportError):
+    """An entry point that cannot be used; the text names the package, the entry point, the group and the reason."""
+
+
+class Registry(Generic[T]):
+    """Parts of one kind by name: those in the table of robolink itself, then those that other packages add.
+
+    Reading the entry points of an environment takes some ten milliseconds, so none are read for a name in the table.
+    """
+
+    def __init__(
+        self, group: str, table: Callable[[], Mapping[str, T]], read: Callable[[EntryPoint], T] | None = None
+    ) -> None:
+        """Make a registry; nothing is read yet.
+
+        Args:
+            group: Group of the entry points, such as robolink.sensors.
+            table: Function that returns robolink's own parts, by name.
+            read: Function that makes a part of an entry point, and raises if it is not one; by default it is imported.
+        """
+        self.group, self.table = group, table
+        self._read = read or (lambda entry: entry.load())
+
+    def names(self) -> list[str]:
+        """Return the names of all parts, robolink's own first."""
+        return list(dict.fromkeys([*self.table(), *self.added()]))
+
+    def added(self) -> Mapping[str, EntryPoint]:
+        """Return the entry points of other packages by name; of two with one name, the first by its package's name."""
+        return {name: entries[0] for name, entries in _entry_points(self.group, tuple(sys.path)).items()}
+
+    def get(self, name: str) -> T | None:
+        """Return the part of a name; None if there is none.
+
+        Args:
+            name: Name of the part. What comes with robolink goes first.
+
+        Raises:
+            ExtensionError: If another package adds it, and it cannot be used.
+        """
+        table = self.table()
+        if name in table:
+            return table[name]
+        entry = self.added().get(name)
+        return None if entry is None else self.read(entry)
+
+    def read(self, entry: EntryPoint) -> T:
+        """Return the part that an entry point adds.
+
+        Args:
+            entry: An entry point of the group.
+
+        Raises:
+            ExtensionError: If it cannot be used.
+        """
+        try:
+            return self._read(entry)
+        except Exception as error:  # another package's code may raise anything
+            reason = str(error) if isinstance(error, RobolinkError) else f"{type(error).__name__}: {error}"
+            place = f"{_package(entry)} adds '{entry.name}' ({self.group}), which cannot be loaded from {entry.value}"
+            raise ExtensionError(f"{place}: {' '.join(reason.split())}") from error
+
+    def problems(self) -> Iterator[str]:
+        """Yield what is wrong with the parts of other packages, one line each: broken ones, and names given twice."""
+        own = self.table()
+        for name, entries in _entry_points(self.group, tuple(sys.path)).items():
+            for each in entries:
+                try:
+                    self.read(each)
+                except ExtensionError as error:
+                    yield str(error)
+            takers = ["robolink", *map(_package, entries)] if name in own else [*map(_package, entries)]
+            for taker in takers[1:]:
+                yield f"{taker} adds '{name}' ({self.group}), which {takers[0]} has: that one is taken"
+
+
+@functools.lru_cache(maxsize=16)
+def _entry_points(group: str, _path: tuple[str, ...]) -> Mapping[str, list[EntryPoint]]:
+    """Return the entry points of a group by name, in the order of the names.
+
+    `_path` is `sys.path`: tests and notebooks add folders while they run.
+    """
+    from importlib.metadata import entry_points  # late: it takes 10 ms to import, and most commands need none
+
+    found: dict[str, list[EntryPoint]] = {}
+    for each in sorted(entry_points(group=group), key=lambda each: (each.name, _package(each))):
+        found.setdefault(each.name, []).append(each)
+    return found
+
+
+def _package(entry: EntryPoint) -> str:
+    return entry.dist.name if entry.dist is not None else "a package"
+
+
 COMMANDS = "robolink.commands"
 """Group of commands: NAME for a noun (a typer.Typer), NOUN.VERB for a verb of one (a function, or a typer.Typer)."""
 NODES = "robolink.nodes"
 """Group of nodes that `robolink run NAME` and launch files find: a Node class, or a function without arguments."""
-
 SENSORS = "robolink.sensors"
 """Group of sensors for world files: a `robolink.sim.sensors.SensorKind`, by the key that names it in a world file."""
 
 
-class ExtensionError(RobolinkError, ImportError):
-    """An entry point of another package that cannot be loaded; names the package, the entry point and the reason."""
-
-
 def added(group: str) -> Mapping[str, EntryPoint]:
-    """Return the entry points of a group by their names, in the order of the names; the first of two is taken.
+    """Return the entry points of a group by name; of two with one name, the first by its package's name.
 
     Args:
         group: Such as `COMMANDS`.
     """
-    return _added(group, tuple(sys.path))  # tests and notebooks add folders while they run
-
-
-@functools.lru_cache(maxsize=16)
-def _added(group: str, _path: tuple[str, ...]) -> Mapping[str, EntryPoint]:
-    from importlib.metadata import entry_points  # late: it takes 10 ms to import, and most commands need none
-
-    found: dict[str, EntryPoint] = {}
-    for each in sorted(entry_points(group=group), key=lambda each: (each.name, _package(each))):
-        found.setdefault(each.name, each)
-    return found
+    return Registry[Any](group, dict).added()
 
 
 def load(group: str, name: str) -> Any:
@@ -70,17 +146,4 @@ def load(group: str, name: str) -> Any:
     Raises:
         ExtensionError: If it cannot be imported.
     """
-    entry = added(group).get(name)
-    if entry is None:
-        return None
-    try:
-        return entry.load()
-    except Exception as error:
-        reason = f"{type(error).__name__}: {error}"
-        raise ExtensionError(
-            f"{_package(entry)} adds '{name}' ({group}), which cannot be loaded from {entry.value}: {reason}"
-        ) from error
-
-
-def _package(entry: EntryPoint) -> str:
-    return entry.dist.name if entry.dist is not None else ""
+    return Registry[Any](group, dict).get(name)

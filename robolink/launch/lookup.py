@@ -19,12 +19,12 @@ from robolink.workspace import (
     NodeSource,
     RosProgramError,
     built_in_workspace,
-    counterpart_folder,
     find_launch,
     find_node,
     find_package,
     instead_of,
     list_packages,
+    program_folder,
     user_workspace,
     workspace_of,
 )
@@ -74,7 +74,7 @@ def find(names: Sequence[str], *, workspace: Folder = None) -> Path:
     if len(names) == 1:
         return _by_name(names[0], workspace)
     package, name = names
-    folder = find_package(package, workspace=workspace) or counterpart_folder(package)
+    folder = find_package(package, workspace=workspace) or program_folder(package)
     if folder is None:
         if advice := instead_of(package):
             raise RosProgramError(package, name, advice)

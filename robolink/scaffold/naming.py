@@ -59,9 +59,9 @@ def checked_module(kind: str, name: str, taken: Collection[str] = ()) -> str:
         ScaffoldError: (a ValueError) if it is not valid, or a module of Python or of robolink has it.
     """
     from robolink.compat.maker import TOPS  # late: few commands need it
-    from robolink.workspace import COUNTERPARTS
+    from robolink.workspace import program_names
 
-    module = checked(kind, name, {"robolink", *TOPS, *COUNTERPARTS, *taken}).replace("-", "_")
+    module = checked(kind, name, {"robolink", *TOPS, *program_names(), *taken}).replace("-", "_")
     if module.casefold() in map(str.casefold, sys.stdlib_module_names):
         raise ScaffoldError(f"'{name}' is a module of Python: take another name, such as my_{module}")
     return name

@@ -19,7 +19,6 @@ from robolink.exceptions import NotFoundError, nearest
 from robolink.extensions import NODES, added
 from robolink.system.paths import expanded, is_file
 from robolink.workspace.built_in import built_in_workspace
-from robolink.workspace.counterparts import COUNTERPARTS, executable_of, lacking_executable
 from robolink.workspace.installed import COLCON
 from robolink.workspace.packages import (
     BUILT_IN,
@@ -31,6 +30,7 @@ from robolink.workspace.packages import (
     named_executables,
     source_packages,
 )
+from robolink.workspace.programs import executable_of, lacking_executable, program_names
 from robolink.workspace.source import Folder, NodeSource, canonical
 from robolink.workspace.trust import is_trusted, why_not
 
@@ -96,7 +96,7 @@ def find_executable(package: str, name: str, *, workspace: Folder = None) -> Nod
     error = lacking_executable(package, name, folder)
     if error is None and folder is not None:
         error = NotFoundError("executable", name, (), f"package {package}")
-    raise error or NotFoundError("package", package, [*list_packages(workspace=workspace), *COUNTERPARTS])
+    raise error or NotFoundError("package", package, [*list_packages(workspace=workspace), *program_names()])
 
 
 def find_package(name: str, *, workspace: Folder = None) -> Path | None:

@@ -7,11 +7,11 @@ import inspect
 import pytest
 
 from robolink.node import Node
-from robolink.workspace import COMPONENTS, component, load_node
+from robolink.workspace import component, components, load_node
 from robolink.workspace.node_factory import check_needs_nothing
 
 
-@pytest.mark.parametrize("plugin", COMPONENTS)
+@pytest.mark.parametrize("plugin", components())
 def test_every_component_is_a_class_of_node(plugin: str) -> None:
     source = component(plugin)
     assert source is not None

@@ -16,6 +16,8 @@ from robolink.interfaces.std_msgs.msg import Float64
 from robolink.sim import load_world
 from robolink.sim.schema import world_schema
 from robolink.testing import System
+from robolink.workspace import component, program, programs_of
+from robolink.workspace.programs import PROGRAMS
 
 CODE = """\
 import typer
@@ -33,6 +35,10 @@ def hello(name: str = "you") -> None:
 def nodes(topic: str) -> None:
     '''List who uses a topic.'''
     print("nodes of", topic)
+
+
+def drive() -> None:
+    print("driving")
 
 
 weather = typer.Typer(help="Tell the weather.", no_args_is_help=True)
@@ -60,6 +66,13 @@ number = demo_extension:number
 
 [robolink.sensors]
 compass = demo_compass:COMPASS
+
+[robolink.programs]
+demo_robot.drive = demo_extension:drive
+demo_robot::Driver = demo_extension:drive
+turtlesim.turtlesim_node = demo_extension:drive
+demo_robot.gone = demo_gone:main
+nameless = demo_extension:drive
 """
 
 
@@ -183,6 +196,39 @@ def test_a_misspelt_sensor_is_answered_with_those_of_other_packages(tmp_path: Pa
     world.write_text("robots: [{name: ada, sensors: [{compas: heading}]}]\n")
     with pytest.raises(DocumentError, match=r"did you mean 'compass'\?.*one of its keys must be compass, lidar"):
         load_world(str(world))
+
+
+@pytest.mark.usefixtures("package")
+def test_programs_of_other_packages_run(capsys: pytest.CaptureFixture[str]) -> None:
+    assert programs_of("demo_robot") == ["drive", "gone"]
+    assert main(["run", "demo_robot", "drive"]) == 0
+    assert capsys.readouterr().out == "driving\n"
+    driver, turtlesim = component("demo_robot::Driver"), program("turtlesim", "turtlesim_node")
+    assert driver is not None
+    assert turtlesim is not None
+    assert (driver.module, driver.attribute) == ("demo_extension", "drive")
+    assert turtlesim.attribute == "main"  # robolink's own goes first
+
+
+@pytest.mark.usefixtures("package")
+def test_a_program_that_is_not_there_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "demo_robot", "gone"]) != 0
+    place = "demo-extension adds 'demo_robot.gone' (robolink.programs), which cannot be loaded from demo_gone:main"
+    assert capsys.readouterr().err == f"robolink: {place}: no module named 'demo_gone'\n"
+    assert main(["pkg", "executables"]) == 0  # no other command is broken by it
+    listed = capsys.readouterr().out
+    assert "demo_robot drive\n" in listed
+    assert "gone" not in listed
+
+
+@pytest.mark.usefixtures("package")
+def test_problems_name_what_is_broken_and_what_is_there_twice() -> None:
+    found = list(PROGRAMS.problems())
+    assert found[0].endswith("from demo_gone:main: no module named 'demo_gone'")
+    assert found[1].endswith("a program's name is PACKAGE.EXECUTABLE, or PACKAGE::CLASS for a component")
+    assert found[2] == (
+        "demo-extension adds 'turtlesim.turtlesim_node' (robolink.programs), which robolink has: that one is taken"
+    )
 
 
 def test_entry_points_are_those_of_the_path_of_now(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:

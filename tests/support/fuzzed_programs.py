@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from robolink.workspace import COUNTERPARTS
+from robolink.workspace import program_names
 from robolink.workspace.built_in import built_in_workspace
 from tests.support.urdfs import ARM
 
@@ -67,9 +67,9 @@ NO_NODES = {
     "tf2_tools view_frames": "it listens for five seconds, writes a file and ends; tf2_monitor has the same listener",
     **{
         f"{package} {name}": "it is `robolink view`, which opens a port; tests/view feeds it"
-        for package, rows in COUNTERPARTS.items()
-        for name, row in rows.items()
-        if row.target.startswith("robolink.cli.view.")
+        for package, names in program_names().items()
+        for name in names
+        if package.startswith(("rqt", "rviz"))
     },
 }
 """Programs that are not fuzzed, each with its reason."""
@@ -100,9 +100,9 @@ ENDING = (
 
 def programs() -> Iterator[Fuzzed]:
     """Iterate over all shipped programs that have a node."""
-    names = [each.stem for each in sorted((built_in_workspace() / "nodes").glob("*.py"))]
-    names += [f"{package} {name}" for package, rows in COUNTERPARTS.items() for name in rows]
-    names += [str(each) for each in sorted(COMPANIONS.glob("*.py")) if each.stem != "__init__"]
-    for name in names:
+    found = [each.stem for each in sorted((built_in_workspace() / "nodes").glob("*.py"))]
+    found += [f"{package} {name}" for package, names in program_names().items() for name in names]
+    found += [str(each) for each in sorted(COMPANIONS.glob("*.py")) if each.stem != "__init__"]
+    for name in found:
         if name not in NO_NODES:
             yield Fuzzed(name, ARGUMENTS.get(name, ()))

@@ -8,8 +8,8 @@ import pytest
 
 from robolink.cli.main import main
 from robolink.exceptions import NotFoundError
-from robolink.workspace import counterparts, find_executable, find_node
-from robolink.workspace.counterparts import Counterpart, counterpart
+from robolink.workspace import find_executable, find_node, program
+from robolink.workspace.programs import PROGRAMS
 from tests.support.ros_tree import write_package
 
 
@@ -17,10 +17,10 @@ from tests.support.ros_tree import write_package
 def ours(monkeypatch: pytest.MonkeyPatch) -> None:
     """A package of the table with two executables, whose code is robolink's."""
     rows = {
-        "control_node": Counterpart("robolink.control.pid:PID", "A row of this test."),
-        "info": Counterpart("robolink.bag:about", "A row in a package's own file."),
+        "ros_control_demo.control_node": "robolink.control.pid:PID",
+        "ros_control_demo.info": "robolink.bag:about",
     }
-    monkeypatch.setitem(counterparts.COUNTERPARTS, "ros_control_demo", rows)
+    monkeypatch.setattr(PROGRAMS, "table", lambda: rows)
 
 
 @pytest.mark.usefixtures("ours")
@@ -30,7 +30,7 @@ def test_a_row_is_a_file_and_a_name_in_it() -> None:
     assert source.path.parts[-2:] == ("control", "pid.py")
     assert (source.name, source.attribute) == ("control_node", "PID")
     assert find_node("ros-control-demo control_node.py") == source
-    package = counterpart("ros_control_demo", "info")
+    package = program("ros_control_demo", "info")
     assert package is not None
     assert package.path is not None
     assert package.path.parts[-2:] == ("bag", "__init__.py")

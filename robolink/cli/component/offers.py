@@ -13,11 +13,10 @@ from robolink.companions.ament_index import (
 from robolink.workspace import (
     NodeLoadError,
     NodeSource,
-    counterpart,
-    counterparts_of,
     find_package,
     named_executables,
     own_process_needed,
+    sources_of,
 )
 
 RESOURCE = "rclcpp_components"
@@ -44,7 +43,7 @@ def offered(package: str = "") -> Iterator[tuple[str, list[str]]]:
 def _sources(package: str) -> list[NodeSource]:
     folder = find_package(package)
     own = [] if folder is None else named_executables(folder)
-    return [*own, *(found for each in counterparts_of(package) if (found := counterpart(package, each)) is not None)]
+    return [*own, *sources_of(package).values()]
 
 
 def _in_python(source: NodeSource) -> Iterator[str]:

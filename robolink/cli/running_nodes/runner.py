@@ -28,15 +28,12 @@ from robolink.system.plainfile import LONGEST_SOURCE, read_plain
 from robolink.text.suggestions import LackingNameError
 from robolink.text.tracebacks import formatted
 from robolink.workspace import (
-    COUNTERPARTS,
     VARIABLE,
     NodeLoadError,
     NodeSource,
     RosProgramError,
     built_in_workspace,
     canonical,
-    counterpart,
-    counterparts_of,
     executable_of,
     find_launch,
     find_node,
@@ -49,6 +46,9 @@ from robolink.workspace import (
     list_packages,
     load_node,
     named_executables,
+    program,
+    program_names,
+    programs_of,
     unmarked_package,
     user_workspace,
     workspace_of,
@@ -136,7 +136,7 @@ def found(command: NodeCommand, workspace: str | None) -> tuple[NodeSource, list
     try:
         return find_node(name, workspace=workspace), words
     except NotFoundError:
-        alone = counterpart(name, name)  # rviz2 and rqt are programs, and packages
+        alone = program(name, name)  # rviz2 and rqt are programs, and packages
         if alone is not None and folder is None:
             return alone, words
         asked = words[0] if command.before > 0 else ""
@@ -159,9 +159,9 @@ def _lacking(name: str, asked: str, folder: Path | None, workspace: str | None) 
     """
     if not canonical(name).isidentifier():
         return _other_kind(name, workspace)
-    if folder is None and not asked and not counterparts_of(name) and (advice := instead_of(name)):
+    if folder is None and not asked and not programs_of(name) and (advice := instead_of(name)):
         return RosProgramError(name, "", advice)
-    known = [*(each.name for each in (named_executables(folder) if folder is not None else ())), *counterparts_of(name)]
+    known = [*(each.name for each in (named_executables(folder) if folder is not None else ())), *programs_of(name)]
     if asked:
         error = lacking_executable(name, asked, folder) or (None if folder else _neither(name, workspace))
         return error or _other_kind(name, workspace)
@@ -199,7 +199,7 @@ def _neither(name: str, workspace: str | None) -> NotFoundError:
     """Return the error for the first of two words that is neither a node nor a package."""
     home = user_workspace(workspace)
     nodes = (each.name for each in list_nodes(workspace=workspace))
-    known = [*nodes, *list_packages(workspace=workspace), *COUNTERPARTS]
+    known = [*nodes, *list_packages(workspace=workspace), *program_names()]
     error = NotFoundError("node or package", name, known, "" if home is None else str(home))
     unmarked = unmarked_package(name, Path() if home is None else home)
     if unmarked is not None:

@@ -104,24 +104,24 @@ def package_names(incomplete: str) -> list[str]:
 def runnable_nodes(ctx: Context, incomplete: str) -> list[str]:
     """Return the nodes that `robolink run` knows by name, and the packages that have executables."""
     with contextlib.suppress(Exception):
-        from robolink.workspace import COUNTERPARTS, list_executables, list_nodes
+        from robolink.workspace import list_executables, list_nodes, program_names
 
         workspace = ctx.params.get("workspace") or None
         nodes = [each.name for each in list_nodes(workspace=workspace)]
-        return offered([*nodes, *list_executables(workspace=workspace), *COUNTERPARTS], incomplete)
+        return offered([*nodes, *list_executables(workspace=workspace), *program_names()], incomplete)
     return []
 
 
 def package_executables(ctx: Context, incomplete: str) -> list[str]:
     """Return the executables of the package on the command line; nothing after a node's name."""
     with contextlib.suppress(Exception):
-        from robolink.workspace import counterparts_of, find_package, named_executables
+        from robolink.workspace import find_package, named_executables, programs_of
 
         package, workspace = str(ctx.params.get("node") or ""), ctx.params.get("workspace") or None
         if not ctx.params.get("args"):
             folder = find_package(package, workspace=workspace)
             own = [] if folder is None else [each.name for each in named_executables(folder)]
-            return offered([*own, *counterparts_of(package)], incomplete)
+            return offered([*own, *programs_of(package)], incomplete)
     return []
 
 

@@ -41,9 +41,9 @@ def meant(word: str, commands: Sequence[str], verbs: Callable[[str], Iterable[st
 
 def _program(word: str) -> str:
     """Return the command for the node, launch file or program of this name, or what serves instead; else ''."""
-    from robolink.workspace import COUNTERPARTS, instead_of, list_launches, list_nodes
+    from robolink.workspace import instead_of, list_launches, list_nodes, program_names
 
-    if word in COUNTERPARTS or word in [each.name for each in list_nodes()]:
+    if word in program_names() or word in [each.name for each in list_nodes()]:
         return f" (did you mean 'run {word}'?)"
     if word in [each.stem for each in list_launches()]:
         return f" (did you mean 'launch {word}'?)"

@@ -14,9 +14,9 @@ from pathlib import Path
 from robolink.companions.ament_index.search_paths import get_search_paths
 from robolink.exceptions import MessageError, NotFoundError
 from robolink.interfaces import standard
-from robolink.workspace.counterparts import COUNTERPARTS, counterpart_folder
 from robolink.workspace.find import find_package, list_packages
 from robolink.workspace.installed import installed_packages
+from robolink.workspace.programs import program_folder, program_names
 from robolink.workspace.ros_programs import instead_of
 from robolink.workspace.share import share_directory
 
@@ -144,4 +144,4 @@ def _standard() -> dict[str, Path]:
 
 def _counterparts() -> dict[str, Path]:
     """Return the ROS packages that have counterparts here, each with the folder of these."""
-    return {package: folder for package in COUNTERPARTS if (folder := counterpart_folder(package)) is not None}
+    return {package: folder for package in program_names() if (folder := program_folder(package)) is not None}

@@ -12,11 +12,11 @@ import pytest
 from robolink.cli import view
 from robolink.cli.main import main
 from robolink.testing import System
-from robolink.workspace import COUNTERPARTS, find_executable, load_node
+from robolink.workspace import find_executable, load_node, program_names
 from tests.support.commands import Command
 
 LAYOUT = Path(view.__file__).parents[2] / "view/page/layout.js"
-PROGRAMS = sorted(name for name in COUNTERPARTS if name.startswith(("rqt", "rviz")))
+PROGRAMS = sorted(name for name in program_names() if name.startswith(("rqt", "rviz")))
 
 
 def test_the_panels_are_those_of_the_page() -> None:

@@ -10,7 +10,7 @@ from robolink.cli.main import main
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.launch.lookup import find
 from robolink.testing import System
-from robolink.workspace.counterparts import counterpart_folder
+from robolink.workspace.programs import program_folder
 
 MIMIC = """
 from launch import LaunchDescription
@@ -45,7 +45,7 @@ def test_one_turtle_mimics_another(system: System, tmp_path: Path) -> None:
 
 
 def test_two_turtlesims(system: System) -> None:
-    folder = counterpart_folder("turtlesim")
+    folder = program_folder("turtlesim")
     assert folder is not None
     system.launch(folder / "launch" / "multisim.launch.py")
     system.run(1.0)
