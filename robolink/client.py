@@ -162,7 +162,7 @@ class Client(ServiceEnd):
 
     def _only_servers(self, executor: Loop) -> list[Entity]:
         """Return the executor's own servers of this service if nobody else serves it and none of them may be free."""
-        served = (each for node in executor.get_nodes() for each in node._all_services_())
+        served = (each for node in executor.get_nodes() for each in node._entity_store_.all_services())
         local: list[Entity] = [each for each in served if each.service_name == self.service_name]
         is_free = any(each.callback_group.can_execute(each) for each in local)
         if not local or (is_free and not executor.parallel):

@@ -6,8 +6,8 @@ import _thread
 import contextlib
 import itertools
 import weakref
-from types import FunctionType
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from robolink.arguments.command_line import Arguments, parse_arguments
 from robolink.arguments.remapping import RemapKind, resolve_name
@@ -22,42 +22,50 @@ from robolink.exceptions import NotInitializedException
 from robolink.executors import Executor as Executor
 from robolink.expand_topic_name import expand_topic_name
 from robolink.graph.endpoint import Owner
+from robolink.graph.graph import Graph, NamesAndTypes, names_and_types
 from robolink.graph.type_mismatch import Disagreements
 from robolink.guard_condition import GuardCondition as GuardCondition
 from robolink.impl.rcutils_logger import RcutilsLogger
-from robolink.interfaces.rcl_interfaces.msg import Log, ParameterEvent
+from robolink.interfaces.rcl_interfaces.msg import ListParametersResult, Log, ParameterEvent, ParameterValue
 from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor as ParameterDescriptor
 from robolink.interfaces.rcl_interfaces.msg import SetParametersResult as SetParametersResult
 from robolink.logging import get_logger
 from robolink.node_parts import rosout
-from robolink.node_parts.creation import NodeCreation
-from robolink.node_parts.parameters import NodeParameters
-from robolink.parameter import Parameter
-from robolink.parameter_service import ParameterService
-from robolink.parameters.rules import WrittenParameter
-from robolink.publisher import Publisher
-from robolink.qos import (
-    QoSProfile,
-    as_profile,
-    qos_profile_parameter_events,
-    qos_profile_rosout_default,
+from robolink.node_parts.entities import EntityStore, destroy
+from robolink.node_parts.graph_queries import endpoints_of_topic, of_node
+from robolink.node_parts.names import overrides_of, own_name
+from robolink.node_parts.parameters import (
+    OnSetCallback,
+    Parameters,
+    ParameterStore,
+    PostSetCallback,
+    PreSetCallback,
 )
+from robolink.parameter import AllowableParameterValue, AllowableParameterValueT, Parameter
+from robolink.parameter_service import ParameterService
+from robolink.parameters.rules import check_names
+from robolink.publisher import Publisher
+from robolink.qos import QoSProfile, as_profile, qos_profile_parameter_events, qos_profile_rosout_default
 from robolink.qos import qos_profile_services_default as qos_profile_services_default
+from robolink.running.destroyable import Destroyable
 from robolink.running.entity import Entity
 from robolink.service import Service as Service
 from robolink.subscription import Subscription as Subscription
 from robolink.time_source import TimeSource
 from robolink.timer import Rate as Rate
 from robolink.timer import Timer as Timer
+from robolink.timer import period_ns
+from robolink.topic_endpoint_info import TopicEndpointInfo
 from robolink.type_description_service import TypeDescriptionService
 from robolink.type_support import MsgT as MsgT
+from robolink.type_support import check_is_valid_msg_type, check_is_valid_srv_type
 from robolink.utilities import get_default_context
-from robolink.validate_namespace import validate_namespace
-from robolink.validate_node_name import validate_node_name
-from robolink.wire import NodeToken
+from robolink.waitable import Waitable
+from robolink.wire import EndpointKind, NodeToken
 
 if TYPE_CHECKING:
     from robolink.qos_overriding_options import QoSOverridingOptions
+    from robolink.subscription_content_filter_options import ContentFilterOptions
 
 MsgType = TypeVar("MsgType")  # names that programs import from here
 SrvType = TypeVar("SrvType")
@@ -70,7 +78,17 @@ HIDDEN_NODE_PREFIX = "_"
 # What Node has beyond rclpy's names is spelled `_so_`, as `enum` does it: a subclass is free to use any other name.
 
 
-class Node(NodeParameters, NodeCreation):
+class _OfStore:
+    """Attribute of a node's parameter store, read through the node; a value that a subclass assigns hides it."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __get__(self, node: Node | None, owner: type[Node]) -> Any:
+        return self if node is None else getattr(node._parameter_store_, self._name)
+
+
+class Node(Destroyable):
     """Participant of a ROS system; subclass it, or use it as it is.
 
         class Talker(Node):
@@ -115,6 +133,13 @@ class Node(NodeParameters, NodeCreation):
             exist.
     """
 
+    PARAM_REL_TOL = 1e-6
+    """Tolerance of a float towards an end or a step of its range, relative to its size."""
+
+    # rclpy's private names for what the parts have, which programs read.
+    _parameters = _OfStore("values")
+    _descriptors = _OfStore("descriptors")
+
     def __init__(
         self,
         node_name: str,
@@ -134,21 +159,21 @@ class Node(NodeParameters, NodeCreation):
         self._context = get_default_context() if context is None else context
         if not self._context.ok():
             raise NotInitializedException("cannot create node", ended_by=self._context.ended_by)
-        self._arguments_ = self._read_arguments_(cli_args, use_global_arguments)
-        self._name_, self._namespace_ = self._resolve_own_name_(node_name, namespace)
+        base = self._context.arguments if use_global_arguments else Arguments()
+        self._arguments_ = base if cli_args is None else parse_arguments(cli_args).over(base)
+        self._name_, self._namespace_ = own_name(self._arguments_, node_name, namespace)
         self._init_own_()
-        self._init_parameters_(self._overrides_(parameter_overrides), allow_undeclared_parameters)
+        self._init_parameters_(parameter_overrides, allow_undeclared_parameters)
         self._announce_()
         self._context.track_node(self)
         try:
             if enable_rosout and self._arguments_.rosout_logs is not False:
                 self._publish_logs_(as_profile(rosout_qos_profile))
             self._context.given_parameters.expect(self, self._arguments_.parameter_overrides)
-            self._parameter_events_ = self.create_publisher(
-                ParameterEvent, "/parameter_events", qos_profile_parameter_events
-            )
+            events = self.create_publisher(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
+            self._parameter_store_.events = events
             if automatically_declare_parameters_from_overrides:
-                self._declare_from_overrides_()
+                self.declare_parameters("", [(name, each.type_) for name, each in self._parameter_overrides.items()])
             self._time_source = TimeSource(node=self)
             self._time_source.attach_clock(self._clock)
             self._serve_(start_parameter_services, enable_logger_service)
@@ -165,12 +190,33 @@ class Node(NodeParameters, NodeCreation):
         """True once it was spun though another executor has it, and that was warned of."""
         self._turns_: list[Entity] = []
         """Entities whose turn was still to come when the last executor removed this node, in order."""
-        self._rosout_: Publisher[Log] | None = None  # none of the user's: `publishers` does not list it
-        self._init_entities_()
+        self._rosout_: Publisher[Log] | None = None  # not one of the user's: `publishers` does not list it
+        self._entity_store_ = store = EntityStore(self)
+        self._publishers, self._subscriptions = store.publishers, store.subscriptions
+        self._clients, self._services = store.clients, store.services
+        self._timers, self._guards = store.timers, store.guards
         self._default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
         self._logger = get_logger(self.get_fully_qualified_name().strip("/").replace("/", "."))
         self._clock = ROSClock(time_base=self._context.time)
+
+    def _init_parameters_(self, given: list[Parameter[Any]] | None, allow_undeclared: bool) -> None:
+        full_name = self.get_fully_qualified_name()
+        overrides = overrides_of(self._arguments_, full_name, given or ())
+        self._parameter_store_ = store = ParameterStore(
+            full_name, self._clock, self._logger, overrides, allow_undeclared, self.PARAM_REL_TOL
+        )
+        self._parameter_overrides, self._declared_so_far_ = store.overrides, store.declared_so_far
+        self._pre_set_parameters_callbacks, self._on_set_parameters_callbacks = store.pre_set, store.on_set
+        self._post_set_parameters_callbacks = store.post_set
+
+    def _announce_(self) -> None:
+        context = self._context
+        enclave = context.transport.enclave or self._arguments_.enclave or "/"
+        identity = (context.next_id(), enclave, self._namespace_, self._name_)
+        self._owner_ = Owner(context, *identity, Disagreements(self._logger.name))
+        token = NodeToken(context.get_domain_id(), context.transport.session_id, *identity)
+        self._announced_ = context.graph.announce(token)
 
     def _publish_logs_(self, qos_profile: QoSProfile) -> None:
         self._rosout_ = Publisher(self._owner_, Log, "/rosout", qos_profile)
@@ -186,38 +232,6 @@ class Node(NodeParameters, NodeCreation):
         self._type_description_service = TypeDescriptionService(self)
 
     # Names
-
-    def _read_arguments_(self, cli_args: list[str] | None, use_global_arguments: bool) -> Arguments:
-        base = self._context.arguments if use_global_arguments else Arguments()
-        return base if cli_args is None else parse_arguments(cli_args).over(base)
-
-    def _resolve_own_name_(self, name: str, namespace: str | None) -> tuple[str, str]:
-        if not isinstance(namespace, (str, type(None))):
-            raise TypeError(f"namespace: expected a str or None, got {namespace!r}")
-        absolute = namespace if namespace and namespace.startswith("/") else f"/{namespace or ''}"
-        validate_node_name(name)
-        validate_namespace(absolute)
-        new_name = self._arguments_.node_name(name)
-        new_namespace = self._arguments_.namespace(absolute, new_name)
-        validate_node_name(new_name)
-        validate_namespace(new_namespace)
-        return new_name, new_namespace
-
-    def _announce_(self) -> None:
-        context = self._context
-        enclave = context.transport.enclave or self._arguments_.enclave or "/"
-        identity = (context.next_id(), enclave, self._namespace_, self._name_)
-        self._owner_ = Owner(context, *identity, Disagreements(self._logger.name))
-        token = NodeToken(context.get_domain_id(), context.transport.session_id, *identity)
-        self._announced_ = context.graph.announce(token)
-
-    def _overrides_(self, given: list[Parameter[Any]] | None) -> dict[str, Parameter[Any]]:
-        values = self._arguments_.overrides_for(self.get_fully_qualified_name())
-        overrides: dict[str, Parameter[Any]] = {
-            name: WrittenParameter(name, value=value) for name, value in values.items()
-        }
-        overrides.update({each.name: each for each in given or ()})
-        return overrides
 
     def get_name(self) -> str:
         """Return the node's name after remapping, without its namespace."""
@@ -306,9 +320,6 @@ class Node(NodeParameters, NodeCreation):
         """Return the logger with the node's full name, dots for slashes; its lines go to the console and /rosout."""
         return self._logger
 
-    def _on_parameter_event_(self, event: ParameterEvent) -> None:
-        self._parameter_events_.publish(event)
-
     def _overridden_(
         self, kind: type[Any], topic: str, qos: QoSProfile, options: QoSOverridingOptions | None
     ) -> QoSProfile:
@@ -318,6 +329,693 @@ class Node(NodeParameters, NodeCreation):
         from robolink.qos_overriding_options import overridden  # late: few nodes ask
 
         return overridden(kind, self, topic, qos, options)
+
+    # Parameters: declaring
+
+    @property
+    def _allow_undeclared_parameters(self) -> bool:
+        return self._parameter_store_.allows_undeclared
+
+    @_allow_undeclared_parameters.setter
+    def _allow_undeclared_parameters(self, is_allowed: bool) -> None:
+        self._parameter_store_.allows_undeclared = is_allowed
+
+    @overload
+    def declare_parameter(
+        self,
+        name: str,
+        value: Parameter.Type | ParameterValue | None = None,
+        descriptor: ParameterDescriptor | None = None,
+        ignore_override: bool = False,
+    ) -> Parameter[Any]: ...
+
+    @overload
+    def declare_parameter(
+        self,
+        name: str,
+        value: AllowableParameterValueT,
+        descriptor: ParameterDescriptor | None = None,
+        ignore_override: bool = False,
+    ) -> Parameter[AllowableParameterValueT]: ...
+
+    def declare_parameter(
+        self,
+        name: str,
+        value: AllowableParameterValue = None,
+        descriptor: ParameterDescriptor | None = None,
+        ignore_override: bool = False,
+    ) -> Parameter[Any]:
+        """Declare a parameter, and return it as it then is. The on-set and post-set callbacks run.
+
+        Args:
+            name: Name of the parameter; dots nest.
+            value: Default value: bool, int, float, str, or a list of one of them; a `Parameter.Type` fixes the type
+                without a value. The type of the parameter stays what it first is.
+            descriptor: Description, range, `read_only`, and `dynamic_typing`, which lets the type change. None
+                describes nothing.
+            ignore_override: True takes the default value, even if a command line, a file or the node's constructor
+                overrides it.
+
+        Raises:
+            ParameterAlreadyDeclaredException: if the parameter is declared.
+            InvalidParameterException: (a ValueError) if the name is empty.
+            InvalidParameterTypeException: (a TypeError) if the override is of another type.
+            InvalidParameterValueException: (a ValueError) if a range or an on-set callback refuses the value.
+            ValueError: if there is neither value nor type.
+            TypeError: if the value is of no parameter's type.
+        """
+        if value is None and descriptor is None:
+            return self._parameter_store_.declare([(name,)], "", ignore_override)[0]
+        described = ParameterDescriptor() if descriptor is None else descriptor
+        return self._parameter_store_.declare([(name, value, described)], "", ignore_override)[0]
+
+    def declare_parameters(
+        self,
+        namespace: str,
+        parameters: Sequence[tuple[str] | tuple[str, Any] | tuple[str, Any, ParameterDescriptor]],
+        ignore_override: bool = False,
+    ) -> Parameters:
+        """Declare several parameters, and return them as they then are.
+
+        All are checked before the first is declared. If a callback or a range then refuses one, those before it stay
+        declared. Raises what `declare_parameter` raises.
+
+        Args:
+            namespace: Prefix of all names, without its dot; '' is none.
+            parameters: Tuples (name, value) or (name, value, descriptor), as `declare_parameter` takes them.
+            ignore_override: True takes the default values, even if they are overridden.
+        """
+        return self._parameter_store_.declare(parameters, namespace, ignore_override)
+
+    def undeclare_parameter(self, name: str) -> None:
+        """Remove the parameter `name`. As in rclpy, no callback is called and no event is sent.
+
+        Raises:
+            ParameterNotDeclaredException: if it is not declared.
+            ParameterImmutableException: if it is read-only.
+        """
+        self._parameter_store_.undeclare(name)
+
+    # Parameters: reading
+
+    def has_parameter(self, name: str) -> bool:
+        """True if the parameter `name` is declared."""
+        return name in self._parameter_store_.values
+
+    def get_parameter(self, name: str) -> Parameter[Any]:
+        """Return the parameter `name` as it is now; one without value if undeclared ones are allowed.
+
+        Raises:
+            ParameterNotDeclaredException: if it is not declared, and undeclared ones are not allowed.
+            ParameterUninitializedException: if it has a static type and no value yet.
+        """
+        store = self._parameter_store_
+        return store.read(name, store.values)
+
+    def get_parameters(self, names: list[str]) -> Parameters:
+        """Return the parameters `names` as they are at one moment.
+
+        Raises what `get_parameter` raises, and TypeError if a name is not a str.
+        """
+        check_names(names)
+        store = self._parameter_store_
+        values = store.values
+        return [store.read(name, values) for name in names]
+
+    def get_parameter_or(self, name: str, alternative_value: Parameter[Any] | None = None) -> Parameter[Any]:
+        """Return a parameter, or an alternative if it is undeclared or has no value.
+
+        Args:
+            name: Name of the parameter.
+            alternative_value: Parameter to return instead; None is one without value.
+        """
+        parameter = self._parameter_store_.values.get(name)
+        if parameter is None or parameter.type_ is Parameter.Type.NOT_SET:
+            return Parameter(name) if alternative_value is None else alternative_value
+        return parameter
+
+    def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter[Any]]:
+        """Return the parameters below `prefix` by the rest of their names; '' returns all.
+
+        `foo.ping` is `ping` below the prefix `foo`.
+        """
+        return self._parameter_store_.below(prefix)
+
+    def get_parameter_type(self, name: str) -> Parameter.Type:
+        """Return the type of the value of the parameter `name`, NOT_SET while it has none.
+
+        Raises ParameterNotDeclaredException if it is not declared, and undeclared ones are not allowed.
+        """
+        return self._parameter_store_.type_of(name)
+
+    def get_parameter_types(self, names: list[str]) -> list[Parameter.Type]:
+        """Return the types of the parameters `names`. Raises what `get_parameter_type` raises, TypeError for no str."""
+        check_names(names)
+        return [self.get_parameter_type(name) for name in names]
+
+    def list_parameters(self, prefixes: list[str], depth: int) -> ListParametersResult:
+        """Return the names of parameters, and the prefixes of these names.
+
+        Args:
+            prefixes: Names of parameters, or what their names begin with (without the dot); none lists all.
+            depth: Largest number of dots below a prefix; 0 is any number.
+
+        Raises:
+            TypeError: if the arguments are of another type.
+            ValueError: if the depth is negative.
+        """
+        return self._parameter_store_.names(prefixes, depth)
+
+    def describe_parameter(self, name: str) -> ParameterDescriptor:
+        """Return the descriptor of the parameter `name`; an empty one if undeclared ones are allowed.
+
+        Raises ParameterNotDeclaredException if it is not declared, and undeclared ones are not allowed.
+        """
+        return self._parameter_store_.describe(name)
+
+    def describe_parameters(self, names: list[str]) -> list[ParameterDescriptor]:
+        """Return the descriptors of the parameters `names`. Raises what `describe_parameter` raises."""
+        return [self.describe_parameter(name) for name in names]
+
+    # Parameters: setting
+
+    def set_parameters(self, parameter_list: Parameters) -> list[SetParametersResult]:
+        """Set parameters one after another, and return a result for each: successful or not, and the reason.
+
+        Args:
+            parameter_list: Parameters to set; one of the type NOT_SET undeclares a parameter whose type is dynamic.
+
+        Raises:
+            ParameterNotDeclaredException: at the first that is undeclared, if that is not allowed: those before it
+                are set then, the rest is not.
+        """
+        return [self._parameter_store_.set_atomically([parameter]) for parameter in parameter_list]
+
+    def set_parameters_atomically(self, parameter_list: Parameters) -> SetParametersResult:
+        """Set all these parameters, or none, in one step with one event and one call of each callback.
+
+        Args:
+            parameter_list: Parameters to set; one of the type NOT_SET undeclares a parameter whose type is dynamic.
+
+        Returns:
+            A result: successful or not, and the reason.
+
+        Raises:
+            ParameterNotDeclaredException: if one is undeclared, and that is not allowed.
+            InvalidParameterException: (a ValueError) if a name is empty.
+        """
+        return self._parameter_store_.set_atomically(parameter_list)
+
+    def set_descriptor(
+        self, name: str, descriptor: ParameterDescriptor, alternative_value: ParameterValue | None = None
+    ) -> ParameterValue:
+        """Replace the descriptor of a parameter. As in rclpy, no callback runs and no event is sent.
+
+        Args:
+            name: Name of the parameter.
+            descriptor: New descriptor; the name in it does not count.
+            alternative_value: Value for the parameter if its own does not fit the descriptor; None is none.
+
+        Returns:
+            The value that the parameter then has.
+
+        Raises:
+            ParameterNotDeclaredException: if it is not declared, and undeclared ones are not allowed.
+            ParameterImmutableException: if it is read-only.
+            InvalidParameterValueException: (a ValueError) if neither value fits.
+        """
+        return self._parameter_store_.set_descriptor(name, descriptor, alternative_value)
+
+    def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
+        """Add a `callback` that returns the list of parameters to set in place of the given one, before all checks.
+
+        The latest added is called first; their lists are joined. Declaring does not call it.
+        """
+        self._parameter_store_.pre_set.insert(0, callback)
+
+    def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
+        """Add a `callback` that decides if parameters may be set or declared; the latest added is called first.
+
+        It gets the list of parameters and returns a SetParametersResult, which refuses them by `successful=False` with
+        the reason. Names that it does not know it should let pass: other parts of the node may know them.
+        """
+        self._parameter_store_.on_set.insert(0, callback)
+
+    def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
+        """Add a `callback` for parameters that have been set or declared; the latest added is called first."""
+        self._parameter_store_.post_set.insert(0, callback)
+
+    def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
+        """Remove a `callback`. Raises ValueError if it was not added."""
+        self._parameter_store_.pre_set.remove(callback)
+
+    def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
+        """Remove a `callback`. Raises ValueError if it was not added."""
+        self._parameter_store_.on_set.remove(callback)
+
+    def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
+        """Remove a `callback`. Raises ValueError if it was not added."""
+        self._parameter_store_.post_set.remove(callback)
+
+    # Entities: creating
+
+    def create_publisher(
+        self,
+        msg_type: type[MsgT],
+        topic: str,
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: PublisherEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        publisher_class: type[Publisher[MsgT]] = Publisher,
+    ) -> Publisher[MsgT]:
+        """Create a publisher of a topic.
+
+        Args:
+            msg_type: Message class of the topic, such as `std_msgs.msg.String`.
+            topic: Name of the topic, relative to the node's namespace unless it begins with a slash; remapped.
+            qos_profile: Quality of service; a number is the depth of a reliable, volatile KEEP_LAST profile.
+            callback_group: Group of the event callbacks; None is the node's default group.
+            event_callbacks: Callbacks for events, such as a subscription that appears; None only warns of
+                subscriptions with another type.
+            qos_overriding_options: Policies that parameters may change, `qos_overrides./topic.publisher.depth` for
+                example; None allows none.
+            publisher_class: Class to make, a Publisher or a subclass.
+
+        Raises:
+            InvalidTopicNameException: (a ValueError) if the name is against ROS 2's rules.
+            MessageError: (a ValueError) if `msg_type` is not a message class.
+            UnsupportedEventTypeError: (a RuntimeError) if there is a callback for an event that this network lacks.
+            InvalidQosOverridesError: (a RuntimeError) if a parameter makes the profile invalid.
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        name = self.resolve_topic_name(topic)
+        check_is_valid_msg_type(msg_type)
+        publisher = publisher_class(
+            self._owner_,
+            msg_type,
+            name,
+            self._overridden_(Publisher, name, as_profile(qos_profile), qos_overriding_options),
+            event_callbacks=event_callbacks,
+            callback_group=callback_group or self._default_callback_group,
+        )
+        publisher.topic = topic  # as written, as in rclpy; `topic_name` is the whole one
+        self._entity_store_.add_publisher(publisher)
+        return publisher
+
+    def create_subscription(
+        self,
+        msg_type: type[MsgT],
+        topic: str,
+        callback: Callable[..., Any],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: bool = False,
+        content_filter_options: ContentFilterOptions | None = None,
+    ) -> Subscription[MsgT]:
+        """Create a subscription of a topic.
+
+        Args:
+            msg_type: Message class of the topic.
+            topic: Name of the topic, relative to the node's namespace unless it begins with a slash; remapped.
+            callback: Function, or coroutine function, called with each message; if it takes two arguments, with the
+                message and its MessageInfo.
+            qos_profile: Quality of service; a number is the depth of a reliable, volatile KEEP_LAST profile. The
+                depth is how many messages wait for the callback before the oldest is dropped.
+            callback_group: Group of the callback and of the event callbacks; None is the node's default group.
+            event_callbacks: Callbacks for events, such as messages that were lost; None only warns of publishers
+                with another type.
+            qos_overriding_options: Policies that parameters may change; None allows none.
+            raw: True calls back with the serialized message (bytes) instead.
+            content_filter_options: Filter for messages. It has no effect here, as with rmw_zenoh: a warning says so,
+                and `is_cft_enabled` is False.
+
+        Raises:
+            InvalidTopicNameException: (a ValueError) if the name is against ROS 2's rules.
+            MessageError: (a ValueError) if `msg_type` is not a message class.
+            RuntimeError: if the callback takes neither one argument nor two.
+            UnsupportedEventTypeError: (a RuntimeError) if there is a callback for an event that this network lacks.
+            InvalidQosOverridesError: (a RuntimeError) if a parameter makes the profile invalid.
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        group = callback_group or self._default_callback_group
+        name = self.resolve_topic_name(topic)
+        check_is_valid_msg_type(msg_type)
+        qos = self._overridden_(Subscription, name, as_profile(qos_profile), qos_overriding_options)
+        made = Subscription(self._owner_, msg_type, name, callback, group, qos, raw, event_callbacks)
+        made.topic = topic
+        if content_filter_options is not None:
+            made.warn_of_filter(content_filter_options.filter_expression)
+        self._entity_store_.add_subscription(made)
+        return made
+
+    def create_service(
+        self,
+        srv_type: type[Any],
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Service:
+        """Create a service: serve requests under a name.
+
+        Args:
+            srv_type: Service class, such as `std_srvs.srv.SetBool`.
+            srv_name: Name of the service, relative to the node's namespace unless it begins with a slash; remapped.
+            callback: Function, or coroutine function, called as `callback(request, response)` with an empty response;
+                it returns the response to send.
+            qos_profile: Quality of service; by default reliable with a depth of 10.
+            callback_group: Group of the callback; None is the node's default group.
+
+        Raises:
+            InvalidServiceNameException: (a ValueError) if the name is against ROS 2's rules.
+            MessageError: (a ValueError) if `srv_type` is not a service class.
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        group = callback_group or self._default_callback_group
+        name = self.resolve_service_name(srv_name)
+        check_is_valid_srv_type(srv_type)
+        made = Service(self._owner_, srv_type, name, callback, group, qos_profile)
+        made.srv_name = srv_name
+        return self._entity_store_.add(made, self._entity_store_.services)
+
+    def create_client(
+        self,
+        srv_type: type[Any],
+        srv_name: str,
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Client:
+        """Create a client, which calls a service.
+
+        Args:
+            srv_type: Service class, such as `std_srvs.srv.SetBool`.
+            srv_name: Name of the service, relative to the node's namespace unless it begins with a slash; remapped.
+            qos_profile: Quality of service; by default reliable with a depth of 10.
+            callback_group: Group of the client; None is the node's default group. An answer is taken even while
+                another callback of the group runs, so that a callback may wait for it.
+
+        Raises:
+            InvalidServiceNameException: (a ValueError) if the name is against ROS 2's rules.
+            MessageError: (a ValueError) if `srv_type` is not a service class.
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        group = callback_group or self._default_callback_group
+        name = self.resolve_service_name(srv_name)
+        check_is_valid_srv_type(srv_type)
+        made = Client(self._owner_, srv_type, name, qos_profile, group)
+        made.srv_name = srv_name
+        return self._entity_store_.add(made, self._entity_store_.clients)
+
+    def create_timer(
+        self,
+        timer_period_sec: float,
+        callback: Callable[..., Any] | None,
+        callback_group: CallbackGroup | None = None,
+        clock: Clock | None = None,
+        autostart: bool = True,
+    ) -> Timer:
+        """Create a timer, which calls a function periodically.
+
+        Args:
+            timer_period_sec: Period in seconds, 0 or more; 0 calls as often as possible.
+            callback: Function, or coroutine function, without arguments, or with one that is annotated as TimerInfo.
+                None, as in rclpy, must be replaced (`timer.callback = ...`) before the first call is due.
+            callback_group: Group of the callback; None is the node's default group.
+            clock: Clock that the period is measured by; None is the node's clock.
+            autostart: False makes the timer cancelled; `timer.reset()` starts it.
+
+        Raises:
+            ValueError: if the period is negative, infinite or not a number.
+            TypeError: if the callback cannot be called.
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        group = callback_group or self._default_callback_group
+        period = period_ns(timer_period_sec)
+        timer = Timer(callback, group, period, clock or self._clock, context=self._context, autostart=autostart)
+        return self._entity_store_.add(timer, self._entity_store_.timers)
+
+    def create_guard_condition(
+        self, callback: Callable[[], Any], callback_group: CallbackGroup | None = None
+    ) -> GuardCondition:
+        """Create a guard condition, by which any thread has a callback run by the executor: `guard.trigger()`.
+
+        Args:
+            callback: Function, or coroutine function, without arguments.
+            callback_group: Group of the callback; None is the node's default group.
+
+        Raises:
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        group = callback_group or self._default_callback_group
+        return self._entity_store_.add(
+            GuardCondition(callback, group, context=self._context), self._entity_store_.guards
+        )
+
+    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
+        """Create a rate, whose `sleep` waits for the rest of each period.
+
+        Args:
+            frequency: Ticks per second (Hz), above 0.
+            clock: Clock that the period is measured by; None is the node's clock.
+
+        Raises:
+            ValueError: if the frequency is not above 0.
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        if frequency <= 0:
+            raise ValueError("frequency must be > 0")
+        timer = self.create_timer(1.0 / frequency, _until_its_rate, callback_group=self._rate_group, clock=clock)
+        return Rate(timer, context=self._context)
+
+    # Entities: listing and destroying
+
+    @property
+    def publishers(self) -> Iterator[Publisher[Any]]:
+        """Publishers of the node."""
+        yield from self._entity_store_.publishers
+
+    @property
+    def subscriptions(self) -> Iterator[Subscription[Any]]:
+        """Subscriptions of the node."""
+        yield from self._entity_store_.subscriptions
+
+    @property
+    def clients(self) -> Iterator[Client]:
+        """Clients of the node."""
+        yield from self._entity_store_.clients
+
+    @property
+    def services(self) -> Iterator[Service]:
+        """Services of the node."""
+        yield from self._entity_store_.services
+
+    @property
+    def timers(self) -> Iterator[Timer]:
+        """Timers of the node."""
+        yield from self._entity_store_.timers
+
+    @property
+    def guards(self) -> Iterator[GuardCondition]:
+        """Guard conditions of the node."""
+        yield from self._entity_store_.guards
+
+    @property
+    def waitables(self) -> Iterator[Waitable]:
+        """Waitables of the node, each of several entities: its actions."""
+        yield from self._entity_store_.waitables
+
+    def add_waitable(self, waitable: Waitable) -> None:
+        """Add a `waitable`: the node's executor runs its entities, and the node destroys it."""
+        self._entity_store_.add_waitable(waitable)
+
+    def remove_waitable(self, waitable: Waitable) -> None:
+        """Remove a `waitable`, without destroying it."""
+        self._entity_store_.remove_waitable(waitable)
+
+    def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
+        """Destroy a `publisher`; False if it is none of this node's."""
+        return destroy(publisher, self._entity_store_.publishers)
+
+    def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
+        """Destroy a `subscription`; False if it is none of this node's."""
+        return destroy(subscription, self._entity_store_.subscriptions)
+
+    def destroy_client(self, client: Client) -> bool:
+        """Destroy a `client`; False if it is none of this node's."""
+        return destroy(client, self._entity_store_.clients)
+
+    def destroy_service(self, service: Service) -> bool:
+        """Destroy a `service`; False if it is none of this node's."""
+        return destroy(service, self._entity_store_.services)
+
+    def destroy_timer(self, timer: Timer) -> bool:
+        """Destroy a `timer`; False if it is none of this node's."""
+        return destroy(timer, self._entity_store_.timers)
+
+    def destroy_guard_condition(self, guard: GuardCondition) -> bool:
+        """Destroy a guard condition, `guard`; False if it is none of this node's."""
+        return destroy(guard, self._entity_store_.guards)
+
+    def destroy_rate(self, rate: Rate) -> bool:
+        """Destroy a `rate`; False if it is none of this node's."""
+        found = self.destroy_timer(rate._timer)
+        rate.destroy()
+        return found
+
+    # The graph
+
+    @property
+    def _graph_(self) -> Graph:
+        """The graph as it is known now. Raises InvalidHandle once the node has been destroyed."""
+        self._check_("node")
+        return self._context.graph
+
+    def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
+        """Return all topics, each with its types such as `std_msgs/msg/String`.
+
+        `no_demangle` is rclpy's and changes nothing: names are not mangled on this wire.
+        """
+        return names_and_types(self._graph_.endpoints(EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION))
+
+    def get_service_names_and_types(self) -> NamesAndTypes:
+        """Return all services that are served or called, each with its types."""
+        return names_and_types(self._graph_.endpoints(EndpointKind.SERVICE, EndpointKind.CLIENT))
+
+    def get_node_names(self) -> list[str]:
+        """Return the names of all nodes, without namespaces."""
+        return [each.node_name for each in self._graph_.nodes()]
+
+    def get_fully_qualified_node_names(self) -> list[str]:
+        """Return the fully qualified names of all nodes."""
+        return [each.full_node_name for each in self._graph_.nodes()]
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        """Return name and namespace of each node."""
+        return [(each.node_name, each.namespace) for each in self._graph_.nodes()]
+
+    def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
+        """Return name, namespace and enclave of each node."""
+        return [(each.node_name, each.namespace, each.enclave) for each in self._graph_.nodes()]
+
+    def get_publisher_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> NamesAndTypes:
+        """Return the topics that a node publishes, each with its types.
+
+        Args:
+            node_name: Name of the node, without namespace.
+            node_namespace: Its namespace, '/' for the root.
+            no_demangle: rclpy's; changes nothing, since names are not mangled on this wire.
+
+        Raises:
+            NodeNameNonExistentError: (a RuntimeError) if there is no such node.
+        """
+        return of_node(self._graph_, node_name, node_namespace, EndpointKind.PUBLISHER)
+
+    def get_subscriber_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> NamesAndTypes:
+        """Return the topics that a node subscribes to, each with its types.
+
+        Args:
+            node_name: Name of the node, without namespace.
+            node_namespace: Its namespace, '/' for the root.
+            no_demangle: rclpy's; changes nothing, since names are not mangled on this wire.
+
+        Raises:
+            NodeNameNonExistentError: (a RuntimeError) if there is no such node.
+        """
+        return of_node(self._graph_, node_name, node_namespace, EndpointKind.SUBSCRIPTION)
+
+    def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """Return the services that a node serves, each with its types.
+
+        Args:
+            node_name: Name of the node, without namespace.
+            node_namespace: Its namespace, '/' for the root.
+
+        Raises:
+            NodeNameNonExistentError: (a RuntimeError) if there is no such node.
+        """
+        return of_node(self._graph_, node_name, node_namespace, EndpointKind.SERVICE)
+
+    def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """Return the services that a node calls, each with its types.
+
+        Args:
+            node_name: Name of the node, without namespace.
+            node_namespace: Its namespace, '/' for the root.
+
+        Raises:
+            NodeNameNonExistentError: (a RuntimeError) if there is no such node.
+        """
+        return of_node(self._graph_, node_name, node_namespace, EndpointKind.CLIENT)
+
+    def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
+        """Return all publishers of a topic, each with its node, type, hash, gid and profile.
+
+        Args:
+            topic_name: Name of the topic, relative to the node's namespace unless it begins with a slash; remapped.
+            no_mangle: True takes the name as it stands.
+
+        Raises:
+            InvalidTopicNameException: (a ValueError) if the name is against ROS 2's rules.
+        """
+        name = topic_name if no_mangle else self.resolve_topic_name(topic_name)
+        return endpoints_of_topic(self._graph_, name, EndpointKind.PUBLISHER)
+
+    def get_subscriptions_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
+        """Return all subscriptions of a topic, each with its node, type, hash, gid and profile.
+
+        Args:
+            topic_name: Name of the topic, relative to the node's namespace unless it begins with a slash; remapped.
+            no_mangle: True takes the name as it stands.
+
+        Raises:
+            InvalidTopicNameException: (a ValueError) if the name is against ROS 2's rules.
+        """
+        name = topic_name if no_mangle else self.resolve_topic_name(topic_name)
+        return endpoints_of_topic(self._graph_, name, EndpointKind.SUBSCRIPTION)
+
+    def count_publishers(self, topic_name: str) -> int:
+        """Return the number of publishers of the topic `topic_name`, of any type."""
+        return self._graph_.count(EndpointKind.PUBLISHER, self.resolve_topic_name(topic_name))
+
+    def count_subscribers(self, topic_name: str) -> int:
+        """Return the number of subscriptions of the topic `topic_name`, of any type."""
+        return self._graph_.count(EndpointKind.SUBSCRIPTION, self.resolve_topic_name(topic_name))
+
+    def count_services(self, service_name: str) -> int:
+        """Return the number of servers of the service `service_name`, of any type."""
+        return self._graph_.count(EndpointKind.SERVICE, self.resolve_service_name(service_name))
+
+    def count_clients(self, service_name: str) -> int:
+        """Return the number of clients of the service `service_name`, of any type."""
+        return self._graph_.count(EndpointKind.CLIENT, self.resolve_service_name(service_name))
+
+    def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
+        """Wait until a node is in the graph, or the context ends.
+
+        Args:
+            fully_qualified_node_name: Namespace and name of the node; a missing leading slash is added.
+            timeout: Longest wait in seconds; negative waits for ever, 0 does not wait.
+
+        Returns:
+            True if the node is there.
+        """
+        namespace, _, name = ("/" + fully_qualified_node_name.lstrip("/")).rpartition("/")
+        graph = self._graph_
+        limit = None if timeout < 0 else timeout
+        return self._context.wait_until(lambda: graph.has_node(name, namespace or "/"), limit)
+
+    # The end
 
     def destroy_node(self) -> None:
         """Destroy all that the node has, and leave the graph and the executor. Safe to call twice."""
@@ -329,7 +1027,7 @@ class Node(NodeParameters, NodeCreation):
         rosout.keep_to_itself(self._logger.name)
         if self._rosout_ is not None:
             self._rosout_.destroy()
-        self._destroy_entities_()
+        self._entity_store_.destroy()
         self._announced_.close()
         self._context.untrack_node(self)
 
@@ -361,13 +1059,5 @@ class Node(NodeParameters, NodeCreation):
         self.destroy_node()
 
 
-def _speak_as_node() -> None:
-    """Name the public methods of Node's parts as Node's: errors, help and debuggers know no NodeCreation."""
-    parts = [each for each in Node.__mro__ if each.__module__.startswith("robolink.node_parts.")]
-    for part in parts:
-        for name, method in vars(part).items():
-            if isinstance(method, FunctionType) and not name.startswith("_"):
-                method.__module__, method.__qualname__ = __name__, f"Node.{name}"
-
-
-_speak_as_node()
+def _until_its_rate() -> None:
+    """Do nothing when a rate's timer is due before there is the rate."""

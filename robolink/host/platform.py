@@ -34,7 +34,7 @@ class HostedPlatform(Platform):
 
     def adopt(self, node: Any, arguments: Arguments) -> None:
         """Set the parameters of a node that the host wishes, and the level of its log, if it is the root's."""
-        node._wished_parameters_ = self._program.wishes
+        node._parameter_store_.preferred = self._program.wishes
         logger = node.get_logger().name
         for name, level in arguments.log_levels:
             if not name and not get_logger_level(logger):

@@ -1,4 +1,4 @@
-"""Protocols of the node as its own services see it: whom they serve with, whose parameters they read and set."""
+"""Protocols of the node as its own parts and services see it."""
 
 from __future__ import annotations
 
@@ -8,20 +8,35 @@ from typing import TYPE_CHECKING, Any, Protocol
 if TYPE_CHECKING:
     from robolink.callback_groups import CallbackGroup
     from robolink.client import Client
+    from robolink.exceptions import InvalidHandle
+    from robolink.executors import Executor
     from robolink.impl.rcutils_logger import RcutilsLogger
     from robolink.interfaces.rcl_interfaces.msg import (
         ListParametersResult,
         ParameterDescriptor,
         SetParametersResult,
     )
+    from robolink.node_parts.parameters import OnSetCallback
     from robolink.parameter import Parameter
-    from robolink.parameters.callbacks import OnSetCallback
     from robolink.publisher import Publisher
     from robolink.qos import QoSProfile
-    from robolink.running.ports import ContextLike
+    from robolink.running.ports import ContextLike, NodeLike
     from robolink.service import Service
     from robolink.subscription import Subscription
     from robolink.waitable import Waitable
+
+
+class OwningNode(NodeLike, Protocol):
+    """Node as seen by the store of its entities."""
+
+    _destroyed: bool
+
+    @property
+    def _attached_to_(self) -> Executor | None:
+        """The executor that the node's entities are attached to."""
+
+    def _gone_(self, name: str) -> InvalidHandle:
+        """Return the error for whoever uses it after its end."""
 
 
 class ServingNode(Protocol):

@@ -102,8 +102,9 @@ class SpunNode(NodeLike, OverriddenNode, Protocol):
     def clients(self) -> Iterable[Any]:
         """Its clients of services."""
 
-    def _entities_(self) -> list[Any]:
-        """Return all that an executor runs."""
+    @property
+    def _entity_store_(self) -> Any:
+        """Store of its entities: `entities()` returns all that an executor runs."""
 
     def _belong_to_(self, executor: Any) -> None:
         """Note which executor has it from now on."""

@@ -45,7 +45,7 @@ class SpunNodes:
             self.added.append(node)
             node._belong_to_(executor)
             turns, node._turns_ = node._turns_, []
-            for entity in node._entities_():
+            for entity in node._entity_store_.entities():
                 entity.attach(executor, entity in turns)
             self._queue.turns.extend(turns)
         return True
@@ -71,7 +71,7 @@ class SpunNodes:
         return self._queue.withdraw(set(entities))
 
     def _let_go(self, node: SpunNode) -> None:
-        node._turns_ = self._detach(node._entities_())
+        node._turns_ = self._detach(node._entity_store_.entities())
         node._is_parked_ = False
         node._belong_to_(None)
 
@@ -98,7 +98,7 @@ class SpunNodes:
                 self.evict()
             self.added.remove(node)
             if self._members is None:
-                self._members = weakref.WeakSet(node._entities_())
+                self._members = weakref.WeakSet(node._entity_store_.entities())
             self.parked = self._last
             node._is_parked_ = True
         return True

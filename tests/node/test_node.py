@@ -166,13 +166,40 @@ def test_it_knows_what_it_has(node: Node) -> None:
     assert service in node.services
     assert [*node.subscriptions, *node.clients] == [subscription, client]
     assert ([*node.timers], [*node.guards]) == ([timer], [guard])
-    assert set(node._entities_()) == {*node.services, subscription, client, service, timer, guard}
+    assert set(node._entity_store_.entities()) == {*node.services, subscription, client, service, timer, guard}
     assert node.default_callback_group.has_entity(timer)
     assert node.destroy_client(client)
     assert node.destroy_service(service)
     assert node.destroy_guard_condition(guard)
     assert node.destroy_timer(timer)
-    assert node._entities_() == [subscription, *node.services]
+    assert node._entity_store_.entities() == [subscription, *node.services]
+
+
+def test_each_public_method_is_defined_by_node_itself() -> None:
+    names = [name for name in dir(Node) if not name.startswith("_") and callable(getattr(Node, name))]
+    assert len(names) > 60
+    found = {(each.__module__, each.__qualname__) for each in (getattr(Node, name) for name in names)}
+    assert found == {("robolink.node", f"Node.{name}") for name in names}
+
+
+def test_a_subclass_that_uses_rclpys_private_names_breaks_nothing(context: Context) -> None:
+    class Own(Node):
+        def __init__(self) -> None:
+            self._parameters: Any = {"mine": 1}
+            super().__init__("own", context=context)
+            self._publishers = self._timers = self._subscriptions = {}  # type: ignore[assignment]
+
+    with Own() as node:
+        publisher, timer = node.create_publisher(Int32, "topic", 1), node.create_timer(1.0, print)
+        assert node.declare_parameter("speed", 2).value == node.get_parameter("speed").value == 2
+        assert (publisher in node.publishers, [*node.timers], node._parameters) == (True, [timer], {"mine": 1})
+        assert node.destroy_timer(timer)
+    with Node("other", context=context) as other:
+        other.declare_parameter("speed", 2)
+        assert other._parameters["speed"].value == 2
+        assert other._descriptors["speed"].name == "speed"
+        other._allow_undeclared_parameters = True
+        assert other.get_parameter("more").value is None
 
 
 def test_nothing_is_left_in_a_node_of_what_it_has_destroyed(node: Node) -> None:

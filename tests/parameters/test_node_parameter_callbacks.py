@@ -22,9 +22,9 @@ from tests.support.parameter_nodes import Make, made, makes
 OK = SetParametersResult(successful=True)
 
 
-@pytest.fixture(params=["alone", "node"])
-def make(request: pytest.FixtureRequest) -> Iterator[Make]:
-    with makes(request.param) as make:
+@pytest.fixture
+def make() -> Iterator[Make]:
+    with makes() as make:
         yield make
 
 

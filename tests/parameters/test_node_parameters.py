@@ -35,9 +35,9 @@ from tests.support.spins import spin_until
 Type = Parameter.Type
 
 
-@pytest.fixture(params=["alone", "node"])
-def make(request: pytest.FixtureRequest) -> Iterator[Make]:
-    with makes(request.param) as make:
+@pytest.fixture
+def make() -> Iterator[Make]:
+    with makes() as make:
         yield make
 
 

@@ -28,9 +28,9 @@ from tests.support.parameter_nodes import Make, made, makes
 Type = Parameter.Type
 
 
-@pytest.fixture(params=["alone", "node"])
-def make(request: pytest.FixtureRequest) -> Iterator[Make]:
-    with makes(request.param) as make:
+@pytest.fixture
+def make() -> Iterator[Make]:
+    with makes() as make:
         yield make
 
 

@@ -8,19 +8,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robolink import Node
 from robolink.interfaces.rcl_interfaces.msg import (
     FloatingPointRange,
     IntegerRange,
     ParameterDescriptor,
 )
-from robolink.node_parts.parameters import NodeParameters
 from robolink.parameters.rules import is_listed, refusal
 from tests.support.parameter_nodes import made
 
 
 def _refused(value: Any, **descriptor: Any) -> str:
     described = ParameterDescriptor(dynamic_typing=True, **descriptor)
-    return refusal(made("x", value), described, is_declared=True, rel_tol=NodeParameters.PARAM_REL_TOL)
+    return refusal(made("x", value), described, is_declared=True, rel_tol=Node.PARAM_REL_TOL)
 
 
 @given(st.integers(-6, 6), st.integers(-6, 6), st.integers(0, 4), st.integers(-8, 8))

@@ -76,7 +76,7 @@ def test_a_node_that_has_been_destroyed_makes_nothing(context: Context, make: Ca
     with pytest.raises(InvalidHandle, match="destroyed"):
         make(node)
     assert (watcher.get_topic_names_and_types(), watcher.get_service_names_and_types()) == before
-    assert node._entities_() == []
+    assert node._entity_store_.entities() == []
 
 
 @pytest.mark.parametrize(

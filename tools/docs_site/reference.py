@@ -33,8 +33,6 @@ API = (
 """Modules whose public classes and functions are described."""
 
 PARTS = (
-    "robolink.node_parts.",
-    "robolink.parameters.callbacks",
     "robolink.testing.system_",
     "robolink.executors.executor",
 )

@@ -83,7 +83,7 @@ class Watch:
         self._nameless: dict[str, bytes] = {}
         for topic, static in zip(self.topics, (False, True), strict=True):
             heard = _Heard(node._owner_, TFMessage, topic, self._taker(static), ReentrantCallbackGroup(), QOS[static])
-            node._add_subscription_(heard)
+            node._entity_store_.add_subscription(heard)
         self._executor = SingleThreadedExecutor(context=node.context)
         self._executor.add_node(node)
 

@@ -1,0 +1,43 @@
+"""Queries of the graph that a node answers: the names and types of another node, and the endpoints of a topic."""
+
+from __future__ import annotations
+
+from robolink.exceptions import NodeNameNonExistentError, nearest
+from robolink.graph.graph import Graph, NamesAndTypes, names_and_types
+from robolink.qos import resolved
+from robolink.text.names import join
+from robolink.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
+from robolink.type_hash import TypeHash
+from robolink.wire import EndpointKind
+
+
+def of_node(graph: Graph, name: str, namespace: str, kind: EndpointKind) -> NamesAndTypes:
+    """Return the names and types of a node's endpoints. Raises NodeNameNonExistentError if there is no such node."""
+    namespace = namespace or "/"
+    if not graph.has_node(name, namespace):
+        full = join(namespace, name)
+        known = [each.full_node_name for each in graph.nodes()]
+        raise NodeNameNonExistentError(f"no node named '{full}'{nearest(full, known)}")
+    return names_and_types(graph.of_node(name, namespace, kind))
+
+
+def endpoints_of_topic(graph: Graph, topic: str, kind: EndpointKind) -> list[TopicEndpointInfo]:
+    """Return the publishers or the subscriptions of a topic, given by its full name."""
+    return [
+        TopicEndpointInfo(
+            node_name=each.node_name,
+            node_namespace=each.namespace,
+            topic_type=each.type_name,
+            topic_type_hash=TypeHash.from_text(each.type_hash),
+            endpoint_type=_ENDS[kind],
+            endpoint_gid=list(gid),
+            qos_profile=resolved(each.qos),  # a copy, for the caller to change
+        )
+        for gid, each in graph.gids(kind, topic)
+    ]
+
+
+_ENDS = {
+    EndpointKind.PUBLISHER: TopicEndpointTypeEnum.PUBLISHER,
+    EndpointKind.SUBSCRIPTION: TopicEndpointTypeEnum.SUBSCRIPTION,
+}
