@@ -13,9 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.cli.launching.hashing import begin_steadily
-from robolink.cli.shared.interrupts import not_lost
-from robolink.cli.shared.other_names import OTHER_NAMES
 from robolink.cli.shared.output import complain
+from robolink.cli.shared.process import OTHER_NAMES, not_lost
 from robolink.documents.foreign import told_in_a_line
 from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.system import exit_code

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from robolink.cli.shared.layout import shown, typed
 from robolink.cli.shared.output import say
-from robolink.cli.shared.typed_paths import shown, typed
 
 if TYPE_CHECKING:
     from robolink.scaffold import Made

@@ -29,7 +29,7 @@ def list_nodes(
     as_json: Annotated[bool, typer.Option("--json", help="A JSON array.")] = False,
 ) -> None:
     """List the nodes by their full names."""
-    from robolink.cli.shared.announced import nodes
+    from robolink.cli.shared.graph import nodes
     from robolink.cli.shared.output import say, say_json
     from robolink.cli.shared.session import looking
 
@@ -55,7 +55,7 @@ def info(
     as_json: Annotated[bool, typer.Option("--json", help="A JSON object.")] = False,
 ) -> None:
     """Show what a node publishes, subscribes to, serves and calls."""
-    from robolink.cli.shared.announced import absolute, sections_of, tokens
+    from robolink.cli.shared.graph import absolute, sections_of, tokens
     from robolink.cli.shared.output import say, say_json, tell
     from robolink.cli.shared.session import looking
 
@@ -83,7 +83,7 @@ def graph(
     ] = False,
 ) -> None:
     """Draw the nodes that run, and the topics, services and actions between them, as text."""
-    from robolink.cli.shared.announced import is_hidden, tokens
+    from robolink.cli.shared.graph import is_hidden, tokens
     from robolink.cli.shared.output import say
     from robolink.cli.shared.session import looking
     from robolink.launch.looking.graph import as_text, graph_of_uses

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robolink.cli.shared import complete
-from robolink.cli.shared.listed_options import ListedOptions
+from robolink.cli.shared.noun import ListedOptions
 from robolink.cli.shared.options import choice
 from robolink.cli.shared.output import say, tell
 from robolink.exceptions import nearest

@@ -12,8 +12,7 @@ import typer
 import typer.core
 import typer.main
 
-from robolink.cli.shared.added import added_command, added_help, added_names
-from robolink.cli.shared.noun import Noun
+from robolink.cli.shared.noun import Noun, added_command, added_help, added_names, meant
 from robolink.cli.shared.output import say
 from robolink.system.terminal import wants_colour
 
@@ -125,8 +124,6 @@ class Root(typer.core.TyperGroup):
         if (args[0], verb) in VERBS_OF_ROS2:
             ctx.fail(f"ros2's '{args[0]} {verb}' is not here: {VERBS_OF_ROS2[args[0], verb]}")
         if args[0] not in COMMANDS and args[0] not in _added():
-            from robolink.cli.shared.unknown import meant
-
             shown = self.list_commands(ctx)
             ctx.fail(f"no command named '{args[0]}'{meant(args[0], shown, lambda noun: self._verbs(ctx, noun))}")
         return super().resolve_command(ctx, args)

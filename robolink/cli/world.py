@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robolink.cli.shared import complete
+from robolink.cli.shared.layout import shown
 from robolink.cli.shared.output import say, tell
-from robolink.cli.shared.typed_paths import shown
 from robolink.system.terminal import fit
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def draw_world(
     workspace: Workspace = "",
 ) -> None:
     """Draw a world as it begins, into a picture (needs matplotlib: pip install matplotlib)."""
-    from robolink.cli.shared.pictures import check_picture
+    from robolink.cli.shared.picture import check_picture
     from robolink.documents.foreign import warnings_to
     from robolink.sim.drawing import save_world
     from robolink.sim.worldfile import load_world

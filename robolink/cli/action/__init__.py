@@ -31,7 +31,7 @@ def _noun() -> None:
 @app.command("list")
 def list_actions(show_types: ShowTypes = False, count: Count = False, as_json: AsJson = False) -> None:
     """List the actions that are served or that have a client."""
-    from robolink.cli.shared.names import show_names
+    from robolink.cli.shared.graph import show_names
     from robolink.cli.shared.session import looking
 
     with looking() as context:
@@ -42,8 +42,7 @@ def list_actions(show_types: ShowTypes = False, count: Count = False, as_json: A
 @app.command("type")
 def show_type(action: Action, as_json: AsJson = False) -> None:
     """Show the type of an action."""
-    from robolink.cli.shared.announced import absolute
-    from robolink.cli.shared.names import show_types
+    from robolink.cli.shared.graph import absolute, show_types
     from robolink.cli.shared.session import looking
     from robolink.exceptions import NotFoundError
     from robolink.system.terminal import shown
@@ -70,7 +69,7 @@ def find(
     as_json: AsJson = False,
 ) -> None:
     """List the actions of a type."""
-    from robolink.cli.shared.names import show_of_type
+    from robolink.cli.shared.graph import show_of_type
     from robolink.cli.shared.session import looking
 
     with looking() as context:
@@ -116,7 +115,7 @@ def send_goal(
 ) -> int:
     """Send a goal and show what comes of it. Ctrl-C cancels the goal. Exits with 1 unless it succeeds."""
     from robolink.cli.action import goal
-    from robolink.cli.shared.requests import is_type, read_stdin
+    from robolink.cli.shared.messages import is_type, read_stdin
 
     if values is None and not is_type(type_):  # ACTION VALUES: the type was left out
         type_, values = "", type_
@@ -131,7 +130,7 @@ def send_goal(
 def _types(context: Context) -> dict[str, list[str]]:
     """Return the types of every action, by name, sorted."""
     from robolink.action.graph import actions
-    from robolink.cli.shared.announced import endpoints
+    from robolink.cli.shared.graph import endpoints
     from robolink.graph.graph import names_and_types
     from robolink.wire import EndpointKind
 

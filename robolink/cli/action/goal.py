@@ -12,10 +12,10 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.action.graph import FEEDBACK, GET_RESULT, GOAL_TYPE, SEND_GOAL, part_name
-from robolink.cli.shared import show
-from robolink.cli.shared.other_domains import domains_with, hint
+from robolink.cli.shared import messages
+from robolink.cli.shared.graph import domains_with, hint
+from robolink.cli.shared.messages import GivenRequest, message_of
 from robolink.cli.shared.output import say, tell
-from robolink.cli.shared.requests import GivenRequest, message_of
 from robolink.cli.shared.session import node_of
 from robolink.context import Context
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
@@ -48,7 +48,7 @@ REASONS = {
 }
 """Meaning of the return codes of action_msgs/srv/CancelGoal."""
 
-WHOLE = show.Style(longest=None)
+WHOLE = messages.Style(longest=None)
 
 
 class GoalError(RobolinkError, RuntimeError):
@@ -69,7 +69,7 @@ class Manner(NamedTuple):
         if not self.json:
             say(text)
         elif plain:
-            say(show.as_json({name: show.plain(value) for name, value in plain.items()}))
+            say(messages.as_json({name: messages.plain(value) for name, value in plain.items()}))
 
 
 def run(action: str, type_: str, values: str, manner: Manner) -> int:
@@ -114,7 +114,7 @@ def _interruptible() -> Iterator[Context]:
 
 def _wait_for_type(context: Context, given: GivenRequest, manner: Manner, deadline: float) -> type[Action]:
     """Wait until the action is served, with the type that is named, if one is; return its class."""
-    from robolink.cli.shared.types import action_type
+    from robolink.cli.shared.messages import action_type
 
     if not _served(context, given):
         _check_early(given)
@@ -178,7 +178,7 @@ class _Sending:
         from robolink.interfaces.unique_identifier_msgs.msg import UUID
 
         goal_id = UUID(uuid=list(uuid.uuid4().bytes))
-        self._manner.say(f"Sending goal:\n     {show.as_yaml(goal, WHOLE)}\n")
+        self._manner.say(f"Sending goal:\n     {messages.as_yaml(goal, WHOLE)}\n")
         on_feedback = self._show_feedback if self._manner.feedback else None
         sent = self._client.send_goal_async(goal, on_feedback, goal_id)
         try:
@@ -204,7 +204,7 @@ class _Sending:
         self._spin(future)
         response: Any = future.result()
         status = NAMES.get(response.status, str(response.status))
-        self._manner.say(f"Result:\n    {show.as_yaml(response.result, WHOLE)}\n")
+        self._manner.say(f"Result:\n    {messages.as_yaml(response.result, WHOLE)}\n")
         self._manner.say(f"Goal finished with status: {status}", status=status, result=response.result)
         return int(response.status != GoalStatus.STATUS_SUCCEEDED)
 
@@ -213,7 +213,7 @@ class _Sending:
             return
         feedback = message.feedback
         try:
-            self._manner.say(f"Feedback:\n    {show.as_yaml(feedback, WHOLE)}\n", feedback=feedback)
+            self._manner.say(f"Feedback:\n    {messages.as_yaml(feedback, WHOLE)}\n", feedback=feedback)
         except OSError as error:  # raised where it is waited for: a callback that raises is logged
             self._unheard = error
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robolink.cli.shared.announced import absolute, endpoints, sections_of
+from robolink.cli.shared.graph import absolute, endpoints, sections_of
 from robolink.cli.shared.output import say, say_json
 from robolink.cli.shared.session import looking
 from robolink.exceptions import NotFoundError

@@ -11,7 +11,7 @@ from robolink.cli.bag.convert import convert_bags
 from robolink.cli.bag.options import KnownStorage as Storage
 from robolink.cli.bag.play import PlayCommand, play
 from robolink.cli.bag.record import record
-from robolink.cli.shared.listed_options import ListedOptions
+from robolink.cli.shared.noun import ListedOptions
 from robolink.cli.shared.options import choice
 from robolink.cli.shared.output import say, say_json, tell
 

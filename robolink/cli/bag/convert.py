@@ -89,7 +89,7 @@ def _convert(paths: Sequence[str], options: Path | None, wished: Output, span: t
     from robolink.bag.converting import convert
     from robolink.bag.output_options import read_outputs
     from robolink.bag.reader import open_bag
-    from robolink.cli.shared.progress import Progress
+    from robolink.cli.shared.terminal import Progress
 
     outputs = read_outputs(options) if options is not None else []
     with contextlib.ExitStack() as stack:

@@ -12,7 +12,7 @@ import typer
 
 from robolink.cli.bag import options as shared
 from robolink.cli.bag import play_options as opt
-from robolink.cli.shared.listed_options import ListedOptions
+from robolink.cli.shared.noun import ListedOptions
 from robolink.cli.shared.options import Enclave
 
 if TYPE_CHECKING:

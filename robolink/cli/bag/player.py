@@ -10,9 +10,9 @@ from robolink.bag.background_spin import BackgroundSpin
 from robolink.bag.playing import PlaySettings
 from robolink.bag.playing.served import ServedPlayer
 from robolink.cli.bag.progress_line import ProgressLine
-from robolink.cli.shared.keys import keys
 from robolink.cli.shared.output import tell
 from robolink.cli.shared.session import opened
+from robolink.cli.shared.terminal import keys
 from robolink.exceptions import ExternalShutdownException
 from robolink.logging import LoggingSeverity
 from robolink.node import Node

@@ -13,9 +13,9 @@ from robolink.bag.recording.served import ServedRecording
 from robolink.bag.selection import Selection
 from robolink.cli.bag.progress_line import ProgressLine
 from robolink.cli.bag.recording_lines import as_data, progress, summary
-from robolink.cli.shared.keys import keys
 from robolink.cli.shared.output import complain, say, say_json
 from robolink.cli.shared.session import opened
+from robolink.cli.shared.terminal import keys
 from robolink.exceptions import ExternalShutdownException
 from robolink.logging import LoggingSeverity
 from robolink.node import Node

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from robolink.arguments.parameter_file import parse_parameter_value
-from robolink.cli.shared.announced import absolute
-from robolink.cli.shared.calls import call_all
+from robolink.cli.shared.graph import absolute
 from robolink.cli.shared.output import tell
-from robolink.cli.shared.session import looking
+from robolink.cli.shared.session import call_all, looking
 from robolink.context import Context
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.interfaces.composition_interfaces.srv import ListNodes, LoadNode, UnloadNode

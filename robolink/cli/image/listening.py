@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from robolink.cli.shared.matching_qos import matching_qos
+from robolink.cli.shared.graph import matching_qos
+from robolink.cli.shared.messages import message_type
 from robolink.cli.shared.output import tell
 from robolink.cli.shared.session import node_of, opened
-from robolink.cli.shared.types import message_type
 from robolink.context import Context
 from robolink.exceptions import RobolinkError, nearest
 from robolink.executors import SingleThreadedExecutor

@@ -101,8 +101,8 @@ def show_interface(
 ) -> None:
     """Show what a type is made of."""
     from robolink.cli.interface.show import as_data, lines, type_named
+    from robolink.cli.shared.messages import as_json as json_text
     from robolink.cli.shared.output import say
-    from robolink.cli.shared.show import as_json as json_text
 
     if all_comments and no_comments:
         raise typer.BadParameter("--all-comments and --no-comments exclude each other")

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli.shared.show import Style, as_yaml, plain
+from robolink.cli.shared.messages import Style, as_yaml, plain
 from robolink.exceptions import MessageError, NotFoundError, TransportError
 from robolink.interfaces import KINDS, find, find_announced, is_named, names
 from robolink.message import Message, to_builtins, type_hash

@@ -14,7 +14,7 @@ from robolink.cli.launching.schemas import show_faults_schema
 from robolink.cli.shared import complete
 from robolink.cli.shared.options import seconds
 from robolink.cli.shared.output import say, tell
-from robolink.cli.shared.progress import Progress
+from robolink.cli.shared.terminal import Progress
 from robolink.constants import MOST_SEED
 
 if TYPE_CHECKING:

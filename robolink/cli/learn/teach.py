@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from robolink.cli.learn.work import say_all
+from robolink.cli.shared.layout import shown, typed
 from robolink.cli.shared.output import say
-from robolink.cli.shared.typed_paths import shown, typed
 from robolink.grading.languages import Language
 from robolink.learn.exercise import SETTINGS, read_course
 from robolink.learn.isolated import check_apart

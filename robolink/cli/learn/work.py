@@ -7,8 +7,8 @@ import time
 from collections.abc import Iterable
 from pathlib import Path
 
+from robolink.cli.shared.layout import typed
 from robolink.cli.shared.output import say
-from robolink.cli.shared.typed_paths import typed
 from robolink.exceptions import RobolinkError
 from robolink.grading.languages import Language, default_language
 from robolink.learn.exercise import Exercise, read_course

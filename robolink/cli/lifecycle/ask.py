@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli.shared.announced import absolute, is_hidden
-from robolink.cli.shared.calls import call_all
-from robolink.cli.shared.other_domains import no_such_node
+from robolink.cli.shared.graph import absolute, is_hidden, no_such_node
+from robolink.cli.shared.session import call_all
 from robolink.exceptions import RobolinkError
 from robolink.interfaces.lifecycle_msgs.srv import ChangeState, GetAvailableTransitions, GetState
 from robolink.system.terminal import shown

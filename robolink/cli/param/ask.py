@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli.shared.announced import absolute
-from robolink.cli.shared.other_domains import no_such_node
+from robolink.cli.shared.graph import absolute, no_such_node
 from robolink.cli.shared.session import looking, node_of
 from robolink.exceptions import ExternalShutdownException, NotFoundError, RobolinkError
 from robolink.interfaces.rcl_interfaces import srv

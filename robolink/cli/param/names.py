@@ -23,7 +23,7 @@ def of_node(ctx: Any, incomplete: str) -> list[str]:
 
 def _ask(node: str, names: queue.SimpleQueue[list[str]]) -> None:
     from robolink.cli.param.ask import ParameterClient, serves
-    from robolink.cli.shared.announced import absolute
+    from robolink.cli.shared.graph import absolute
     from robolink.cli.shared.session import node_of
     from robolink.context import Context
 

@@ -10,8 +10,8 @@ import typer
 
 from robolink.cli.param.ask import ParameterClient, asking, serves
 from robolink.cli.param.values import Type, as_file, in_json, label, plain, type_name
-from robolink.cli.shared import show
-from robolink.cli.shared.announced import is_hidden
+from robolink.cli.shared import messages
+from robolink.cli.shared.graph import is_hidden
 from robolink.cli.shared.output import say, tell
 from robolink.cli.shared.session import looking, node_of
 from robolink.exceptions import RobolinkError
@@ -51,7 +51,7 @@ def show_list(node: str, wanted: Wanted, *, as_json: bool) -> None:
     else:
         found = _of_all(wanted)
     if as_json:
-        say(show.as_json({name: each if wanted.types else list(each) for name, each in found.items()}))
+        say(messages.as_json({name: each if wanted.types else list(each) for name, each in found.items()}))
         return
     for name, parameters in found.items():
         if not node and parameters:
@@ -93,7 +93,7 @@ def show_value(node: str, parameter: str, timeout: float, *, hide_type: bool, as
     with asking(node, timeout) as client:
         value = client.values([parameter])[0]
     if as_json:
-        say(show.as_json({"name": parameter, "type": type_name(value.type), "value": plain(value)}))
+        say(messages.as_json({"name": parameter, "type": type_name(value.type), "value": plain(value)}))
     elif value.type == Type.NOT_SET:
         say("Parameter not set.")
     else:
@@ -106,7 +106,7 @@ def show_descriptors(node: str, parameters: Sequence[str], timeout: float, *, as
     with asking(node, timeout) as client:
         descriptors = client.descriptors(parameters)
     if as_json:
-        say(show.as_json([_described(each) for each in descriptors]))
+        say(messages.as_json([_described(each) for each in descriptors]))
         return
     for each in descriptors:
         say("\n".join(_lines(each)))
@@ -114,7 +114,7 @@ def show_descriptors(node: str, parameters: Sequence[str], timeout: float, *, as
 
 def _described(descriptor: ParameterDescriptor) -> dict[str, Any]:
     """Return a descriptor as data, with ros2's name of the type, and its range, of whichever kind."""
-    found = show.plain(descriptor)
+    found = messages.plain(descriptor)
     limits = found.pop("floating_point_range") + found.pop("integer_range")
     return {**found, "type": type_name(descriptor.type), "range": limits[0] if limits else None}
 
@@ -142,7 +142,7 @@ def dump(node: str, timeout: float, *, as_json: bool) -> None:
         values = client.settled_values(names) if names else {}
     values = {name: each for name, each in values.items() if each.type != Type.NOT_SET}
     if as_json:
-        say(show.as_json(in_json(values.items())))
+        say(messages.as_json(in_json(values.items())))
         return
     for name in [name for name, each in values.items() if each.type == Type.BYTE_ARRAY]:
         tell(f"robolink: left out '{name}': a parameter file cannot hold a byte array")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from robolink.arguments.parameter_file import ParameterFileError, read_parameter_file
 from robolink.cli.param.ask import ParameterClient, asking
 from robolink.cli.param.values import fitting, plain, read, type_name
-from robolink.cli.shared import show
+from robolink.cli.shared import messages
 from robolink.cli.shared.output import complain, say, tell
 from robolink.exceptions import NotFoundError
 from robolink.interfaces.rcl_interfaces.msg import (
@@ -59,7 +59,7 @@ def load(node: str, file: str, timeout: float, *, use_wildcard: bool, as_json: b
         values = meant_for(client.name, overrides, file, use_wildcard=use_wildcard)
         results = _load(client, values)
     if as_json:
-        say(show.as_json({name: _plain(result) for name, result in results.items()}))
+        say(messages.as_json({name: _plain(result) for name, result in results.items()}))
         return int(not all(each.successful for each in results.values()))
     codes = [
         _tell(each, False, f"Set parameter {name} successful", f"Set parameter {name} failed")
@@ -117,7 +117,7 @@ def _descriptor(client: ParameterClient, parameter: str) -> ParameterDescriptor 
 
 def _tell(result: SetParametersResult, as_json: bool, done: str, failed: str) -> int:
     if as_json:
-        say(show.as_json(_plain(result)))
+        say(messages.as_json(_plain(result)))
         return int(not result.successful)
     text = f"{done if result.successful else failed}{': ' if result.reason else ''}{result.reason}"
     if not result.successful:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.bag.metadata import FILE_NAME as METADATA
 from robolink.bag.storage.opening import ENDINGS
-from robolink.cli.shared.matching_qos import matching_qos
+from robolink.cli.shared.graph import matching_qos
+from robolink.cli.shared.messages import message_type
 from robolink.cli.shared.output import tell
-from robolink.cli.shared.pictures import check_picture
-from robolink.cli.shared.types import message_type
+from robolink.cli.shared.picture import check_picture
 from robolink.exceptions import ExternalShutdownException, RobolinkError, nearest
 from robolink.executors import SingleThreadedExecutor
 from robolink.system import clocks

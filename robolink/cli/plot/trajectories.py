@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from robolink.cli.plot.record import PlotError, Wish, check, deadline, listen, show, wait_for
-from robolink.cli.shared.announced import nodes
+from robolink.cli.shared.graph import nodes
 from robolink.cli.shared.output import tell
 from robolink.cli.shared.session import node_of, opened
 from robolink.exceptions import RobolinkError

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.cli.plot.record import PlotError, Wish, check, deadline, listen, show, wait_for
-from robolink.cli.shared import show as fields
+from robolink.cli.shared import messages as fields
 from robolink.cli.shared.session import node_of, opened
 from robolink.exceptions import EncodeError
 from robolink.system import clocks

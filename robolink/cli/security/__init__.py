@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robolink.cli.shared.listed_options import ListedOptions
+from robolink.cli.shared.noun import ListedOptions
 from robolink.cli.shared.output import say, tell
 
 if TYPE_CHECKING:

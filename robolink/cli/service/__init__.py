@@ -37,7 +37,7 @@ def list_services(
     as_json: AsJson = False,
 ) -> None:
     """List the services that are served or called."""
-    from robolink.cli.shared.names import show_names
+    from robolink.cli.shared.graph import show_names
     from robolink.cli.shared.session import looking
 
     with looking() as context:
@@ -48,7 +48,7 @@ def list_services(
 @app.command("type")
 def show_type(service: Service, hidden: Hidden = False, as_json: AsJson = False) -> None:
     """Show the type of a service."""
-    from robolink.cli.shared.names import show_types
+    from robolink.cli.shared.graph import show_types
     from robolink.cli.shared.session import looking
 
     with looking() as context:
@@ -68,7 +68,7 @@ def find(
     as_json: AsJson = False,
 ) -> None:
     """List the services of a type."""
-    from robolink.cli.shared.names import show_of_type
+    from robolink.cli.shared.graph import show_of_type
     from robolink.cli.shared.session import looking
 
     with looking() as context:
@@ -113,7 +113,7 @@ def call_service(
 ) -> None:
     """Call a service and show what it answers."""
     from robolink.cli.service import call
-    from robolink.cli.shared.requests import is_type, read_stdin
+    from robolink.cli.shared.messages import is_type, read_stdin
 
     if values is None and not is_type(type_):  # SERVICE VALUES: the type was left out
         type_, values = "", type_
@@ -148,7 +148,7 @@ def echo_events(
 ) -> None:
     """Show what a service and its clients say to each other, where introspection is on; until Ctrl-C."""
     from robolink.cli.service import echo
-    from robolink.cli.shared.show import Style
+    from robolink.cli.shared.messages import Style
 
     if csv and as_json:
         ctx.fail("--csv and --json do not go together")
@@ -158,7 +158,7 @@ def echo_events(
 
 def _types(context: Context, *, hidden: bool = True) -> dict[str, list[str]]:
     """Return every service with its types, sorted; also those that are only called, as in ros2."""
-    from robolink.cli.shared.announced import endpoints, is_hidden
+    from robolink.cli.shared.graph import endpoints, is_hidden
     from robolink.graph.graph import names_and_types
     from robolink.wire import EndpointKind
 
@@ -168,7 +168,7 @@ def _types(context: Context, *, hidden: bool = True) -> dict[str, list[str]]:
 
 def _known(context: Context, service: str, services: dict[str, list[str]]) -> str:
     """Return the full name of a service. Raises NotFoundError if there is none."""
-    from robolink.cli.shared.announced import absolute
+    from robolink.cli.shared.graph import absolute
     from robolink.exceptions import NotFoundError
     from robolink.system.terminal import shown
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import contextlib
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.cli.shared import show
-from robolink.cli.shared.other_domains import domains_with, hint
+from robolink.cli.shared import messages
+from robolink.cli.shared.graph import domains_with, hint
+from robolink.cli.shared.messages import GivenRequest, message_of
 from robolink.cli.shared.output import say, tell
-from robolink.cli.shared.requests import GivenRequest, message_of
 from robolink.cli.shared.session import node_of, opened
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.interfaces import find, is_named
@@ -79,7 +79,7 @@ def run(service: str, type_: str, values: str, manner: Manner) -> None:
 
 def _wait_for_type(context: Context, given: GivenRequest, manner: Manner, deadline: float) -> type[Any]:
     """Wait until the service is there, with the type that is named, if one is; return its class."""
-    from robolink.cli.shared.types import service_type
+    from robolink.cli.shared.messages import service_type
 
     if not _served(context, given):
         _check_early(given)
@@ -138,7 +138,7 @@ def _call(client: Client, executor: Executor, request: Any, manner: Manner, dead
         raise CallError(f"no answer within {manner.timeout:g} s from {_server_of(executor, client)}")
     response = future.result()
     if manner.json:
-        say(show.as_json({"request": show.plain(request), "response": show.plain(response)}))
+        say(messages.as_json({"request": messages.plain(request), "response": messages.plain(response)}))
     else:
         say(f"response:\n{response!r}\n")
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from robolink.cli.shared import show
+from robolink.cli.shared import messages
+from robolink.cli.shared.messages import service_type
 from robolink.cli.shared.output import say, tell
 from robolink.cli.shared.session import node_of, opened
-from robolink.cli.shared.types import service_type
 from robolink.exceptions import RobolinkError
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.service_msgs.msg import ServiceEventInfo
@@ -22,16 +22,16 @@ NAMES = {number: name for name, (_, number) in ServiceEventInfo.__ros_constants_
 class Format(NamedTuple):
     """Format in which events are shown."""
 
-    style: show.Style = show.Style()
+    style: messages.Style = messages.Style()
     csv: bool = False
     json: bool = False
 
     def text(self, event: Any) -> str:
         """Return an event as text, like ros2: with a name in place of its number but for CSV."""
         if self.csv:
-            return show.as_csv(event, self.style)
+            return messages.as_csv(event, self.style)
         event.info.event_type = NAMES.get(event.info.event_type, event.info.event_type)
-        return show.as_json(event) if self.json else f"{show.as_yaml(event, self.style)}\n---"
+        return messages.as_json(event) if self.json else f"{messages.as_yaml(event, self.style)}\n---"
 
 
 def run(service: str, type_: str, form: Format, *, once: bool = False) -> None:

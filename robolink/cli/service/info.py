@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from robolink.cli.shared.announced import absolute, announced
+from robolink.cli.shared.graph import absolute, announced
 from robolink.cli.shared.output import say, say_json
 from robolink.cli.shared.session import looking
 from robolink.exceptions import NotFoundError

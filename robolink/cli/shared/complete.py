@@ -206,11 +206,11 @@ def _names(incomplete: str, name_of: Callable[[Any], str | None]) -> list[str]:
 def _types_of(name: Any, incomplete: str, *kinds: Any) -> list[str]:
     from robolink.wire import EndpointToken
 
-    wanted = "/" + str(name or "").lstrip("/")
+    full_name = "/" + str(name or "").lstrip("/")
     types = [
         each.type_name
         for each in announced()
-        if isinstance(each, EndpointToken) and each.kind in kinds and each.name == wanted
+        if isinstance(each, EndpointToken) and each.kind in kinds and each.name == full_name
     ]
     return offered(types, incomplete)
 

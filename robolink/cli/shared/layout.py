@@ -1,8 +1,15 @@
-"""Layout of what commands show: aligned columns, and durations in words."""
+"""Layout of what commands show: aligned columns, durations in words, statistics, and paths as a shell takes them."""
 
 from __future__ import annotations
 
+import math
+import os
+import shlex
+import subprocess
+import sys
 from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
@@ -30,3 +37,35 @@ def shown_time(seconds: float) -> str:
         if whole >= size:
             return f"{whole // size} {unit} {whole % size // part} {smaller}"
     return f"{whole} s"
+
+
+class Figures(NamedTuple):
+    """Statistics of some numbers, which are `number` in count."""
+
+    mean: float
+    low: float
+    high: float
+    deviation: float
+    number: int
+
+
+def figures_of(numbers: Sequence[float]) -> Figures | None:
+    """Return the statistics of some numbers; None if there are none."""
+    if not numbers:
+        return None
+    mean = math.fsum(numbers) / len(numbers)
+    deviation = math.sqrt(math.fsum((each - mean) ** 2 for each in numbers) / len(numbers))
+    return Figures(mean, min(numbers), max(numbers), deviation, len(numbers))
+
+
+def shown(path: Path) -> str:
+    """Return a path relative to the working directory if it is within."""
+    here = Path.cwd()
+    return os.path.relpath(path, here) if path.is_relative_to(here) else str(path)
+
+
+def typed(path: Path) -> str:
+    """Return a path as one types it into a shell here: in quotes if need be, and never like an option."""
+    short = shown(path)
+    short = f"./{short}" if short.startswith("-") else short
+    return subprocess.list2cmdline([short]) if sys.platform == "win32" else shlex.quote(short)

@@ -1,14 +1,78 @@
-"""Command group of a noun, which takes ros2's flags for the graph on either side of the verb."""
+"""Groups of commands as ros2 has them: verbs of other packages, flags before the verb, options of several values."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import Any
 
+import typer
 import typer.core
+import typer.main
 
-from robolink.cli.shared.added import added_command, added_names
 from robolink.exceptions import nearest
+from robolink.extensions import COMMANDS, ExtensionError, added, load
+
+
+def added_names(noun: str = "") -> list[str]:
+    """Return the names of the nouns, or of the verbs of a noun, that other packages add.
+
+    Args:
+        noun: A noun such as topic; '' for the nouns.
+    """
+    prefix = f"{noun}." if noun else ""
+    names = [each.removeprefix(prefix) for each in added(COMMANDS) if each.startswith(prefix)]
+    return [each for each in names if "." not in each]
+
+
+def added_command(name: str, noun: str = "", kind: type[Any] | None = None) -> Any:
+    """Return a command that another package adds; None if none does.
+
+    Args:
+        name: Its name.
+        noun: The noun whose verb it is; '' if it is a noun itself.
+        kind: Class of a noun's command.
+
+    Raises:
+        ExtensionError: If it cannot be loaded, or is neither a typer.Typer nor a function.
+    """
+    full_name = f"{noun}.{name}" if noun else name
+    found = load(COMMANDS, full_name)
+    if found is None:
+        return None
+    app = found
+    if not isinstance(app, typer.Typer):
+        if not callable(found):
+            what = type(found).__name__
+            raise ExtensionError(f"'{full_name}' ({COMMANDS}) is a {what}; a command is a typer.Typer or a function")
+        app = typer.Typer()
+        app.command(name)(found)
+    elif kind is not None and app.registered_groups + app.registered_commands and not _is_one(app):
+        app.info.cls = kind
+    app.rich_markup_mode = None  # plain help, as of robolink's own commands
+    app._add_completion = False
+    command = typer.main.get_command(app)
+    command.name = name
+    return command
+
+
+def added_help(name: str, noun: str = "") -> str:
+    """Return the first line of the help of such a command; the reason, if it cannot be loaded.
+
+    Args:
+        name: Its name.
+        noun: The noun whose verb it is; '' if it is a noun itself.
+    """
+    try:
+        command = added_command(name, noun)
+    except ExtensionError as error:
+        return str(error)
+    return str(command.get_short_help_str(limit=100))
+
+
+def _is_one(app: typer.Typer) -> bool:
+    """True if an app is a single command without verbs."""
+    return len(app.registered_commands) == 1 and not app.registered_groups and app.registered_callback is None
+
 
 HIDDEN = ("--include-hidden-topics", "--include-hidden-services", "--include-hidden-nodes", "--include-hidden-actions")
 """Flags that ros2 takes before the verb, too."""
@@ -73,3 +137,81 @@ def arranged(args: Sequence[str], verb: int, known: Collection[str]) -> list[str
         elif WITHOUT_EFFECT[flag] and not equals:
             next(words, None)
     return rest
+
+
+class ListedOptions(typer.core.TyperCommand):
+    """Command in which each option that may be repeated takes all the words up to the next option."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse the arguments."""
+        flags = {flag for each in self.params if getattr(each, "multiple", False) for flag in each.opts}
+        left: list[str] = super().parse_args(ctx, repeated(args, flags))
+        return left
+
+
+def repeated(args: Sequence[str], flags: Collection[str]) -> list[str]:
+    """Return the arguments with one of these flags before each of its values: click's take one value each.
+
+    >>> repeated(["--topics", "/a", "/b", "-o", "bag"], ["--topics"])
+    ['--topics', '/a', '--topics', '/b', '-o', 'bag']
+    """
+    result: list[str] = []
+    flag, has_value = "", False
+    for index, each in enumerate(args):
+        if flag and not each.startswith("-"):
+            result += [flag, each]
+            has_value = True
+            continue
+        if flag and not has_value:
+            result.append(flag)  # click says that its value is missing
+        if each == "--":
+            return [*result, *args[index:]]
+        flag, has_value = (each, False) if each in flags else ("", False)
+        if not flag:
+            result.append(each)
+    return [*result, flag] if flag and not has_value else result
+
+
+MOST = 3
+"""Upper bound of the nouns that are named for a verb."""
+OPTIONS = {"help": "--help", "version": "--version"}
+OTHERS = {
+    "ros2": "robolink takes the words after it, as in 'robolink topic list'; 'robolink shim ros2' writes it",
+    "colcon": "nothing has to be built; 'robolink shim colcon' writes a command that says so",
+    "roscore": "none is needed: nodes find each other",
+}
+"""Other systems' commands, each with what stands for it."""
+
+
+def meant(word: str, commands: Sequence[str], verbs: Callable[[str], Iterable[str]]) -> str:
+    """Return the end of an error that names the commands near a `word`; '' if none is near.
+
+    Args:
+        word: The word.
+        commands: Names of the commands that help lists.
+        verbs: Function that returns the verbs of a command; it is called for a verb that lacks its noun only.
+    """
+    if word in OTHERS:
+        return f": {OTHERS[word]}"
+    if word in OPTIONS:
+        return f" (did you mean '{OPTIONS[word]}'?)"
+    begun = [each for each in commands if len(word) > 2 and each.startswith(word)]
+    if len(begun) == 1:
+        return f" (did you mean '{begun[0]}'?)"
+    nouns = [each for each in commands if word in verbs(each)]
+    if nouns:
+        shown = ", ".join(f"'{each} {word}'" for each in nouns[:MOST])
+        return f" (did you mean {shown}{' ...' if len(nouns) > MOST else ''}?)"
+    return _program(word) or nearest(word, commands)
+
+
+def _program(word: str) -> str:
+    """Return the command for the node, launch file or program of this name, or what serves instead; else ''."""
+    from robolink.workspace import instead_of, list_launches, list_nodes, program_names
+
+    if word in program_names() or word in [each.name for each in list_nodes()]:
+        return f" (did you mean 'run {word}'?)"
+    if word in [each.stem for each in list_launches()]:
+        return f" (did you mean 'launch {word}'?)"
+    advice = instead_of(word)
+    return "" if advice is None else f": {advice}"

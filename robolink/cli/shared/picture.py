@@ -1,10 +1,11 @@
-"""Pictures in the terminal for `topic echo --image` and `image show`: two pixels a character, in 24-bit colour."""
+"""Pictures: in the terminal, two pixels a character, in 24-bit colour; and the check of files that are drawn."""
 
 from __future__ import annotations
 
 import os
 import shutil
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -128,3 +129,14 @@ def _line(upper: Pixels, lower: Pixels) -> str:
     pairs = np.concatenate([upper, lower], axis=1).tolist()
     cells = (f"\x1b[38;2;{r};{g};{b};48;2;{r2};{g2};{b2}m{_HALF}" for r, g, b, r2, g2, b2 in pairs)
     return "".join(cells) + _END
+
+
+def check_picture(path: Path) -> None:
+    """Raise `DrawingError` if no picture can be drawn into such a file, or matplotlib is not installed.
+
+    From then on matplotlib draws into files, whatever the shell says: that may want a screen, or a notebook's module.
+    """
+    from robolink.sim import drawing
+
+    os.environ["MPLBACKEND"] = "agg"
+    drawing.check_picture(path)

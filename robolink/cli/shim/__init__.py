@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
-from robolink.cli.shared.other_names import OTHER_NAMES
 from robolink.cli.shared.output import say, tell
+from robolink.cli.shared.process import OTHER_NAMES
 
 app = typer.Typer(help="Write a second command, ros2, colcon or launch_test, that leads to robolink.")
 

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+from robolink.cli.shared.graph import PATIENCE
 from robolink.cli.shared.output import say, say_json, tell
 from robolink.cli.shared.session import node_of, opened
-from robolink.cli.shared.silence import PATIENCE
 from robolink.cli.tf.watch import NoTransformsError, Watch
 from robolink.exceptions import RobolinkError
 from robolink.system import clocks

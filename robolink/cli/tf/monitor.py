@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from robolink.cli.shared.figures import Figures, figures_of
+from robolink.cli.shared.layout import Figures, figures_of
 from robolink.cli.shared.output import say, say_json, tell
 from robolink.cli.shared.session import node_of, opened
 from robolink.cli.tf.echo import ASKER, why_not

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from robolink.callback_groups import ReentrantCallbackGroup
-from robolink.cli.shared.silence import Wanted, why_silent
+from robolink.cli.shared.graph import Listening, why_silent
 from robolink.exceptions import RobolinkError
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.tf2_msgs.msg import TFMessage
@@ -103,7 +103,9 @@ class Watch:
         graph = self.node.context.graph
         published = [each for each in self.topics if graph.endpoints(EndpointKind.PUBLISHER, name=each)]
         topic = (published or self.topics)[0]
-        return why_silent(self.node.context, topic, Wanted("tf2_msgs/msg/TFMessage", "", QOS[topic == self.topics[1]]))
+        return why_silent(
+            self.node.context, topic, Listening("tf2_msgs/msg/TFMessage", "", QOS[topic == self.topics[1]])
+        )
 
     def _taker(self, static: bool) -> Callable[[TFMessage, MessageInfo], None]:
         def take(message: TFMessage, info: MessageInfo) -> None:

@@ -6,7 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
-from robolink.cli.shared.losses import ReportedLosses
+from robolink.cli.shared.session import ReportedLosses
 from robolink.cli.top.processes import Processes
 from robolink.cli.top.table import NodeRow, Shown, TopicRow
 from robolink.cli.top.traffic import Count, Traffic

@@ -5,9 +5,9 @@ from __future__ import annotations
 import contextlib
 import sys
 
-from robolink.cli.shared.keys import keys
 from robolink.cli.shared.output import say, say_json
 from robolink.cli.shared.session import node_of, opened
+from robolink.cli.shared.terminal import keys
 from robolink.cli.top.measuring import Meter
 from robolink.cli.top.screen import Screen, show
 from robolink.cli.top.table import View, chosen, data, lines

@@ -11,7 +11,7 @@ import shutil
 import sys
 from collections.abc import Callable, Sequence
 
-from robolink.cli.shared.keys import Read
+from robolink.cli.shared.terminal import Read
 from robolink.cli.top.table import (
     NODE_HEADER,
     ORDERS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
-from robolink.cli.shared.announced import is_hidden
+from robolink.cli.shared.graph import is_hidden
 
 
 class NodeRow(NamedTuple):

@@ -128,7 +128,7 @@ def echo_messages(
     qos_lease: qos.Lease = None,
 ) -> None:
     """Show what is published on a topic, until Ctrl-C."""
-    from robolink.cli.shared.show import Style
+    from robolink.cli.shared.messages import Style
     from robolink.cli.topic.echo import Format, Wish, run
 
     opt.refuse_together(ctx, {"--csv": csv, "--json": as_json, "--raw": raw, "--image": image})

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.cli.shared import show, silence
-from robolink.cli.shared.matching_qos import matching_qos
+from robolink.cli.shared import graph, messages
+from robolink.cli.shared.graph import matching_qos
+from robolink.cli.shared.messages import message_type
 from robolink.cli.shared.output import clear, say, tell
 from robolink.cli.shared.session import node_of, opened
-from robolink.cli.shared.types import message_type
 from robolink.cli.topic.lenient import Leniently
 from robolink.cli.topic.qos_options import QoSFlags
 from robolink.context import Context
@@ -25,7 +25,7 @@ from robolink.wire import EndpointKind
 if TYPE_CHECKING:
     from robolink.node import Node
 
-PATIENCE = silence.PATIENCE
+PATIENCE = graph.PATIENCE
 
 
 class NothingCameError(RobolinkError, TimeoutError):
@@ -36,7 +36,7 @@ class Format(NamedTuple):
     """Format in which messages are shown."""
 
     field: str = ""
-    style: show.Style = show.Style()
+    style: messages.Style = messages.Style()
     json: bool = False
     csv: bool = False
     raw: bool = False
@@ -46,19 +46,19 @@ class Format(NamedTuple):
 
     def text(self, message: Any, info: MessageInfo) -> str:
         """Return a message as text. `info` comes first if it is wanted, in ros2's order."""
-        value = show.field_of(message, self.field) if self.field else message
+        value = messages.field_of(message, self.field) if self.field else message
         told = {name: each for name, each in info.items() if name != "publisher_gid"}
         if self.image:
             from robolink.cli.shared.picture import drawn
 
             return drawn(value)
         if self.json:
-            return show.as_json({"info": told, "message": value} if self.info else value)
+            return messages.as_json({"info": told, "message": value} if self.info else value)
         if self.csv:
             before = [str(each) for each in told.values()] if self.info else []
-            return ",".join([*before, show.as_csv(value, self.style)])
-        shown = repr(value) if self.raw else show.as_yaml(value, self.style)
-        before = [show.as_yaml(dict(sorted(told.items())))] if self.info else []
+            return ",".join([*before, messages.as_csv(value, self.style)])
+        shown = repr(value) if self.raw else messages.as_yaml(value, self.style)
+        before = [messages.as_yaml(dict(sorted(told.items())))] if self.info else []
         return "\n---\n".join([*before, shown, ""]).removesuffix("\n")
 
 
@@ -91,7 +91,7 @@ def run(topic: str, wish: Wish, form: Format) -> None:
 
 def _passes(msg_type: type[Any], form: Format, text: str) -> Callable[[Any], bool]:
     """Return the filter of messages. Raises EncodeError for a wrong field, FilterError for a wrong expression."""
-    kind = show.check_path(msg_type, form.field) if form.field else None
+    kind = messages.check_path(msg_type, form.field) if form.field else None
     if not text:
         return lambda _: True
     from robolink.cli.topic.filter import compile_filter
@@ -99,7 +99,7 @@ def _passes(msg_type: type[Any], form: Format, text: str) -> Callable[[Any], boo
     passes = Leniently(compile_filter(text, kind or msg_type))
     if kind is None:
         return passes
-    return lambda message: passes(show.field_of(message, form.field))
+    return lambda message: passes(messages.field_of(message, form.field))
 
 
 class _Echo:
@@ -134,16 +134,16 @@ class _Echo:
                 patience = PATIENCE if timeout is None else min(PATIENCE, timeout)
                 executor.spin_until_future_complete(self.first, timeout_sec=patience)
                 if not self.first.done() and patience == PATIENCE:
-                    tell(silence.why_silent(self.node.context, self.name, self.wanted()))
+                    tell(graph.why_silent(self.node.context, self.name, self.listening()))
             left = None if end is None else max(end - clocks.monotonic(), 0.0)
             executor.spin_until_future_complete(self.done, timeout_sec=left)
         if self.done.done():
             self.done.result()
         return self.shown
 
-    def wanted(self) -> silence.Wanted:
+    def listening(self) -> graph.Listening:
         """Return the type and QoS that are listened with."""
-        return silence.Wanted(self.msg_type.__ros_type__, type_hash(self.msg_type), self.qos)
+        return graph.Listening(self.msg_type.__ros_type__, type_hash(self.msg_type), self.qos)
 
     def on_message(self, message: Any, info: MessageInfo) -> None:
         """Show a message. Errors, such as a missing field or a closed pipe, end the command, not only the callback."""
@@ -186,6 +186,6 @@ def _wait_for_topic(context: Context, name: str, timeout: float | None) -> bool:
         left = PATIENCE if timeout is None else min(PATIENCE, timeout - spent)
         # Never without a limit: on Windows Ctrl-C does not end a wait.
         if not context.graph.wait_for(lambda: known() or not context.ok(), left) and not told and left == PATIENCE:
-            tell(silence.why_silent(context, name))
+            tell(graph.why_silent(context, name))
             told = True
     return told

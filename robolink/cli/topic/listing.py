@@ -7,11 +7,9 @@ import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli.shared.announced import absolute, announced, endpoints, is_hidden
-from robolink.cli.shared.losses import ReportedLosses
-from robolink.cli.shared.names import show_names, show_of_type, show_types
+from robolink.cli.shared.graph import absolute, announced, endpoints, is_hidden, show_names, show_of_type, show_types
 from robolink.cli.shared.output import say, say_json, tell
-from robolink.cli.shared.session import looking
+from robolink.cli.shared.session import ReportedLosses, looking
 from robolink.duration import Infinite
 from robolink.exceptions import MessageError, NotFoundError, nearest
 from robolink.graph.graph import names_and_types

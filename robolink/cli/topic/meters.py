@@ -6,10 +6,10 @@ import struct
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.cli.shared.figures import figures_of
+from robolink.cli.shared.graph import PATIENCE, why_silent
+from robolink.cli.shared.layout import figures_of
 from robolink.cli.shared.output import say, say_json, tell
 from robolink.cli.shared.session import node_of, opened
-from robolink.cli.shared.silence import PATIENCE, why_silent
 from robolink.cli.topic import rates
 from robolink.cli.topic.arrivals import Arrivals, Take
 from robolink.cli.topic.lenient import Leniently

@@ -8,9 +8,9 @@ import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from robolink.cli.shared.messages import message_type
 from robolink.cli.shared.output import say
 from robolink.cli.shared.session import node_of, opened
-from robolink.cli.shared.types import message_type
 from robolink.cli.topic.qos_options import QoSFlags
 from robolink.cli.topic.stamps import Stamped
 from robolink.documents.yamlfile import parse

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Sequence
 from itertools import pairwise
 
-from robolink.cli.shared.figures import Figures, figures_of
+from robolink.cli.shared.layout import Figures, figures_of
 
 NS = 1e-9
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from robolink import Node
 from robolink.cli.main import main
 from robolink.cli.shared import session
-from robolink.cli.shared.announced import sections_of
+from robolink.cli.shared.graph import sections_of
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.std_srvs.srv import SetBool, Trigger
 from robolink.qos import QoSProfile

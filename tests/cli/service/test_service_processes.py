@@ -80,14 +80,14 @@ def test_ctrl_c_ends_a_waiting_process_quietly(server: Program, domain: int, wor
 
 LOOKS_AT_ONE_DOMAIN = """
 import sys
-from robolink.cli.shared import other_domains
+from robolink.cli.shared import graph
 from robolink.cli.main import main
 from robolink.transport import zenoh
 
-other_domains.MOST, other_domains.PORTS_WITHIN = 300, 5.0
+graph.MOST, graph.PORTS_WITHIN = 300, 5.0
 zenoh.PATIENCE, zenoh.LONGEST, zenoh.LINK_WITHIN = 5.0, 30.0, 30.0
-met, wanted = other_domains._met_on_this_machine, int(sys.argv.pop(1))
-other_domains._met_on_this_machine = lambda own: [each for each in met(own) if each == wanted]
+met, wanted = graph._met_on_this_machine, int(sys.argv.pop(1))
+graph._met_on_this_machine = lambda own: [each for each in met(own) if each == wanted]
 sys.exit(main())
 """
 """Other tests have their own domains meanwhile, and only the first few are looked at."""

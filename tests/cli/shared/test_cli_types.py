@@ -11,7 +11,7 @@ import pytest
 
 from robolink import Context, Node, Parameter, interfaces, type_lookup
 from robolink.cli.main import main
-from robolink.cli.shared.types import SeveralTypesError, message_type, service_type
+from robolink.cli.shared.messages import SeveralTypesError, message_type, service_type
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.interfaces import find_announced
 from robolink.interfaces.geometry_msgs.msg import Twist

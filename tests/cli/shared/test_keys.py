@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.cli.shared.keys import keys
+from robolink.cli.shared.terminal import keys
 from robolink.text.keys import split_keys
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robolink.cli.shared.listed_options import repeated
+from robolink.cli.shared.noun import repeated
 
 FLAGS = ["--topics", "-x"]
 

@@ -12,7 +12,7 @@ import yaml
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from robolink.cli.shared.show import Style, as_csv, as_json, as_yaml, check_path, field_of
+from robolink.cli.shared.messages import Style, as_csv, as_json, as_yaml, check_path, field_of
 from robolink.exceptions import EncodeError
 from robolink.interfaces.geometry_msgs.msg import Pose, PoseArray, PoseWithCovariance, Twist, Vector3
 from robolink.interfaces.sensor_msgs.msg import Image, LaserScan

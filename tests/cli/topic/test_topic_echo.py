@@ -10,7 +10,7 @@ import yaml
 
 from robolink import Context, Node
 from robolink.cli.main import main
-from robolink.cli.shared import matching_qos
+from robolink.cli.shared import graph
 from robolink.cli.topic import echo
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.interfaces.sensor_msgs.msg import Image, LaserScan
@@ -177,7 +177,7 @@ def test_a_huge_depth_on_the_wire_asks_for_no_more_than_can_be() -> None:
     context.init([])
     with context:
         made(context, "huge").create_publisher(Int32, "/x", QoSProfile(depth=10**15, durability=LATCHED.durability))
-        assert matching_qos.matching_qos(context, "/x").depth == matching_qos.MOST_KEPT
+        assert graph.matching_qos(context, "/x").depth == graph.DEEPEST
 
 
 # --- why nothing comes ----------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink import Node
-from robolink.cli.shared.figures import figures_of
+from robolink.cli.shared.layout import figures_of
 from robolink.cli.topic import meters, rates
 from robolink.cli.topic.arrivals import Arrivals
 from robolink.exceptions import DecodeError, RobolinkError

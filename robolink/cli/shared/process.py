@@ -1,4 +1,4 @@
-"""Repeat of a Ctrl-C that Python has lost.
+"""The process of a command: the names by which it is another program, and repeats of a Ctrl-C that Python has lost.
 
 Python raises KeyboardInterrupt wherever its main thread just is. In code that has no caller to catch it (the callback
 of a weak reference, of which every import has some; a `__del__`), Python prints "Exception ignored" and goes on.
@@ -44,3 +44,7 @@ def _interrupt(main: int) -> None:
         _thread.interrupt_main()
     else:
         signal.pthread_kill(main, signal.SIGINT)  # breaks into a wait, too
+
+
+OTHER_NAMES = {"colcon": "robolink.cli.shim.colcon", "launch_test": "robolink.cli.shim.launch_test"}
+"""Modules whose `main` runs in place of the command's own."""

@@ -1,4 +1,4 @@
-"""Single keys from the terminal, without Enter and echo: for commands that are steered while they run."""
+"""The terminal of commands that go on: single keys without Enter, and a progress bar."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import os
 import sys
 import time
 from collections.abc import Callable, Iterator
+from typing import Any
 
 from robolink.system import clocks
 from robolink.text.keys import split_keys
@@ -98,3 +99,48 @@ def _is_in_background(terminal: int) -> bool:
         with contextlib.suppress(OSError):  # it is not the terminal that controls this process
             return os.tcgetpgrp(terminal) != os.getpgrp()
     return False
+
+
+LONG = 2.0
+"""Delay until a person is shown the progress, in seconds of real time."""
+
+
+class Progress:
+    """Progress bar on standard error, which appears once a person has waited for a while."""
+
+    def __init__(self, total: float, unit: str) -> None:
+        self.shown = 0.0
+        self._total, self._unit = total, unit
+        self._bar: Any = None
+        self._begin = 0.0
+
+    def show(self, done: float) -> None:
+        """Set the progress to `done`, in the unit of `total`."""
+        self.shown = done
+        if self._bar is not None:
+            self._bar.update(self._task, completed=done)
+        elif sys.stderr is not None and sys.stderr.isatty() and clocks.monotonic() - self._begin > LONG:
+            self._open()
+            self.show(done)
+
+    def _open(self) -> None:
+        from rich import progress
+        from rich.console import Console
+
+        columns = (
+            progress.BarColumn(),
+            progress.TextColumn(f"{{task.completed:.0f}} of {{task.total:.0f}} {self._unit}"),
+        )
+        self._bar = progress.Progress(
+            *columns, progress.TimeRemainingColumn(), console=Console(stderr=True), transient=True
+        )
+        self._task = self._bar.add_task("", total=self._total)
+        self._bar.start()
+
+    def __enter__(self) -> Progress:
+        self._begin = clocks.monotonic()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.stop()

@@ -1,20 +1,25 @@
-"""Look-up of the message class of a topic, service or action: by the type that is named, or from the graph."""
+"""Messages on the command line: the class of a topic, messages in YAML that somebody typed, and output."""
 
 from __future__ import annotations
 
 import contextlib
+import math
+import re
+import sys
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.exceptions import MessageError, NotFoundError, RobolinkError
+from robolink.cli.shared.output import tell
+from robolink.exceptions import EncodeError, MessageError, NotFoundError, RobolinkError, nearest
 from robolink.interfaces import find, is_named
 from robolink.message import type_hash
+from robolink.message.show import LONGEST, USUAL, Style, as_csv, as_yaml, plain
 from robolink.type_lookup import type_of
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken
 
 if TYPE_CHECKING:
     from robolink.context import Context
-    from robolink.message import Action
+    from robolink.message import Action, FieldType, Message
 
 
 class SeveralTypesError(RobolinkError, ValueError):
@@ -68,7 +73,7 @@ def _action_of(context: Context, action: str, type_: str) -> type[Action]:
         raise MessageError(f"{action} is not an action: a part of it has no field {error}") from None
     made = action_class(type_, parts, doc=None, text=None)
     if [*map(type_hash, _parts_of(made))] != [*map(type_hash, (goal, result, feedback))]:
-        raise MessageError(f"{action} is no {type_}: its parts do not belong together")
+        raise MessageError(f"{action} is not of type {type_}: its parts do not belong together")
     return made
 
 
@@ -117,3 +122,122 @@ def _given(context: Context, here: list[EndpointToken], kind: str, given: str) -
 def _first(ends: Iterable[EndpointToken]) -> EndpointToken:
     """Return the endpoint whose type is looked up: a publisher rather than a subscription."""
     return min(ends, key=lambda each: each.kind is EndpointKind.SUBSCRIPTION)
+
+
+_TYPE = re.compile(r"[A-Za-z]\w*(?:[/.][A-Za-z]\w*){0,2}", re.ASCII)
+
+
+class InputError(RobolinkError, ValueError):
+    """Standard input is closed, or is not text."""
+
+
+class GivenRequest(NamedTuple):
+    """Request to a service, or goal for an action, as it was given on the command line."""
+
+    name: str
+    """Full name of the service or action, with its leading slash."""
+    type_: str
+    """Type as it was given; empty to take the one that the graph shows."""
+    values: str
+    """Request or goal in YAML."""
+
+
+def is_type(text: str) -> bool:
+    """True if a text can name a type: then it is not YAML of a message."""
+    return _TYPE.fullmatch(text) is not None
+
+
+def read_stdin(what: str) -> str:
+    """Return standard input, which is a `what`: "request" or "goal". Raises InputError if it is not text."""
+    if sys.stdin is None:
+        raise InputError("--stdin: there is no standard input")
+    if sys.stdin.isatty():
+        tell(f"the {what} in YAML, and Ctrl-D at its end:" if sys.platform != "win32" else f"the {what}, then Ctrl-Z:")
+    try:
+        return sys.stdin.read()
+    except UnicodeDecodeError as error:
+        raise InputError(f"--stdin: expected text in UTF-8: {error.reason} at byte {error.start}") from None
+
+
+def message_of(msg_type: type[Any], values: str) -> Any:
+    """Return a message with the values in YAML. Raises DocumentError or EncodeError with the place of a mistake."""
+    from robolink.documents.yamlfile import parse
+    from robolink.message import encode, from_builtins
+
+    given = parse(values, name="<values>")
+    message = from_builtins(msg_type, {} if given is None else given)
+    encode(message)
+    return message
+
+
+__all__ = ["LONGEST", "USUAL", "Style", "as_csv", "as_json", "as_yaml", "check_path", "field_of", "plain"]
+
+_STEP = re.compile(r"(?P<name>[A-Za-z]\w*)|\[(?P<index>-?\d{1,18})\]", re.ASCII)
+
+
+def as_json(value: Any) -> str:
+    """Return a value as one line of JSON. Infinity is written 1e999, which readers take as infinite, and NaN null."""
+    import msgspec
+
+    return msgspec.json.encode(_finite(plain(value))).decode()
+
+
+def field_of(message: Any, path: str) -> Any:
+    """Return the field ``linear.x`` or ``ranges[0]`` of a message. Raises EncodeError that names what there is."""
+    check_path(type(message), path)
+    value = message
+    for step in _steps(path):
+        try:
+            value = getattr(value, step) if isinstance(step, str) else value[step]
+        except IndexError:
+            raise EncodeError(f"--field {path}: there are {len(value)} elements, no [{step}]") from None
+    return value
+
+
+def check_path(msg_type: type[Message], path: str) -> FieldType:
+    """Return the type of a field ``linear.x`` or ``ranges[0]``. Raises EncodeError if the message has no such field."""
+    from robolink.message import FieldType
+
+    kind = FieldType(base=msg_type.__ros_type__, message=msg_type)
+    for step in _steps(path):
+        is_sequence = kind.shape != "one"
+        if isinstance(step, int):
+            if not is_sequence:
+                raise EncodeError(f"--field {path}: what stands before [{step}] is not a sequence")
+            kind = FieldType(base=kind.base, message=kind.message, string_bound=kind.string_bound)
+            continue
+        fields = {} if kind.message is None or is_sequence else kind.message.__ros_fields__
+        if step not in fields:
+            there = "it is a sequence: say which, as in [0]" if is_sequence else f"there is {_listed(fields)}"
+            raise EncodeError(f"--field {path}: no field '{step}'{nearest(step, fields)}; {there}")
+        kind = fields[step]
+    return kind
+
+
+def _steps(path: str) -> list[str | int]:
+    steps: list[str | int] = []
+    at = 0
+    for match in _STEP.finditer(path):
+        if path[at : match.start()] != ("." if match["name"] and at else ""):
+            break
+        steps.append(match["name"] or int(match["index"]))
+        at = match.end()
+    if at != len(path) or not path:
+        raise EncodeError(f"--field: expected a path such as linear.x or ranges[0], got '{path}'")
+    return steps
+
+
+def _listed(fields: Iterable[str]) -> str:
+    return ", ".join(fields) or "nothing in it"
+
+
+def _finite(data: Any) -> Any:
+    import msgspec
+
+    if isinstance(data, float) and not math.isfinite(data):
+        return None if math.isnan(data) else msgspec.Raw(b"1e999" if data > 0 else b"-1e999")
+    if isinstance(data, dict):
+        return {key: _finite(value) for key, value in data.items()}
+    if isinstance(data, list):
+        return [_finite(each) for each in data]
+    return data
