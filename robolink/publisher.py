@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
@@ -11,10 +10,11 @@ from robolink.duration import Duration
 from robolink.event_handler import PublisherEventCallbacks, QoSPublisherEventType, tell_handlers, warns_of_types
 from robolink.graph.endpoint import Endpoint, Owner
 from robolink.message import Message, encoder, message_type
-from robolink.qos import DurabilityPolicy, QoSProfile, resolved
+from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.running.destroyable import Destroyable
 from robolink.running.ports import ContextLike
 from robolink.system.fork_locks import fork_lock
+from robolink.transport.history import Latch, latched_depth
 from robolink.wire import NO_HASH, EndpointKind
 
 MsgT = TypeVar("MsgT", bound=Message)
@@ -155,15 +155,15 @@ class _Outlets:
         self._closed = False
         self.lock = fork_lock()  # re-entrant: a signal handler that logs interrupts whoever publishes a log
         """Held where something is numbered and put, so that all is sent in the order of its numbers, as in ROS 2."""
-        self._kept: deque[tuple[bytes, bytes]] | None = None
+        self._latch: Latch[tuple[bytes, bytes]] | None = None
         self.put: Callable[[bytes, bytes], None] = first.put
         """Send a payload with its attachment; another function after `add`."""
         self.put_numbered: Callable[[bytes, Callable[[], bytes]], bytes] | None = None
         """Send a payload, and number it under a lock of the transport's own; None where `lock` is to be held."""
         if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL and endpoint.type_hash != NO_HASH:
-            # What late joiners get is kept here too: a Humble peer may come when it has all been published.
-            self._kept = deque(maxlen=resolved(qos).depth)
-            self.put = self._put_and_keep
+            # What late joiners get is retained here too: a Humble peer may come when it has all been published.
+            self._latch = Latch(latched_depth(qos))
+            self.put = self._put_and_retain
         else:
             self.put_numbered = getattr(first, "put_numbered", None)
 
@@ -176,10 +176,10 @@ class _Outlets:
         """Send to this key too from now on, and at once what late joiners get."""
         outlet = self._transport.advertise(key, self._qos)
         with self.lock:
-            for payload, attachment in self._kept or ():
+            for payload, attachment in () if self._latch is None else self._latch.last():
                 outlet.put(payload, attachment)
             self._all = [*self._all, outlet]
-            if self._kept is None:
+            if self._latch is None:
                 self.put, self.put_numbered = self._put_to_all, None
         if self._closed:  # meanwhile
             outlet.close()
@@ -188,10 +188,10 @@ class _Outlets:
         for outlet in self._all:
             outlet.put(payload, attachment)
 
-    def _put_and_keep(self, payload: bytes, attachment: bytes) -> None:
-        assert self._kept is not None
+    def _put_and_retain(self, payload: bytes, attachment: bytes) -> None:
+        assert self._latch is not None
         self._put_to_all(payload, attachment)  # first, since it may be refused
-        self._kept.append((payload, attachment))
+        self._latch.retain((payload, attachment))
 
     def close(self) -> None:
         """Send nothing any more."""

@@ -66,7 +66,7 @@ class Service(ServiceEnd):
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
     ) -> None:
-        super().__init__(owner.context.inbox, MOST_WAITING, callback_group)
+        super().__init__(owner.context.inbox, MOST_WAITING, callback_group, self._make_room)
         self.srv_type = service_type(srv_type)
         self.srv_name = self._service_name = srv_name  # `create_...` sets the first to the name as written
         self.callback = callback
@@ -97,15 +97,15 @@ class Service(ServiceEnd):
         if self._destroyed:  # meanwhile
             self._close()
 
-    def deliver(self, arrived: Any) -> None:
-        """Keep a request; the one that must give way, or comes too late, ends without an answer."""
+    def _make_room(self, arrived: Any) -> Any:
+        """Return a request to be stored; the one that must give way, or comes too late, ends without an answer."""
         if self._destroyed:
             self._end(arrived)
-            return
+            return None
         waiting = self.mailbox.waiting
-        if len(waiting) == MOST_WAITING:
+        if len(waiting) == waiting.maxlen:
             self._end(waiting[0])
-        super().deliver(arrived)
+        return arrived
 
     def _end(self, arrived: Any) -> None:
         """End a call without an answer."""

@@ -20,7 +20,7 @@ from robolink.graph.endpoint import Endpoint, Owner
 from robolink.graph.humble import Copies, CopyError, FromHumbleKey
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, message_type
-from robolink.qos import HistoryPolicy, QoSProfile, resolved
+from robolink.qos import QoSProfile
 from robolink.running.backlog import Backlog, Gaps, Sequence
 from robolink.running.callback_arguments import takes_arguments
 from robolink.running.entity import ANY_TIME, SUBSCRIPTION, Receiver
@@ -28,6 +28,7 @@ from robolink.running.inbox import Inbox
 from robolink.system.terminal import shown
 from robolink.text.callbacks import wanted
 from robolink.transport.base import Handle, Sample
+from robolink.transport.history import ALL, stored_depth
 from robolink.wire import EndpointKind, check_attachment, is_attachment, unpack_attachment
 
 if TYPE_CHECKING:
@@ -72,7 +73,6 @@ class Subscription(Receiver, Generic[MsgT]):
     """
 
     rank = SUBSCRIPTION
-    straight = True
 
     class CallbackType(Enum):
         """Arguments that the callback takes: the message alone, or with its MessageInfo."""
@@ -91,8 +91,8 @@ class Subscription(Receiver, Generic[MsgT]):
         raw: bool = False,
         event_callbacks: SubscriptionEventCallbacks | None = None,
     ) -> None:
-        depth = 0 if qos_profile.history is HistoryPolicy.KEEP_ALL else resolved(qos_profile).depth
-        super().__init__(owner.context.inbox, depth, callback_group)
+        depth = stored_depth(qos_profile)
+        super().__init__(owner.context.inbox, depth, callback_group, self._look_over if depth == ALL else None)
         self.msg_type = msg_type
         self.topic = self._topic_name = topic
         self.qos_profile = qos_profile
@@ -120,10 +120,9 @@ class Subscription(Receiver, Generic[MsgT]):
         self._inbox = owner.context.inbox
         self._handles: list[Handle] = []
         self._backlog: Backlog | None = None
-        if depth == 0:
-            self._backlog, self.straight = Backlog(topic, self._make_gaps(), owner.context.time.steady), False
+        if depth == ALL:
+            self._backlog = Backlog(topic, self._make_gaps(), owner.context.time.steady)
             self._open = self._open_kept
-            self.deliver = self._deliver_all  # type: ignore[method-assign] # it costs the others nothing
         self._listen_for_events(callbacks)
         self._endpoint.speak_humble = self._speak_humble
         for key in filter(None, (self._endpoint.key, self._endpoint.buffer_key)):
@@ -150,8 +149,11 @@ class Subscription(Receiver, Generic[MsgT]):
         self._callback = callback
         self._with_info = self._callback_type is self.CallbackType.WithMessageInfo
 
-    def _deliver_all(self, arrived: Any) -> None:
-        """Keep what arrived, with KEEP_ALL as plain bytes, since one that came from Zenoh holds all of its batch."""
+    def _look_over(self, arrived: Any) -> Sample | FromHumbleKey | None:
+        """Return what is stored with KEEP_ALL: plain bytes, since a sample of Zenoh's holds all of its batch.
+
+        None for a message that was overwritten in shared memory.
+        """
         backlog = self._backlog
         assert backlog is not None
         if type(arrived) is not FromHumbleKey:
@@ -160,11 +162,10 @@ class Subscription(Receiver, Generic[MsgT]):
             except OverwrittenError as error:
                 self._check_order(backlog, error.attachment)
                 self.lose(backlog.warnings.append)
-                return
-        self._check_order(backlog, arrived.attachment)
-        self.mailbox.waiting.append(arrived)
-        if not self.listed:
-            self.become_ready()
+                return None
+        found: Sample | FromHumbleKey = arrived
+        self._check_order(backlog, found.attachment)
+        return found
 
     def _check_order(self, backlog: Backlog, attachment: bytes) -> None:
         try:  # this is run once a message: `contextlib.suppress` is three calls
@@ -228,7 +229,7 @@ class Subscription(Receiver, Generic[MsgT]):
         return self._callback(message) if info is None else self._callback(message, info)
 
     def _open_kept(self, kept: Sample) -> Any:
-        """Return the message of what `_deliver_all` has read."""
+        """Return the message of what `_look_over` has read."""
         payload, attachment = kept
         check_attachment(attachment)
         return self._decode(payload)

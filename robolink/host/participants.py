@@ -285,10 +285,7 @@ class HostedInbox(Inbox):
     def sink(self, target: Any) -> Any:
         """Return the sink of a target: a function in Python, since no foreign thread calls it."""
         place = _Place(self._place)
-        if target.straight and target.mailbox.depth:
-            sink = _straight_sink(target, place, self._due.append)
-        else:
-            sink = _sink(target, place, self._due.append)
+        sink = _sink(target.deliver, place, self._due.append)
         sink.place = place  # type: ignore[attr-defined]
         return sink
 
@@ -321,29 +318,11 @@ class ParkedInbox(HostedInbox):
         """Do nothing: nobody waits here."""
 
 
-def _sink(target: Any, place: _Place, schedule: Callable[[HostedInbox], None]) -> Callable[[Any], None]:
+def _sink(
+    deliver: Callable[[Any], None], place: _Place, schedule: Callable[[HostedInbox], None]
+) -> Callable[[Any], None]:
     def arrive(content: Any) -> None:
-        target.deliver(content)
-        inbox = place.inbox
-        if inbox is not None:
-            inbox.queued += 1
-            schedule(inbox)
-
-    return arrive
-
-
-def _straight_sink(target: Any, place: _Place, schedule: Callable[[HostedInbox], None]) -> Callable[[Any], None]:
-    """Return the sink of a target with a plain mailbox: `Receiver.deliver` written out, as every message comes here."""
-    mailbox, waiting, depth = target.mailbox, target.mailbox.waiting, target.mailbox.depth
-    keep = waiting.append
-
-    def arrive(content: Any) -> None:
-        if len(waiting) == depth:
-            mailbox.dropped += 1
-            target.overflowed()
-        elif not target.listed:
-            target.become_ready()
-        keep(content)
+        deliver(content)
         inbox = place.inbox
         if inbox is not None:
             inbox.queued += 1

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from robolink.exceptions import WireError
-from robolink.running.inbox import Mailbox
+from robolink.transport.history import Mailbox
 from robolink.wire import GID_BYTES, Attachment, fields_of, unpack_attachment
 
 MOST_SENDERS = 1000

@@ -5,13 +5,15 @@ from __future__ import annotations
 import functools
 import itertools
 import weakref
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup, ReentrantCallbackGroup
 from robolink.running.destroyable import Destroyable
-from robolink.running.inbox import Inbox, Mailbox
+from robolink.running.inbox import Inbox
 from robolink.running.ready_queue import NOTHING as NOTHING
 from robolink.running.ready_queue import OTHER, TASK, WAITABLE, Place, ReadyQueue
+from robolink.transport.history import Mailbox
 
 if TYPE_CHECKING:
     from robolink.running.ports import ContextLike, Loop, NodeLike
@@ -146,25 +148,32 @@ class Receiver(Entity):
         parking: Inbox of the context, for what arrives while no executor has it.
         depth: Largest number of arrivals that wait; 0 is any number.
         callback_group: Group of its callback; None lets it run at any time.
+        prepare: Function of what arrives, which returns what is stored in its place, or None for nothing.
     """
 
-    straight = False
-
-    def __init__(self, parking: Inbox, depth: int, callback_group: CallbackGroup | None = None) -> None:
+    def __init__(
+        self,
+        parking: Inbox,
+        depth: int,
+        callback_group: CallbackGroup | None = None,
+        prepare: Callable[[Any], Any] | None = None,
+    ) -> None:
         super().__init__(callback_group)
         self._parking = parking
-        self.mailbox = Mailbox(depth)
+        self.mailbox = Mailbox(depth, self.become_ready, self.overflowed, prepare)
+        self.straight = prepare is None
+        """True if an executor may take what arrives straight from the inbox: its mailbox would only hand it on."""
+        self.deliver: Callable[[Any], None] = self.mailbox.put
+        """Store what arrives, and be ready from then on."""
         self.sink: functools.partial[Any] = parking.sink(self)
-        self.listed = False
-        """True while it is among what is ready, or its turn is still to come; never for the parts of a waitable."""
 
     def attach(self, executor: Loop, has_turn: bool = False) -> None:
         """Belong to this `executor`, which holds its lock: what arrives goes to its inbox, what waited is ready."""
         self._move(self._parking, executor._queue_.inbox)
         super().attach(executor, has_turn)
-        self.listed = has_turn and not self.lane
+        self.mailbox.listed = has_turn and not self.lane
         for _ in range(len(self.mailbox) - has_turn):
-            if not self.listed:
+            if not self.mailbox.listed:
                 self.become_ready()
 
     def detach(self) -> None:
@@ -185,27 +194,12 @@ class Receiver(Entity):
         """Redirect what comes from now on to this `inbox`."""
         inbox.take_over(self.sink)
 
-    def deliver(self, arrived: Any) -> None:
-        """Keep what `arrived`, and be ready from then on."""
-        mailbox = self.mailbox
-        if mailbox.depth:
-            if not mailbox.put(arrived):
-                self.overflowed()
-                return
-        else:
-            mailbox.waiting.append(arrived)
-        if not self.listed:  # `become_ready` written out, since this runs for every message
-            queue = self._queue_
-            if queue is not None:
-                self.listed = not self.lane
-                queue.ready.append(self)
-
     def become_ready(self) -> None:
         """Take a turn in the next round; as a part of a waitable, one turn more."""
         queue = self._queue_
         if queue is None:
             return
-        self.listed = not self.lane
+        self.mailbox.listed = not self.lane  # never for the parts of a waitable, each of whose messages has a turn
         queue.ready.append(self)
 
     def overflowed(self) -> None:
@@ -213,13 +207,14 @@ class Receiver(Entity):
 
     def take(self) -> Any:
         """Return the oldest of what waits, or NOTHING; what waits behind it has its turn in the next round."""
-        waiting = self.mailbox.waiting
+        mailbox = self.mailbox
+        waiting = mailbox.waiting
         if not waiting:
-            self.listed = False
+            mailbox.listed = False
             return NOTHING
         taken = waiting.popleft()
         if not waiting:
-            self.listed = False
-        elif self.listed and self._queue_ is not None:
+            mailbox.listed = False
+        elif mailbox.listed and self._queue_ is not None:
             self._queue_.ready.append(self)
         return taken

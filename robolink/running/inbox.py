@@ -1,11 +1,12 @@
-"""Inboxes and mailboxes: thread-safe queues between a network's threads and an executor.
+"""Inboxes: thread-safe queues between a network's threads and an executor.
 
 What Zenoh calls must be C from end to end: a Python function called on a foreign thread costs a thread state and a
 page of memory each time, five times the price of the message. So a sink is a `functools.partial` of a Struct class
 whose `__post_init__` is a queue's `put`: calling it makes an Arrival and queues it, and no Python frame runs.
 
-Arrivals wait in a queue without a bound, but not for long: whoever spins moves them to the mailboxes of their targets,
-which keep the last `depth`; and while nobody spins, the context's sweeper does so four times a second.
+Arrivals wait in a queue without a bound, but not for long: whoever spins moves them to the mailboxes of their targets
+(`transport/history.py`), which store the last `depth`; and while nobody spins, the context's sweeper does so four times
+a second.
 """
 
 from __future__ import annotations
@@ -14,7 +15,6 @@ import functools
 import queue
 import threading
 import weakref
-from collections import deque
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -32,35 +32,9 @@ class Target(Protocol):
     straight: bool
     """True if an executor may take what arrives straight from the inbox: a plain mailbox would only hand it on."""
 
-    def deliver(self, arrived: Any) -> None:
-        """Take what arrived, under the inbox's lock; quick, and no user code."""
-
-
-class Mailbox:
-    """Bounded queue of what arrived for one target: the last `depth`, all if 0. The oldest is dropped, and counted."""
-
-    __slots__ = ("depth", "dropped", "waiting")
-
-    def __init__(self, depth: int) -> None:
-        self.depth = depth
-        self.waiting: deque[Any] = deque(maxlen=depth or None)
-        self.dropped = 0
-
-    def put(self, arrived: Any) -> bool:
-        """Keep it. True if there is one more now than before."""
-        waiting = self.waiting
-        full = len(waiting) == waiting.maxlen
-        if full:
-            self.dropped += 1
-        waiting.append(arrived)
-        return not full
-
-    def take(self) -> Any:
-        """Take the oldest. Raises IndexError if there is none."""
-        return self.waiting.popleft()
-
-    def __len__(self) -> int:
-        return len(self.waiting)
+    @property
+    def deliver(self) -> Callable[[Any], None]:
+        """Function that takes what arrived, under the inbox's lock; quick, and no user code."""
 
 
 class Inbox:

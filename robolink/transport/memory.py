@@ -17,10 +17,11 @@ from operator import itemgetter
 from typing import Any
 
 from robolink.exceptions import TransportClosedError
-from robolink.qos import DurabilityPolicy, QoSProfile, resolved
+from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.system import heap
 from robolink.system.fork_locks import fork_lock
 from robolink.transport.base import Handle, NumberingOutlet, Query, Sample, Sink, Transport, make_sample, refuse_giant
+from robolink.transport.history import Latch, latched_depth
 from robolink.wire import check_attachment, pair_opener
 
 
@@ -72,12 +73,12 @@ class MemoryTransport(Transport):
         self._closed = False
 
     def advertise(self, key: str, qos: QoSProfile) -> NumberingOutlet:
-        """Declare a publisher. With TRANSIENT_LOCAL it keeps the last `qos.depth` samples for late joiners."""
+        """Declare a publisher. With TRANSIENT_LOCAL it retains the last `qos.depth` samples for late joiners."""
         with self._declaring():
             return _Outlet(self, key, qos)
 
     def subscribe(self, key: str, qos: QoSProfile, sink: Sink) -> Handle:
-        """Call `sink` for every sample published on `key`; with TRANSIENT_LOCAL what was kept comes first."""
+        """Call `sink` for every sample published on `key`; with TRANSIENT_LOCAL what was retained comes first."""
         with self._declaring():
             return _Subscription(self, key, qos, sink)
 
@@ -186,8 +187,8 @@ class _Outlet(_Declared):
         super().__init__(session)
         self.key = key
         latched = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
-        self.kept: deque[tuple[int, tuple[bytes, bytes]]] = deque(maxlen=resolved(qos).depth if latched else 0)
-        self.put_numbered = _putting(self, latched)
+        self.latch: Latch[tuple[int, tuple[bytes, bytes]]] | None = Latch(latched_depth(qos)) if latched else None
+        self.put_numbered = _putting(self)
         self.bus.outlets[key] = (*self.bus.outlets.get(key, ()), self)
 
     def put(self, payload: bytes, attachment: bytes) -> None:
@@ -199,15 +200,16 @@ class _Outlet(_Declared):
 
     def leave(self) -> None:
         _drop(self.bus.outlets, self.key, self)
-        self.kept.clear()
+        if self.latch is not None:
+            self.latch.clear()
 
 
-def _putting(outlet: _Outlet, keeps: bool) -> Callable[[bytes, Callable[[], bytes]], bytes]:
+def _putting(outlet: _Outlet) -> Callable[[bytes, Callable[[], bytes]], bytes]:
     """Return an outlet's `put_numbered`: a closure, for every message comes here. It hands on plain pairs for `read`.
 
     It takes the lock without `with`, which would cost twice as much on Python 3.11.
     """
-    bus, key, kept = outlet.bus, outlet.key, outlet.kept
+    bus, key, latch = outlet.bus, outlet.key, outlet.latch
     acquire, release, listening = bus.lock.acquire, bus.lock.release, bus.subscriptions.get
 
     def put_numbered(payload: bytes, attachment: Callable[[], bytes]) -> bytes:
@@ -220,8 +222,8 @@ def _putting(outlet: _Outlet, keeps: bool) -> Callable[[bytes, Callable[[], byte
                 heap.keep()
             subscriptions, sent = listening(key), attachment()
             pair = (payload, sent)
-            if keeps:
-                kept.append((bus.next_order(), pair))
+            if latch is not None:
+                latch.retain((bus.next_order(), pair))
             if subscriptions is not None:
                 for each in subscriptions:
                     if each.open:  # no sink before it has closed this one
@@ -240,11 +242,12 @@ class _Subscription(_Declared):
         self.key, self.sink = key, sink
         self.bus.subscriptions[key] = (*self.bus.subscriptions.get(key, ()), self)
         if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-            self._catch_up(resolved(qos).depth)
+            self._catch_up(latched_depth(qos))
 
     def _catch_up(self, depth: int) -> None:
-        kept = [each for outlet in self.bus.outlets.get(self.key, ()) for each in list(outlet.kept)[-depth:]]
-        for _, sample in sorted(kept, key=itemgetter(0)):
+        latches = [outlet.latch for outlet in self.bus.outlets.get(self.key, ()) if outlet.latch is not None]
+        retained = (each for latch in latches for each in latch.last(depth))
+        for _, sample in sorted(retained, key=itemgetter(0)):
             self.sink(sample)
 
     def leave(self) -> None:

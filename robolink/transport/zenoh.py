@@ -29,6 +29,7 @@ from robolink.transport import zenoh_declare as declare
 from robolink.transport import zenoh_handles as handles
 from robolink.transport import zenoh_reunion as reunion
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample, refuse_giant
+from robolink.transport.history import Latch, latched_depth
 from robolink.transport.reach import Link, Reach, links_of, port_of, reach
 from robolink.transport.shared_pools import PoolLimit
 from robolink.transport.zenoh_recovery import Recovery
@@ -91,7 +92,7 @@ class ZenohTransport(Transport):
         """Declare a publisher. With TRANSIENT_LOCAL it keeps the last `qos.depth` samples for late joiners."""
         made, full = self._make(key, declare.declare_publishers, key, resolved(qos)), resolved(qos)
         keeps = self._moves and qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
-        kept = handles.Kept(full.depth) if keeps else None
+        kept = Latch[tuple[bytes, bytes]](latched_depth(qos)) if keeps else None
         cache = self._recovery.cache(key, full, self._make, self._settle)
         return self._settle(handles.ZenohOutlet(self._holdings, key, made, kept, cache))
 

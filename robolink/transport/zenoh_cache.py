@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import struct
-import threading
-from collections import deque
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
@@ -13,11 +11,11 @@ import msgspec
 from robolink.system import clocks
 from robolink.wire import fields_of
 
-MOST_KEPT = 4096
-"""Most messages that a publisher keeps: with KEEP_ALL, 40 s of 100 Hz."""
+MOST_RETAINED = 4096
+"""Most messages that a publisher retains: with KEEP_ALL, 40 s of 100 Hz."""
 
 MOST_BYTES = 1 << 24
-"""Most bytes that a publisher keeps; of larger messages there are fewer."""
+"""Most bytes that a publisher retains; of larger messages there are fewer."""
 
 PART = 1 << 16
 """Size in bytes from which an answer is sent in several parts."""
@@ -40,33 +38,11 @@ class Answer(NamedTuple):
     messages: list[tuple[bytes, bytes]]
 
 
-class Cache:
-    """The last messages of a publisher.
-
-    Args:
-        most: Number of them.
-    """
-
-    def __init__(self, most: int) -> None:
-        self._lock = threading.RLock()  # re-entrant: a signal handler may publish, too
-        self._kept: deque[tuple[bytes, bytes]] = deque()
-        self._most, self._bytes = most, 0
-
-    def add(self, payload: bytes, attachment: bytes) -> None:
-        """Keep a message, in the place of the oldest one if there are enough."""
-        with self._lock:
-            self._kept.append((payload, attachment))
-            self._bytes += len(payload)
-            while len(self._kept) > self._most or self._bytes > MOST_BYTES:
-                self._bytes -= len(self._kept.popleft()[0])
-
-    def newer(self, asked: Asked) -> list[tuple[bytes, bytes]]:
-        """Return what is newer than what a subscription has, in the order of its numbers."""
-        with self._lock:
-            kept = list(self._kept)
-        since = clocks.now() - asked.age
-        found = [(number, each) for each in kept if (number := _newer(each[1], asked, since)) is not None]
-        return [each for _, each in sorted(found, key=_number)]  # threads that publish may overtake each other
+def newer(retained: Iterable[tuple[bytes, bytes]], asked: Asked) -> list[tuple[bytes, bytes]]:
+    """Return what is newer than what a subscription has, in the order of its numbers."""
+    since = clocks.now() - asked.age
+    found = [(number, each) for each in retained if (number := _newer(each[1], asked, since)) is not None]
+    return [each for _, each in sorted(found, key=_number)]  # threads that publish may overtake each other
 
 
 def _newer(attachment: bytes, asked: Asked, since: int) -> int | None:

@@ -14,6 +14,7 @@ import zenoh
 from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from robolink.transport import lifetime
 from robolink.transport.base import Sink
+from robolink.transport.history import latched_depth
 from robolink.transport.reach import mode_of
 
 MOST_BETWEEN = 1 << 16
@@ -62,7 +63,7 @@ def declare_publishers(session: zenoh.Session, key: str, qos: QoSProfile) -> Pub
     keeping = ext.declare_advanced_publisher(
         session,
         key,
-        cache=ext.CacheConfig(max_samples=qos.depth),
+        cache=ext.CacheConfig(max_samples=latched_depth(qos)),
         publisher_detection=True,
         sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=0.5) if reliable else None,
         **options,
@@ -82,7 +83,7 @@ def declare_subscriber(session: zenoh.Session, key: str, gate: Sink, qos: QoSPro
         session,
         key,
         zenoh.handlers.FifoChannel(MOST_BETWEEN),
-        history=ext.HistoryConfig(detect_late_publishers=True, max_samples=qos.depth),
+        history=ext.HistoryConfig(detect_late_publishers=True, max_samples=latched_depth(qos)),
         recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if reliable else None,
         subscriber_detection=True,
     )

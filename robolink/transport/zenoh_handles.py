@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import threading
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -17,8 +17,8 @@ from robolink.networks.settings import LONGEST_WAIT
 from robolink.system import clocks, heap
 from robolink.transport import lifetime
 from robolink.transport.base import Sample, Sink, refuse_giant
+from robolink.transport.history import Latch
 from robolink.transport.network import reason
-from robolink.transport.zenoh_cache import Cache
 from robolink.transport.zenoh_declare import Publishers, aim_gate, close_gate, is_matching, quietly
 from robolink.transport.zenoh_mending import Mending
 from robolink.transport.zenoh_sieve import Sieve
@@ -167,14 +167,6 @@ class _Gone:
     matching = False
 
 
-class Kept:
-    """The last messages of a latched topic, for the publisher that replaces this one."""
-
-    def __init__(self, depth: int) -> None:
-        self.lock = threading.Lock()
-        self.last: deque[tuple[bytes, bytes]] = deque(maxlen=depth)
-
-
 class ZenohOutlet(Declared):
     """A publisher."""
 
@@ -182,7 +174,7 @@ class ZenohOutlet(Declared):
         "_asked",
         "_declare_remote",
         "_has_told",
-        "_kept",
+        "_latch",
         "_matched_until",
         "_remote",
         "_topic",
@@ -191,23 +183,28 @@ class ZenohOutlet(Declared):
     )
 
     def __init__(
-        self, holdings: Holdings, key: str, made: Made, kept: Kept | None = None, cache: Cache | None = None
+        self,
+        holdings: Holdings,
+        key: str,
+        made: Made,
+        latch: Latch[tuple[bytes, bytes]] | None = None,
+        cache: Latch[tuple[bytes, bytes]] | None = None,
     ) -> None:
         # First, since it may be shut from the moment on that the session has it.
         publishers: Publishers = made.entity
         self.cache = cache
         self.key, self._topic, self._asked = key, holdings.topic(key), publishers.asked
-        self._declare_remote, self._kept = publishers.declare_remote, kept
+        self._declare_remote, self._latch = publishers.declare_remote, latch
         self._remote: Any = None
         self._has_told, self._matched_until = False, 0.0
         super().__init__(holdings, made._replace(entity=publishers.used))
 
     def adopt(self, made: Any, session: Any) -> list[Any]:
-        """Go on with these publishers; what is kept for late joiners is kept by the new one."""
-        if self._kept is None:
+        """Go on with these publishers; what is retained for late joiners is retained by the new one."""
+        if self._latch is None:
             return super().adopt(made, session)
-        with self._kept.lock:
-            for payload, attachment in self._kept.last:
+        with self._latch.lock:
+            for payload, attachment in self._latch.last():
                 quietly(functools.partial(made.used.put, payload, attachment=attachment))
             return super().adopt(made, session)
 
@@ -223,8 +220,8 @@ class ZenohOutlet(Declared):
     def put(self, payload: bytes, attachment: bytes) -> None:
         """Send to every matching subscription. Raises TransportClosedError after close, TransportError for giants."""
         if self.cache is not None:
-            self.cache.add(payload, attachment)
-        if self._kept is not None or len(payload) >= LARGE:
+            self.cache.retain((payload, attachment), len(payload))
+        if self._latch is not None or len(payload) >= LARGE:
             self._put_rarely(payload, attachment)
             return
         if self._topic.sinks:
@@ -237,9 +234,9 @@ class ZenohOutlet(Declared):
 
     def _put_rarely(self, payload: bytes, attachment: bytes) -> None:
         """Send a large message, or one of a latched topic."""
-        with self._kept.lock if self._kept is not None else contextlib.nullcontext():
-            if self._kept is not None:
-                self._kept.last.append((payload, attachment))
+        with self._latch.lock if self._latch is not None else contextlib.nullcontext():
+            if self._latch is not None:
+                self._latch.retain((payload, attachment))
             if len(payload) >= LARGE:
                 self._put_large(payload, attachment)
             else:

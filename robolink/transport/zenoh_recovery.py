@@ -19,12 +19,13 @@ from typing import Any, NamedTuple
 import msgspec
 import zenoh
 
-from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from robolink.system import clocks
 from robolink.transport import lifetime
 from robolink.transport import zenoh_declare as declare
 from robolink.transport.base import Sink
-from robolink.transport.zenoh_cache import MOST_KEPT, Answer, Asked, Cache, parts, together
+from robolink.transport.history import Latch, stored_depth
+from robolink.transport.zenoh_cache import MOST_BYTES, MOST_RETAINED, Answer, Asked, newer, parts, together
 from robolink.transport.zenoh_handles import Declared, Holdings, Made, ZenohOutlet
 from robolink.transport.zenoh_mending import Mending
 
@@ -171,7 +172,7 @@ class Recovery:
         self._offer: _Offer | None = None
         self._is_asking = self._has_watched = self._has_offered = False
 
-    def cache(self, key: str, qos: QoSProfile, make: Make, settle: Settle) -> Cache | None:
+    def cache(self, key: str, qos: QoSProfile, make: Make, settle: Settle) -> Latch[tuple[bytes, bytes]] | None:
         """Return the cache of a publisher of a resolved profile; None if it needs none.
 
         `make` and `settle` declare, the first time, that messages are sent again to who asks.
@@ -183,7 +184,7 @@ class Recovery:
         if not has_offered:
             self._offer = _Offer(self._holdings, make(self._prefix, self._declare_offer))
             settle(self._offer)
-        return Cache(MOST_KEPT if qos.history is HistoryPolicy.KEEP_ALL else min(qos.depth, MOST_KEPT))
+        return Latch(min(stored_depth(qos) or MOST_RETAINED, MOST_RETAINED), MOST_BYTES)
 
     def mend(self, key: str, qos: QoSProfile, sink: Sink, make: Make, settle: Settle) -> Sink:
         """Return the sink of a subscription of a resolved profile: if need be one that puts in order what comes again.
@@ -239,7 +240,7 @@ class Recovery:
             handles = list(self._holdings.handles)
         for each in handles:
             if isinstance(each, ZenohOutlet) and each.cache is not None and each.key == asked.key:
-                yield from parts(asked.key, each.cache.newer(asked))
+                yield from parts(asked.key, newer(each.cache.last(), asked))
 
     def _declare_watch(self, session: Any) -> _Watched:
         generation, pattern = _Generation(session), f"{self._prefix}/*/*"

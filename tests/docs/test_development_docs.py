@@ -85,8 +85,8 @@ def _names(body: list[ast.stmt], above: str) -> Any:
 
 def test_places_are_found_and_wrong_ones_are_told() -> None:
     assert places("`wire/keys.py:format_key`, `Makefile`") == [("wire/keys.py", "format_key"), ("Makefile", "")]
-    assert not wrong("running/inbox.py", "Mailbox.put")
-    assert wrong("running/inbox.py", "Mailbox.putt") == "running/inbox.py defines no Mailbox.putt"
+    assert not wrong("transport/history.py", "Mailbox.take")
+    assert wrong("transport/history.py", "Mailbox.takes") == "transport/history.py defines no Mailbox.takes"
     assert wrong("running/nowhere.py", "") == "running/nowhere.py: no such file"
 
 

@@ -1,4 +1,4 @@
-"""Inboxes and mailboxes: nothing lost, nothing kept for ever, and no Python code where the network calls."""
+"""Inboxes: nothing lost, nothing kept for ever, and no Python code where the network calls."""
 
 from __future__ import annotations
 
@@ -8,14 +8,11 @@ import queue
 import sys
 import threading
 import weakref
-from collections import deque
 from typing import Any
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from robolink.running.inbox import Inbox, Mailbox, Sweeper
+from robolink.running.inbox import Inbox, Sweeper
 from robolink.system.queues import get_within
 
 PATIENCE = 30.0
@@ -23,8 +20,6 @@ PATIENCE = 30.0
 
 class Target:
     """Keeps what it is given."""
-
-    straight = False
 
     def __init__(self, inbox: Inbox) -> None:
         self.sink: functools.partial[Any] = inbox.sink(self)
@@ -34,23 +29,6 @@ class Target:
     def deliver(self, arrived: Any) -> None:
         self.got.append(arrived)
         self.delivered.set()
-
-
-@given(st.integers(0, 5), st.lists(st.integers(0, 9)))
-def test_a_mailbox_keeps_the_last_and_counts_the_rest(depth: int, steps: list[int]) -> None:
-    mailbox, model, dropped = Mailbox(depth), deque[int](), 0
-    for step in steps:
-        if step == 0 and model:
-            assert mailbox.take() == model.popleft()
-            continue
-        grew = mailbox.put(step)
-        model.append(step)
-        full = bool(depth) and len(model) > depth
-        if full:
-            model.popleft()
-        dropped += full
-        assert grew is not full
-    assert (list(mailbox.waiting), len(mailbox), mailbox.dropped) == (list(model), len(model), dropped)
 
 
 def test_whoever_clears_an_inbox_for_others_wakes_who_waits_there() -> None:

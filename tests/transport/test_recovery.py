@@ -18,7 +18,7 @@ from robolink.transport.base import Sample
 from robolink.transport.reach import Link, Reach
 from robolink.transport.stuck_links import PAUSE, Waiting
 from robolink.transport.zenoh import ZenohTransport
-from robolink.transport.zenoh_cache import Answer, Asked, Cache, parts, together
+from robolink.transport.zenoh_cache import Answer, Asked, newer, parts, together
 from robolink.transport.zenoh_handles import Holdings
 from robolink.transport.zenoh_mending import Mending
 from robolink.transport.zenoh_recovery import Recovery
@@ -40,38 +40,21 @@ def numbers(passed: list[Sample]) -> list[int]:
 # --- what is kept ---------------------------------------------------------------------------------------------------
 
 
-def test_a_cache_has_the_last_messages() -> None:
-    cache = Cache(3)
-    for number in range(1, 6):
-        cache.add(*sample(number))
-    assert cache.newer(Asked("key", 0, {GID: 0})) == [sample(number) for number in (3, 4, 5)]
-    assert cache.newer(Asked("key", 0, {GID: 4})) == [sample(5)]
-
-
-def test_a_cache_keeps_so_many_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(zenoh_cache, "MOST_BYTES", 10)
-    cache = Cache(100)
-    for number in range(1, 5):
-        cache.add(b"four", stamped(number))
-    assert [each[1] for each in cache.newer(Asked("key", 0, {GID: 0}))] == [stamped(3), stamped(4)]
-    cache.add(b"more than ten bytes", stamped(5))
-    assert cache.newer(Asked("key", 0, {GID: 0})) == []
+def test_who_asks_gets_what_is_newer_than_what_it_has() -> None:
+    retained = [sample(number) for number in (3, 4, 5)]
+    assert newer(retained, Asked("key", 0, {GID: 0})) == retained
+    assert newer(retained, Asked("key", 0, {GID: 4})) == [sample(5)]
 
 
 def test_a_subscription_gets_of_unknown_publishers_what_is_younger_than_itself() -> None:
-    cache = Cache(10)
     now = time.time_ns()
-    cache.add(b"old", stamped(1, at=now - 100 * 10**9))
-    cache.add(b"new", stamped(2, at=now))
-    cache.add(b"plain", b"no number")
-    assert [each[0] for each in cache.newer(Asked("key", 60 * 10**9, {}))] == [b"new"]
+    old, new = (b"old", stamped(1, at=now - 100 * 10**9)), (b"new", stamped(2, at=now))
+    assert newer([old, new, (b"plain", b"no number")], Asked("key", 60 * 10**9, {})) == [new]
 
 
-def test_a_cache_answers_in_the_order_of_numbers_though_threads_overtook_each_other() -> None:
-    cache = Cache(10)
-    for number in (1, 3, 2, 4):
-        cache.add(*sample(number))
-    assert cache.newer(Asked("key", 0, {GID: 1})) == [sample(number) for number in (2, 3, 4)]
+def test_an_answer_is_in_the_order_of_numbers_though_threads_overtook_each_other() -> None:
+    retained = [sample(number) for number in (1, 3, 2, 4)]
+    assert newer(retained, Asked("key", 0, {GID: 1})) == [sample(number) for number in (2, 3, 4)]
 
 
 def test_a_topic_is_asked_for_once_for_all_of_its_subscriptions() -> None:

@@ -14,8 +14,9 @@ import pytest
 
 from robolink.exceptions import TransportClosedError, TransportError
 from robolink.qos import QoSProfile
-from robolink.running.inbox import Inbox, Mailbox
+from robolink.running.inbox import Inbox
 from robolink.transport import base
+from robolink.transport.history import Mailbox
 from tests.support.transports import (
     ADD,
     BEST_EFFORT,
@@ -303,8 +304,6 @@ def test_session_ids_are_hex_and_differ(net: Network) -> None:
 
 class Subscriber:
     """What a subscription of a node is to an inbox: a mailbox."""
-
-    straight = False
 
     def __init__(self, inbox: Inbox, depth: int) -> None:
         self.inbox, self.mailbox, self.sink = inbox, Mailbox(depth), inbox.sink(self)

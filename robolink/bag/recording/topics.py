@@ -7,8 +7,9 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
-from robolink.qos import DurabilityPolicy, QoSProfile, resolved
+from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.running.backlog import Gaps
+from robolink.transport.history import latched_depth
 from robolink.wire import EndpointToken
 
 MOST_LATCHED = 1000
@@ -76,7 +77,7 @@ class RecordedTopic:
     def latched_depth(self) -> int:
         """Number of messages that its publishers keep for late subscriptions, all together."""
         latched = [each for each in self.profiles if each.durability is DurabilityPolicy.TRANSIENT_LOCAL]
-        return min(MOST_LATCHED, sum(max(1, resolved(each).depth) for each in latched))
+        return min(MOST_LATCHED, sum(map(latched_depth, latched)))
 
     def keep(self, depth: int) -> None:
         """Keep so many last messages from now on, to be repeated."""

@@ -7,9 +7,10 @@ from collections.abc import Iterable, Mapping
 
 from robolink.graph.endpoint import Owner
 from robolink.graph.listening import ALL_BEST_EFFORT, keys_of, listen
-from robolink.qos import DurabilityPolicy, QoSProfile, resolved
+from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.running.timed_arrivals import ArrivalType
 from robolink.transport.base import Handle
+from robolink.transport.history import latched_depth
 from robolink.view.channels import Channel, Kept
 from robolink.wire import EndpointToken, gid_in
 
@@ -52,7 +53,7 @@ class Listening:
     def follow(self, publishers: Mapping[bytes, EndpointToken]) -> None:
         """Listen to those of these publishers that are of the channel's type."""
         own = {gid: each for gid, each in publishers.items() if self.channel.fits(each)}
-        self._depths = {gid: resolved(each.qos).depth for gid, each in own.items() if latches([each])}
+        self._depths = {gid: latched_depth(each.qos) for gid, each in own.items() if latches([each])}
         if self._depths and not self._latched:  # a plain subscription hears nothing of before
             self.close()
             self._latched = True
