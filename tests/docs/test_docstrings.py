@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -56,6 +55,8 @@ EXEMPT: dict[str, str] = {}
 """Functions that need not document their arguments, each with the reason."""
 
 RIDDLE = re.compile(r"(Gives?|Says?|Tells?|What|Whose|Who|Whether|Be|Have|Has|How)\b")
+LIKELY = re.compile(rf'"""\s*{RIDDLE.pattern}')
+"""What a file has in which a docstring opens so: only such files are parsed, since there are a thousand others."""
 
 
 def files(room: str) -> list[Path]:
@@ -103,14 +104,16 @@ def test_every_public_function_documents_all_its_arguments(room: str) -> None:
 
 @pytest.mark.parametrize("room", ROOMS)
 def test_no_docstring_opens_with_a_riddle(room: str) -> None:
-    assert [str(each) for path in files(room) for each in texts(path) if RIDDLE.match(each.text)] == []
+    likely = [path for path in files(room) if LIKELY.search(path.read_text(encoding="utf-8"))]
+    assert [str(each) for path in likely for each in texts(path) if RIDDLE.match(each.text)] == []
 
 
 def test_no_module_opens_with_a_question() -> None:
     """Those that have no docstring are ruff's matter (D100)."""
-    docs = {path: ast.get_docstring(module(path).tree) or "" for room in ROOMS for path in files(room)}
-    assert [str(path) for path, text in docs.items() if re.match(r"(What|Whose|Who)\b", text)] == []
-    assert len(docs) > 500
+    sources = {path: path.read_text(encoding="utf-8") for room in ROOMS for path in files(room)}
+    question = re.compile(r'(?:#.*\n|\s)*r?"""\s*(What|Whose|Who)\b')
+    assert [str(path) for path, text in sources.items() if question.match(text)] == []
+    assert len(sources) > 500
 
 
 def test_each_room_has_files_and_functions() -> None:

@@ -6,6 +6,7 @@ rclpy's Node has some ninety public methods, each with a docstring of its own: i
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,6 +17,9 @@ LONGEST_FILE, LONGEST_BODY = 600, 40
 """Most lines of a file, and of a function without its signature and its docstring."""
 LONG_WITH_DOCSTRINGS = ("robolink/node.py",)
 """Files whose docstrings and blank lines do not count."""
+
+LONG = re.compile(rf"^( *)(?:async )?def .*\n(?:(?:\1[ )].*)?\n){{{LONGEST_BODY},}}", re.MULTILINE)
+"""What a file has that may hold too long a function, its signature included: only such files are parsed."""
 
 PROGRAMS = ROOT / "tests" / "tutorials"
 Function = ast.FunctionDef | ast.AsyncFunctionDef
@@ -68,10 +72,12 @@ def test_no_file_has_more_than_600_lines() -> None:
 
 
 def test_no_function_has_more_than_40_lines() -> None:
+    texts = {path: path.read_text("utf-8") for path in files(*CODE)}
     found = [
         f"{path.relative_to(ROOT).as_posix()}:{node.lineno}: {node.name}: {body_lines(node)}"
-        for path in files(*CODE)
-        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        for path, text in texts.items()
+        if LONG.search(text)
+        for node in ast.walk(ast.parse(text))
         if isinstance(node, Function) and body_lines(node) > LONGEST_BODY
     ]
     assert found == []

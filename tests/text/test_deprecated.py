@@ -72,7 +72,6 @@ def test_what_is_overdue_is_found() -> None:
 def test_nothing_is_overdue() -> None:
     version = re.search(r'^version = "(.+)"$', (ROOT / "pyproject.toml").read_text(encoding="utf-8"), re.MULTILINE)
     assert version is not None
-    files = (ROOT / "robolink").rglob("*.py")
-    assert [
-        (each.name, late) for each in files if (late := overdue(each.read_text(encoding="utf-8"), version[1]))
-    ] == []
+    texts = {each: each.read_text(encoding="utf-8") for each in (ROOT / "robolink").rglob("*.py")}
+    using = {each: text for each, text in texts.items() if "deprecated(" in text}
+    assert [(each.name, late) for each, text in using.items() if (late := overdue(text, version[1]))] == []
