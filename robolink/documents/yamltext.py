@@ -33,7 +33,7 @@ MAX_NODES = 100_000
 MAX_SLOW_NODES = 20_000
 """Most nodes where PyYAML has no libyaml, which is five times as fast."""
 SHORT = 20_000
-"""Longest text, in characters, for PyYAML's own parser, whose error messages are the clearer ones."""
+"""Longest text, in characters, that PyYAML's own parser reads again for its error message, if libyaml's refuses it."""
 MAX_DEPTH = 64
 LONGEST_INT = 1000
 """Most digits of an integer: Python does not print one of more than 4,300, though it parses it from hexadecimal."""
@@ -80,7 +80,7 @@ class _Bounded(Composer):
 
 
 class _Loader(_Bounded, yaml.SafeLoader):
-    """PyYAML's own loader, for short texts, and for all where there is no libyaml."""
+    """PyYAML's own loader, for errors of short texts, and for all where there is no libyaml."""
 
     most = MAX_SLOW_NODES
 
@@ -88,12 +88,20 @@ class _Loader(_Bounded, yaml.SafeLoader):
 if CParser is not None:
 
     class _FastLoader(_Bounded, CParser, Resolver):
-        """libyaml's parser, which gives the same places."""
+        """libyaml's parser, which gives the same places, but for a value that is left out."""
 
         def __init__(self, text: str) -> None:
+            self._is_short = len(text) <= SHORT
             CParser.__init__(self, text)
             Composer.__init__(self)
             Resolver.__init__(self)
+
+        def compose_scalar_node(self, anchor: Any) -> yaml.ScalarNode:
+            node = super().compose_scalar_node(anchor)
+            if self._is_short and not node.value and not node.style:
+                raise yaml.YAMLError("a value is left out")  # PyYAML's own parser knows its place
+            node.style = node.style or None  # as PyYAML's own parser has it for a plain scalar
+            return node
 
 
 for _name, _pattern, _first in _PLAIN:
@@ -112,7 +120,18 @@ def compose(text: str, name: str) -> yaml.Node | None:
     if strange := yaml.reader.Reader.NON_PRINTABLE.search(text):
         message = f"character U+{ord(strange[0]):04X} is not allowed in YAML"
         raise DocumentError(message, name, *_place(text, strange.start()))
-    loader = _loader(text)
+    if CParser is None or text.startswith("\ufeff"):  # a mark that libyaml does not count
+        return _composed(_Loader(text), name)
+    try:
+        return _composed(_FastLoader(text), name)
+    except DocumentError:
+        if len(text) > SHORT:
+            raise
+        return _composed(_Loader(text), name)  # five times as slow, and its error messages are the clearer ones
+
+
+def _composed(loader: _Bounded, name: str) -> yaml.Node | None:
+    """Return the node of the one document that a loader reads."""
     try:
         with _no_collection():
             return loader.get_single_node()
@@ -123,11 +142,6 @@ def compose(text: str, name: str) -> yaml.Node | None:
         raise DocumentError(shown(str(error)), name, *place(_mark(loader))) from None
     finally:
         loader.dispose()
-
-
-def _loader(text: str) -> _Bounded:
-    is_short = len(text) <= SHORT or text.startswith("\ufeff")  # a mark that libyaml does not count
-    return _Loader(text) if CParser is None or is_short else _FastLoader(text)
 
 
 def _mark(loader: _Bounded) -> yaml.Mark:
