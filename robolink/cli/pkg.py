@@ -136,7 +136,7 @@ def executables(
         for name, source in sorted(_executables_of(package).items()):
             if not full_path:
                 say(f"{package} {name}")
-            elif source.path is not None:
+            else:
                 say(str(source.path))
 
 

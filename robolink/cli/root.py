@@ -1,4 +1,4 @@
-"""Root of the command line: the table of all nouns, each imported when it is used."""
+"""Root of the command line: it imports a noun when it is used (`robolink.cli.shared.commands`)."""
 
 from __future__ import annotations
 
@@ -6,72 +6,19 @@ import functools
 import importlib
 import os
 import sys
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 import typer.core
 import typer.main
 
-from robolink.cli.shared.noun import Noun, added_command, added_help, added_names, meant
+from robolink.cli.shared.commands import NOUNS, added_command, added_names
+from robolink.cli.shared.noun import Noun, meant
 from robolink.cli.shared.output import say
 from robolink.system.terminal import wants_colour
 
 if TYPE_CHECKING:
     Context = Any  # typer's own moved with its copy of click
-
-
-class Entry(NamedTuple):
-    """Entry of a command in the table: its module and its help; `verb` picks one command out of a noun's."""
-
-    module: str
-    help: str
-    verb: str = ""
-
-    @property
-    def hidden(self) -> bool:
-        """True if help does not list it: an alias, or a command that robolink starts in another process."""
-        return not self.help
-
-
-COMMANDS = {
-    "run": Entry("robolink.cli.running_nodes.run", "Run a node."),
-    "launch": Entry("robolink.cli.launching.launch", "Run a system of nodes that a file describes."),
-    "simulate": Entry(
-        "robolink.cli.launching.simulate", "Run a system in virtual time, with faults, as fast as it goes."
-    ),
-    "new": Entry("robolink.cli.new", "Make a project, a node or a world to begin with."),
-    "pkg": Entry("robolink.cli.pkg", "Make packages, and see which there are and what they have."),
-    "learn": Entry("robolink.cli.learn", "Learn by exercises that are checked in a simulated world."),
-    "race": Entry("robolink.cli.race", "Race programs in a simulated world: a score for a seed."),
-    "race-run": Entry("robolink.cli.race.serving", ""),
-    "run-together": Entry("robolink.cli.running_nodes.run_together", ""),
-    "look-into": Entry("robolink.cli.running_nodes.look_into", ""),
-    "pub": Entry("robolink.cli.topic.command", "Publish messages: short for topic pub.", "pub"),
-    "topic": Entry("robolink.cli.topic.command", "See and send what nodes publish."),
-    "node": Entry("robolink.cli.node", "See which nodes there are, and what each of them does."),
-    "service": Entry("robolink.cli.service", "See which services there are, and call them."),
-    "param": Entry("robolink.cli.param", "See and change the parameters of running nodes."),
-    "lifecycle": Entry("robolink.cli.lifecycle", "See in which states managed nodes are, and move them on."),
-    "action": Entry("robolink.cli.action", "See which actions there are, and send goals."),
-    "learn-check": Entry("robolink.cli.learn.serving", ""),
-    "bag": Entry("robolink.cli.bag", "Record bags of messages, look at them, convert and mend them."),
-    "tf": Entry("robolink.cli.tf", "See where frames are in each other."),
-    "top": Entry("robolink.cli.top", "Show what nodes use and what topics carry, again and again."),
-    "image": Entry("robolink.cli.image", "See and save what cameras publish."),
-    "plot": Entry("robolink.cli.plot", "Draw where robots go, and values over time."),
-    "view": Entry("robolink.cli.view", "Show a running system, or a bag, in the browser."),
-    "world": Entry("robolink.cli.world", "Check, draw and list the worlds that are simulated."),
-    "interface": Entry("robolink.cli.interface", "See the types of messages, services and actions."),
-    "security": Entry("robolink.cli.security", "Make keys for nodes, and say what each may do."),
-    "component": Entry("robolink.cli.component", "See what containers hold, and load nodes into them."),
-    "multicast": Entry("robolink.cli.multicast", "Try whether multicast passes between machines."),
-    "network": Entry("robolink.cli.doctor.network", "See whom nodes may meet here, whom they have found, and how."),
-    "router": Entry("robolink.cli.router", "Run a router, for machines that cannot reach each other directly."),
-    "doctor": Entry("robolink.cli.doctor", "Find out what is wrong here or on the network."),
-    "shim": Entry("robolink.cli.shim", "Write a second command, ros2 or colcon, that leads to robolink."),
-    "daemon": Entry("robolink.cli.daemon", ""),
-    "wtf": Entry("robolink.cli.doctor", ""),
-}
 
 
 OF_ROS2 = {
@@ -106,11 +53,11 @@ class Root(typer.core.TyperGroup):
 
     def list_commands(self, ctx: Context) -> list[str]:
         """Return the names that help lists, in the order of the table, then those of other packages."""
-        return [*(name for name, entry in COMMANDS.items() if not entry.hidden), *_added()]
+        return [*(name for name, entry in NOUNS.items() if not entry.hidden), *_added()]
 
     def get_command(self, ctx: Context, cmd_name: str) -> Any:
         """Import and return a command; None for an unknown name."""
-        entry = COMMANDS.get(cmd_name)
+        entry = NOUNS.get(cmd_name)
         if entry is None:
             return added_command(cmd_name, kind=Noun)
         found = _command_of(entry.module)
@@ -123,13 +70,13 @@ class Root(typer.core.TyperGroup):
         verb = next((each for each in args[1:] if not each.startswith("-")), "")
         if (args[0], verb) in VERBS_OF_ROS2:
             ctx.fail(f"ros2's '{args[0]} {verb}' is not here: {VERBS_OF_ROS2[args[0], verb]}")
-        if args[0] not in COMMANDS and args[0] not in _added():
+        if args[0] not in NOUNS and args[0] not in _added():
             shown = self.list_commands(ctx)
             ctx.fail(f"no command named '{args[0]}'{meant(args[0], shown, lambda noun: self._verbs(ctx, noun))}")
         return super().resolve_command(ctx, args)
 
     def _verbs(self, ctx: Context, noun: str) -> list[str]:
-        command: Any = self.get_command(ctx, noun) if noun in COMMANDS else None  # another package's may not even load
+        command: Any = self.get_command(ctx, noun) if noun in NOUNS else None  # another package's may not even load
         return command.list_commands(ctx) if hasattr(command, "list_commands") else []
 
     def shell_complete(self, ctx: Context, incomplete: str) -> list[Any]:
@@ -138,21 +85,26 @@ class Root(typer.core.TyperGroup):
         item = _click_of(type(self), "shell_completion").CompletionItem
         names = [name for name in self.list_commands(ctx) if name.startswith(incomplete)]
         options: list[Any] = base.shell_complete(self, ctx, incomplete)  # type: ignore[attr-defined]
-        texts = {name: entry.help for name, entry in COMMANDS.items()}
+        texts = {name: entry.help for name, entry in NOUNS.items()}
         return [*(item(name, help=texts.get(name, "")) for name in names), *options]
 
     def format_commands(self, ctx: Context, formatter: Any) -> None:
         """Write the list of commands into the help, without importing any but those of other packages."""
         with formatter.section("Commands"):
-            formatter.write_dl([(name, entry.help) for name, entry in COMMANDS.items() if not entry.hidden])
+            formatter.write_dl([(name, entry.help) for name, entry in NOUNS.items() if not entry.hidden])
         if added := _added():
             with formatter.section("Commands of other packages"):
-                formatter.write_dl([(name, added_help(name)) for name in added])
+                formatter.write_dl([(name, _help_of(name)) for name in added])
 
 
 def _added() -> list[str]:
     """Return the names of the commands that other packages add, and that robolink has not."""
-    return [each for each in added_names() if each not in COMMANDS]
+    return [each for each in added_names() if each not in NOUNS]
+
+
+def _help_of(name: str) -> str:
+    """Return the first line of the help of a command that another package adds; the reason, if it is broken."""
+    return str(added_command(name).get_short_help_str(limit=100))
 
 
 def _click_of(cls: type, module: str) -> Any:

@@ -19,8 +19,8 @@ from robolink.interfaces.standard import packages, set_home, types_of
 from robolink.text.suggestions import LackingModuleError, lacking, names_in
 from robolink.workspace.modules import FINDER, Fill, Filling
 
-MESSAGES = frozenset(packages())
-TOPS = frozenset({*MESSAGES, *(name for name in ROOMS if "." not in name)})
+TYPES = "robolink.interfaces"
+TOPS = frozenset({*packages(), *(name for name in ROOMS if "." not in name)})
 """The top-level names that are robolink's."""
 ALIKE = 0.85
 """Similarity from 0 to 1, as `closest` computes it, above which an unknown name is a misspelt one of ROS 2's."""
@@ -54,10 +54,15 @@ def maker(fullname: str) -> Fill | None:
         return None
     if fullname in ROOMS and not ROOMS[fullname]:
         return _fill_package
-    parent, _, last = fullname.rpartition(".")
-    if last.startswith("_") and parent.partition(".")[0] in MESSAGES:
-        return functools.partial(_fill_private, fullname, _defined_in(fullname))
+    return room_fill(fullname)
+
+
+def room_fill(fullname: str) -> Fill:
+    """Return the function that puts robolink's module in the place of a name. Raises LackingModuleError."""
     room = room_of(fullname)
+    parent, _, last = fullname.rpartition(".")
+    if last.startswith("_") and room_of(parent).startswith(f"{TYPES}."):
+        return functools.partial(_fill_private, fullname, _defined_in(fullname))
     if not room or not _is_there(room):
         raise LackingModuleError(fullname, functools.partial(_modules_beside, fullname), instead_of(fullname))
     return functools.partial(_put, fullname, room)
@@ -119,7 +124,7 @@ def room_of(fullname: str) -> str:
         name, _, last = name.rpartition(".")
         rest = f".{last}{rest}"
     if not name:
-        return f"robolink.interfaces.{fullname}"
+        return f"{TYPES}.{fullname}"
     return ROOMS[name] + rest if ROOMS[name] else ""
 
 
@@ -156,7 +161,7 @@ def _put(fullname: str, room: str, _new: ModuleType) -> None:
     module: Any = importlib.import_module(room)
     sys.modules[fullname] = module
     package, _, kind = fullname.partition(".")
-    holds_types = package in MESSAGES and kind in KINDS
+    holds_types = room.startswith(f"{TYPES}.") and kind in KINDS
     if holds_types or any(name.startswith(f"{fullname}.") for name in ROOMS):
         vars(module).setdefault("__path__", [])  # else Python asks no finder for geometry_msgs.msg._twist
     if holds_types:
@@ -187,7 +192,7 @@ def _asked(fullname: str, module: ModuleType, own: Callable[[str], Any] | None, 
 def _home_of(fullname: str, name: str) -> str:
     """Return which other message package has a type of this name, or how ROS 2 spells a part of a service."""
     package, _, kind = fullname.partition(".")
-    if package not in MESSAGES or kind not in KINDS:
+    if kind not in KINDS or not types_of(package, kind):
         return ""
     service, part = next(((name.removesuffix(each), each) for each in PARTS if name.endswith(each)), ("", ""))
     if service in types_of(package, kind):

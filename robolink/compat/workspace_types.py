@@ -1,4 +1,4 @@
-"""Import of the interface types of a workspace: the one in which the file that imports them lies, or the user's."""
+"""Import of interface types: of the workspace of the file that imports them, of the user's, of an installed package."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ import sys
 from pathlib import Path
 from types import FrameType
 
-from robolink.compat.maker import TOPS
+from robolink.compat.maker import TOPS, room_fill
 from robolink.interfaces import KINDS
+from robolink.interfaces.standard import INTERFACES
 from robolink.workspace import workspace_of
 from robolink.workspace.interfaces import WORKSPACE_TYPES, interface_module, use_interfaces
 from robolink.workspace.modules import FINDER, Fill
@@ -18,16 +19,24 @@ _IMPORTERS = ("<frozen importlib", "<frozen zipimport")
 
 
 def workspace_types(fullname: str) -> Fill | None:
-    """Return the function that fills the module `fullname`, `my_msgs` or `my_msgs.msg`; None if no workspace has it.
+    """Return the function that fills the module `fullname`, `my_msgs` or `my_msgs.msg`; None if nobody has it.
 
-    Workspaces are read when a name is asked for that nobody else has, so that imports stay fast.
+    Workspaces and entry points are read for a name that is installed nowhere, so that imports stay fast.
     """
-    top, dot, kind = fullname.partition(".")
+    top, dot, inner = fullname.partition(".")
+    kind, _, private = inner.partition(".")
     if top in TOPS or top in sys.stdlib_module_names or (dot and kind not in KINDS):
         return None
     real = None if dot else FINDER.real(top)
     if real is not None and real.loader is not None:  # a folder that is not a package has none
         return None
+    fill = None if private else _of_workspace(fullname)
+    if fill is None and top in INTERFACES.added():  # last: reading entry points takes ten milliseconds
+        return room_fill(fullname)
+    return fill
+
+
+def _of_workspace(fullname: str) -> Fill | None:
     file = _importing_file()
     home = None if file is None else workspace_of(file.parent)
     with WORKSPACE_TYPES.forgetting():

@@ -12,12 +12,14 @@ There are five: commands, programs, sensors, interfaces and nodes. How to write 
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from pathlib import Path
+from typing import TYPE_CHECKING, Generic, TypeVar
 
-from robolink.exceptions import RobolinkError
+from robolink.exceptions import NotFoundError, RobolinkError
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -87,6 +89,14 @@ class Registry(Generic[T]):
             place = f"{_package(entry)} adds '{entry.name}' ({self.group}), which cannot be loaded from {entry.value}"
             raise ExtensionError(f"{place}: {' '.join(reason.split())}") from error
 
+    def usable(self) -> dict[str, T]:
+        """Return all parts by name, but for those of other packages that cannot be used."""
+        found = dict(self.table())
+        for name, entry in self.added().items():
+            with contextlib.suppress(ExtensionError):  # one broken package must not break what lists them all
+                found.setdefault(name, self.read(entry))
+        return found
+
     def problems(self) -> Iterator[str]:
         """Yield what is wrong with the parts of other packages, one line each: broken ones, and names given twice."""
         own = self.table()
@@ -115,35 +125,26 @@ def _entry_points(group: str, _path: tuple[str, ...]) -> Mapping[str, list[Entry
     return found
 
 
-def _package(entry: EntryPoint) -> str:
-    return entry.dist.name if entry.dist is not None else "a package"
-
-
-COMMANDS = "robolink.commands"
-"""Group of commands: NAME for a noun (a typer.Typer), NOUN.VERB for a verb of one (a function, or a typer.Typer)."""
-NODES = "robolink.nodes"
-"""Group of nodes that `robolink run NAME` and launch files find: a Node class, or a function without arguments."""
-SENSORS = "robolink.sensors"
-"""Group of sensors for world files: a `robolink.sim.sensors.SensorKind`, by the key that names it in a world file."""
-
-
-def added(group: str) -> Mapping[str, EntryPoint]:
-    """Return the entry points of a group by name; of two with one name, the first by its package's name.
+def module_path(module: str) -> Path:
+    """Return the file of a module, or the folder of a package or of data; nothing is imported.
 
     Args:
-        group: Such as `COMMANDS`.
-    """
-    return Registry[Any](group, dict).added()
-
-
-def load(group: str, name: str) -> Any:
-    """Return the object that an entry point leads to; None if no package adds this name.
-
-    Args:
-        group: Such as `COMMANDS`.
-        name: Name of the entry point.
+        module: Dotted name.
 
     Raises:
-        ExtensionError: If it cannot be imported.
+        NotFoundError: If its first part is not installed.
     """
-    return Registry[Any](group, dict).get(name)
+    top, *inner = module.split(".")
+    # Robolink's own finders ask the registries for names that nobody has: they would come back here.
+    finders = (each for each in sys.meta_path if not str(each.__module__).startswith("robolink."))
+    spec = next(filter(None, (each.find_spec(top, None) for each in finders)), None)
+    if spec is None or (spec.origin is None and not spec.submodule_search_locations):
+        raise NotFoundError("module", top)
+    if not spec.submodule_search_locations:
+        return Path(str(spec.origin))
+    place = Path(next(iter(spec.submodule_search_locations)), *inner)
+    return place if place.is_dir() else place.with_suffix(".py")
+
+
+def _package(entry: EntryPoint) -> str:
+    return entry.dist.name if entry.dist is not None else "a package"

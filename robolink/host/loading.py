@@ -19,7 +19,7 @@ from robolink.workspace import NodeLoadError, NodeSource, load_node
 
 def load(source: NodeSource, program: ProgramLike) -> Callable[[], Any]:
     """Return the Node class of a source, or a function that runs its script. Raises what `load_node` raises."""
-    if source.path is not None and not source.module:
+    if not source.module:
         _forget(str(source.path.resolve()))
     return load_node(source, script=lambda found, reach: _script(found, reach, program))
 

@@ -4,8 +4,9 @@
 >>> find("Twist")  # geometry_msgs.msg is imported now, and only it
 <class 'robolink.interfaces.geometry_msgs.msg.Twist'>
 
-Types that do not come with robolink are found in the same way, once their source is added (`add_source`); the
-workspace's `.msg`, `.srv` and `.action` files are one (`robolink.workspace.use_interfaces`).
+Types of installed packages that add some (`standard.INTERFACES`) are found in the same way, and those of a source, once
+it is added (`add_source`): the workspace's `.msg`, `.srv` and `.action` files are one
+(`robolink.workspace.use_interfaces`).
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ from collections.abc import Collection, Mapping
 from typing import Any, Protocol
 
 from robolink.exceptions import MessageError, NotFoundError
+from robolink.interfaces.standard import added_type, added_types, standard_type, types_of
 from robolink.interfaces.standard import packages as standard_packages
-from robolink.interfaces.standard import standard_type, types_of
 from robolink.text import advice
 
 __all__ = ["Source", "add_source", "find", "find_announced", "is_named", "names", "register", "remove_source"]
@@ -148,30 +149,34 @@ _EXAMPLES = {
 
 
 def _package_of(short: str, kind: str) -> str:
-    types = _types(kind)
+    types = _types(kind, added=False)
     packages = [package for package in types if short in types[package]]
-    if not packages:
+    preferred = next(filter(None, ([each for each in packages if each in group] for group in FIRST)), [])
+    if not preferred:
+        types = _types(kind)  # late: of the usual names no entry points are read
+        preferred = [package for package in types if short in types[package]]
+    if not preferred:
         raise NotFoundError(f"{KINDS[kind]} type", short, [each for known in types.values() for each in known])
-    preferred = next(filter(None, ([each for each in packages if each in group] for group in FIRST)), packages)
     if len(preferred) > 1:
         candidates = " or ".join(f"{package}/{kind}/{short}" for package in preferred)
         raise MessageError(f"several {KINDS[kind]} types are named '{short}': say {candidates}")
     return preferred[0]
 
 
-def _types(kind: str) -> dict[str, list[str]]:
-    types = {package: list(found) for package in standard_packages() if (found := types_of(package, kind))}
-    known = [
-        (package, short) for source in _sources for package, shorts in source.names(kind).items() for short in shorts
-    ]
+def _types(kind: str, *, added: bool = True) -> dict[str, list[str]]:
+    """Return the names of all types of a kind, by package; with `added` those too that other packages add."""
+    standard = {package: types_of(package, kind) for package in standard_packages()}
+    found = {package: list(names) for package, names in standard.items() if names}
+    others = [*(source.names(kind) for source in _sources), *([added_types(kind)] if added else ())]
+    known = [(package, short) for each in others for package, shorts in each.items() for short in shorts]
     for full_name in _registered:
         package, of_kind, short = full_name.split("/")
         if of_kind == kind:
             known.append((package, short))
     for package, short in known:
-        if short not in types.setdefault(package, []):
-            types[package].append(short)
-    return types
+        if short not in found.setdefault(package, []):
+            found[package].append(short)
+    return found
 
 
 def _packages() -> list[str]:
@@ -187,7 +192,7 @@ def _get(package: str, kind: str, short: str) -> type[Any] | None:
         found = source.get(package, kind, short)
         if found is not None:
             return standard if standard is not None and _same(found, standard) else found
-    return standard
+    return added_type(package, kind, short) if standard is None else standard
 
 
 def _same(one: type[Any], other: type[Any]) -> bool:

@@ -3,6 +3,11 @@
 `robolink.interfaces.geometry_msgs.msg` is not a file: an import finder makes the module, and its attributes on demand
 of `geometry_msgs/msg/*.msg`. A program pays for the types that it uses, and a package is added as data. The stubs
 `geometry_msgs/msg/__init__.pyi`, made by tools/interface_stubs.py, are for type checkers.
+
+Other packages add theirs, which are read and imported in the same way, by an entry point that leads to the folder:
+
+    [project.entry-points."robolink.interfaces"]
+    compass_msgs = "robolink_compass.compass_msgs"  # robolink_compass/compass_msgs/msg/Heading.msg
 """
 
 from __future__ import annotations
@@ -15,9 +20,13 @@ from collections.abc import Callable, Sequence
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from robolink.exceptions import NotFoundError, nearest
+from robolink.exceptions import MessageError, NotFoundError, RobolinkError, nearest
+from robolink.extensions import Registry, module_path
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 FOLDER = Path(__file__).parent
 KINDS = ("msg", "srv", "action")
@@ -26,6 +35,7 @@ ROOT = "robolink.interfaces"
 PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
 
 _made: dict[tuple[str, str, str], type[Any]] = {}
+_making: list[Path] = []
 _homes: dict[tuple[str, str], Callable[[str], str]] = {}
 _lock = threading.RLock()
 """Held while a class is made: two threads that use a type first must get one class."""
@@ -33,21 +43,46 @@ _lock = threading.RLock()
 
 @functools.cache
 def packages() -> tuple[str, ...]:
-    """Return the names of the packages, sorted."""
+    """Return the names of the packages that come with robolink, sorted."""
     with os.scandir(FOLDER) as entries:
         return tuple(sorted(each.name for each in entries if each.is_dir() and not each.name.startswith("_")))
 
 
 @functools.cache
+def _own() -> dict[str, Path]:
+    return {package: FOLDER / package for package in packages()}
+
+
+def _folder(entry: EntryPoint) -> Path:
+    """Return the folder of a package of types that an entry point leads to."""
+    folder = module_path(entry.value)
+    if not any(_types_in(folder, kind) for kind in KINDS):
+        raise RobolinkError(f"{folder} has no types, such as msg/NAME.msg")
+    return folder
+
+
+INTERFACES = Registry("robolink.interfaces", _own, _folder)
+"""Registry of the packages of types: their folders, with `msg/`, `srv/` and `action/`, by name."""
+
+
 def types_of(package: str, kind: str) -> tuple[str, ...]:
     """Return the names of a package's types of a kind, sorted; none where it has none.
 
     Args:
         package: Name of the package.
         kind: msg, srv or action.
+
+    Raises:
+        ExtensionError: If another package adds it, and it cannot be used.
     """
+    folder = INTERFACES.get(package)
+    return () if folder is None else _types_in(folder, kind)
+
+
+@functools.cache
+def _types_in(folder: Path, kind: str) -> tuple[str, ...]:
     try:
-        with os.scandir(FOLDER / package / kind) as entries:
+        with os.scandir(folder / kind) as entries:
             return tuple(
                 sorted(each.name.removesuffix(f".{kind}") for each in entries if each.name.endswith(f".{kind}"))
             )
@@ -55,10 +90,30 @@ def types_of(package: str, kind: str) -> tuple[str, ...]:
         return ()
 
 
+def added_types(kind: str) -> dict[str, tuple[str, ...]]:
+    """Return the types of a kind that other packages add: package to names; broken packages are left out."""
+    folders = INTERFACES.usable() if INTERFACES.added() else {}
+    return {package: _types_in(folder, kind) for package, folder in folders.items() if package not in packages()}
+
+
 def standard_type(package: str, kind: str, short: str) -> type[Any] | None:
     """Return the class of a standard type; None if there is none of this name."""
+    return _type(package, kind, short) if package in packages() else None
+
+
+def added_type(package: str, kind: str, short: str) -> type[Any] | None:
+    """Return the class of a type that another package adds; None if there is none of this name.
+
+    Raises:
+        ExtensionError: If the package cannot be used.
+        MessageError: If the definition is wrong.
+    """
+    return None if package in packages() else _type(package, kind, short)
+
+
+def _type(package: str, kind: str, short: str) -> type[Any] | None:
     found = _made.get((package, kind, short))
-    if found is not None or package not in packages() or short not in types_of(package, kind):
+    if found is not None or short not in types_of(package, kind):
         return found
     with _lock:
         return _made.get((package, kind, short)) or _make(package, kind, short)
@@ -68,8 +123,16 @@ def _make(package: str, kind: str, short: str) -> type[Any]:
     from robolink.message.building import build  # late: messages import this package
     from robolink.message.definition import parse
 
-    path = FOLDER / package / kind / f"{short}.{kind}"
-    made = build(parse(path.read_text(encoding="utf-8"), f"{package}/{kind}/{short}", str(path)), _nested)
+    folder = INTERFACES.get(package)
+    assert folder is not None
+    path = folder / kind / f"{short}.{kind}"
+    if path in _making:
+        raise MessageError(f"a message cannot contain itself: {path}")
+    _making.append(path)
+    try:
+        made = build(parse(path.read_text(encoding="utf-8"), f"{package}/{kind}/{short}", str(path)), _nested)
+    finally:
+        _making.pop()
     _place(made, package, kind, short)
     _made[package, kind, short] = made
     return made
@@ -77,7 +140,7 @@ def _make(package: str, kind: str, short: str) -> type[Any]:
 
 def _nested(type_name: str) -> type[Any]:
     """Return the class of a message within a message."""
-    found = standard_type(*type_name.split("/"))
+    found = _type(*type_name.split("/"))
     if found is None:
         raise NotFoundError("message type", type_name, ())
     return found
@@ -118,10 +181,11 @@ class StandardFinder:
         if not fullname.startswith(f"{ROOT}."):
             return None
         package, _, kind = fullname[len(ROOT) + 1 :].partition(".")
-        if package not in packages() or (kind and not types_of(package, kind)):
+        folder = INTERFACES.get(package)
+        if folder is None or (kind and not _types_in(folder, kind)):
             return None
         spec = ModuleSpec(fullname, self, is_package=True)  # type: ignore[arg-type] # importlib.abc takes 2 ms to import
-        spec.submodule_search_locations = [str(FOLDER / package)] if not kind else []
+        spec.submodule_search_locations = [str(folder)] if not kind else []
         return spec
 
     def create_module(self, _: ModuleSpec) -> None:
@@ -130,9 +194,11 @@ class StandardFinder:
     def exec_module(self, module: ModuleType) -> None:
         """Fill a package with its README as docstring, or a module with its types, each made when it is first used."""
         package, _, kind = module.__name__[len(ROOT) + 1 :].partition(".")
-        module.__file__ = str(FOLDER / package / kind)
+        folder = INTERFACES.get(package)
+        assert folder is not None
+        module.__file__, readme = str(folder / kind), folder / "README.md"
         if not kind:
-            module.__doc__ = (FOLDER / package / "README.md").read_text(encoding="utf-8")
+            module.__doc__ = readme.read_text(encoding="utf-8") if readme.is_file() else None
             return
         names = types_of(package, kind)
         vars(module)["__all__"] = list(names)
@@ -143,7 +209,7 @@ class StandardFinder:
 def _attribute(module: ModuleType, package: str, kind: str, name: str) -> Any:
     """Return a type of a module, or the part of one that pickle looks for: `SetBool_Request`."""
     short, _, part = name.partition("_")
-    found: Any = None if name.startswith("_") else standard_type(package, kind, short)
+    found: Any = None if name.startswith("_") else _type(package, kind, short)
     if found is not None and part:
         found = vars(found).get(part)
     if found is None:

@@ -78,7 +78,7 @@ def names_in(source: NodeSource) -> list[str]:
     import ast
 
     try:
-        tree: ast.AST = ast.parse(read_plain(source.path, LONGEST_SOURCE) if source.path is not None else b"")
+        tree: ast.AST = ast.parse(read_plain(source.path, LONGEST_SOURCE))
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
         return []
     classes = (each for each in ast.iter_child_nodes(tree) if isinstance(each, ast.ClassDef))

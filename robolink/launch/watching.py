@@ -36,7 +36,7 @@ def settings_of(launched: Iterable[Launched]) -> set[Path]:
 
 
 def _of_nodes(entries: Sequence[Entry]) -> list[Path]:
-    return [each.source.path for each in entries if each.source is not None and each.source.path is not None]
+    return [each.source.path for each in entries if each.source is not None]
 
 
 def _of_command(command: Sequence[str]) -> list[Path]:

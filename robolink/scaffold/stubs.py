@@ -16,11 +16,13 @@ import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import robolink
 from robolink import interfaces
 from robolink.compat.names import ROOMS
-from robolink.interfaces.standard import packages, types_of
+from robolink.exceptions import MessageError
+from robolink.interfaces.standard import added_types, packages, types_of
 from robolink.message.stub import stub_of
 from robolink.workspace.interfaces import WORKSPACE_TYPES, use_interfaces
 
@@ -204,11 +206,22 @@ def _standard_types() -> dict[str, str]:
 
 
 def _own_types() -> dict[str, str]:
-    """Return the stubs of the workspace's own packages, and of those of the built-in workspace."""
+    """Return the stubs of the workspace's own packages, of the built-in workspace's, and of installed ones."""
     found: dict[str, str] = {}
     for kind in interfaces.KINDS:
-        for package, names in WORKSPACE_TYPES.names(kind).items():
-            if not types_of(package, kind):
-                types = [interfaces.find(f"{package}/{kind}/{each}", kind) for each in sorted(set(names))]
-                found[f"{package}/{kind}.pyi"] = stub_of(types, kind)
+        own = WORKSPACE_TYPES.names(kind)
+        for package, names in {**added_types(kind), **own}.items():
+            if names and package not in packages():
+                types = [_found(f"{package}/{kind}/{each}", kind, package in own) for each in sorted(set(names))]
+                found[f"{package}/{kind}.pyi"] = stub_of([each for each in types if each is not None], kind)
     return found
+
+
+def _found(name: str, kind: str, is_own: bool) -> type[Any] | None:
+    """Return the class of a type; None for one of an installed package that is wrong, which its user cannot mend."""
+    try:
+        return interfaces.find(name, kind)
+    except MessageError:
+        if is_own:
+            raise
+        return None

@@ -11,7 +11,7 @@ import msgspec
 
 from robolink.documents.json_schema import DRAFT, described, draft_7, text_of
 from robolink.sim.description import WorldDescription
-from robolink.sim.sensors import Sensor, sensor_kinds
+from robolink.sim.sensors import SENSORS, Sensor
 
 Schema: TypeAlias = "dict[str, Any]"
 
@@ -102,9 +102,9 @@ _OUTLINES = [{"required": [kind]} for kind in ("box", "circle", "polygon")]
 
 def world_schema() -> Schema:
     """Return the schema of world files as plain data."""
-    types = [WorldDescription, *(each.description for each in sensor_kinds().values())]
+    types = [WorldDescription, *(each.description for each in SENSORS.usable().values())]
     _, parts = msgspec.json.schema_components(types, schema_hook=_any_sensor, ref_template="#/definitions/{name}")
-    meanings = {**MEANINGS, **dict.fromkeys(sensor_kinds(), "The topic that it publishes on.")}
+    meanings = {**MEANINGS, **dict.fromkeys(SENSORS.usable(), "The topic that it publishes on.")}
     definitions = {name: described(name, draft_7(part), meanings) for name, part in sorted(parts.items())}
     for shape in ("Shape", "Obstacle"):
         definitions[shape]["oneOf"] = _OUTLINES
@@ -123,4 +123,4 @@ def _any_sensor(kind: type) -> Schema:
     """Return the schema of an item in a list of sensors."""
     if kind is not Sensor:
         raise NotImplementedError(kind)
-    return {"oneOf": [{"$ref": f"#/definitions/{each.description.__name__}"} for each in sensor_kinds().values()]}
+    return {"oneOf": [{"$ref": f"#/definitions/{each.description.__name__}"} for each in SENSORS.usable().values()]}

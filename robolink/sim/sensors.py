@@ -8,13 +8,16 @@ from __future__ import annotations
 import functools
 import importlib
 from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, TypeAlias
 
 from msgspec import Meta, Struct
 
-from robolink.extensions import SENSORS as GROUP
-from robolink.extensions import ExtensionError, added, load
+from robolink.exceptions import RobolinkError
+from robolink.extensions import Registry
 from robolink.sim.quantities import Length, Pose, Rate, Share
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 Deviation: TypeAlias = Annotated[float, Meta(ge=0.0, le=100.0)]
 Nearest: TypeAlias = Annotated[float, Meta(ge=0.0, le=10_000.0)]
@@ -252,7 +255,7 @@ def _kind(described: type[Sensor], message: str, convert: str) -> SensorKind:
     )
 
 
-SENSORS: dict[str, SensorKind] = {
+_KINDS = {
     each.description.__struct_fields__[0]: each
     for each in (
         _kind(Lidar, "sensor_msgs.msg:LaserScan", "scan_message"),
@@ -263,37 +266,21 @@ SENSORS: dict[str, SensorKind] = {
         _kind(Camera, "sensor_msgs.msg:Image", "image_message"),
     )
 }
-"""Kinds of sensors that come with robolink, by the key that names them in a world file."""
 
 
-def sensor_kinds() -> dict[str, SensorKind]:
-    """Return all kinds of sensors by their keys: robolink's, then those that other packages add.
-
-    Raises:
-        ExtensionError: If one of those cannot be loaded, or is not a SensorKind.
-    """
-    return {**{name: _added(name) for name in added(GROUP)}, **SENSORS}
+def _kind_at(entry: EntryPoint) -> SensorKind:
+    found = entry.load()
+    if not isinstance(found, SensorKind):
+        raise RobolinkError(f"a sensor is a robolink.sim.sensors.SensorKind, not a {type(found).__name__}")
+    return found
 
 
-def sensor_kind(key: str) -> SensorKind | None:
-    """Return the kind of sensor that a key of a world file names; None if it names none.
-
-    Raises:
-        ExtensionError: If another package adds it, and it cannot be loaded or is not a SensorKind.
-    """
-    return SENSORS.get(key) or (_added(key) if key in added(GROUP) else None)
+SENSORS = Registry("robolink.sensors", lambda: _KINDS, _kind_at)
+"""Registry of the kinds of sensors, by the key that names them in a world file."""
 
 
 def kind_of(sensor: Sensor) -> SensorKind:
     """Return the kind of a sensor."""
-    found = sensor_kind(sensor.kind)
+    found = SENSORS.get(sensor.kind)
     assert found is not None, f"no kind of sensor has the key {sensor.kind}"
-    return found
-
-
-def _added(key: str) -> SensorKind:
-    found = load(GROUP, key)
-    if not isinstance(found, SensorKind):
-        what = type(found).__name__
-        raise ExtensionError(f"'{key}' ({GROUP}) is a {what}; a sensor is a robolink.sim.sensors.SensorKind")
     return found

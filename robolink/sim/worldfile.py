@@ -20,7 +20,7 @@ from robolink.exceptions import DocumentError, RobolinkError, nearest
 from robolink.sim.checks.pictures import picture_problems, with_paths
 from robolink.sim.checks.worlds import mass_problems, misfits, problems
 from robolink.sim.description import WorldDescription
-from robolink.sim.sensors import Sensor, sensor_kind, sensor_kinds
+from robolink.sim.sensors import SENSORS, Sensor
 
 if TYPE_CHECKING:
     from robolink.sim.maps.gridmap import GridMap
@@ -89,14 +89,17 @@ def sensor_class(kind: type, data: Any) -> type[Sensor]:
     """Return the class of a sensor by the one key that names its kind. Raises ValueError if none does, or several."""
     if not isinstance(data, dict):
         raise ValueError("expected a mapping such as {lidar: scan}")
-    kinds = {key: found for key in data if (found := sensor_kind(key)) is not None}
+    own = SENSORS.table()
+    kinds = [key for key in data if key in own] or [key for key in data if key in SENSORS.added()]
     if len(kinds) > 1:
         raise ValueError(f"one sensor cannot be both {' and '.join(kinds)}: make each of them an item of its own")
     if not kinds:
-        known = sensor_kinds()
+        known = SENSORS.names()
         near = next(filter(None, (nearest(key, known) for key in data)), "")
         raise ValueError(f"this sensor has no kind{near}: one of its keys must be {', '.join(known)}")
-    return next(iter(kinds.values())).description
+    found = SENSORS.get(kinds[0])
+    assert found is not None
+    return found.description
 
 
 def _mistakes(

@@ -4,7 +4,7 @@ A workspace is a folder with two of `nodes/`, `configs/` and `interfaces/`, or a
 packages, or, where there is neither, a clone of a repository with packages, a lone package, or a folder of some. A name
 is looked up (1) as a path, (2) in the nearest workspace: the one requested, `ROBOLINK_WORKSPACE`, the working
 directory's or a parent's (if it can be trusted: `trust`), or the one whose `install/setup.bash` was sourced last, (3)
-among the entry points `robolink.nodes` of installed packages, (4) in the workspace that comes with robolink. `_` and
+in the workspace that comes with robolink, (4) among the entry points `robolink.nodes` of installed packages. `_` and
 `-` in names are the same.
 """
 
@@ -13,10 +13,10 @@ from __future__ import annotations
 import contextlib
 import os
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from robolink.exceptions import NotFoundError, nearest
-from robolink.extensions import NODES, added
 from robolink.system.paths import expanded, is_file
 from robolink.workspace.built_in import built_in_workspace
 from robolink.workspace.installed import COLCON
@@ -30,7 +30,7 @@ from robolink.workspace.packages import (
     named_executables,
     source_packages,
 )
-from robolink.workspace.programs import executable_of, lacking_executable, program_names
+from robolink.workspace.programs import NODES, executable_of, lacking_executable, nodes_in, program_names
 from robolink.workspace.source import Folder, NodeSource, canonical
 from robolink.workspace.trust import is_trusted, why_not
 
@@ -63,7 +63,10 @@ def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
     asked = canonical(file.removesuffix(".py"))
     for source in _node_sources(workspace):
         if canonical(source.name) == asked:
-            return NodeSource(source.name, source.path, attribute, source.entry_point)
+            return NodeSource(source.name, source.path, attribute)
+    added = next((NODES.get(each) for each in NODES.added() if canonical(each) == asked), None)
+    if added is not None:
+        return replace(added, attribute=attribute or added.attribute)
     raise _no_node(file, workspace)
 
 
@@ -184,7 +187,8 @@ def list_nodes(*, workspace: Folder = None) -> list[NodeSource]:
 
     `workspace` is a folder that serves as the user's workspace; None looks for it.
     """
-    return sorted(_unshadowed(_node_sources(workspace)), key=lambda each: each.name)
+    every = [*_node_sources(workspace), *NODES.usable().values()]
+    return sorted(_unshadowed(every), key=lambda each: each.name)
 
 
 def list_launches(*, workspace: Folder = None) -> list[Path]:
@@ -300,22 +304,9 @@ def _files_beside(path: Path) -> Iterator[str]:
 
 
 def _node_sources(workspace: Folder) -> Iterator[NodeSource]:
-    """Yield all nodes in the order of the look-up."""
-    *own, built_in = _workspaces(workspace)
-    for folder in own:
-        yield from _nodes_in(folder)
-    yield from _installed_nodes()
-    yield from _nodes_in(built_in)
-
-
-def _nodes_in(workspace: Path) -> Iterator[NodeSource]:
-    for path in sorted((workspace / "nodes").glob("*.py")):
-        if not path.name.startswith("_"):
-            yield NodeSource(path.stem, path)
-
-
-def _installed_nodes() -> Iterator[NodeSource]:
-    yield from (NodeSource(each.name, entry_point=each) for each in added(NODES).values())
+    """Yield the nodes of the workspaces in the order of the look-up."""
+    for folder in _workspaces(workspace):
+        yield from nodes_in(folder)
 
 
 def _find_file(kind: str, name: str, inside: str, workspace: Folder, suffixes: tuple[str, ...]) -> Path:

@@ -55,10 +55,6 @@ def load_node(source: NodeSource, *, script: ScriptMaker | None = None) -> Runna
         NodeLoadError: if the file has no node, or several, or is not Python.
         NotFoundError: if it lacks the attribute. Whatever the file itself raises is raised as it is.
     """
-    if source.path is None:
-        assert source.entry_point is not None
-        use_interfaces()
-        return _checked(source.entry_point.load(), source.entry_point.value)
     if source.module and not source.path.is_file():
         near = nearest(source.path.name, (each.name for each in source.path.parent.glob("*.py")))
         raise NodeLoadError(f"{source.name} is {source.module}, says its package, but there is no {source.path}{near}")
@@ -102,8 +98,6 @@ def own_process_needed(source: NodeSource) -> str:
 
     Only a Node class can: a `main()` or a script makes and spins its nodes itself. Raises `NodeLoadError`.
     """
-    if source.path is None:
-        return ""
     tree = _parse(source.path)
     if source.attribute:
         is_program, what = _defines(tree, "FunctionDef", source.attribute), f"a function ({source.attribute})"
@@ -147,7 +141,6 @@ def load_module(path: Path) -> ModuleType:
 
 def _loaded(source: NodeSource) -> ModuleType:
     """Return the module of a node: one of a package by its name, any other file by its path."""
-    assert source.path is not None
     if not source.module or source.root is None:
         return load_module(source.path)
     _reach_all(source)
@@ -284,7 +277,6 @@ def _script(source: NodeSource, path: Path) -> Callable[[], Any]:
 
 
 def _reach_all(source: NodeSource) -> None:
-    assert source.path is not None
     if source.module and source.root is not None:
         _forget_others(source.module.partition(".")[0], source.root)
     _reach(source.path.parent, source.root)

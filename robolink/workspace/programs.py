@@ -1,28 +1,29 @@
-"""Programs of packages by their ROS names: `robolink run turtlesim turtlesim_node`, and components in launch files.
+"""Programs by name: executables of packages, components, and nodes.
 
-Each is one line in the file `entry_points.txt` of the folder with its code, as in the metadata of a package that was
-installed; other packages add theirs by entry points of the same form:
+`robolink run turtlesim turtlesim_node` and launch files find a program of a package by one line in the file
+`entry_points.txt` of the folder with its code. It has the form of the metadata of an installed package, since other
+packages add theirs by entry points:
 
     [robolink.programs]
     turtlesim.draw_square = robolink.counterparts.turtlesim.draw_square:DrawSquare
     image_tools::Cam2Image = robolink.counterparts.image_tools.cam2image:Cam2Image
 
 The name is `PACKAGE.EXECUTABLE`, or that of a component's C++ class; the value is `MODULE:NAME` of a function without
-arguments or of a Node class. `nodes/NAME` is a node that comes with robolink. A user's own package goes first.
+arguments or of a Node class, or `nodes/NAME` for a file of robolink's own folder `nodes/`. Other packages add nodes for
+`robolink run NAME` by the group `robolink.nodes`. What is in a user's own workspace goes first.
 """
 
 from __future__ import annotations
 
 import contextlib
 import functools
-import importlib.util
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
-from robolink.extensions import ExtensionError, Registry
+from robolink.extensions import ExtensionError, Registry, module_path
 from robolink.workspace.built_in import PACKAGE, built_in_workspace
 from robolink.workspace.installed import installed_executables
 from robolink.workspace.packages import compiled_executables, executable, executables, named, named_executables
@@ -59,6 +60,21 @@ def _target(entry: EntryPoint) -> str:
 
 PROGRAMS = Registry("robolink.programs", _own, _target)
 """Registry of the programs: targets by `PACKAGE.EXECUTABLE`, or by a component's class."""
+
+
+def _own_nodes() -> dict[str, NodeSource]:
+    return {each.name: each for each in nodes_in(built_in_workspace())}
+
+
+NODES = Registry("robolink.nodes", _own_nodes, lambda entry: replace(source_at(entry.value), name=entry.name))
+"""Registry of the nodes: sources by name."""
+
+
+def nodes_in(workspace: Path) -> Iterator[NodeSource]:
+    """Yield the nodes in the folder `nodes/` of a workspace, by name."""
+    for path in sorted((workspace / "nodes").glob("*.py")):
+        if not path.name.startswith("_"):
+            yield NodeSource(path.stem, path)
 
 
 def program_names() -> dict[str, list[str]]:
@@ -112,7 +128,7 @@ def program_folder(package: str) -> Path | None:
     own = PACKAGE / "counterparts" / canonical(package)
     if own.is_dir() and programs_of(package):
         return own
-    return next((each.path.parent for each in sources_of(package).values() if each.path is not None), None)
+    return next((each.path.parent for each in sources_of(package).values()), None)
 
 
 def source_at(target: str) -> NodeSource:
@@ -120,16 +136,11 @@ def source_at(target: str) -> NodeSource:
     module, _, attribute = target.partition(":")
     if module.startswith("nodes/"):
         return NodeSource(module.removeprefix("nodes/"), built_in_workspace() / f"{module}.py", attribute)
-    top, _, inner = module.partition(".")
-    if top == PACKAGE.name:
-        return NodeSource(module.rpartition(".")[2], _file_in(PACKAGE, inner), attribute)
-    spec = importlib.util.find_spec(top)  # a package that adds programs; the search imports nothing
-    if spec is None or spec.origin is None:
-        raise NotFoundError("module", top)
-    file = Path(spec.origin)
-    path = _file_in(file.parent, inner) if inner else file
-    root = file.parent.parent if spec.submodule_search_locations else file.parent
-    return NodeSource(module.rpartition(".")[2], path, attribute, module=module, root=root)
+    name = module.rpartition(".")[2]
+    if module.startswith(f"{PACKAGE.name}."):
+        return NodeSource(name, _file(PACKAGE.parent.joinpath(*module.split("."))), attribute)
+    path = module_path(module)
+    return NodeSource(name, _file(path), attribute, module=module, root=path.parents[module.count(".")])
 
 
 def executable_of(package: str, name: str, folder: Path | None) -> NodeSource | None:
@@ -177,7 +188,5 @@ def _source(name: str) -> NodeSource | None:
     return None if target is None else source_at(target)
 
 
-def _file_in(folder: Path, inner: str) -> Path:
-    """Return the file of a module, by its dotted name inside a package's folder."""
-    path = folder.joinpath(*inner.split(".")) if inner else folder
-    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+def _file(place: Path) -> Path:
+    return place / "__init__.py" if place.is_dir() else place.with_suffix(".py")

@@ -1,38 +1,32 @@
-"""Source of a node: a file, a module of a package, or an installed distribution."""
+"""Source of a node: a file, or a module of a package."""
 
 from __future__ import annotations
 
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
-
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
+from typing import TypeAlias
 
 Folder: TypeAlias = "str | os.PathLike[str] | None"
 
 
 @dataclass(frozen=True)
 class NodeSource:
-    """Source of a node, `name`: the file `path` and its `attribute` ('' for the only node), or an `entry_point`.
+    """Source of a node, `name`: the file `path` and its `attribute` ('' for the only node).
 
     A file of a package is imported as `module`, with `root` on `sys.path`, so that it can import its neighbours. A file
     without a `module` may have a `root`, too.
     """
 
     name: str
-    path: Path | None = None
+    path: Path
     attribute: str = ""
-    entry_point: EntryPoint | None = None
     module: str = ""
     root: Path | None = None
 
     @property
     def spec(self) -> str:
-        """Text that finds this again from anywhere: `PATH`, `PATH:attribute` or a name."""
-        if self.path is None:
-            return self.name
+        """Text that finds this again from anywhere: `PATH` or `PATH:attribute`."""
         return f"{self.path}:{self.attribute}" if self.attribute else str(self.path)
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.main import main
-from robolink.cli.root import COMMANDS
+from robolink.cli.shared.commands import NOUNS
 from robolink.supervisor import Supervisor
 from robolink.workspace import VARIABLE
 from tests.support.started import PATIENCE, TALKER, Write, outcome, posix_only, started, wait_for
@@ -31,12 +31,12 @@ def test_the_installed_command_is_this_one() -> None:
 def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
     shown = capsys.readouterr().out
-    listed = {name: entry for name, entry in COMMANDS.items() if not entry.hidden}
+    listed = {name: entry for name, entry in NOUNS.items() if not entry.hidden}
     assert all(f"\n  {name} " in shown and entry.help in shown for name, entry in listed.items())
     assert "wtf" not in shown
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", NOUNS)
 def test_every_command_has_help(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([command, "--help"]) == 0
     assert f"Usage: robolink {command}" in capsys.readouterr().out

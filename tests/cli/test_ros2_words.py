@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.main import main
-from robolink.cli.root import COMMANDS
+from robolink.cli.shared.commands import NOUNS
 from robolink.launch.reading.entries import read_launch_file
 from robolink.workspace.ros_programs import PACKAGES, PROGRAMS, instead_of
 
@@ -101,8 +101,8 @@ def verbs() -> list[list[str]]:
     root = typer.main.get_command(app)
     assert isinstance(root, Root)
     found: list[list[str]] = [[]]
-    for name in COMMANDS:
-        if not COMMANDS[name].hidden:
+    for name in NOUNS:
+        if not NOUNS[name].hidden:
             command = root.get_command(None, name)
             found += [[name], *([name, verb] for verb in getattr(command, "commands", {}))]
     return found

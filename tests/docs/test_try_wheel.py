@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from robolink.cli.root import COMMANDS
+from robolink.cli.shared.commands import NOUNS
 from tests.docs.test_release import LOWEST
 from tools import try_wheel
 
@@ -42,7 +42,7 @@ def test_each_extra_and_each_step_is_of_robolink() -> None:
     assert sorted(try_wheel.EXTRAS) == sorted(LOWEST["USERS"])
     assert set(try_wheel.WAYS) == {"pip", "sdist", "uv", "pipx", "all", *LOWEST["USERS"]}
     words = [step.words.split() for way in try_wheel.WAYS.values() for step in way.steps]
-    assert {each[1] for each in words if each[0] == "robolink"} - {"--version"} <= set(COMMANDS)
+    assert {each[1] for each in words if each[0] == "robolink"} - {"--version"} <= set(NOUNS)
     assert {each[0] for each in words} == {"robolink", "python"}
 
 

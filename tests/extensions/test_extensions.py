@@ -3,24 +3,35 @@
 from __future__ import annotations
 
 import math
+import pickle
+import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 from robolink.cli.main import main
+from robolink.cli.shared.commands import COMMANDS
+from robolink.companions.rosidl_runtime import get_interface_path
 from robolink.exceptions import DocumentError
-from robolink.extensions import COMMANDS, NODES, ExtensionError, added, load
+from robolink.extensions import ExtensionError
+from robolink.interfaces import find
 from robolink.interfaces.std_msgs.msg import Float64
+from robolink.message import type_hash
+from robolink.message.building import build
+from robolink.message.definition import parse
+from robolink.scaffold.stubs import write_stubs
 from robolink.sim import load_world
 from robolink.sim.schema import world_schema
 from robolink.testing import System
-from robolink.workspace import component, program, programs_of
+from robolink.workspace import built_in_workspace, component, find_node, list_nodes, load_node, program, programs_of
 from robolink.workspace.programs import PROGRAMS
 
 CODE = """\
 import typer
+from robolink.node import Node
 
 app = typer.Typer()
 number = 7
@@ -37,8 +48,17 @@ def nodes(topic: str) -> None:
     print("nodes of", topic)
 
 
+class Shop(Node):
+    def __init__(self) -> None:
+        super().__init__("shop")
+
+
 def drive() -> None:
     print("driving")
+
+
+def odd(thing: object) -> None:
+    pass
 
 
 weather = typer.Typer(help="Tell the weather.", no_args_is_help=True)
@@ -61,11 +81,21 @@ hello = demo_extension:app
 weather = demo_extension:weather
 topic.nodes = demo_extension:nodes
 topic.list = demo_extension:nodes
+topic.odd = demo_extension:odd
 broken = demo_extension:lacking
 number = demo_extension:number
 
 [robolink.sensors]
 compass = demo_compass:COMPASS
+
+[robolink.nodes]
+shop-node = demo_extension:Shop
+world = demo_extension:drive
+gone = demo_gone
+
+[robolink.interfaces]
+demo_msgs = demo_types.demo_msgs
+empty_msgs = demo_types
 
 [robolink.programs]
 demo_robot.drive = demo_extension:drive
@@ -74,7 +104,15 @@ turtlesim.turtlesim_node = demo_extension:drive
 demo_robot.gone = demo_gone:main
 nameless = demo_extension:drive
 """
-
+TYPES = {
+    "msg": {
+        "Heading.msg": "# Where a robot looks.\nuint8 NORTH = 0\nfloat64 degrees 90.0\n",
+        "Headings.msg": "std_msgs/Header header\nHeading[] headings\n",
+        "Loop.msg": "Round round\n",
+        "Round.msg": "Loop loop\n",
+    },
+    "srv": {"Turn.srv": "Heading heading\n---\nbool success\n"},
+}
 
 COMPASS = """\
 import math
@@ -114,6 +152,11 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (info / "entry_points.txt").write_text(ENTRY_POINTS)
     (tmp_path / "demo_extension.py").write_text(CODE)
     (tmp_path / "demo_compass.py").write_text(COMPASS)
+    types = tmp_path / "demo_types/demo_msgs"
+    for kind, files in TYPES.items():
+        (types / kind).mkdir(parents=True)
+        for name, text in files.items():
+            (types / kind / name).write_text(text)
     monkeypatch.syspath_prepend(tmp_path)
     for each in ("demo_extension", "demo_compass"):
         monkeypatch.delitem(sys.modules, each, raising=False)
@@ -149,7 +192,9 @@ def test_help_lists_them_with_those_that_cannot_be_loaded(capsys: pytest.Capture
     ]  # fmt: skip
     assert "Greet somebody." in listed
     assert main(["topic", "--help"]) == 0
-    assert "nodes    List who uses a topic." in capsys.readouterr().out.replace("  nodes  ", "  nodes    ")
+    listed = capsys.readouterr().out
+    assert re.search(r"nodes +List who uses a topic\.", listed)
+    assert re.search(r"odd +demo-extension adds 'topic\.odd'", listed)
 
 
 @pytest.mark.usefixtures("package")
@@ -160,7 +205,14 @@ def test_help_lists_them_with_those_that_cannot_be_loaded(capsys: pytest.Capture
             ["broken"],
             "demo-extension adds 'broken' (robolink.commands), which cannot be loaded from demo_extension:lacking",
         ),
-        (["number"], "'number' (robolink.commands) is a int; a command is a typer.Typer or a function"),
+        (
+            ["number"],
+            "demo-extension adds 'number' (robolink.commands), which cannot be loaded from demo_extension:number: a ",
+        ),
+        (
+            ["topic", "odd", "--word", "x"],
+            "demo-extension adds 'topic.odd' (robolink.commands), which cannot be loaded from demo_extension:odd: Run",
+        ),
         (["helo"], "no command named 'helo' (did you mean 'hello'?)"),
         (["topic", "nodez"], "no command named 'topic nodez' (did you mean 'nodes'?)"),
     ],
@@ -194,7 +246,7 @@ def test_a_sensor_of_another_package_measures_in_a_world(system: System, tmp_pat
 def test_a_misspelt_sensor_is_answered_with_those_of_other_packages(tmp_path: Path) -> None:
     world = tmp_path / "world.yaml"
     world.write_text("robots: [{name: ada, sensors: [{compas: heading}]}]\n")
-    with pytest.raises(DocumentError, match=r"did you mean 'compass'\?.*one of its keys must be compass, lidar"):
+    with pytest.raises(DocumentError, match=r"did you mean 'compass'\?.*one of its keys must be lidar.*, compass"):
         load_world(str(world))
 
 
@@ -222,6 +274,52 @@ def test_a_program_that_is_not_there_is_one_line(capsys: pytest.CaptureFixture[s
 
 
 @pytest.mark.usefixtures("package")
+def test_nodes_of_other_packages_are_found_after_robolinks_own() -> None:
+    assert "shop-node" in [each.name for each in list_nodes()]
+    source = find_node("shop_node")
+    assert (source.module, source.attribute) == ("demo_extension", "Shop")
+    assert load_node(find_node(source.spec)).__name__ == "Shop"
+    assert find_node("world").path == built_in_workspace() / "nodes/world.py"
+    with pytest.raises(ExtensionError, match=r"'gone' \(robolink\.nodes\).* no module named 'demo_gone'"):
+        find_node("gone")
+
+
+@pytest.mark.usefixtures("package")
+def test_types_of_other_packages_are_as_robolinks_own(capsys: pytest.CaptureFixture[str]) -> None:
+    heading, turn = find("demo_msgs/msg/Heading"), find("Turn", "srv")
+    assert heading is import_module("robolink.interfaces.demo_msgs.msg").Heading
+    assert heading is import_module("demo_msgs.msg").Heading is import_module("demo_msgs.msg._heading").Heading
+    assert (heading().degrees, heading.NORTH, heading.DEGREES__DEFAULT) == (90.0, 0, 90.0)
+    assert pickle.loads(pickle.dumps(heading(degrees=1.0))) == heading(degrees=1.0)
+    assert turn.Request().heading == heading()
+    assert find("Headings")(headings=[heading()]).headings[0].degrees == 90.0
+    assert type_hash(heading) == type_hash(build(parse(TYPES["msg"]["Heading.msg"], "demo_msgs/msg/Heading"), find))
+    assert main(["interface", "package", "demo_msgs"]) == 0
+    assert capsys.readouterr().out.splitlines()[:2] == ["demo_msgs/msg/Heading", "demo_msgs/msg/Headings"]
+    assert main(["interface", "show", "demo_msgs/msg/Heading"]) == 0
+    assert "float64 degrees 90.0" in capsys.readouterr().out
+    assert get_interface_path("demo_msgs/msg/Heading").endswith("demo_types/demo_msgs/msg/Heading.msg")
+
+
+@pytest.mark.usefixtures("package")
+def test_types_that_are_wrong_are_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["interface", "show", "demo_msgs/msg/Loop"]) == 1
+    assert "a message cannot contain itself" in capsys.readouterr().err
+    assert main(["interface", "show", "empty_msgs/msg/Any"]) == 1
+    place = "demo-extension adds 'empty_msgs' (robolink.interfaces), which cannot be loaded from demo_types: "
+    assert capsys.readouterr().err.startswith(f"robolink: {place}")
+    assert main(["interface", "packages"]) == 0
+    assert "demo_msgs\n" in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("package")
+def test_stubs_have_types_of_other_packages(tmp_path: Path) -> None:
+    (tmp_path / "home").mkdir()
+    write_stubs(tmp_path / "home")
+    assert "class Heading(" in (tmp_path / "home/typings/demo_msgs/msg.pyi").read_text()
+
+
+@pytest.mark.usefixtures("package")
 def test_problems_name_what_is_broken_and_what_is_there_twice() -> None:
     found = list(PROGRAMS.problems())
     assert found[0].endswith("from demo_gone:main: no module named 'demo_gone'")
@@ -232,18 +330,17 @@ def test_problems_name_what_is_broken_and_what_is_there_twice() -> None:
 
 
 def test_entry_points_are_those_of_the_path_of_now(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert "hello" in added(COMMANDS)
+    assert "hello" in COMMANDS.added()
     monkeypatch.setattr(sys, "path", [each for each in sys.path if each != str(package)])
-    assert "hello" not in added(COMMANDS)
-    assert load(COMMANDS, "hello") is None
+    assert "hello" not in COMMANDS.added()
+    assert COMMANDS.get("hello") is None
 
 
 @pytest.mark.usefixtures("package")
 def test_what_cannot_be_loaded_is_an_import_error() -> None:
     with pytest.raises(ExtensionError, match="AttributeError") as caught:
-        load(COMMANDS, "broken")
+        COMMANDS.get("broken")
     assert isinstance(caught.value, ImportError)
-    assert NODES != COMMANDS
 
 
 @pytest.mark.processes

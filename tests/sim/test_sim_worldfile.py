@@ -237,7 +237,7 @@ def test_what_is_wrong_is_said_with_its_place(text: str, expected: str) -> None:
     assert message in [str(each) for each in check_world("w.yaml", text=text).errors]
 
 
-KINDS = ", ".join(SENSORS)
+KINDS = ", ".join(SENSORS.table())
 
 
 def test_all_that_is_wrong_is_found_at_once() -> None:

@@ -23,7 +23,7 @@ import pytest
 
 from robolink import signals
 from robolink.cli.main import main
-from robolink.cli.root import COMMANDS
+from robolink.cli.shared.commands import NOUNS
 from robolink.cli.tf import tree
 from robolink.control.keyboard import WindowsKeyboard
 from robolink.impl import log_output
@@ -51,7 +51,7 @@ def windows(monkeypatch: pytest.MonkeyPatch) -> None:
 # Letters
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", NOUNS)
 def test_help_is_for_every_terminal(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     def check(words: list[str]) -> str:
         assert main([*words, "--help"]) == 0

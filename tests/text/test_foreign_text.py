@@ -20,7 +20,8 @@ from hypothesis import strategies as st
 from robolink import Node
 from robolink.action import ActionServer
 from robolink.cli.main import main
-from robolink.cli.root import COMMANDS, command
+from robolink.cli.root import command
+from robolink.cli.shared.commands import NOUNS
 from robolink.cli.tf import monitor
 from robolink.cli.topic import meters
 from robolink.exceptions import nearest
@@ -189,7 +190,7 @@ def _leaves(each: Any, path: tuple[str, ...] = ()) -> Iterator[str]:
     if not hasattr(each, "list_commands"):
         yield " ".join(path)
         return
-    for name in each.list_commands(None) if path else COMMANDS:
+    for name in each.list_commands(None) if path else NOUNS:
         yield from _leaves(each.get_command(None, name), (*path, name))
 
 

@@ -6,7 +6,6 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterator
-from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +13,10 @@ import pytest
 
 from robolink import Node
 from robolink.exceptions import NotFoundError
-from robolink.extensions import NODES
 from robolink.workspace import (
     VARIABLE,
     NodeLoadError,
     built_in_workspace,
-    find,
     find_launch,
     find_node,
     find_world,
@@ -134,21 +131,6 @@ def test_a_workspace_can_be_asked_for(
     assert find_node("mine").path == path
     with pytest.raises(NotFoundError, match="no workspace folder named '/no/such/place'"):
         find_node("mine", workspace="/no/such/place")
-
-
-def test_installed_packages_bring_nodes(monkeypatch: pytest.MonkeyPatch, write: Write) -> None:
-    values = {"shop-node": "os:getpid", "world": "os:PathLike"}
-    entry_points = {name: EntryPoint(name, value, NODES) for name, value in values.items()}
-    monkeypatch.setattr(find, "added", lambda group: entry_points)
-    assert find_node("world").entry_point is not None
-    found = load_node(find_node("shop_node"))
-    assert not isinstance(found, type)
-    assert found() == os.getpid()
-    assert find_node("shop_node").spec == "shop-node"
-    with pytest.raises(NodeLoadError, match=r"os:PathLike is a class, but no subclass of Node"):
-        load_node(find_node("world"))
-    path = write("nodes/world.py")
-    assert find_node("world").path == path
 
 
 @pytest.mark.parametrize(

@@ -14,9 +14,11 @@ from robolink.serialization import deserialize_message, serialize_message
 from robolink.sim import Pose, RobotDescription, World, WorldDescription
 from robolink.sim import sensors as descriptions
 from robolink.sim.description import Wheel
-from robolink.sim.sensors import SENSORS, Looking, Sensor
+from robolink.sim.sensors import SENSORS as REGISTRY
+from robolink.sim.sensors import Looking, Sensor
 from robolink.world_node.messages import sensor_message, sensor_type
 
+SENSORS = REGISTRY.table()
 SIMULATOR_PAGE = Path(__file__).parents[2] / "docs" / "reference" / "simulator.md"
 WHEELS = (Wheel("left", Pose(0.0, 0.1)), Wheel("right", Pose(0.0, -0.1)))
 

@@ -319,7 +319,7 @@ def _exit_code(act: Callable[[], Any]) -> int:
 def settle(source: NodeSource, workspace: str | None) -> None:
     """Set the environment's workspace to the node's own, in which it then looks up names."""
     home = user_workspace(workspace)
-    if home is None and source.path is not None:
+    if home is None:
         home = workspace_of(source.path.parent)
     if home is not None:
         os.environ[VARIABLE] = str(home)
@@ -331,8 +331,6 @@ LONGEST_LISTED = 200_000
 
 def _purpose(source: NodeSource) -> str:
     """Return the first line of a file's docstring."""
-    if source.path is None:
-        return str(source.entry_point.value) if source.entry_point else ""
     try:
         text = ast.get_docstring(ast.parse(read_plain(source.path, LONGEST_LISTED)))
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import importlib.util
 import os
 import re
 import warnings
@@ -13,7 +12,7 @@ from pathlib import Path
 
 from robolink.companions.ament_index.search_paths import get_search_paths
 from robolink.exceptions import MessageError, NotFoundError
-from robolink.interfaces import standard
+from robolink.interfaces.standard import FOLDER, INTERFACES
 from robolink.workspace.find import find_package, list_packages
 from robolink.workspace.installed import installed_packages
 from robolink.workspace.programs import program_folder, program_names
@@ -40,7 +39,7 @@ class PackageNameError(MessageError):
 
 def get_packages_with_prefixes() -> dict[str, str]:
     """Return all packages: name to prefix (see `get_package_prefix`)."""
-    folders = {**_standard(), **_counterparts(), **list_packages()}
+    folders = {**INTERFACES.usable(), **_counterparts(), **list_packages()}
     return {**installed_packages(), **{name: str(folder) for name, folder in folders.items()}}
 
 
@@ -104,19 +103,12 @@ def package_not_here(path: str) -> str:
 
     That is one below `NOT_HERE`, or a file that a package lacks of which robolink has the types alone.
     """
-    for root in (NOT_HERE, types_folder()):
+    for root in (NOT_HERE, FOLDER):
         parts = Path(path).parts
         is_inside = parts[: len(root.parts)] == root.parts and len(parts) > len(root.parts)
         if is_inside and not Path(path).exists():
             return parts[len(root.parts)]
     return ""
-
-
-def types_folder() -> Path:
-    """Return the folder of the packages of types that come with robolink."""
-    spec = importlib.util.find_spec("robolink.interfaces")
-    assert spec is not None
-    return Path(str(spec.origin)).parent
 
 
 def _folder(name: str) -> Path | None:
@@ -125,7 +117,7 @@ def _folder(name: str) -> Path | None:
         raise PackageNameError(f"'{name}' is not a valid package name")
     found = find_package(name) or _counterparts().get(name)
     if found is None and (_OF_TYPES.search(name) or instead_of(name) is None):
-        found = _standard().get(name)  # of slam_toolbox and the like robolink has the types, and no files
+        found = INTERFACES.get(name)  # of slam_toolbox and the like robolink has the types, and no files
     if found is None and name not in installed_packages():
         if _may_lack.get():
             return NOT_HERE / name
@@ -134,12 +126,6 @@ def _folder(name: str) -> Path | None:
             "package", name, get_packages_with_prefixes(), ", ".join([*where, *get_search_paths()])
         )
     return found
-
-
-def _standard() -> dict[str, Path]:
-    """Return the packages of types that come with robolink, each with the folder of its module."""
-    folder = types_folder()
-    return {package: folder / package for package in standard.packages()}
 
 
 def _counterparts() -> dict[str, Path]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from robolink.companions.ament_index.packages import get_packages_with_prefixes
 from robolink.exceptions import MessageError, NotFoundError
 from robolink.interfaces import KINDS, find, names
+from robolink.interfaces.standard import INTERFACES
 from robolink.message.text import text_of
 from robolink.workspace.interfaces import WORKSPACE_TYPES, use_interfaces
 
@@ -64,7 +65,9 @@ def get_interface_path(interface_name: str) -> str:
     if dot and suffix != kind:
         raise NotFoundError("interface file", interface_name, [f"{package}/{kind}/{short}.{kind}"])
     use_interfaces()
-    own = (place / f"{short}.{kind}" for place in WORKSPACE_TYPES.folders(package, kind))
+    added = INTERFACES.get(package)
+    folders = [*WORKSPACE_TYPES.folders(package, kind), *([added / kind] if added is not None else ())]
+    own = (place / f"{short}.{kind}" for place in folders)
     path = next((each for each in own if each.is_file()), None)
     return str(path if path is not None else _written(f"{package}/{kind}/{short}", kind))
 

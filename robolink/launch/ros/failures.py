@@ -10,9 +10,10 @@ import sysconfig
 import traceback
 from pathlib import Path
 
-from robolink.companions.ament_index.packages import NOT_HERE, package_not_here, types_folder
+from robolink.companions.ament_index.packages import NOT_HERE, package_not_here
 from robolink.companions.launch.bases import LaunchError, Place, no_argument
 from robolink.exceptions import DocumentError, RobolinkError
+from robolink.interfaces.standard import FOLDER
 from robolink.system.terminal import shown
 
 _NOT_USERS = [
@@ -25,7 +26,7 @@ _NOT_USERS = [
 _LONGEST = 400
 _UNEXPECTED = re.compile(r"(?:(\w+)\.)?(\w+)\(\) got an unexpected keyword argument '(\w+)'")
 _LACKING = re.compile(r"(\w+)\.__init__\(\) missing \d+ required (?:[a-z-]+ )*arguments?: (.+)")
-_PATH = re.compile("(?:" + "|".join(re.escape(str(each)) for each in (NOT_HERE, types_folder())) + r")[^\s'\",;:]*")
+_PATH = re.compile("(?:" + "|".join(re.escape(str(each)) for each in (NOT_HERE, FOLDER)) + r")[^\s'\",;:]*")
 
 
 def as_document_error(error: BaseException, place: Place) -> DocumentError:

@@ -78,7 +78,7 @@ def component_of(package: str, plugin: str, home: Path | None) -> Program:
     name = re.split(r"::|[./]", plugin)[-1]
     defined = re.compile(rf"^class\s+{re.escape(name)}\b".encode(), re.MULTILINE)
     for source in executables(folder).values():
-        if source.path is not None and source.path.suffix == ".py" and defined.search(_text(source.path)):
+        if source.path.suffix == ".py" and defined.search(_text(source.path)):
             return Program(NodeSource(snake_case(name), source.path, name, module=source.module, root=source.root))
     return Program(absent=f"package {package} has no Python class of this name, and robolink builds no C++")
 

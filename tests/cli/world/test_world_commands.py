@@ -191,7 +191,7 @@ def test_the_schema_says_what_every_key_means() -> None:
         each["$ref"].rpartition("/")[2]
         for each in schema["definitions"]["RobotDescription"]["properties"]["sensors"]["items"]["oneOf"]
     ]
-    assert kinds == [each.description.__name__ for each in SENSORS.values()]
+    assert kinds == [each.description.__name__ for each in SENSORS.table().values()]
     assert set(kinds) <= set(schema["definitions"])
 
 
