@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
+MOST_PROCESSES = 1_000
+"""Most processes of a system."""
+
 NODE = "launch_ros"
 """Name of the launcher's own node, which it has only if it speaks to nodes with a lifecycle."""
 

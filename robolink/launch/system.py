@@ -13,8 +13,8 @@ from robolink.launch.entry import ArgumentHelp, Stage, System
 from robolink.launch.looking.sections import section_notes
 from robolink.launch.lookup import is_of_ros
 from robolink.launch.reading.arguments import arguments_of as own_arguments_of
+from robolink.launch.reading.arguments import record_of as own_record_of
 from robolink.launch.reading.entries import read_launch_file, read_with_mistakes
-from robolink.launch.reading.record import record_of as own_record_of
 from robolink.supervisor.director import Director
 from robolink.workspace import Folder
 

@@ -13,8 +13,8 @@ from robolink.cli.main import main
 from robolink.documents.yamlfile import parse
 from robolink.faults.schema import MEANINGS as faults_meanings
 from robolink.faults.schema import faults_schema
-from robolink.launch.schema import MEANINGS as launch_meanings
-from robolink.launch.schema import launch_schema
+from robolink.launch.reading.description import MEANINGS as launch_meanings
+from robolink.launch.reading.description import launch_schema
 from robolink.sim.schema import MEANINGS as world_meanings
 from robolink.sim.schema import world_schema
 

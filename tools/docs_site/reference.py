@@ -254,7 +254,7 @@ def _files() -> Iterator[str]:
 
 def _schemas() -> list[dict[str, Any]]:
     from robolink.faults.schema import faults_schema
-    from robolink.launch.schema import launch_schema
+    from robolink.launch.reading.description import launch_schema
     from robolink.sim.schema import world_schema
 
     return [launch_schema(), faults_schema(), world_schema()]

@@ -11,7 +11,7 @@ import typer
 from robolink.system.terminal import shown
 
 if TYPE_CHECKING:
-    from robolink.launch.reading.slow_links import Found
+    from robolink.launch.reading.arguments import Found
     from robolink.networks.limits import Limits
 
 LONGEST = 600
@@ -60,7 +60,7 @@ class InForce(NamedTuple):
 
 
 def _of_file(path: Path) -> InForce:
-    from robolink.launch.reading.slow_links import limits_of
+    from robolink.launch.reading.arguments import limits_of
 
     found = limits_of(path)
     return InForce(str(path), found.limits, found)

@@ -11,7 +11,7 @@ def show_launch_schema(asked: bool) -> None:
     """Print the schema of launch files, if that is asked, and end."""
     if asked:
         from robolink.documents.json_schema import text_of
-        from robolink.launch.schema import launch_schema
+        from robolink.launch.reading.description import launch_schema
 
         say(text_of(launch_schema()).removesuffix("\n"))
         raise typer.Exit

@@ -1,26 +1,41 @@
-"""Launch arguments: the `arguments` section of a launch file, its defaults and choices, and the values given."""
+"""Keys of a whole launch file: its `arguments`, the values given for them, its network, limits and recording."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import msgspec
 
-from robolink.documents.yamlfile import parse
+from robolink.documents.mistakes import Step
+from robolink.documents.yamlfile import parse, spell
 from robolink.exceptions import DocumentError, nearest
 from robolink.launch.entry import ArgumentHelp
-from robolink.launch.reading.conditions import as_bool
 from robolink.launch.reading.description import Argument
-from robolink.launch.reading.file import LaunchFile
-from robolink.launch.reading.section import Place
-from robolink.launch.reading.substitution import HERE, NUMBER, Step, SubstitutionError, Value, Values, filled
+from robolink.launch.reading.document import LaunchFile
+from robolink.launch.reading.section import (
+    HERE,
+    NUMBER,
+    Place,
+    Section,
+    SubstitutionError,
+    Value,
+    Values,
+    as_bool,
+    filled,
+)
+from robolink.networks.limits import Limits, mistakes, parsed
 from robolink.system.terminal import shown
 
 _FIELDS = Argument.__struct_fields__
-_OTHERS = {HERE: "the launch file's folder", NUMBER: "the number of a copy"}
+_RESERVED = {HERE: "the launch file's folder", NUMBER: "the number of a copy"}
+_WHOLE = ("network", "limits", "record")
+"""Keys that are about the whole system."""
+_OF_LAUNCH_FILES = {"limits", "nodes", "include", "groups"}
+_NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
 def arguments_of(path: str | os.PathLike[str], *, text: str | None = None) -> list[ArgumentHelp]:
@@ -32,41 +47,61 @@ def arguments_of(path: str | os.PathLike[str], *, text: str | None = None) -> li
     return [_help(file, name, each) for name, each in _declared(file).items()]
 
 
+def _help(file: LaunchFile, name: str, argument: Argument) -> ArgumentHelp:
+    default = None
+    if argument.default is not msgspec.UNSET:
+        written = file.written(_steps_to_default(file, name))
+        default = Value.of(argument.default).text if written is None else written
+    return ArgumentHelp(name, default, argument.description, tuple(_texts(file, name, argument)))
+
+
 def read_given(given: Mapping[str, str]) -> dict[str, Value]:
     """Parse arguments as people type them, `1e3` or `[1, 2]`; raises `DocumentError` for invalid YAML."""
     return {name: Value(_data(name, text), text) for name, text in given.items()}
 
 
-def values_of(file: LaunchFile, given: Mapping[str, Value], asker: Place | None = None) -> Values:
+def _data(name: str, text: str) -> Any:
+    """Parse the text behind `:=` as YAML; nothing at all is an empty text."""
+    if not text.strip():
+        return text
+    try:
+        return parse(text, name="")
+    except DocumentError as error:
+        raise DocumentError(f"{shown(name)}:={shown(text)} is not YAML: {error.message}") from None
+
+
+def values_of(file: LaunchFile, given: Mapping[str, Value], includer: Place | None = None) -> Values:
     """Return the values for `{name}` in a launch file: its arguments, `{here}`, and `{env:NAME}`.
 
-    `asker` is the place that includes the file; errors in given values point there. Raises `DocumentError` for an
+    `includer` is the place that includes the file; errors in given values point there. Raises `DocumentError` for an
     unknown argument, for a missing one and for one that is not among its choices.
     """
     declared = _declared(file)
     for name in given:
         if name not in declared:
-            raise _asked(file, asker, name, _unknown(name, declared))
+            known = f": there is {', '.join(declared)}" if declared else ": it has none"
+            reason = f"no argument is called '{shown(name)}'{nearest(name, declared) or known}"
+            raise _error_of_given(file, includer, name, reason)
     named = {HERE: Value.of(str(file.folder.resolve()))}
-    values = Values(named, budget=None if asker is None else asker.section.values.budget)
+    values = Values(named, budget=None if includer is None else includer.section.values.budget)
     for name, argument in declared.items():
         if name in given:
-            value = _given(file, asker, name, argument, given[name])
+            value = _given(file, includer, name, argument, given[name])
         elif argument.default is msgspec.UNSET:
             about = f" ({argument.description})" if argument.description else ""
-            way = f"`arguments: {{{name}: ...}}`" if asker else f"{name}:=VALUE"
-            raise _asked(file, asker, name, f"'{name}' must be given{about}: {way}")
+            way = f"`arguments: {{{name}: ...}}`" if includer else f"{name}:=VALUE"
+            raise _error_of_given(file, includer, name, f"'{name}' must be given{about}: {way}")
         else:
             value = _default(file, name, argument, values)
-        named[name] = value
+        named[name] = value  # the defaults of the arguments below may name it
     return values
 
 
-def _asked(file: LaunchFile, asker: Place | None, name: str, message: str) -> DocumentError:
+def _error_of_given(file: LaunchFile, includer: Place | None, name: str, message: str) -> DocumentError:
     """Return an error about a given value, at the place that gives it."""
-    if asker is None:
+    if includer is None:
         return file.error(["arguments", name], message)
-    return asker.error(f"{file.path.name}: {message}", ["arguments", name])
+    return includer.error(f"{file.path.name}: {message}", ["arguments", name])
 
 
 def _declared(file: LaunchFile) -> dict[str, Argument]:
@@ -79,8 +114,8 @@ def _argument(file: LaunchFile, name: str, data: Any) -> Argument:
     steps = ["arguments", name]
     if not name.isidentifier():
         raise file.error(steps, f"'{name}' is not a name for an argument: letters, digits and '_'", key=True)
-    if name in _OTHERS:
-        raise file.error(steps, f"{{{name}}} is {_OTHERS[name]}: give the argument another name", key=True)
+    if name in _RESERVED:
+        raise file.error(steps, f"{{{name}}} is {_RESERVED[name]}: give the argument another name", key=True)
     if data is None:  # `speed:` with nothing behind it
         return Argument()
     if isinstance(data, dict) and data and not any(key in _FIELDS or nearest(key, _FIELDS) for key in data):
@@ -103,7 +138,7 @@ def _default(file: LaunchFile, name: str, argument: Argument, values: Values) ->
     return chosen
 
 
-def _given(file: LaunchFile, asker: Place | None, name: str, argument: Argument, value: Value) -> Value:
+def _given(file: LaunchFile, includer: Place | None, name: str, argument: Argument, value: Value) -> Value:
     """Convert a value to the default's type where both can be read as the same type."""
     if isinstance(argument.default, bool) and (decided := as_bool(value.data)) is not None:
         value = Value(decided, value.text)
@@ -111,7 +146,7 @@ def _given(file: LaunchFile, asker: Place | None, name: str, argument: Argument,
         value = Value(value.text, value.text)
     chosen = _chosen(file, name, argument, value)
     if chosen is None:
-        raise _asked(file, asker, name, _none_of(file, name, argument, value))
+        raise _error_of_given(file, includer, name, _none_of(file, name, argument, value))
     return chosen
 
 
@@ -143,38 +178,83 @@ def _none_of(file: LaunchFile, name: str, argument: Argument, value: Value) -> s
 
 def _texts(file: LaunchFile, name: str, argument: Argument) -> list[str]:
     """Return the choices as they are written."""
-    places: list[list[Step]] = [["arguments", name, "choices", at] for at in range(len(argument.choices))]
-    return [file.written(each) or "" for each in places]
+    return [file.written(["arguments", name, "choices", at]) or "" for at in range(len(argument.choices))]
 
 
 def _steps_to_default(file: LaunchFile, name: str) -> list[Step]:
-    steps: list[Step] = ["arguments", name]
-    return [*steps, "default"] if file.written([*steps]) is None and _says_default(file, name) else steps
+    data = file.data["arguments"][name]
+    return ["arguments", name, *(["default"] if isinstance(data, dict) and "default" in data else [])]
 
 
-def _says_default(file: LaunchFile, name: str) -> bool:
-    argument = file.data["arguments"][name]
-    return isinstance(argument, dict) and "default" in argument
+# Keys about the whole system
 
 
-def _help(file: LaunchFile, name: str, argument: Argument) -> ArgumentHelp:
-    default = None
-    if argument.default is not msgspec.UNSET:
-        written = file.written(_steps_to_default(file, name))
-        default = Value.of(argument.default).text if written is None else written
-    return ArgumentHelp(name, default, argument.description, tuple(_texts(file, name, argument)))
+def whole(file: LaunchFile, values: Values) -> Section:
+    """Return the part of a launch file that is about the whole system: its network, limits and recording."""
+    return Section(file, [], {key: data for key, data in file.data.items() if key in _WHOLE}, values)
 
 
-def _unknown(name: str, declared: Mapping[str, Argument]) -> str:
-    known = f": there is {', '.join(declared)}" if declared else ": it has none"
-    return f"no argument is called '{shown(name)}'{nearest(name, declared) or known}"
+def record_of(
+    path: str | os.PathLike[str], given: Mapping[str, str] = _NOTHING, *, text: str | None = None
+) -> str | None:
+    """Return the folder of the bag that a launch file requests: '' for one with the date in its name, None for none.
+
+    Args:
+        path: The launch file; those that it includes do not count.
+        given: Launch arguments by name, as people type them.
+        text: Content to read in place of the file's.
+
+    Raises:
+        DocumentError: for a mistake in the file, with `file:line:column`.
+    """
+    file = LaunchFile(Path(path), text)
+    return recorded(whole(file, values_of(file, read_given(given))))
 
 
-def _data(name: str, text: str) -> Any:
-    """Parse the text behind `:=` as YAML; nothing at all is an empty text."""
-    if not text.strip():
-        return text
-    try:
-        return parse(text, name="")
-    except DocumentError as error:
-        raise DocumentError(f"{shown(name)}:={shown(text)} is not YAML: {error.message}") from None
+def recorded(section: Section) -> str | None:
+    """Return the folder of the bag as `record_of` does, from the part `whole` of a file. Raises DocumentError."""
+    value = section.get("record")
+    if value is None:
+        return None
+    is_on = as_bool(value)
+    if is_on is not None:
+        return "" if is_on else None
+    if not isinstance(value, str) or not value.strip():
+        found = value if isinstance(value, str) else spell(value)
+        raise section.error(["record"], f"expected true, false or the folder of a bag, got '{found}'")
+    return value
+
+
+class Found(NamedTuple):
+    """Limits of a file; `error` makes an error that names the place of one of their values."""
+
+    limits: Limits
+    error: Callable[[Sequence[Step], str], DocumentError]
+
+
+def limits_of(path: str | os.PathLike[str]) -> Found:
+    """Return the limits of a file: those of a launch file under `limits`, or those that are a file of their own.
+
+    Args:
+        path: The file; launch files that it includes do not count.
+
+    Raises:
+        DocumentError: for a mistake in the file, with `file:line:column`, also for a launch file without limits.
+    """
+    file = LaunchFile(Path(path))
+    if not set(file.data) & _OF_LAUNCH_FILES:
+        document = parsed(None, os.fspath(path))
+        return Found(document.value, document.error)
+    section = whole(file, values_of(file, {}))
+    found = limits_in(section)
+    if found is None:
+        raise file.error([], "no key 'limits': nothing is limited")
+    return Found(found, lambda steps, message: section.error(["limits", *steps], message))
+
+
+def limits_in(section: Section) -> Limits | None:
+    """Return the limits that the part `whole` of a file has; None for none. Raises DocumentError for a mistake."""
+    found: Limits | None = section.value("limits", Limits | None, None)
+    for steps, message, is_key in mistakes(found) if found is not None else ():
+        raise section.error(["limits", *steps], message, key=is_key)
+    return found

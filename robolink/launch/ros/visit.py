@@ -36,8 +36,7 @@ from robolink.companions.launch_ros.actions import ComposableNodeContainer, Life
 from robolink.companions.launch_ros.descriptions import ComposableNode
 from robolink.companions.launch_ros.old_names import old_names_note
 from robolink.exceptions import DocumentError
-from robolink.launch.entry import Entry
-from robolink.launch.reading import limits
+from robolink.launch.entry import MOST_PROCESSES, Entry
 from robolink.launch.ros.absent import Absent, AbsentError
 from robolink.launch.ros.components import components, container_of, target_of
 from robolink.launch.ros.entries import EntryMaker, ends_launch, placed
@@ -245,8 +244,8 @@ class Visit:
             return
         self._follow(action)
         self.started.append(Started(action, entry))
-        if len(self.started) > limits.MOST_PROCESSES:
-            raise self._error(action, f"more than {limits.MOST_PROCESSES:,} processes")
+        if len(self.started) > MOST_PROCESSES:
+            raise self._error(action, f"more than {MOST_PROCESSES:,} processes")
 
     def _follow(self, action: ExecuteLocal) -> None:
         """Register what follows the end of a process, unless it is the end of the launch, which a rule decides."""

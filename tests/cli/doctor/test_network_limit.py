@@ -10,7 +10,7 @@ import pytest
 from robolink.cli.doctor import limit as command
 from robolink.cli.doctor.limit import InForce
 from robolink.cli.main import main
-from robolink.launch.reading.slow_links import limits_of
+from robolink.launch.reading.arguments import limits_of
 from robolink.networks.limits import Limits
 
 SOME = Limits(control=["/cmd_vel"], rate={"/camera/image": 0.5}, size={"/map": 8000}, buffer=8192)

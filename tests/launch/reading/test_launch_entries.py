@@ -132,7 +132,7 @@ def test_what_is_switched_off_is_not_waited_for(home: Path) -> None:
 
 
 def test_what_is_switched_off_is_read_only_so_far(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robolink.launch.reading.limits.MOST_PARTS", 100)
+    monkeypatch.setattr("robolink.launch.reading.entries.MOST_PARTS", 100)
     with pytest.raises(DocumentError, match="more than 100 nodes, groups and includes"):
         entries(home, "nodes: [node: mine]\ngroups: [{if: off, count: 60, nodes: [{node: world, count: 60}]}]")
 

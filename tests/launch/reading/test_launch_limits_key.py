@@ -8,8 +8,8 @@ import pytest
 
 from robolink.exceptions import DocumentError
 from robolink.launch.planning import network_of
+from robolink.launch.reading.arguments import limits_of
 from robolink.launch.reading.entries import read_launch_file, read_with_mistakes
-from robolink.launch.reading.slow_links import limits_of
 from robolink.networks.limits import Limits
 
 NODES = "nodes: [{run: [python]}]"

@@ -97,7 +97,7 @@ def test_a_name_that_no_file_can_have_is_one_line(home: Path, key: str) -> None:
 
 
 def test_files_that_multiply_are_refused(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robolink.launch.reading.limits.MOST_PARTS", 100)
+    monkeypatch.setattr("robolink.launch.reading.entries.MOST_PARTS", 100)
     text = "groups:\n- count: 20\n  groups:\n  - count: 20\n    nodes: [{node: mine, if: false}]"
     with pytest.raises(DocumentError, match=r"more than 100 nodes, groups and includes$"):
         read_launch_file(home / "configs" / "lap.yaml", text=text)

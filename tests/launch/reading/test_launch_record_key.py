@@ -9,8 +9,8 @@ import pytest
 from robolink.cli.launching.launch import BY_DATE
 from robolink.cli.main import main
 from robolink.exceptions import DocumentError
+from robolink.launch.reading.arguments import record_of
 from robolink.launch.reading.entries import read_launch_file
-from robolink.launch.reading.record import record_of
 from tests.support.simulations import workspace
 
 NODES = "nodes: [{run: [python]}]"

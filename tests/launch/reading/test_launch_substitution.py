@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.launch.reading.substitution import Renamed, SubstitutionError, Value, Values, filled
+from robolink.launch.reading.section import Renamed, SubstitutionError, Value, Values, filled
 
 VALUES = Values({"i": Value(3, "03"), "on": Value(True, "on"), "l": Value.of([1, "a"])}, {"HOME": "/home/me", "i": "x"})
 
