@@ -86,9 +86,8 @@ def graph(
     from robolink.cli.shared.graph import is_hidden, tokens
     from robolink.cli.shared.output import say
     from robolink.cli.shared.session import looking
-    from robolink.launch.looking.graph import as_text, graph_of_uses
+    from robolink.launch.looking.graph import as_text, graph_of_uses, uses_of
     from robolink.launch.looking.look import End, Look
-    from robolink.launch.looking.uses import uses_of
     from robolink.wire import EndpointToken
 
     with looking() as context:

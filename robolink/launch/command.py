@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import itertools
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
@@ -12,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robolink.exceptions import RobolinkError
-from robolink.launch import protection
+from robolink.launch import beside
 from robolink.launch.entry import Entry
 from robolink.launch.planning import Launched, as_process, core_errors, processes
 from robolink.launch.readiness import waiting
@@ -21,7 +20,6 @@ from robolink.supervisor import Process, RunLogs, Supervisor
 from robolink.supervisor.processes.fork_server import ForkServer
 from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.supervisor.processes.process import Child
-from robolink.supervisor.rules import Rules
 from robolink.system.own_command import own_command
 from robolink.workspace import VARIABLE
 
@@ -29,7 +27,6 @@ if TYPE_CHECKING:
     from robolink.launch.entry import Direct
     from robolink.supervisor.director import Director
     from robolink.supervisor.events import Event
-    from robolink.supervisor.monitoring.file_watch import Watch
 
 FORK_SERVER = "fork-server"
 """Hidden sub-command of `robolink` that is forked for each node; not for people."""
@@ -85,14 +82,12 @@ def launch(
     held = {each.name: each.held_by for each in launched if each.held_by}
     members = {each.name: [entry.name for entry in each.entries] for each in launched if each.entries[0].node.process}
     to_run = _to_run(launched, watches)
-    protection.check_keys(enclave, {"recorder": record is not None, "view": shows_view})
+    beside.check_keys(enclave, {"recorder": record is not None, "view": shows_view})
     if record is not None:
-        from robolink.launch import recording
-
-        to_run = [recording.recorder(record, enclave), *recording.behind(to_run)]
-        held = {each.name: (*each.held_by, recording.READY) for each in launched}
+        to_run = [beside.recorder(record, enclave), *beside.behind(to_run)]
+        held = {each.name: (*each.held_by, beside.READY) for each in launched}
     if shows_view:
-        to_run.append(_view({each.name for each in to_run}, enclave))
+        to_run.append(beside.view({each.name for each in to_run}, enclave))
     with contextlib.ExitStack() as stack:
         output = None if on_event is None else stack.enter_context(Path(os.devnull).open("w", encoding="utf-8"))
         server = None if watches else _fork_server(to_run)  # whoever saves files may save robolink's own
@@ -102,21 +97,21 @@ def launch(
         director, logs = _director(direct, watches, stack), RunLogs(path.stem)
         supervisor = Supervisor(to_run, output=output, logs=logs, on_event=on_event, start=start, director=director)
         nodes, domain = [each.full_name for each in entries if each.source is not None], _domain()
-        for line in (*notes, *protection.unprotected(entries, os.environ), *doubled(nodes, domain)):
+        for line in (*notes, *beside.unprotected(entries, os.environ), *doubled(nodes, domain)):
             supervisor.say(line)
         if server is not None:
             server.is_asked_to_end = lambda: supervisor.is_asked_to_end
-        beside: list[contextlib.AbstractContextManager[object]] = [
+        parts: list[contextlib.AbstractContextManager[object]] = [
             Control(supervisor, name=path.stem, file=str(path.resolve()), members=members, nodes=nodes, domain=domain)
         ]
         if watches:
-            beside.append(_watch(launched, path, supervisor))
+            parts.append(beside.watch(launched, path, supervisor))
         if shows_figures:
             from robolink.supervisor.monitoring.resources import Figures
 
-            beside.append(Figures(supervisor.status, say=supervisor.say))
+            parts.append(Figures(supervisor.status, say=supervisor.say))
         watch = waiting(held, supervisor.release, supervisor.say, enclave=enclave or _enclave(entries))
-        return supervisor.run(duration, [*beside, watch])
+        return supervisor.run(duration, [*parts, watch])
 
 
 def _domain() -> int:
@@ -170,25 +165,8 @@ def _to_run(launched: Iterable[Launched], watches: bool) -> list[Process]:
     return list(mended) if watches else found
 
 
-def _view(taken: set[str], enclave: str) -> Process:
-    """Return the process of the view: a part of the system that may fail without the others."""
-    names = itertools.chain(["view"], (f"view-{number}" for number in itertools.count(2)))
-    name = next(each for each in names if each not in taken)
-    keys = ["--enclave", enclave] if enclave else []
-    return Process(name, [*own_command(), "view", *keys], rules=Rules(on_exit="ignore"))
-
-
 def _fork_server(to_run: Iterable[Process]) -> ForkServer | None:
     """Return a fork server, if so many of the processes can be forked that it pays."""
     server = ForkServer(own_command(), [FORK_SERVER], [VARIABLE])
     count = sum(server.can_become(each.argv, each.env) for each in to_run)
     return server if count >= NODES_PER_CORE * (os.cpu_count() or 1) else None
-
-
-def _watch(launched: Sequence[Launched], path: Path, supervisor: Supervisor) -> Watch:
-    """Return a file watcher that restarts processes when the files of their nodes are saved."""
-    from robolink.launch.watching import files_of, roots_of, settings_of
-    from robolink.supervisor.monitoring.file_watch import Watch
-
-    roots, settings = roots_of(launched), [path.resolve(), *settings_of(launched)]
-    return Watch(files_of(launched), roots=roots, settings=settings, restart=supervisor.restart, say=supervisor.say)

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
+from robolink.documents.yamlfile import spell
 from robolink.exceptions import DocumentError, RobolinkError
-from robolink.launch.entry import Entry, Respawn
-from robolink.launch.node_arguments import arguments, environment
+from robolink.launch.entry import Entry, NodeToStart, Respawn
 from robolink.launch.readiness import Awaited, awaited
 from robolink.launch.reading.entries import read_launch_file
 from robolink.launch.shared_process import COMMAND, Member, written
@@ -19,7 +19,7 @@ from robolink.supervisor import Process
 from robolink.supervisor.rules import Restarts, Rules
 from robolink.system.own_command import own_command
 from robolink.system.variables import Variables
-from robolink.workspace import Folder, own_process_needed
+from robolink.workspace import VARIABLE, Folder, NodeSource, own_process_needed
 
 _ROOM = 16_000
 """Longest command line, in characters: Windows allows 32,767 with quotes, Linux 131,071 for each argument."""
@@ -105,12 +105,12 @@ def processes(entries: Iterable[Entry]) -> list[Launched]:
 
     Raises `DocumentError` where nodes cannot share a process, or wait for each other.
     """
-    everything = list(entries)
+    everything, able = list(entries), set[NodeSource]()
     groups: dict[str, list[Entry]] = {}
     for each in everything:
         groups.setdefault(process_of(each), []).append(each)
     for group in groups.values():
-        _check_group(group)
+        _check_group(group, able)
     _check_circles(everything)
     named = {each.full_name: each for each in everything}
     return [_launched(name, group, named) for name, group in groups.items()]
@@ -176,18 +176,23 @@ def _restarts(respawn: Respawn) -> Restarts:
     return Restarts(respawn.when, respawn.delay, respawn.delay_max, respawn.most, respawn.within)
 
 
-def _check_group(group: list[Entry]) -> None:
-    """Raise DocumentError if nodes cannot share a process, or if its name is also that of a node outside of it."""
+def _check_group(group: list[Entry], able: set[NodeSource]) -> None:
+    """Raise DocumentError if nodes cannot share a process, or if its name is also that of a node outside of it.
+
+    `able` gets the sources that can: those of copies are parsed once.
+    """
     sharing = [each for each in group if each.node.process]
     if sharing and len(sharing) < len(group):
         reason = f"'{process_of(sharing[0])}' is what a node is called that has its own process: give another name"
         raise sharing[0].error(["process"], reason)
     for each in sharing:
-        _check_can_share(each)
+        if each.source is None or each.source not in able:
+            able.add(_able_to_share(each))
         _check_agrees(each, sharing[0])
 
 
-def _check_can_share(entry: Entry) -> None:
+def _able_to_share(entry: Entry) -> NodeSource:
+    """Return the source of a node that can share a process; raise DocumentError if it cannot."""
     if entry.source is None:
         raise entry.error(["process"], "a command is a process of its own: leave `process` out")
     try:
@@ -196,6 +201,7 @@ def _check_can_share(entry: Entry) -> None:
         reason = str(error)
     if reason:
         raise entry.error(["node"], reason)
+    return entry.source
 
 
 def _check_agrees(entry: Entry, first: Entry) -> None:
@@ -230,3 +236,35 @@ def _circle_error(circle: list[str], waits: Mapping[str, Mapping[str, Entry]]) -
     if len(circle) == 2:
         return entry.error(["start_after"], "it would wait for itself, or for a node of its own process")
     return entry.error(["start_after"], f"nothing of it would ever start: {' waits for '.join(circle)}")
+
+
+# Command line and environment of one node
+
+
+def arguments(entry: Entry) -> Iterator[str]:
+    """Yield the arguments of a node's program: its own, then those behind `--ros-args`, if there are any."""
+    yield from entry.node.args
+    for_ros = [*_for_ros(entry.node)]
+    if for_ros:  # a program that counts its words gets no more than it is given
+        yield from ("--ros-args", *for_ros)
+
+
+def _for_ros(node: NodeToStart) -> Iterator[str]:
+    if node.name:
+        yield from ("-r", f"__node:={node.name}")
+    if node.namespace:
+        yield from ("-r", f"__ns:={node.namespace}")
+    for name, value in node.parameters.items():
+        yield from ("-p", f"{name}:={spell(value)}")
+    for match, replacement in node.remappings.items():
+        yield from ("-r", f"{match}:={replacement}")
+    if node.log_level:
+        yield from ("--log-level", node.log_level)
+    if node.enclave:
+        yield from ("--enclave", node.enclave)
+
+
+def environment(entry: Entry) -> dict[str, str | None]:
+    """Return the changes of a node's environment: its workspace, and the variables of the file."""
+    home = {} if entry.home is None else {VARIABLE: str(entry.home)}
+    return {**home, **entry.node.env}

@@ -6,6 +6,7 @@ A launcher joins the network only while something is held back.
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import threading
 from collections import Counter
@@ -20,6 +21,7 @@ from robolink.system.plainfile import LONGEST_SOURCE, read_plain
 
 if TYPE_CHECKING:
     import ast
+    from pathlib import Path
 
     from robolink.workspace import NodeSource
 
@@ -75,14 +77,19 @@ def _names_of(full_name: str, entry: Entry | None) -> tuple[str, ...]:
 
 def names_in(source: NodeSource) -> list[str]:
     """Return the node names that stand as literals in a node's class, or else in its file."""
-    import ast
-
     try:
-        tree: ast.AST = ast.parse(read_plain(source.path, LONGEST_SOURCE))
+        return _names_at(source.path, source.attribute, source.path.stat().st_mtime_ns)
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
         return []
+
+
+@functools.lru_cache(maxsize=16)  # others may wait for each of a hundred copies
+def _names_at(path: Path, class_name: str, changed: int) -> list[str]:
+    import ast
+
+    tree: ast.AST = ast.parse(read_plain(path, LONGEST_SOURCE))
     classes = (each for each in ast.iter_child_nodes(tree) if isinstance(each, ast.ClassDef))
-    its_own = next((each for each in classes if each.name == source.attribute), tree)
+    its_own = next((each for each in classes if each.name == class_name), tree)
     return [name for each in ast.walk(its_own) if isinstance(each, ast.Call) and (name := _node_name(each))]
 
 

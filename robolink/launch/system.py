@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeVar
 
+from robolink.arguments.parameter_file import read_parameter_file
+from robolink.arguments.untaken import untaken
 from robolink.exceptions import DocumentError
-from robolink.launch.entry import ArgumentHelp, Stage, System
-from robolink.launch.looking.sections import section_notes
+from robolink.launch.entry import ArgumentHelp, Entry, Stage, System
 from robolink.launch.lookup import is_of_ros
 from robolink.launch.reading.arguments import arguments_of as own_arguments_of
 from robolink.launch.reading.arguments import record_of as own_record_of
 from robolink.launch.reading.entries import read_launch_file, read_with_mistakes
 from robolink.supervisor.director import Director
 from robolink.workspace import Folder
+from robolink.workspace.find import YAML
 
 if TYPE_CHECKING:
     from robolink.companions.launch import LaunchDescription
@@ -138,3 +140,21 @@ def record_of(path: str | os.PathLike[str], given: Mapping[str, str] = _NOTHING)
         DocumentError: for a mistake in the file, with `file:line`.
     """
     return None if is_of_ros(Path(path)) else own_record_of(path, given)
+
+
+def section_notes(entries: Iterable[Entry]) -> Iterator[str]:
+    """Yield a line about each section of a parameter file whose name is misspelt, as far as that shows.
+
+    A file that a node without a name reads itself is left out: the node tells of it.
+    """
+    given = [each for each in entries if each.source is not None]
+    for file in dict.fromkeys(path for each in given for path in sorted(each.files) if path.name.endswith(YAML)):
+        takers = [each for each in given if file in each.files]
+        if any(os.fspath(file) in each.node.args for each in takers):
+            continue
+        try:
+            overrides = read_parameter_file(file)
+        except (DocumentError, OSError):  # it is a launch file
+            continue
+        for text in untaken(overrides, [each.full_name for each in takers]):
+            yield f"{file.name}: {text}"

@@ -10,7 +10,7 @@ import pytest
 from robolink.bag.reader import open_bag
 from robolink.bag.topic import BagError
 from robolink.interfaces.std_msgs.msg import Int32
-from robolink.launch.recording import behind, recorder
+from robolink.launch.beside import behind, recorder
 from robolink.message import decode
 from robolink.supervisor import Process
 from tests.support.commands import Command

@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.main import main
+from robolink.launch.beside import files_of, roots_of, settings_of
 from robolink.launch.command import doubled
 from robolink.launch.planning import processes
 from robolink.launch.reading.entries import read_launch_file
-from robolink.launch.watching import files_of, roots_of, settings_of
 from robolink.supervisor import Supervisor
 from robolink.supervisor.control.server import Control
 from tests.support.commands import PATIENCE, Command

@@ -21,7 +21,6 @@ import msgspec
 
 from robolink.exceptions import RobolinkError
 from robolink.launch.entry import Entry
-from robolink.launch.node_arguments import arguments, environment
 from robolink.supervisor.rules import described
 from robolink.system.own_command import own_command
 
@@ -91,6 +90,8 @@ def looks_of(entries: Iterable[Entry], patience: float = PATIENCE) -> dict[str, 
 
     `patience` is the timeout of each node's construction, in seconds.
     """
+    from robolink.launch.planning import arguments, environment  # the child process needs the types alone
+
     nodes = [each for each in entries if each.source is not None]
     jobs = [Job(each.source.spec, list(arguments(each)), environment(each)) for each in nodes if each.source]
     return {each.name: look for each, look in zip(nodes, look_into(jobs, patience), strict=True)}

@@ -274,7 +274,7 @@ def _stem(words: Sequence[str]) -> str:
 
 def _compiled(entry: Entry, path: str) -> Entry:
     """Return the entry of a compiled node: a command that gets what the launcher gives a node."""
-    from robolink.launch.node_arguments import arguments
+    from robolink.launch.planning import arguments
 
     words = list(arguments(entry))
     return replace(entry, node=NodeToStart(run=[path, *words], env=entry.node.env, cwd=entry.node.cwd))

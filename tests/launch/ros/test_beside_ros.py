@@ -12,7 +12,7 @@ import pytest
 from robolink.context import Context
 from robolink.exceptions import RobolinkError
 from robolink.launch.entry import Entry
-from robolink.launch.node_arguments import arguments, environment
+from robolink.launch.planning import arguments, environment
 from robolink.launch.system import read_system
 from robolink.node import Node
 from robolink.supervisor.director import Add, Director, End, Request, Tell
