@@ -95,7 +95,7 @@ def test_names_are_read_from_the_code(home: Path) -> None:
         ["b"],
         *2 * [["a", "b"]],
     ]
-    assert names_in(NodeSource("gone", home / "gone.py")) == names_in(NodeSource("installed")) == []
+    assert names_in(NodeSource("gone", home / "gone.py")) == []
 
 
 def test_a_process_is_ready_once_when_all_is_there_at_the_same_time(robot: Node) -> None:
