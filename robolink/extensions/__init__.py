@@ -14,10 +14,11 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import importlib
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robolink.exceptions import NotFoundError, RobolinkError
 
@@ -25,6 +26,16 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 T = TypeVar("T")
+
+
+REGISTRIES = {
+    "robolink.commands": "robolink.cli.shared.commands:COMMANDS",
+    "robolink.programs": "robolink.workspace.programs:PROGRAMS",
+    "robolink.sensors": "robolink.sim.sensors:SENSORS",
+    "robolink.interfaces": "robolink.interfaces.standard:INTERFACES",
+    "robolink.nodes": "robolink.workspace.programs:NODES",
+}
+"""Places of the registries, by group: each is in the room of its kind, and imported when it is used."""
 
 
 class ExtensionError(RobolinkError, ImportError):
@@ -56,7 +67,7 @@ class Registry(Generic[T]):
 
     def added(self) -> Mapping[str, EntryPoint]:
         """Return the entry points of other packages by name; of two with one name, the first by its package's name."""
-        return {name: entries[0] for name, entries in _entry_points(self.group, tuple(sys.path)).items()}
+        return {name: entries[0] for name, entries in self._entries().items()}
 
     def get(self, name: str) -> T | None:
         """Return the part of a name; None if there is none.
@@ -97,10 +108,19 @@ class Registry(Generic[T]):
                 found.setdefault(name, self.read(entry))
         return found
 
+    def of(self, package: str) -> list[str]:
+        """Return the names of the parts that an installed package adds.
+
+        Args:
+            package: Name of the distribution; `-` and `_` are the same.
+        """
+        expected = _canonical(package)
+        return [name for name, found in self._entries().items() if expected in (_canonical(_package(e)) for e in found)]
+
     def problems(self) -> Iterator[str]:
-        """Yield what is wrong with the parts of other packages, one line each: broken ones, and names given twice."""
+        """Yield the problems with the parts of other packages, one line each: broken ones, and names given twice."""
         own = self.table()
-        for name, entries in _entry_points(self.group, tuple(sys.path)).items():
+        for name, entries in self._entries().items():
             for each in entries:
                 try:
                     self.read(each)
@@ -109,6 +129,9 @@ class Registry(Generic[T]):
             takers = ["robolink", *map(_package, entries)] if name in own else [*map(_package, entries)]
             for taker in takers[1:]:
                 yield f"{taker} adds '{name}' ({self.group}), which {takers[0]} has: that one is taken"
+
+    def _entries(self) -> Mapping[str, list[EntryPoint]]:
+        return _entry_points(self.group, tuple(sys.path))
 
 
 @functools.lru_cache(maxsize=16)
@@ -123,6 +146,12 @@ def _entry_points(group: str, _path: tuple[str, ...]) -> Mapping[str, list[Entry
     for each in sorted(entry_points(group=group), key=lambda each: (each.name, _package(each))):
         found.setdefault(each.name, []).append(each)
     return found
+
+
+def registries() -> dict[str, Registry[Any]]:
+    """Return all registries by group."""
+    places = {group: place.split(":") for group, place in REGISTRIES.items()}
+    return {group: getattr(importlib.import_module(module), name) for group, (module, name) in places.items()}
 
 
 def module_path(module: str) -> Path:
@@ -148,3 +177,7 @@ def module_path(module: str) -> Path:
 
 def _package(entry: EntryPoint) -> str:
     return entry.dist.name if entry.dist is not None else "a package"
+
+
+def _canonical(package: str) -> str:
+    return package.replace("_", "-").lower()

@@ -50,6 +50,7 @@ def versions(facts: Facts) -> Verdict:
         "and install robolink again, with 'pip install --force-reinstall'"
         for each in facts.namesakes
     )
+    warnings += facts.extensions
     return Verdict(", ".join([*shown[:1], f"Python {_dotted(facts.python)}", *shown[1:4]]), tuple(errors), warnings)
 
 

@@ -69,6 +69,8 @@ class Facts(NamedTuple):
     """Versions of the distributions, by name; empty if not installed."""
     namesakes: tuple[str, ...] = ()
     """Other distributions, with their versions, that install a module `robolink`."""
+    extensions: tuple[str, ...] = ()
+    """Problems with what other packages add to robolink, one line each."""
     opencv: Mapping[str, str] = {}
     """Versions of the distributions that install the module cv2, by name."""
     settings: Settings = Settings()

@@ -15,6 +15,7 @@ from robolink.cli.doctor.look import count_nodes, look
 from robolink.cli.doctor.ports import also_open_at, ascii_only, holder, loopback_works, owner
 from robolink.constants import LAST_DOMAIN
 from robolink.exceptions import TransportError
+from robolink.extensions import registries
 from robolink.networks.asked import FIRST_PORT, RANGE, ROS_ROUTER, Wanted, domain_id, wanted
 from robolink.networks.port_probe import HOST, STRANGER, Port, listening
 from robolink.networks.refusals import wants_keys
@@ -71,6 +72,7 @@ def gather() -> Facts:
         python=tuple(sys.version_info[:3]),
         versions=versions(),
         namesakes=namesakes(),
+        extensions=tuple(problem for registry in registries().values() for problem in registry.problems()),
         opencv={name: found for name, found in versions(OPENCV).items() if found},
         settings=settings,
         reach=found,
