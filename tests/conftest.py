@@ -31,6 +31,7 @@ from tests.support.domains import free_domain
 from tests.support.launchers import RUNTIME_VARIABLE, new_runtime_folder
 from tests.support.long_runs import LongRun
 from tests.support.transports import Network
+from tools.without_annex import is_here
 
 # pytest keeps what it has made of the tests, though the environment may say otherwise: else every worker takes
 # 18 s of a processor to make it again (25 instead of 7).
@@ -91,7 +92,11 @@ def pytest_collection_finish(session: pytest.Session) -> None:
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Start the long runs with the first test of their file, where others begin with other files."""
+    """Skip the tests of an annex that is not there; start the long runs with their file, where others begin first."""
+    for mark in item.iter_markers("annex"):
+        for name in mark.args:
+            if not is_here(name):
+                pytest.skip(f"this copy has no {name}")
     if item.path in item.config.stash[THEIR_FILES] and LONG_RUNS not in item.config.stash:
         start_long_runs(item.session)
 

@@ -15,6 +15,7 @@ import typer.main
 from robolink.cli.shared.commands import NOUNS, added_command, added_names
 from robolink.cli.shared.noun import Noun, meant
 from robolink.cli.shared.output import say
+from robolink.extensions.optional import check
 from robolink.system.terminal import wants_colour
 
 if TYPE_CHECKING:
@@ -60,6 +61,7 @@ class Root(typer.core.TyperGroup):
         entry = NOUNS.get(cmd_name)
         if entry is None:
             return added_command(cmd_name, kind=Noun)
+        check(entry.module, f"'robolink {cmd_name}'")
         found = _command_of(entry.module)
         return found.get_command(ctx, entry.verb) if entry.verb else found
 

@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from types import ModuleType
 
 from robolink.compat.maker import hidden, room_of
+from robolink.extensions.optional import is_here
 
 ROOMS = {"webots_ros2_driver.webots_controller": "robolink.companions.webots_ros2_driver.webots_controller"}
 """Modules for launch files, by ROS 2's name."""
@@ -22,7 +23,7 @@ ROOMS = {"webots_ros2_driver.webots_controller": "robolink.companions.webots_ros
 @contextmanager
 def names_of_launch_files() -> Iterator[None]:
     """Let ROS 2's names be those that launch files mean while the block runs."""
-    taken = [name for name in ROOMS if hidden(name.partition(".")[0])]
+    taken = [name for name in ROOMS if hidden(name.partition(".")[0]) and is_here(ROOMS[name])]
     before = {name: sys.modules.get(name) for name in taken}
     parents = {name: importlib.import_module(room_of(name.rpartition(".")[0])) for name in taken}
     attributes = {name: vars(parents[name]).get(name.rpartition(".")[2]) for name in taken}

@@ -5,6 +5,16 @@ from __future__ import annotations
 import re
 
 from robolink.compat.launch_names import LAUNCH_ROOMS
+from robolink.extensions.optional import is_here
+
+OPTIONAL = {
+    "webots_ros2_driver": "robolink.webots_controller",
+    **{
+        f"webots_ros2_driver.{name}": f"robolink.companions.webots_ros2_driver.{name}"
+        for name in ("urdf_spawner", "utils", "wait_for_controller_connection", "webots_launcher")
+    },
+}
+"""Modules that an installation may lack, by name."""
 
 ROOMS = {
     "rclpy": "robolink",
@@ -27,11 +37,6 @@ ROOMS = {
     "rosidl_parser": "",
     "rosidl_parser.definition": "robolink.message.slot_types",
     "rosidl_runtime_py": "robolink.companions.rosidl_runtime",
-    "webots_ros2_driver": "robolink.webots_controller",
-    **{
-        f"webots_ros2_driver.{name}": f"robolink.companions.webots_ros2_driver.{name}"
-        for name in ("urdf_spawner", "utils", "wait_for_controller_connection", "webots_launcher")
-    },
     "turtlesim_msgs": "robolink.interfaces.turtlesim",
     "ament_index_python": "robolink.companions.ament_index",
     "rosbag2_py": "robolink.companions.rosbag2_py",
@@ -41,6 +46,7 @@ ROOMS = {
     "nav2_common": "robolink.companions.nav2_common",
     "nav2_simple_commander": "robolink.companions.nav2_simple_commander",
     **LAUNCH_ROOMS,
+    **{name: room for name, room in OPTIONAL.items() if is_here(room)},
 }
 """Modules by name; '' is a package with nothing in it. A name below another is below its module."""
 

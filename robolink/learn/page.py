@@ -20,11 +20,12 @@ from robolink.supervisor.monitoring.file_watch import Changes
 from robolink.supervisor.monitoring.periodic import PeriodicThread
 from robolink.system import waits
 from robolink.system.terminal import fit, shown
-from robolink.view.exercises import Operation
-from robolink.view.protocol.requests import LearnCommand
-from robolink.view.protocol.subprotocols import ERROR, WARNING
 
 Check = Callable[..., Report]
+Operation = dict[str, Any]
+"""Operation for the page, as `robolink.view.exercises` describes it: its name under `op`, and its fields."""
+WARNING, ERROR = 1, 2
+"""Levels of a status that the page shows."""
 
 
 class FolderError(RobolinkError, OSError):
@@ -97,7 +98,7 @@ class PageExercises:
                 ],
             }
 
-    def obey(self, command: LearnCommand, name: str) -> list[Operation]:
+    def obey(self, command: str, name: str) -> list[Operation]:
         """Do what a page asks for; return what it alone is told.
 
         Raises:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,6 +17,7 @@ from robolink.documents import yamlfile
 from robolink.documents.limits import MOST_TOLD, first_mistakes
 from robolink.documents.yamlfile import Document
 from robolink.exceptions import DocumentError, RobolinkError, nearest
+from robolink.extensions.optional import part
 from robolink.sim.checks.pictures import picture_problems, with_paths
 from robolink.sim.checks.worlds import mass_problems, misfits, problems
 from robolink.sim.description import WorldDescription
@@ -24,6 +25,10 @@ from robolink.sim.sensors import SENSORS, Sensor
 
 if TYPE_CHECKING:
     from robolink.sim.maps.gridmap import GridMap
+
+Load = Callable[[str | os.PathLike[str], str | None], WorldDescription]
+FORMATS = {".wbt": "robolink.sim.webots:load"}
+"""Readers of other simulators' world files by suffix: functions of the path and of a text read in its place."""
 
 
 def load_world(path: str | os.PathLike[str], *, text: str | None = None) -> WorldDescription:
@@ -38,8 +43,8 @@ def load_world(path: str | os.PathLike[str], *, text: str | None = None) -> Worl
             or out of range, a degenerate shape, shapes that overlap, a robot that starts inside something, a map
             that cannot be read.
     """
-    if _is_webots(path):
-        return _load_webots(path, text)
+    if (load := _other_format(path)) is not None:
+        return load(path, text)
     document = yamlfile.read(path, WorldDescription, text=text, hook=sensor_class)
     grid = _map_of(document)
     description = _with_map(document, grid)
@@ -62,9 +67,9 @@ def check_world(path: str | os.PathLike[str], *, text: str | None = None) -> Che
         path: The file.
         text: Read instead of the file's content; None reads the file.
     """
-    if _is_webots(path):
+    if (load := _other_format(path)) is not None:
         try:
-            return Checked(_load_webots(path, text), [])
+            return Checked(load(path, text), [])
         except RobolinkError as error:
             return Checked(None, [error])
     errors: list[RobolinkError] = [*yamlfile.mistakes(path, WorldDescription, text=text, hook=sensor_class)]
@@ -81,8 +86,10 @@ def check_world(path: str | os.PathLike[str], *, text: str | None = None) -> Che
     return Checked(None if errors else with_paths(description, Path(path).parent), errors)
 
 
-def _is_webots(path: str | os.PathLike[str]) -> bool:
-    return Path(path).suffix.lower() == ".wbt"
+def _other_format(path: str | os.PathLike[str]) -> Load | None:
+    """Return the function that reads a file of another simulator; None for our own format."""
+    suffix = Path(path).suffix.lower()
+    return part(FORMATS[suffix], f"{path}: the reader of {suffix} files") if suffix in FORMATS else None
 
 
 def sensor_class(kind: type, data: Any) -> type[Sensor]:
@@ -139,9 +146,3 @@ def _with_map(document: Document[WorldDescription], grid: GridMap | None) -> Wor
     except ValueError as error:
         raise document.error("$.map", str(error)) from None
     return msgspec.structs.replace(document.value, walls=(*document.value.walls, walls))
-
-
-def _load_webots(path: str | os.PathLike[str], text: str | None) -> WorldDescription:
-    from robolink.sim import webots
-
-    return webots.load(path, text)

@@ -6,14 +6,13 @@ from robolink.cli.learn.work import folder_here, say_all
 from robolink.cli.shared.output import say
 from robolink.cli.shared.page import announce, end_with_the_terminal
 from robolink.cli.shared.session import node_of, opened
+from robolink.extensions.optional import page
 from robolink.grading.languages import Language
 from robolink.learn.exercise import Exercise
 from robolink.learn.lines import reported
 from robolink.learn.page import PageExercises
 from robolink.learn.report import Report
 from robolink.learn.words import words
-from robolink.view.server import Settings, View
-from robolink.view.sources.live import LiveSource
 
 PANEL = "learn"
 """Name of the page's panel."""
@@ -35,7 +34,7 @@ def show(port: int | None, browser: bool, language: Language | None) -> None:
 
     exercises = PageExercises(folder, reported=tell)
     end_with_the_terminal()
-    with opened() as context, View(LiveSource(node_of(context)), Settings(port=port), exercises) as server:
+    with opened() as context, page(node_of(context), port=port, exercises=exercises) as server:
         announce(server, browser, PANEL)
         say(words(folder.language, "watching"))
         context.graph.wait_for(lambda: not context.ok(), None)

@@ -9,6 +9,7 @@ import typer.main
 
 from robolink.exceptions import RobolinkError
 from robolink.extensions import ExtensionError, Registry
+from robolink.extensions.optional import is_here
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -23,8 +24,8 @@ class Entry(NamedTuple):
 
     @property
     def hidden(self) -> bool:
-        """True if help does not list it: an alias, or a command that robolink starts in another process."""
-        return not self.help
+        """True if help does not list it: an alias, a command for robolink's own processes, or one that is not here."""
+        return not self.help or not is_here(self.module)
 
 
 NOUNS = {

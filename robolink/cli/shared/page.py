@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from robolink.cli.shared.output import say, tell
 
 if TYPE_CHECKING:
-    from robolink.view.server import View
+    from robolink.extensions.optional import Page
 
 
-def announce(server: View, browser: bool, panels: str) -> None:
+def announce(server: Page, browser: bool, panels: str) -> None:
     """Print the address of the page, with who else can open it, and open it.
 
     Args:

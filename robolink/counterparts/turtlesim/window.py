@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robolink.exceptions import RobolinkError
+from robolink.extensions.optional import page
 from robolink.parameter import Parameter
 from robolink.running.timebase import VirtualTime
 from robolink.system.browser import open_in_browser
@@ -43,8 +44,6 @@ def window(node: Node, picture: str) -> Iterator[None]:
 def _served(node: Node, stack: contextlib.ExitStack) -> str:
     """Serve the page until the stack is closed, and return its address."""
     from robolink.node import Node
-    from robolink.view.server import View  # late: without a window its libraries are not needed
-    from robolink.view.sources.live import LiveSource
 
     looker = Node(
         f"_robolink_view_{os.getpid()}",
@@ -55,8 +54,7 @@ def _served(node: Node, stack: contextlib.ExitStack) -> str:
         parameter_overrides=[Parameter("start_type_description_service", value=False)],
     )
     stack.callback(looker.destroy_node)
-    view = stack.enter_context(View(LiveSource(looker)))
-    return view.address
+    return stack.enter_context(page(looker)).address
 
 
 def _show(address: str) -> None:

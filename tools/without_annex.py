@@ -1,0 +1,130 @@
+"""Tries robolink without one of its annexes: the rest of the fast tests pass in a copy whose folders of it are deleted.
+
+    python -m tools.without_annex view                     # or several names, or --all
+    python -m tools.without_annex view -- tests/cli -x     # words after -- are pytest's: some tests, other options
+
+An annex is what people can do without. No other room imports it: each finds it by a name in a registry, or a table of
+`REGISTRIES`, and says in one line that it is not there (`tests/house/test_annexes.py`). A test of another room
+that needs one says so: `@pytest.mark.annex("view")`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+ANNEXES = {
+    "learn": ["robolink/learn", "robolink/cli/learn", "tests/learn", "tests/cli/learn"],
+    "nav2": ["robolink/counterparts/nav2_*", "tests/counterparts/test_nav2_*"],
+    "race": ["robolink/race", "robolink/cli/race", "tests/race", "tests/cli/race"],
+    "turtlesim": [
+        "robolink/counterparts/turtlesim",
+        "robolink/counterparts/turtle_tf2_py",
+        "tests/counterparts/turtlesim",
+        "tests/counterparts/test_turtle_tf2_py.py",
+    ],
+    "view": ["robolink/view", "robolink/cli/view", "tests/view", "tests/cli/view"],
+    "webots": [
+        "robolink/sim/webots",
+        "robolink/webots_controller",
+        "robolink/companions/webots_ros2_driver",
+        "robolink/counterparts/webots_ros2_driver",
+        "tests/sim/webots",
+        "tests/webots_controller",
+        "tests/counterparts/test_webots_ros2_driver.py",
+    ],
+}
+"""Folders and files of each annex, as patterns: its code first, then its tests."""
+
+REGISTRIES = (
+    "robolink/cli/root.py",
+    "robolink/compat/launch_files.py",
+    "robolink/compat/names.py",
+    "robolink/extensions/optional.py",
+    "robolink/sim/worldfile.py",
+)
+"""Files whose tables name modules of annexes; rows without their module are not there."""
+
+FAST = ["-q", "-n", "2", "--tb", "no", "-r", "fE", "-m", "not processes and not slow", "--hypothesis-profile", "quick"]
+"""Options of pytest for the fast tests, with a line for each test that fails."""
+
+
+def modules_of(annex: str) -> list[str]:
+    """Return the modules and packages that are an annex's, by the names that an import has."""
+    paths = [path for pattern in ANNEXES[annex] if pattern.startswith("robolink/") for path in ROOT.glob(pattern)]
+    return [".".join(each.relative_to(ROOT).with_suffix("").parts) for each in paths]
+
+
+def is_here(annex: str) -> bool:
+    """Return whether the code of an annex is in this checkout."""
+    return any(ROOT.glob(ANNEXES[annex][0]))
+
+
+def copied(to: Path) -> None:
+    """Copy the files that git tracks, as they are now, into a folder."""
+    listed = subprocess.run(
+        ["git", "ls-files", "-z", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, check=True
+    )
+    for name in filter(None, listed.stdout.decode().split("\0")):
+        if (ROOT / name).is_file():  # a file that is deleted and not committed is listed, too
+            (to / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, to / name)
+
+
+def delete(annex: str, folder: Path) -> None:
+    """Delete an annex from a copy."""
+    for pattern in ANNEXES[annex]:
+        for each in list(folder.glob(pattern)):
+            shutil.rmtree(each) if each.is_dir() else each.unlink()
+
+
+def tried(annex: str, options: list[str]) -> int:
+    """Run the fast tests without an annex; return pytest's exit code."""
+    with tempfile.TemporaryDirectory(prefix=f"without-{annex}-", ignore_cleanup_errors=True) as name:
+        folder = Path(name)
+        copied(folder)
+        delete(annex, folder)
+        # The virtual environment has the original's path: this one goes first.
+        environ = {**os.environ, "PYTHONPATH": name, "PYTHONDONTWRITEBYTECODE": ""}
+        where = "import sys, robolink; sys.exit(not robolink.__file__.startswith(sys.argv[1]))"
+        subprocess.run([sys.executable, "-c", where, name], cwd=folder, env=environ, check=True)
+        return subprocess.call([sys.executable, "-m", "pytest", *FAST, *options], cwd=folder, env=environ)
+
+
+def say(lines: Iterator[str]) -> None:
+    """Write lines to standard output, as they come."""
+    for each in lines:
+        sys.stdout.write(f"{each}\n")
+        sys.stdout.flush()
+
+
+def outcomes(annexes: list[str], options: list[str], codes: list[int]) -> Iterator[str]:
+    """Yield a line before each annex is tried, and one with the outcome; add the exit codes to a list."""
+    for each in annexes:
+        yield f"--- without {each}"
+        codes.append(tried(each, options))
+        yield f"--- without {each}: {'passed' if codes[-1] == 0 else f'failed (pytest ended with {codes[-1]})'}"
+
+
+def main(words: list[str]) -> int:
+    """Try what a command line requests; return the exit code."""
+    own, options = (words[: words.index("--")], words[words.index("--") + 1 :]) if "--" in words else (words, [])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("annex", nargs="*", choices=[*ANNEXES, []], help=f"{', '.join(ANNEXES)}")
+    parser.add_argument("--all", action="store_true", help="each annex in turn")
+    requested = parser.parse_args(own)
+    codes: list[int] = []
+    say(outcomes(list(ANNEXES) if requested.all else requested.annex, options, codes))
+    return max(codes, default=2)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
