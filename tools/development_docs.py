@@ -94,7 +94,7 @@ def layers() -> list[list[str]]:
     contract = text.partition('containers = ["robolink"]')[2]
     found = re.search(r"^layers = (\[.*?^\])", contract, re.DOTALL | re.MULTILINE)
     assert found, "pyproject.toml has no layers of the whole package"
-    return [re.split(r"\s*[|:]\s*", layer) for layer in ast.literal_eval(found[1])]
+    return [re.split(r"\s*[|:]\s*", re.sub("[()]", "", layer)) for layer in ast.literal_eval(found[1])]
 
 
 def floors() -> list[tuple[str, list[str]]]:

@@ -11,6 +11,7 @@ that needs one says so: `@pytest.mark.annex("view")`.
 from __future__ import annotations
 
 import argparse
+import fnmatch
 import os
 import shutil
 import subprocess
@@ -22,7 +23,15 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 
 ANNEXES = {
-    "learn": ["robolink/learn", "robolink/cli/learn", "tests/learn", "tests/cli/learn"],
+    "learn": [
+        "robolink/learn",
+        "robolink/cli/learn",
+        "tests/learn",
+        "tests/cli/learn",
+        "tests/view/*/test_*learn*.py",
+        "tests/docs/test_learn_*.py",
+        "tests/support/lines_left_out.py",
+    ],
     "nav2": ["robolink/counterparts/nav2_*", "tests/counterparts/test_nav2_*"],
     "race": ["robolink/race", "robolink/cli/race", "tests/race", "tests/cli/race"],
     "turtlesim": [
@@ -30,8 +39,18 @@ ANNEXES = {
         "robolink/counterparts/turtle_tf2_py",
         "tests/counterparts/turtlesim",
         "tests/counterparts/test_turtle_tf2_py.py",
+        "tests/view/page/test_page_turtlesim.py",
     ],
-    "view": ["robolink/view", "robolink/cli/view", "tests/view", "tests/cli/view"],
+    "view": [
+        "robolink/view",
+        "robolink/cli/view",
+        "tests/view",
+        "tests/cli/view",
+        "tests/cli/learn/test_learn_view.py",
+        "tests/counterparts/turtlesim/test_window.py",
+        "tests/support/pages.py",
+        "tests/support/view_clients.py",
+    ],
     "webots": [
         "robolink/sim/webots",
         "robolink/webots_controller",
@@ -40,12 +59,13 @@ ANNEXES = {
         "tests/sim/webots",
         "tests/webots_controller",
         "tests/counterparts/test_webots_ros2_driver.py",
+        "tests/support/webots_package.py",
     ],
 }
 """Folders and files of each annex, as patterns: its code first, then its tests."""
 
 REGISTRIES = (
-    "robolink/cli/root.py",
+    "robolink/cli/shared/commands.py",
     "robolink/compat/launch_files.py",
     "robolink/compat/names.py",
     "robolink/extensions/optional.py",
@@ -66,6 +86,12 @@ def modules_of(annex: str) -> list[str]:
 def is_here(annex: str) -> bool:
     """Return whether the code of an annex is in this checkout."""
     return any(ROOT.glob(ANNEXES[annex][0]))
+
+
+def is_of_missing(path: str) -> bool:
+    """Return whether a path is in an annex that is not in this checkout."""
+    gone = [pattern for annex in ANNEXES if not is_here(annex) for pattern in ANNEXES[annex]]
+    return any(fnmatch.fnmatch(path, pattern) or fnmatch.fnmatch(path, f"{pattern}/*") for pattern in gone)
 
 
 def copied(to: Path) -> None:

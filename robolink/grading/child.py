@@ -115,12 +115,12 @@ def _limit_memory() -> None:
         import resource
 
         _, most = resource.getrlimit(resource.RLIMIT_AS)
-        wanted = MOST_MEMORY if most == resource.RLIM_INFINITY else min(MOST_MEMORY, most)
-        resource.setrlimit(resource.RLIMIT_AS, (wanted, most))
+        limit = MOST_MEMORY if most == resource.RLIM_INFINITY else min(MOST_MEMORY, most)
+        resource.setrlimit(resource.RLIMIT_AS, (limit, most))
 
 
 def _show_own_lines() -> None:
-    """Print what the student's nodes log, as `INFO robo: hello`, and nothing of the world's."""
+    """Print the log lines of the student's nodes, as `INFO robo: hello`, and none of the world's."""
     from robolink import logging
     from robolink.logging import Record
     from robolink.text.tracebacks import without_own_frames

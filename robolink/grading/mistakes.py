@@ -111,15 +111,15 @@ def mistake_of(error: BaseException, file: Path) -> Mistake | None:
     if lines:
         code = line_of(file, lines[-1])
         is_input = isinstance(error, EOFError) and "input(" in code
-        return Mistake("input" if is_input else "exception", _shortly(_told(error), file), lines[-1], code)
+        return Mistake("input" if is_input else "exception", _shortly(_text(error), file), lines[-1], code)
     if isinstance(error, RobolinkError):
-        return Mistake("file", _shortly(_told_plainly(error), file))
+        return Mistake("file", _shortly(_plain_text(error), file))
     return None
 
 
 def mistake_elsewhere(error: BaseException) -> Mistake:
     """Return the mistake of a program that failed at none of its own lines."""
-    return Mistake("elsewhere", _told(error))
+    return Mistake("elsewhere", _text(error))
 
 
 def line_of(file: Path, number: int) -> str:
@@ -136,11 +136,11 @@ def _of_syntax(error: SyntaxError) -> Mistake:
     return Mistake("syntax", f"{type(error).__name__}: {error.msg}", error.lineno or 1, (error.text or "").rstrip())
 
 
-def _told(error: BaseException) -> str:
+def _text(error: BaseException) -> str:
     text = "".join(traceback.format_exception_only(type(error), error)).strip()
     text = text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
     if isinstance(error, RobolinkError):
-        text = f"{type(error).__name__}: {_told_plainly(error)}"
+        text = f"{type(error).__name__}: {_plain_text(error)}"
     return advised(text, error)
 
 
@@ -149,5 +149,5 @@ def _shortly(text: str, file: Path) -> str:
     return text.replace(str(file), file.name)
 
 
-def _told_plainly(error: RobolinkError) -> str:
+def _plain_text(error: RobolinkError) -> str:
     return str(error).partition("\nreplay:")[0].partition("\nwhat came last:")[0][:LONGEST]

@@ -30,7 +30,7 @@ from robolink.system.own_command import own_command
 from robolink.system.plainfile import read_plain
 
 MOST_PRINTED = 20_000
-"""Most bytes of what a program prints that are kept."""
+"""Most bytes of what a program prints that are stored."""
 
 MARK = "ROBOLINK_APART"
 """Environment variable by which the processes are found that a program has started and left."""
@@ -112,7 +112,7 @@ def _run(
 ) -> tuple[str, bool]:
     """Run a process to its end, or kill it; return what it printed, and whether it ended by itself."""
     lifeline = Lifeline()
-    kept: list[bytes] = []
+    printed: list[bytes] = []
     try:
         variables, options = lifeline.options()
         since = clocks.time_of_day()
@@ -127,7 +127,7 @@ def _run(
             **options,
         ) as process:
             assert process.stdout is not None
-            reader = threading.Thread(target=_keep, args=(process.stdout, kept), daemon=True)
+            reader = threading.Thread(target=_keep, args=(process.stdout, printed), daemon=True)
             try:
                 reader.start()
                 _hand_over(key, process)
@@ -137,7 +137,7 @@ def _run(
                 waits.join(reader, 1.0)
     finally:
         lifeline.close()
-    return b"".join(kept)[:MOST_PRINTED].decode("utf-8", errors="replace"), in_time
+    return b"".join(printed)[:MOST_PRINTED].decode("utf-8", errors="replace"), in_time
 
 
 def _hand_over(key: bytes, process: subprocess.Popen[bytes]) -> None:
@@ -157,13 +157,13 @@ def _wait(process: subprocess.Popen[bytes], longest: float, stop: threading.Even
     return False
 
 
-def _keep(stream: IO[bytes], kept: list[bytes]) -> None:
+def _keep(stream: IO[bytes], printed: list[bytes]) -> None:
     """Read a stream to its end, and keep its beginning."""
     left = MOST_PRINTED
     with contextlib.suppress(OSError, ValueError):
         while part := os.read(stream.fileno(), 65536):
             if left > 0:
-                kept.append(part[:left])
+                printed.append(part[:left])
                 left -= len(part)
 
 
@@ -208,7 +208,7 @@ def kill_descendants(pid: int, since: float) -> None:
 
 
 def _content(path: Path) -> bytes:
-    """Return what the child wrote into a file; nothing if it wrote none."""
+    """Return the bytes of a file that the child wrote; none if it wrote none."""
     try:
         return read_plain(path, LARGEST)  # the program may have put a FIFO there
     except OSError:

@@ -7,7 +7,6 @@ import sys
 
 import pytest
 
-from robolink.cli.learn.work import say_all
 from robolink.cli.main import main
 from robolink.system.terminal import styled, wants_colour
 
@@ -43,7 +42,10 @@ def test_help_has_bold_headings(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "\n\x1b[1mCommands:\x1b[0m\n" in text
 
 
+@pytest.mark.annex("learn")
 def test_marks_have_their_colours_and_the_rest_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    from robolink.cli.learn.work import say_all
+
     terminal = on_terminal(monkeypatch)
     say_all(["  ✓ done", "✗ no\x1b[2J", "next: ✓"])
     assert terminal.getvalue() == "  \x1b[32m✓\x1b[0m done\n\x1b[31m✗\x1b[0m no\\x1b[2J\nnext: ✓\n"
@@ -56,5 +58,4 @@ def test_no_color_and_pipes_have_none(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not wants_colour(terminal)
     assert main(["topic", "--help"]) == 0
     assert main(["topicc"]) == 2
-    say_all(["✓"])
     assert "\x1b" not in terminal.getvalue()

@@ -22,6 +22,8 @@ from robolink.workspace.modules import FINDER
 from tests.support.commands import ROBOLINK
 from tests.support.ros_names import MODE, VERSION, raised
 
+WEBOTS = pytest.param("webots_ros2_driver", marks=pytest.mark.annex("webots"))
+
 
 @pytest.fixture
 def ros(before: None, tmp_path: Path) -> Path:
@@ -61,7 +63,7 @@ def test_a_checkout_of_rclpy_beside_the_script_is_none_that_is_installed(inner: 
 
 
 @pytest.mark.usefixtures("before")
-@pytest.mark.parametrize("name", ["launch", "launch_ros", "tf2_py", "rosidl_runtime_py", "webots_ros2_driver"])
+@pytest.mark.parametrize("name", ["launch", "launch_ros", "tf2_py", "rosidl_runtime_py", WEBOTS])
 def test_a_checkout_of_what_runs_from_no_folder_is_none_that_is_installed(name: str, tmp_path: Path) -> None:
     (tmp_path / name).mkdir()
     (tmp_path / name / "__init__.py").write_text("raise ImportError('it is not built')")

@@ -16,13 +16,11 @@ from robolink.bag.qos_overrides import read_qos_overrides
 from robolink.bag.static_topics import read_static_topics
 from robolink.bag.storage_options import chunk_compression
 from robolink.counterparts.urdf import read_urdf
-from robolink.counterparts.webots_ros2_driver.section import read_section
 from robolink.documents.foreign import FileWarning, told_in_a_line, warnings_to
 from robolink.exceptions import DocumentError
 from robolink.impl.log_output import Record
 from robolink.security import policy
 from robolink.sim.maps.gridmap import load_map
-from robolink.sim.webots import load as load_webots
 from robolink.sim.worldfile import load_world
 
 MAP = "image: m.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n"
@@ -31,21 +29,20 @@ LINK = '<robot name="r"><link name="base"/>'
 LEG = '<joint name="leg" type="fixed"><parent link="base"/><child link="foot"/>%s</joint><link name="foot"/>'
 
 Case = tuple[Callable[[Path], Any], str, str, str]
+
+
+def read_section(path: Path) -> Any:
+    """Read the section of a URDF file that is for Webots' driver."""
+    from robolink.counterparts.webots_ros2_driver import section
+
+    return section.read_section(str(path))
+
+
 TOLD: list[Case] = [
     (load_map, "m.yaml", MAP + "reslution: 1\n", "unknown key 'reslution' (did you mean 'resolution'?)"),
-    (load_webots, "w.wbt", "#VRML_SIM R2023b utf8\nSolid { nmae 3 }", "unknown key 'nmae' (did you mean 'name'?)"),
-    (load_webots, "w.wbt", "#VRML_SIM R2023b utf8\nSofa { }", "not known here"),
-    (load_webots, "w.wbt", "#VRML_SIM R2023b utf8\nE-puck { vresion 2 }", "(did you mean 'version'?)"),
     (read_urdf, "r.urdf", LINK + "<jiont/></robot>", "<robot>: unknown key 'jiont' (did you mean 'joint'?)"),
     (read_urdf, "r.urdf", LINK + LEG % '<orgin xyz="1 2 3"/>' + "</robot>", "<joint>: unknown key 'orgin'"),
     (read_urdf, "r.urdf", LINK + LEG % '<origin xzy="1 2 3"/>' + "</robot>", "<origin>: unknown key 'xzy'"),
-    (
-        lambda path: read_section(str(path)),
-        "r.urdf",
-        LINK + '<webots><device reference="a"><ros><updateRat>2</updateRat></ros></device></webots></robot>',
-        "device 'a': unknown key 'updateRat' (did you mean 'updateRate'?)",
-    ),
-    (lambda path: read_section(str(path)), "r.urdf", LINK + "<webots><plugn/></webots></robot>", "<webots>: unknown"),
     (
         lambda path: read_metadata(path.parent),
         "metadata.yaml",
@@ -57,6 +54,20 @@ TOLD: list[Case] = [
     (read_outputs, "o.yaml", "output_bags: [{uri: a, all_topics: true, tpics: []}]", "(did you mean 'topics'?)"),
 ]
 """Readers of each format with a file that has a word which the format's own reader ignores, and what is told of it."""
+
+OF_WEBOTS: list[Case] = [
+    (load_world, "w.wbt", "#VRML_SIM R2023b utf8\nSolid { nmae 3 }", "unknown key 'nmae' (did you mean 'name'?)"),
+    (load_world, "w.wbt", "#VRML_SIM R2023b utf8\nSofa { }", "not known here"),
+    (load_world, "w.wbt", "#VRML_SIM R2023b utf8\nE-puck { vresion 2 }", "(did you mean 'version'?)"),
+    (
+        read_section,
+        "r.urdf",
+        LINK + '<webots><device reference="a"><ros><updateRat>2</updateRat></ros></device></webots></robot>',
+        "device 'a': unknown key 'updateRat' (did you mean 'updateRate'?)",
+    ),
+    (read_section, "r.urdf", LINK + "<webots><plugn/></webots></robot>", "<webots>: unknown"),
+]
+"""The same of Webots' formats."""
 
 REFUSED: list[Case] = [
     (read_qos_overrides, "q.yaml", "/a: {histroy: keep_all}", "unknown key 'histroy'"),
@@ -79,7 +90,10 @@ def written(folder: Path, name: str, text: str) -> Path:
     return folder / name
 
 
-@pytest.mark.parametrize(("read", "name", "text", "told"), TOLD)
+@pytest.mark.parametrize(
+    ("read", "name", "text", "told"),
+    [*TOLD, *(pytest.param(*case, marks=pytest.mark.annex("webots")) for case in OF_WEBOTS)],
+)
 def test_what_the_formats_own_reader_ignores_is_told(
     tmp_path: Path, read: Callable[[Path], Any], name: str, text: str, told: str
 ) -> None:

@@ -20,7 +20,9 @@ MEGABYTES = 300
 """Most memory of one answer, in MB."""
 
 
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize(
+    "name", [pytest.param(each, marks=pytest.mark.annex("webots") if each.startswith("Webots") else ()) for each in ALL]
+)
 def test_a_hostile_file_is_answered_soon_and_in_a_line(name: str, tmp_path: Path) -> None:
     if sys.platform == "win32" and ("FIFO" in name or "device" in name):
         pytest.skip("Windows has no FIFOs, and no devices among its files")

@@ -100,7 +100,7 @@ empty_msgs = demo_types
 [robolink.programs]
 demo_robot.drive = demo_extension:drive
 demo_robot::Driver = demo_extension:drive
-turtlesim.turtlesim_node = demo_extension:drive
+demo_nodes_py.talker = demo_extension:drive
 demo_robot.gone = demo_gone:main
 nameless = demo_extension:drive
 """
@@ -255,11 +255,11 @@ def test_programs_of_other_packages_run(capsys: pytest.CaptureFixture[str]) -> N
     assert programs_of("demo_robot") == ["drive", "gone"]
     assert main(["run", "demo_robot", "drive"]) == 0
     assert capsys.readouterr().out == "driving\n"
-    driver, turtlesim = component("demo_robot::Driver"), program("turtlesim", "turtlesim_node")
+    driver, talker = component("demo_robot::Driver"), program("demo_nodes_py", "talker")
     assert driver is not None
-    assert turtlesim is not None
+    assert talker is not None
     assert (driver.module, driver.attribute) == ("demo_extension", "drive")
-    assert turtlesim.attribute == "main"  # robolink's own goes first
+    assert talker.attribute == "Talker"  # robolink's own goes first
 
 
 @pytest.mark.usefixtures("package")
@@ -322,10 +322,10 @@ def test_stubs_have_types_of_other_packages(tmp_path: Path) -> None:
 @pytest.mark.usefixtures("package")
 def test_problems_name_what_is_broken_and_what_is_there_twice() -> None:
     found = list(PROGRAMS.problems())
-    assert found[0].endswith("from demo_gone:main: no module named 'demo_gone'")
-    assert found[1].endswith("a program's name is PACKAGE.EXECUTABLE, or PACKAGE::CLASS for a component")
-    assert found[2] == (
-        "demo-extension adds 'turtlesim.turtlesim_node' (robolink.programs), which robolink has: that one is taken"
+    assert found[1].endswith("from demo_gone:main: no module named 'demo_gone'")
+    assert found[2].endswith("a program's name is PACKAGE.EXECUTABLE, or PACKAGE::CLASS for a component")
+    assert found[0] == (
+        "demo-extension adds 'demo_nodes_py.talker' (robolink.programs), which robolink has: that one is taken"
     )
 
 

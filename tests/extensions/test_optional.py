@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.main import main
-from robolink.cli.root import COMMANDS, Entry
+from robolink.cli.shared.commands import NOUNS, Entry
 from robolink.extensions import optional
 from robolink.extensions.optional import MissingPartError, is_here, page, part
 from robolink.sim import worldfile
@@ -18,7 +18,7 @@ GONE = "robolink.gone_annex"
 @pytest.fixture
 def without(monkeypatch: pytest.MonkeyPatch) -> None:
     """An installation without `robolink view` and the reader of Webots' worlds."""
-    monkeypatch.setitem(COMMANDS, "view", Entry(GONE, COMMANDS["view"].help))
+    monkeypatch.setitem(NOUNS, "view", Entry(GONE, NOUNS["view"].help))
     monkeypatch.setattr(optional, "PAGE", f"{GONE}:page_of")
     monkeypatch.setitem(worldfile.FORMATS, ".wbt", f"{GONE}:load")
 

@@ -32,7 +32,7 @@ MOST = {
     "robolink/image": 6,
     "robolink/impl": 1,
     "robolink/launch": 25,
-    "robolink/learn": 17,
+    "robolink/learn": 10,
     "robolink/lifecycle": 3,
     "robolink/logging.py": 1,
     "robolink/logging_service.py": 1,

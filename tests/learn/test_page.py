@@ -18,10 +18,8 @@ from robolink.grading.mistakes import Mistake
 from robolink.learn.exercise import Exercise
 from robolink.learn.folder import StudentFolder, start_folder
 from robolink.learn.lines import reported
-from robolink.learn.page import PageExercises
+from robolink.learn.page import Operation, PageExercises
 from robolink.learn.report import Line, Report
-from robolink.view.exercises import Operation
-from robolink.view.protocol.requests import LearnCommand
 
 GOOD = Report([Line(True, "it drives")], seconds=0.8)
 BAD = Report(
@@ -150,7 +148,7 @@ def test_a_reset_keeps_the_student_s_file(tmp_path: Path) -> None:
 
 def test_only_the_names_of_exercises_count(tmp_path: Path) -> None:
     exercises = PageExercises(start_folder(str(tmp_path / "mine"), language="en"))
-    commands: tuple[LearnCommand, ...] = ("show", "check", "hint", "reset")
+    commands: tuple[str, ...] = ("show", "check", "hint", "reset")
     for name in ("../stop", "stop/../../x", "/etc/passwd", "08_stop.py", "", "s\x00p", "x" * 900):
         for command in commands:
             with pytest.raises(NotFoundError, match="no exercise named") as caught:
@@ -164,7 +162,7 @@ def test_a_folder_that_is_gone_is_told_and_not_made_again(tmp_path: Path) -> Non
     with desk(place, BAD, GOOD) as made:
         made.wait_for("learn", checking=None)
         shutil.rmtree(place)
-        commands: tuple[LearnCommand, ...] = ("hint", "reset")
+        commands: tuple[str, ...] = ("hint", "reset")
         for command in commands:
             with pytest.raises(RobolinkError, match="robolink learn start"):
                 made.exercises.obey(command, "stop")

@@ -75,10 +75,12 @@ CASES: list[tuple[str, dict[str, Any], str, Any]] = [
     ("turtlesim draw_square", {}, "/turtle1/pose", TurtlePose(theta=math.inf)),
     ("demo_nodes_py listener_serialized", {}, "/chatter", b"\0\1\0\0\xff\0\0\0"),
 ]
+OF_TURTLES = pytest.mark.annex("turtlesim")
+TRIED = [pytest.param(*case, marks=OF_TURTLES if case[0].startswith("turtle") else ()) for case in CASES]
 
 
 @pytest.mark.parametrize(
-    ("program", "parameters", "topic", "message"), CASES, ids=[f"{case[0].split()[-1]} {case[2]}" for case in CASES]
+    ("program", "parameters", "topic", "message"), TRIED, ids=[f"{case[0].split()[-1]} {case[2]}" for case in CASES]
 )
 def test_a_message_does_not_end_a_program(
     system: System, program: str, parameters: dict[str, Any], topic: str, message: Any
@@ -124,6 +126,7 @@ def test_no_text_that_is_sent_to_a_mux_ends_it(system: System) -> None:
     assert system.call(MuxSelect, "/mux/select", MuxSelect.Request(topic="/two")).success
 
 
+@pytest.mark.annex("turtlesim")
 def test_what_is_not_finite_is_never_driven(system: System) -> None:
     system.start("teleop_twist_joy teleop_node", parameters={"require_enable_button": False})
     system.start("turtlesim mimic", remappings={"output/cmd_vel": "cmd_vel"})

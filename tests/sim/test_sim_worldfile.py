@@ -302,6 +302,7 @@ def test_what_is_right_is_read(text: str) -> None:
     assert loaded(text) == check_world("w.yaml", text=text).description
 
 
+@pytest.mark.annex("webots")
 def test_a_webots_world_is_read_by_its_suffix(monkeypatch: pytest.MonkeyPatch) -> None:
     from robolink.sim import webots
 

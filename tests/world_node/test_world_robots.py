@@ -311,6 +311,7 @@ def test_every_world_that_comes_with_robolink_runs(system: System, world: str) -
     assert not any(each.contacts for each in robots)
 
 
+@pytest.mark.annex("webots")
 def test_a_world_of_webots_tells_once_what_is_left_out(system: System, tmp_path: Path) -> None:
     path = tmp_path / "arena.wbt"
     path.write_text("#VRML_SIM R2023b utf8\nRectangleArena { floorSize 4 4 }\nTinyUnicorn { }\n")

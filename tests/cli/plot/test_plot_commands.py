@@ -164,6 +164,7 @@ def test_the_simulated_world_is_drawn_below(node: Node, tmp_path: Path, drawn: l
     assert drawn[0].get_xlim()[1] > 6.9  # the corners' room is 7 m wide
 
 
+@pytest.mark.annex("webots")
 def test_what_is_left_out_of_a_world_of_webots_is_told_in_a_line(
     node: Node, tmp_path: Path, drawn: list[Any], capsys: Captured
 ) -> None:

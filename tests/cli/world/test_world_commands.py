@@ -21,7 +21,7 @@ from matplotlib.text import Annotation
 from robolink.cli.main import main
 from robolink.cli.shared import complete
 from robolink.documents.yamlfile import parse
-from robolink.sim import drawing, load_world, webots
+from robolink.sim import drawing, load_world
 from robolink.sim.description import MapWalls, WorldDescription
 from robolink.sim.schema import MEANINGS, world_schema
 from robolink.sim.sensors import SENSORS
@@ -87,9 +87,12 @@ def test_the_worlds_that_come_along_are_good(path: Path, capsys: Captured) -> No
     assert ": OK: " in capsys.readouterr().out
 
 
+@pytest.mark.annex("webots")
 def test_a_webots_world_is_checked_and_what_it_lacks_is_told(
     workspace: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    from robolink.sim import webots
+
     def load(path: str, text: str | None) -> WorldDescription:
         warnings.warn("left out: Pedestrian", webots.WorldWarning, stacklevel=2)
         return load_world("x.yaml", text=HALL)

@@ -88,6 +88,7 @@ def test_components_that_come_later_have_a_process_of_their_own(package: Path, s
     assert [each.data for each in said][:1] == ["hi"]
 
 
+@pytest.mark.annex("nav2")
 def test_components_of_ros_have_counterparts(package: Path, system: System) -> None:
     (package / "map.yaml").write_text(
         "image: map.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"

@@ -12,6 +12,8 @@ from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.testing import System
 from tests.support.tutorial_workspace import TutorialWorkspace, edit
 
+pytestmark = pytest.mark.annex("turtlesim")
+
 SCRIPTS = [
     f"{each} = learning_tf2_py.{each}:main"
     for each in (

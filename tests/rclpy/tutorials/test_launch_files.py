@@ -13,6 +13,8 @@ from robolink.testing import System
 from tests.support.commands import Command
 from tests.support.tutorial_workspace import TutorialWorkspace
 
+pytestmark = pytest.mark.annex("turtlesim")
+
 TF2 = [
     f"{each} = learning_tf2_py.{each}:main"
     for each in ("turtle_tf2_broadcaster", "turtle_tf2_listener", "fixed_frame_tf2_broadcaster")
