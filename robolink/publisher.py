@@ -13,7 +13,7 @@ from robolink.message import Message, encoder, message_type
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.running.destroyable import Destroyable
 from robolink.running.ports import ContextLike
-from robolink.system.fork_locks import fork_lock
+from robolink.system.waits import fork_lock
 from robolink.transport.history import Latch, latched_depth
 from robolink.wire import NO_HASH, EndpointKind
 

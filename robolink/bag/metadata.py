@@ -20,8 +20,8 @@ from robolink.documents.foreign import unknown_key, warn
 from robolink.documents.yamlfile import read_text
 from robolink.documents.yamltext import compose, texts
 from robolink.exceptions import DocumentError
+from robolink.system.files import put_in_place
 from robolink.system.terminal import quoted, shown
-from robolink.system.whole_files import put_in_place
 
 FILE_NAME = "metadata.yaml"
 VERSION = 8

@@ -15,8 +15,8 @@ from robolink.bag.storage.opening import STORAGES, check_storage, storage_writer
 from robolink.bag.topic import BagError, BagTopic
 from robolink.exceptions import nearest
 from robolink.system import clocks
+from robolink.system.processes import ROS_DISTRO
 from robolink.system.terminal import shown
-from robolink.system.variables import ROS_DISTRO
 
 LARGEST_SUMMARY = 1 << 20
 """Size of a file's index, in bytes, at which a new file begins: the index is written again with each flush."""

@@ -161,7 +161,7 @@ def xml(
     from robolink.companions.ament_index import get_package_share_directory
     from robolink.documents import xmltext
     from robolink.exceptions import NotFoundError
-    from robolink.system.plainfile import read_plain
+    from robolink.system.files import read_plain
 
     file = Path(get_package_share_directory(package_name), "package.xml")
     if not file.is_file():

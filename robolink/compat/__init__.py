@@ -35,7 +35,7 @@ from robolink.compat.maker import MAKER, has_rclpy, hidden
 from robolink.compat.opencv import prepare_opencv
 from robolink.compat.workspace_types import workspace_types
 from robolink.exceptions import RobolinkError
-from robolink.system.variables import set_ros_version
+from robolink.system.processes import set_ros_version
 from robolink.workspace.modules import FINDER
 
 VARIABLE = "ROBOLINK_COMPAT"

@@ -10,7 +10,7 @@ from robolink.exceptions import RobolinkError
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.node import Node
 from robolink.parameters.descriptors import described
-from robolink.system.words import with_article
+from robolink.system.terminal import with_article
 
 FIRST_MESSAGE = 5.0
 """Longest wait for the first message before a warning, in seconds: the robot is often started beside its driver."""

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from xml.parsers import expat
 
 from robolink.exceptions import DocumentError
-from robolink.system.plainfile import read_plain, size
+from robolink.system.files import read_plain, size
 
 LARGEST = 5_000_000
 """Largest file that is read, in bytes."""

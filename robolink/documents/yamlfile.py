@@ -18,7 +18,7 @@ import msgspec
 from robolink.documents.limits import MOST_MISTAKES, first_mistakes
 from robolink.documents.mistakes import Hook, Reader, Step, steps_of
 from robolink.exceptions import DocumentError, nearest
-from robolink.system.plainfile import decoded, read_plain
+from robolink.system.files import decoded, read_plain
 from robolink.system.terminal import quoted
 
 if TYPE_CHECKING:

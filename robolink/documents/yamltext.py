@@ -17,9 +17,8 @@ from yaml.composer import Composer
 from yaml.resolver import Resolver
 
 from robolink.exceptions import DocumentError
-from robolink.system.plainfile import size
-from robolink.system.terminal import shown
-from robolink.system.words import with_article
+from robolink.system.files import size
+from robolink.system.terminal import shown, with_article
 
 try:
     from yaml._yaml import CParser

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal, get_args
 
-from robolink.system.paths import is_file
+from robolink.system.files import is_file
 
 Language = Literal["en", "pt"]
 

@@ -12,7 +12,7 @@ from msgspec import Struct
 from msgspec.structs import force_setattr
 
 from robolink.exceptions import RobolinkError
-from robolink.system.plainfile import LONGEST_SOURCE, read_plain
+from robolink.system.files import LONGEST_SOURCE, read_plain
 from robolink.testing.expectations import NodeFailure
 from robolink.text.callbacks import place_of
 from robolink.text.tracebacks import advised

@@ -26,8 +26,8 @@ from robolink.grading.mistakes import Mistake, line_of
 from robolink.supervisor.processes.guardian import marked, signal_group
 from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.system import clocks, waits
-from robolink.system.own_command import own_command
-from robolink.system.plainfile import read_plain
+from robolink.system.files import read_plain
+from robolink.system.processes import own_command
 
 MOST_PRINTED = 20_000
 """Most bytes of what a program prints that are stored."""

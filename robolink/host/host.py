@@ -21,7 +21,7 @@ from robolink.impl.log_output import output
 from robolink.launch.shared_process import Member
 from robolink.running.defaults import get_defaults
 from robolink.running.timebase import TimeBase
-from robolink.system.variables import Variables
+from robolink.system.processes import Variables
 from robolink.transport.base import Transport
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.workspace import find_node

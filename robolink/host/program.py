@@ -27,7 +27,7 @@ from robolink.host.platform import HostedPlatform, abandon
 from robolink.impl.rcutils_logger import RcutilsLogger
 from robolink.logging import get_logger, set_logger_level
 from robolink.running.defaults import Defaults
-from robolink.system.variables import Variables
+from robolink.system.processes import Variables
 from robolink.text.suggestions import LackingNameError
 from robolink.text.tracebacks import formatted
 from robolink.workspace import VARIABLE, NodeSource, workspace_of

@@ -20,7 +20,7 @@ from robolink.supervisor import Process, RunLogs, Supervisor
 from robolink.supervisor.processes.fork_server import ForkServer
 from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.supervisor.processes.process import Child
-from robolink.system.own_command import own_command
+from robolink.system.processes import own_command
 from robolink.workspace import VARIABLE
 
 if TYPE_CHECKING:

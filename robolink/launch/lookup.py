@@ -11,9 +11,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
-from robolink.system.own_command import own_command
-from robolink.system.paths import expanded
-from robolink.system.plainfile import read_plain
+from robolink.system.files import expanded, read_plain
+from robolink.system.processes import own_command
 from robolink.workspace import (
     Folder,
     NodeSource,

@@ -17,8 +17,7 @@ from robolink.launch.shared_process import COMMAND, Member, written
 from robolink.networks.asked import NETWORK
 from robolink.supervisor import Process
 from robolink.supervisor.rules import Restarts, Rules
-from robolink.system.own_command import own_command
-from robolink.system.variables import Variables
+from robolink.system.processes import Variables, own_command
 from robolink.workspace import VARIABLE, Folder, NodeSource, own_process_needed
 
 _ROOM = 16_000

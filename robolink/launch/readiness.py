@@ -17,7 +17,7 @@ from robolink.arguments.remapping import RemapKind, parse_remap_rule, remap_name
 from robolink.exceptions import RobolinkError, WireError
 from robolink.launch.entry import Entry
 from robolink.system import waits
-from robolink.system.plainfile import LONGEST_SOURCE, read_plain
+from robolink.system.files import LONGEST_SOURCE, read_plain
 
 if TYPE_CHECKING:
     import ast

@@ -15,8 +15,7 @@ from robolink.grading.languages import STUDENT_FILE, Language, default_language,
 from robolink.learn.exercise import Exercise, chosen, read_course
 from robolink.learn.words import words
 from robolink.supervisor.monitoring.file_watch import Changes
-from robolink.system.paths import expanded, is_file
-from robolink.system.whole_files import write_new, write_whole
+from robolink.system.files import expanded, is_file, write_new, write_whole
 
 DEFAULT = "learn_robolink"
 """Name of the folder that `start` makes."""

@@ -14,7 +14,7 @@ from robolink.learn.report import Report
 from robolink.learn.words import words
 from robolink.scaffold.rendering import rendered
 from robolink.scaffold.writing import written
-from robolink.system.paths import expanded
+from robolink.system.files import expanded
 
 FOLDER = "exercises"
 """Name of the folder for a teacher's exercises."""

@@ -13,8 +13,7 @@ from typing import Any
 import msgspec
 
 from robolink.message.annotations import NUMERIC, FieldType
-from robolink.system.terminal import quoted, shown
-from robolink.system.words import with_article
+from robolink.system.terminal import quoted, shown, with_article
 
 INTEGER = re.compile(r"[+-]?(?:[0-9](?:_?[0-9])*|0[xX](?:_?[0-9a-fA-F])+|0[oO](?:_?[0-7])+|0[bB](?:_?[01])+)")
 DIGITS = "[0-9](?:_?[0-9])*"

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from robolink.networks.asked import FIRST_PORT, ROUTER_PORT
 from robolink.networks.port_probe import SILENT, STRANGER, Port, listening
 from robolink.system import clocks
-from robolink.system.queues import get_within
+from robolink.system.waits import get_within
 
 ANSWER_WITHIN = 1.0
 """Timeout of a port's answer, in seconds; over a good network it takes one round trip."""

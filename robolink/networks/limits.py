@@ -23,7 +23,7 @@ from robolink.documents.mistakes import Step
 from robolink.documents.yamlfile import Document, read, spell
 from robolink.exceptions import DocumentError, TransportError
 from robolink.security.patterns import keys, problem
-from robolink.system.paths import expanded
+from robolink.system.files import expanded
 
 if TYPE_CHECKING:
     import zenoh

@@ -16,7 +16,7 @@ from robolink.exceptions import DocumentError, TransportError
 from robolink.networks import hosts
 from robolink.networks.asked import ALIASES, ENDPOINT, NAMES, Wanted
 from robolink.networks.limits import Limits, mistakes
-from robolink.system.paths import expanded, is_file
+from robolink.system.files import expanded, is_file
 
 FILE = "networks.yaml"
 WORKSPACE = "ROBOLINK_WORKSPACE"

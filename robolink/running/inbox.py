@@ -20,8 +20,7 @@ from typing import Any, Protocol
 
 import msgspec
 
-from robolink.system.queues import get_within
-from robolink.system.waits import A_WHILE
+from robolink.system.waits import A_WHILE, get_within
 
 
 class Target(Protocol):

@@ -14,8 +14,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from robolink.system import clocks, waits
-from robolink.system.queues import get_within
-from robolink.system.waits import A_WHILE
+from robolink.system.waits import A_WHILE, get_within
 
 if TYPE_CHECKING:
     import random

@@ -11,8 +11,7 @@ from typing import NamedTuple
 from robolink.scaffold.naming import ScaffoldError, checked, checked_module, class_name
 from robolink.scaffold.rendering import rendered
 from robolink.scaffold.requirement import WHEELS, requirement
-from robolink.system.paths import expanded
-from robolink.system.whole_files import write_new
+from robolink.system.files import expanded, write_new
 from robolink.workspace import built_in_workspace, user_workspace
 from robolink.workspace.source import Folder
 

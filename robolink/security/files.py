@@ -11,8 +11,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from robolink.exceptions import SecurityError
-from robolink.system.plainfile import read_plain
-from robolink.system.whole_files import put_in_place
+from robolink.system.files import put_in_place, read_plain
 
 LARGEST = 1_000_000
 """Largest file of a keystore that is read, in bytes."""

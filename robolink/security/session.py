@@ -14,7 +14,7 @@ from robolink.security import access, files
 from robolink.security.keystore import CERTIFICATE, KEY, PERMISSIONS, ROUTER, checked_enclave, enclave_of
 from robolink.security.rights import Rights, load_rights
 from robolink.system import clocks
-from robolink.system.paths import expanded
+from robolink.system.files import expanded
 from robolink.wire import EndpointKind
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ import msgspec
 
 from robolink.simulate.result import SimulationResult
 from robolink.system import clocks
-from robolink.system.own_command import own_command
+from robolink.system.processes import own_command
 from robolink.system.waits import A_WHILE
 
 INTERRUPTED = (130, -signal.SIGINT, 0xC000013A)

@@ -27,7 +27,7 @@ from robolink.supervisor.reporting.logs import RunLogs
 from robolink.supervisor.reporting.notifier import OnEvent
 from robolink.supervisor.rules import Step
 from robolink.system import clocks
-from robolink.system.queues import get_within
+from robolink.system.waits import get_within
 
 _LEFT_BEHIND = 1.0
 """Time between SIGTERM and SIGKILL for processes that still run when the supervisor has to leave, in seconds."""

@@ -1,4 +1,4 @@
-r"""Terminal escaping: makes untrusted text safe to print, without control sequences.
+r"""Texts for people at a terminal: untrusted text made safe to print, without control sequences; colours; the browser.
 
 Characters that move the cursor, colour, ring, or change the text's direction become escape sequences that Python,
 YAML (in double quotes) and JSON (but for ``\x1b``, which JSON's writers never leave) read back as the same character.
@@ -89,3 +89,22 @@ def escaped(char: str) -> str:
     if code < 0x7F:
         return _SHORT.get(char) or f"\\x{code:02x}"
     return f"\\u{code:04x}" if code <= 0xFFFF else f"\\U{code:08x}"
+
+
+def with_article(noun: str) -> str:
+    """Return a noun with its indefinite article, as one writes it of a type's name.
+
+    >>> with_article("int32"), with_article("uint8")
+    ('an int32', 'a uint8')
+    """
+    return f"a{'n' if noun[:1] in tuple('aeio') else ''} {noun}"
+
+
+def open_in_browser(address: str) -> bool:
+    """Open an address in the browser; False where there is no screen, or no browser."""
+    import webbrowser
+
+    is_remote = sys.platform not in ("win32", "darwin") and not (
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
+    return not is_remote and webbrowser.open(address)

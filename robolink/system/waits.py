@@ -1,4 +1,4 @@
-"""Blocking waits in slices: each single wait is short, so that Ctrl-C is noticed between two of them.
+"""Blocking waits in slices, each so short that Ctrl-C is noticed between two of them; locks that a fork finds free.
 
 On Windows Ctrl-C does not interrupt a wait for a lock before Python 3.14, and everything in `threading`, `queue` and
 `concurrent.futures` waits for one. `time.sleep` it does interrupt.
@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import contextlib
 import math
+import os
 import queue
 import threading
+import weakref
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, TypeVar
-
-from robolink.system.queues import get_within
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -75,3 +75,40 @@ def result(future: Future[T], seconds: float | None = None) -> T:
         if futures.wait([future], each).done:
             return future.result()
     raise futures.TimeoutError(f"no result within {seconds:g} s")
+
+
+def get_within(source: queue.SimpleQueue[T], seconds: float) -> T:
+    """Return the oldest element; wait for one, in one piece, for at most `seconds`. Raises queue.Empty.
+
+    `source.get(timeout=...)` alone may wait for ever before Python 3.13, if the time is shorter than the call itself: a
+    `get_nowait` that finds something leaves the queue's lock open; the call passes through it, works out what is left
+    of its time, and takes less than nothing for no limit. A `get_nowait` that finds nothing shuts the lock.
+    """
+    try:
+        return source.get_nowait()
+    except queue.Empty:
+        if seconds <= 0:
+            raise
+    return source.get(timeout=seconds)
+
+
+# Locks
+
+_locks: weakref.WeakSet[threading.RLock] = weakref.WeakSet()
+
+
+def fork_lock() -> threading.RLock:
+    """Return a new lock, like `threading.RLock`, that is free in each child of a fork."""
+    lock = threading.RLock()
+    _locks.add(lock)
+    return lock
+
+
+def _free() -> None:
+    for each in list(_locks):
+        # In place, since others hold its methods; Python's own modules free theirs in this way.
+        each._at_fork_reinit()  # type: ignore[attr-defined]
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_free)

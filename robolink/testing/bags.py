@@ -16,7 +16,7 @@ from robolink.exceptions import OverwrittenError, RobolinkError, WireError
 from robolink.interfaces import find_announced
 from robolink.logging import get_logger
 from robolink.system import waits
-from robolink.system.variables import ROS_DISTRO
+from robolink.system.processes import ROS_DISTRO
 from robolink.wire import NO_HASH, unpack_attachment
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
 from robolink.qos import HistoryPolicy, QoSProfile, resolved
-from robolink.system.fork_locks import fork_lock
+from robolink.system.waits import fork_lock
 
 ALL = 0
 """Depth of a mailbox without a bound, as that of a subscription with KEEP_ALL."""

@@ -19,7 +19,7 @@ from typing import Any
 from robolink.exceptions import TransportClosedError
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.system import heap
-from robolink.system.fork_locks import fork_lock
+from robolink.system.waits import fork_lock
 from robolink.transport.base import Handle, NumberingOutlet, Query, Sample, Sink, Transport, make_sample, refuse_giant
 from robolink.transport.history import Latch, latched_depth
 from robolink.wire import check_attachment, pair_opener

@@ -21,7 +21,7 @@ from robolink.networks.asked import (
 )
 from robolink.networks.settings import as_ros, client, settings
 from robolink.system import clocks
-from robolink.system.paths import expanded, is_file
+from robolink.system.files import expanded, is_file
 from robolink.system.terminal import shown
 from robolink.transport import shared_memory
 from robolink.transport.reach import mode_of

@@ -19,7 +19,7 @@ import zenoh
 from robolink.exceptions import TransportError
 from robolink.logging import get_logger
 from robolink.system import clocks
-from robolink.system.queues import get_within
+from robolink.system.waits import get_within
 from robolink.transport import lifetime
 from robolink.transport.port_sharing import PortClaim
 from robolink.transport.reach import Link, host_of, port_of

@@ -11,7 +11,7 @@ from typing import Any
 import zenoh
 
 from robolink.system import clocks
-from robolink.system.queues import get_within
+from robolink.system.waits import get_within
 from robolink.transport.zenoh_declare import close_gate
 from robolink.transport.zenoh_handles import Declared, Holdings, Made
 

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path, PureWindowsPath
 
-from robolink.system.plainfile import decoded, read_plain
+from robolink.system.files import decoded, read_plain
 from robolink.workspace.listing import Listing
 
 LONGEST = 200_000

@@ -17,7 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from robolink.exceptions import NotFoundError, nearest
-from robolink.system.paths import expanded, is_file
+from robolink.system.files import expanded, is_file
 from robolink.workspace.built_in import built_in_workspace
 from robolink.workspace.installed import COLCON
 from robolink.workspace.packages import (

@@ -17,7 +17,7 @@ from typing import Any
 
 from robolink import interfaces
 from robolink.exceptions import DefinitionError, MessageError, NotFoundError
-from robolink.system.plainfile import decoded, read_plain
+from robolink.system.files import decoded, read_plain
 from robolink.workspace.built_in import built_in_workspace
 from robolink.workspace.find import user_workspace
 from robolink.workspace.modules import FINDER, Fill

@@ -13,7 +13,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
-from robolink.system.plainfile import LONGEST_SOURCE, read_plain
+from robolink.system.files import LONGEST_SOURCE, read_plain
 from robolink.workspace.find import workspace_of
 from robolink.workspace.interfaces import use_interfaces
 from robolink.workspace.packages import import_roots, source_packages

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from robolink.system.plainfile import decoded, read_plain
+from robolink.system.files import decoded, read_plain
 from robolink.workspace.literals import Values, keywords, parsed
 
 LONGEST = 200_000

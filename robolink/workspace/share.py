@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path, PurePosixPath
 from typing import Any, TypeAlias
 
-from robolink.system.paths import expanded
+from robolink.system.files import expanded
 from robolink.workspace.cmake_files import CMakeFile
 from robolink.workspace.packages import package_name_of
 from robolink.workspace.setup_files import data_files

@@ -12,7 +12,7 @@ import sys
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
-from robolink.system.paths import expanded
+from robolink.system.files import expanded
 from robolink.system.terminal import shown
 
 SAFE = "ROBOLINK_SAFE_WORKSPACES"

@@ -14,7 +14,7 @@ from robolink.documents.limits import first_mistakes
 from robolink.documents.yamlfile import mistakes, read_text
 from robolink.exceptions import DocumentError
 from robolink.exceptions import DocumentError as Error
-from robolink.system.plainfile import read_plain
+from robolink.system.files import read_plain
 
 
 def reason(path: Path | str, most: int = 100) -> str:

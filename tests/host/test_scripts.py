@@ -14,7 +14,7 @@ import pytest
 from robolink import logging
 from robolink.host import Host
 from robolink.launch.shared_process import Member
-from robolink.system.variables import set_ros_version
+from robolink.system.processes import set_ros_version
 from tests.support.hosts import Counter, Listener, Stage, start_files, traced
 from tests.support.scripts import CLIENT, MIXED, PARALLEL, SCRIPTS, SERVER, THREADED
 

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from robolink.running.inbox import Inbox, Sweeper
-from robolink.system.queues import get_within
+from robolink.system.waits import get_within
 
 PATIENCE = 30.0
 

@@ -24,7 +24,7 @@ from robolink.supervisor.processes.fork_server import ForkServer
 from robolink.supervisor.processes.guardian import signal_group
 from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.supervisor.processes.process import Child
-from robolink.system.own_command import own_command
+from robolink.system.processes import own_command
 from robolink.workspace import VARIABLE
 from tests.support.supervised import INTERRUPT, KILL, PATIENCE
 

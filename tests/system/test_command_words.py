@@ -6,7 +6,7 @@ import subprocess
 
 import pytest
 
-from robolink.system.command_words import SHELL, split_words, windows_line
+from robolink.system.processes import SHELL, split_words, windows_line
 
 
 @pytest.mark.parametrize(

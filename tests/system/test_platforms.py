@@ -33,7 +33,7 @@ from robolink.supervisor.processes import affinity, process
 from robolink.supervisor.processes.process import Child
 from robolink.supervisor.reporting import logs
 from robolink.supervisor.rules import Step
-from robolink.system import clocks, whole_files
+from robolink.system import clocks, files
 from robolink.system.waits import A_WHILE
 from robolink.transport import network
 from tests.support.commands import PATIENCE
@@ -323,12 +323,12 @@ def test_a_file_that_somebody_reads_is_replaced_a_moment_later(
     file = tmp_path / "progress.json"
     file.write_bytes(b"old")
     monkeypatch.setattr(Path, "replace", replaced_unless(lambda target: len(pauses) < times))
-    monkeypatch.setattr("robolink.system.whole_files.time.sleep", pauses.append)
+    monkeypatch.setattr("robolink.system.files.time.sleep", pauses.append)
     if times == 3:
-        whole_files.write_whole(file, b"new")
+        files.write_whole(file, b"new")
     else:
         with pytest.raises(PermissionError, match=r"progress\.json"):
-            whole_files.write_whole(file, b"new")
+            files.write_whole(file, b"new")
     assert (file.read_bytes(), [*tmp_path.iterdir()]) == (b"new" if times == 3 else b"old", [file])
     assert sum(pauses) <= 0.6
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.main import main
-from robolink.system.own_command import own_command
+from robolink.system.processes import own_command
 from robolink.workspace import VARIABLE, built_in_workspace, find_node, trust, user_workspace, workspace_of
 
 posix_only = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no owners by number and no mode bits")

@@ -10,7 +10,7 @@ from io import FileIO
 from pathlib import Path
 
 from robolink.bag.mcap.records import Buffer
-from robolink.system.whole_files import put_in_place
+from robolink.system.files import put_in_place
 
 NEW = ".new"
 """Suffix of a file that is being made, until it is whole and gets its name."""

@@ -10,7 +10,7 @@ from robolink.bag.mcap.disk import is_being_written
 from robolink.bag.mcap.reader import Reader
 from robolink.bag.mcap.records import McapError
 from robolink.bag.mcap.writer import Writer
-from robolink.system.whole_files import put_in_place
+from robolink.system.files import put_in_place
 
 PART = ".reindexed"
 """Suffix of the new file, until it is complete and replaces the old one."""

@@ -18,7 +18,7 @@ from robolink.bag.storage.base import StorageReader, StorageWriter, Written
 from robolink.bag.storage.sqlite_salvage import Salvage, allow_cut, lost_end
 from robolink.bag.topic import BagError, BagMessage, BagTopic
 from robolink.system import clocks
-from robolink.system.variables import ROS_DISTRO
+from robolink.system.processes import ROS_DISTRO
 
 MAGIC = b"SQLite format 3\0"
 SCHEMA_VERSION = 4

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from robolink.cli.doctor.facts import ClockOffset, Seen
 from robolink.exceptions import RobolinkError, SecurityError, WireError
 from robolink.system import clocks
-from robolink.system.queues import get_within
+from robolink.system.waits import get_within
 from robolink.transport import connect
 from robolink.wire import (
     DataKey,

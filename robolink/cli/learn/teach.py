@@ -12,7 +12,7 @@ from robolink.learn.exercise import SETTINGS, read_course
 from robolink.learn.isolated import check_apart
 from robolink.learn.teaching import FOLDER, new_exercise, proofs
 from robolink.learn.words import words
-from robolink.system.paths import expanded
+from robolink.system.files import expanded
 
 
 def new(name: str, folder: str, language: Language) -> None:

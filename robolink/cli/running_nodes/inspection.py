@@ -26,7 +26,7 @@ from robolink.exceptions import (
 )
 from robolink.launch.looking.look import End, Job, Look, Request
 from robolink.running.timebase import VirtualTime
-from robolink.system.variables import set_environment
+from robolink.system.processes import set_environment
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.utilities import set_default_context
 from robolink.wire import EndpointToken, NodeToken, graph_pattern, parse_token

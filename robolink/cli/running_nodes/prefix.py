@@ -9,8 +9,7 @@ import sys
 from collections.abc import Sequence
 
 from robolink.exceptions import NotFoundError, RobolinkError
-from robolink.system.command_words import split_words
-from robolink.system.own_command import own_command
+from robolink.system.processes import own_command, split_words
 
 
 class PrefixError(RobolinkError, ValueError):

@@ -24,7 +24,7 @@ from robolink.exceptions import (
 )
 from robolink.signals import SignalHandlerOptions, get_current_signal_handlers_options
 from robolink.supervisor.processes.lifeline import watch_lifeline
-from robolink.system.plainfile import LONGEST_SOURCE, read_plain
+from robolink.system.files import LONGEST_SOURCE, read_plain
 from robolink.text.suggestions import LackingNameError
 from robolink.text.tracebacks import formatted
 from robolink.workspace import (

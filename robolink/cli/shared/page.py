@@ -20,7 +20,7 @@ def announce(server: Page, browser: bool, panels: str) -> None:
     """
     # Before it is printed: a Ctrl-C that comes in an import may leave a lock of Python's behind, for which the server's
     # threads, which import as well, would wait for ever.
-    from robolink.system.browser import open_in_browser
+    from robolink.system.terminal import open_in_browser
 
     address = f"{server.address}#{panels}" if panels else server.address
     say(f"robolink view: {address}")

@@ -18,7 +18,7 @@ import zipfile
 from pathlib import Path
 
 from robolink.exceptions import RobolinkError
-from robolink.system.paths import is_file
+from robolink.system.files import is_file
 
 MARK = "Made by 'robolink shim"
 """Text by which a script is known as one of these."""

@@ -18,7 +18,7 @@ from robolink.event_handler import PublisherEventCallbacks
 from robolink.exceptions import DocumentError, RobolinkError, nearest
 from robolink.executors import Executor, SingleThreadedExecutor
 from robolink.system import clocks
-from robolink.system.plainfile import decoded
+from robolink.system.files import decoded
 from robolink.system.terminal import shown
 from robolink.task import Future
 from robolink.wire import EndpointKind

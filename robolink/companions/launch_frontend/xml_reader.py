@@ -9,7 +9,7 @@ from robolink.companions.launch.bases import Place
 from robolink.companions.launch_frontend.entity import Entity
 from robolink.companions.launch_frontend.ros1 import refuse_ros1
 from robolink.exceptions import DocumentError
-from robolink.system.plainfile import read_plain
+from robolink.system.files import read_plain
 
 LONGEST, DEEPEST, MOST = 5_000_000, 64, 100_000
 """Largest file in bytes, deepest nesting, and most elements."""

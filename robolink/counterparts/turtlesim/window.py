@@ -12,7 +12,7 @@ from robolink.exceptions import RobolinkError
 from robolink.extensions.optional import page
 from robolink.parameter import Parameter
 from robolink.running.timebase import VirtualTime
-from robolink.system.browser import open_in_browser
+from robolink.system.terminal import open_in_browser
 
 if TYPE_CHECKING:
     from robolink.node import Node

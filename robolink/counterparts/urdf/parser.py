@@ -18,7 +18,7 @@ from robolink.documents.foreign import warnings_to
 from robolink.documents.xmltext import Element
 from robolink.exceptions import DocumentError, nearest
 from robolink.geometry.transformations import quaternion_from_euler
-from robolink.system.plainfile import read_plain
+from robolink.system.files import read_plain
 from robolink.system.terminal import shown
 from robolink.tf2.rigid import Rigid
 

@@ -12,7 +12,7 @@ from xml.parsers.expat import ErrorString, ExpatError
 
 from robolink.documents import xmltext
 from robolink.exceptions import DocumentError, RobolinkError
-from robolink.system.plainfile import read_plain
+from robolink.system.files import read_plain
 from robolink.system.terminal import shown
 
 QUOTED = re.compile(r"'([^'\n]+)'|\"([^\"\n]+)\"|[:]\s*(\S+)")

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from robolink.host.participants import ProgramLike
-from robolink.system.variables import set_environment
+from robolink.system.processes import set_environment
 
 
 class ProcessView:

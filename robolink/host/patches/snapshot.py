@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
-from robolink.system.variables import set_environment
+from robolink.system.processes import set_environment
 from robolink.workspace.interfaces import WORKSPACE_TYPES
 
 

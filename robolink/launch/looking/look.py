@@ -22,7 +22,7 @@ import msgspec
 from robolink.exceptions import RobolinkError
 from robolink.launch.entry import Entry
 from robolink.supervisor.rules import described
-from robolink.system.own_command import own_command
+from robolink.system.processes import own_command
 
 COMMAND = "look-into"
 """Hidden sub-command of `robolink` for the child process; not for people."""

@@ -21,7 +21,7 @@ from robolink.networks.asked import domain_id
 from robolink.security import session
 from robolink.security.rights import Rights
 from robolink.security.session import Security
-from robolink.system.variables import environment_with
+from robolink.system.processes import environment_with
 from robolink.wire import EndpointKind
 
 

@@ -25,8 +25,7 @@ from robolink.launch.lookup import command_of, source_of
 from robolink.launch.ros.parameters import parameters_of, texts_of
 from robolink.launch.ros.programs import Program, program_of
 from robolink.supervisor.rules import NO_LIMIT
-from robolink.system.command_words import SHELL, split_words
-from robolink.system.own_command import own_command
+from robolink.system.processes import SHELL, own_command, split_words
 from robolink.system.terminal import shown
 from robolink.validate_namespace import validate_namespace
 from robolink.validate_node_name import validate_node_name

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from robolink.companions.ament_index.search_paths import get_search_paths
 from robolink.compat.names import snake_case
 from robolink.exceptions import NotFoundError, closest
-from robolink.system.plainfile import LONGEST_SOURCE, read_plain
+from robolink.system.files import LONGEST_SOURCE, read_plain
 from robolink.workspace import (
     NodeSource,
     RosProgramError,

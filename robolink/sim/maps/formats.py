@@ -6,7 +6,7 @@ from pathlib import Path
 
 from robolink.sim.maps import pgm, png
 from robolink.sim.maps.image import MOST_BYTES, Image, ImageError
-from robolink.system.plainfile import read_plain
+from robolink.system.files import read_plain
 
 LARGEST_FILE = MOST_BYTES + 10_000_000
 """Largest file of an image in bytes: uncompressed pixels, and headers around them."""

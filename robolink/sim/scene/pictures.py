@@ -12,7 +12,7 @@ from robolink.sim.maps import pgm, png
 from robolink.sim.maps.formats import LARGEST_FILE
 from robolink.sim.maps.image import ImageError
 from robolink.sim.scene.surfaces import Picture
-from robolink.system.plainfile import read_plain
+from robolink.system.files import read_plain
 
 MOST_PIXELS = 8_000_000
 """Most pixels of a picture: 4,000 x 2,000."""

@@ -16,7 +16,7 @@ from robolink.exceptions import DocumentError, nearest
 from robolink.sim.webots.known_fields import KNOWN_FIELDS
 from robolink.sim.webots.protos import Definition, Protos, Scope
 from robolink.sim.webots.vrml_node import DEEPEST, LONGEST, MOST, Field, Node, Source, Value
-from robolink.system.plainfile import size
+from robolink.system.files import size
 from robolink.system.terminal import shown
 
 MOST_WORDS = 500_000

@@ -29,7 +29,7 @@ from typing import IO, NamedTuple
 from robolink.supervisor.processes.lifeline import VARIABLE, Lifeline
 from robolink.supervisor.processes.process_title import ProcessTitle
 from robolink.system import clocks
-from robolink.system.variables import Variables, set_environment
+from robolink.system.processes import Variables, set_environment
 
 PATIENCE = 30.0
 """Longest wait for an answer, in seconds: the first comes when all is imported. Then processes start without it."""

@@ -23,8 +23,7 @@ from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.supervisor.processes.terminal import Terminal
 from robolink.supervisor.rules import Rules, Step
 from robolink.system import clocks
-from robolink.system.command_words import windows_line
-from robolink.system.variables import Variables, environment_with
+from robolink.system.processes import Variables, environment_with, windows_line
 
 _LONGEST_LINE = 1 << 20
 """Longest line, in bytes; a longer one is printed in pieces."""

@@ -8,7 +8,7 @@ import pytest
 
 from robolink.cli.main import main
 from robolink.cli.running_nodes import prefix
-from robolink.system.own_command import own_command
+from robolink.system.processes import own_command
 from tests.support.commands import Command
 from tests.support.started import Write
 

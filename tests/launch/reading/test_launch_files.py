@@ -10,7 +10,7 @@ import pytest
 from robolink.exceptions import DocumentError, NotFoundError
 from robolink.launch import read_launch_file
 from robolink.launch.planning import plan
-from robolink.system.own_command import own_command
+from robolink.system.processes import own_command
 from robolink.workspace import VARIABLE, built_in_workspace, list_launches
 from tests.support.launch_configs import entries
 

@@ -16,8 +16,8 @@ from robolink.companions.launch.bases import LaunchContext, SomeSubstitutionsTyp
 from robolink.companions.launch.substitutions.failure import SubstitutionFailure
 from robolink.companions.launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from robolink.system import waits
-from robolink.system.command_words import split_words
-from robolink.system.plainfile import decoded, read_plain
+from robolink.system.files import decoded, read_plain
+from robolink.system.processes import split_words
 from robolink.system.terminal import shown
 
 _REACTIONS = ("fail", "ignore", "warn", "capture")
