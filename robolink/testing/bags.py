@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
+import re
+import shutil
+import tempfile
 import threading
+import warnings
 from collections import deque
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,19 +21,26 @@ from robolink.bag.writer import BagWriter
 from robolink.exceptions import OverwrittenError, RobolinkError, WireError
 from robolink.interfaces import find_announced
 from robolink.logging import get_logger
+from robolink.node import Node
 from robolink.system import waits
 from robolink.system.processes import ROS_DISTRO
+from robolink.testing.stage import Wanted
 from robolink.wire import NO_HASH, unpack_attachment
 
 if TYPE_CHECKING:
     from robolink.bag.metadata import BagMetadata
+    from robolink.bag.playing import Player, PlaySettings
+    from robolink.bag.playing.playback import Playback
     from robolink.message import Message
     from robolink.testing.recorder import Recorder, Topic
+    from robolink.testing.stage import Stage
 
 MOST_WAITING = 1000
 """Messages in virtual time after which they are written."""
 PERIOD = 0.05
 """Seconds in real time after which they are written."""
+PLAYER = "rosbag2_player"
+"""Name of the node that plays a bag."""
 
 
 class BagRecording:
@@ -170,3 +183,103 @@ class BagRecording:
         stated = "" if topic.type_hash == NO_HASH else topic.type_hash
         text = "" if cls is None else message_definition(cls)
         return BagTopic(topic.name, topic.type_name, "cdr", stated, (topic.token.qos,), text)
+
+
+class Bags:
+    """Recordings and players of a system, which owns this; they end with it."""
+
+    def __init__(self, stage: Stage, recorder: Recorder) -> None:
+        self._stage, self._recorder = stage, recorder
+        self._recordings: list[tuple[BagRecording, Path | None]] = []
+        """Recordings, with the folder to delete if the test passes."""
+        self._players: list[Player] = []
+
+    def play(
+        self,
+        bag: str | PathLike[str],
+        topics: Sequence[str] | None,
+        exclude: Sequence[str],
+        remappings: Mapping[str, str],
+        **options: Any,
+    ) -> Playback:
+        """Play a bag from now on, with these options of PlaySettings."""
+        __tracebackhide__ = True
+        from robolink.bag.playing import PlaySettings
+        from robolink.bag.selection import EVERYTHING, Selection
+
+        chosen = EVERYTHING if topics is None else Selection(topics=self._full(topics))
+        selection = chosen._replace(exclude_topics=self._full(exclude))
+        player = self._started_player(Path(bag), PlaySettings(selection=selection, **options), remappings)
+        self._players.append(player)
+        player.start()
+        return player.playback
+
+    def _started_player(self, bag: Path, settings: PlaySettings, remappings: Mapping[str, str]) -> Player:
+        """Start a node that plays: in memory a program of its own, else in the test's."""
+        __tracebackhide__ = True
+        from robolink.bag.playing import Player
+
+        if not self._stage.virtual:
+            words = [word for old, new in remappings.items() for word in ("-r", f"{old}:={new}")]
+            node = Node(PLAYER, context=self._stage.node.context, cli_args=["--ros-args", *words])
+            return Player(node, [bag], settings)
+        made: list[Player] = []
+
+        class PlayerNode(Node):
+            def __init__(self) -> None:
+                super().__init__(PLAYER)
+                made.append(Player(self, [bag], settings))
+
+        self._stage.start(Wanted(PlayerNode, PLAYER, remappings=remappings))
+        return made[0]
+
+    def record(self, path: str | PathLike[str] | None, topics: Sequence[str] | None) -> BagRecording:
+        """Record into a folder, or into a temporary one that a test that passes deletes."""
+        scratch = Path(tempfile.mkdtemp(prefix="robolink-bag-")) if path is None else None
+        folder = Path(path) if path is not None else (scratch or Path()) / "bag"
+        return self._recorded(folder, scratch, None if topics is None else frozenset(self._full(topics)))
+
+    def record_for_failure(self, folder: Path, test: str) -> BagRecording:
+        """Record the test of this name into a bag of its own in `folder`, which is deleted if it passes."""
+        numbers = (f"_{number}" if number > 1 else "" for number in itertools.count(1))
+        paths = (folder / f"{_folder_name(test)}{number}" for number in numbers)
+        path = next(each for each in paths if not each.exists())
+        return self._recorded(path, path, None)
+
+    def _recorded(self, path: Path, scratch: Path | None, topics: frozenset[str] | None) -> BagRecording:
+        stage = self._stage
+        made = BagRecording(path, self._recorder, stage.now_ns, stage.class_of, topics, in_real_time=not stage.virtual)
+        self._recordings.append((made, scratch))
+        return made
+
+    def _full(self, names: Sequence[str]) -> tuple[str, ...]:
+        return tuple(self._stage.node.resolve_topic_name(each) for each in names)
+
+    def keep(self) -> list[Path]:
+        """End all recordings and keep their bags, also those that a test that passes would delete; return where."""
+        for recording, _ in self._recordings:
+            _stop(recording)
+        self._recordings = [(each, None) for each, _ in self._recordings]
+        return [each.path for each, _ in self._recordings]
+
+    def close(self) -> None:
+        """End all players and recordings. Safe to call twice."""
+        for player in self._players:
+            player.close()
+        for recording, scratch in self._recordings:
+            _stop(recording)
+            if scratch is not None:
+                shutil.rmtree(scratch, ignore_errors=True)
+        self._players, self._recordings = [], []
+
+
+def _stop(recording: BagRecording) -> None:
+    """End a recording; that its disk is full is a warning, and no reason to leave the rest of the system running."""
+    try:
+        recording.stop()
+    except BagError as error:
+        warnings.warn(str(error), RuntimeWarning, stacklevel=2)
+
+
+def _folder_name(test: str) -> str:
+    return re.sub(r"[^\w.-]+", "_", test)[:100].strip("_") or "test"

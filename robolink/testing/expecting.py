@@ -1,12 +1,12 @@
-"""Waiting for messages, log lines, futures and responses, with an ExpectationError at the timeout."""
+"""Waiting for messages, log lines, futures and responses, with an ExpectationError at the timeout, or a failure."""
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, cast
 
-from robolink.testing.expectations import ExpectationError, named, no_such, seconds, span
+from robolink.testing.expectations import ExpectationError, NodeFailure, named, no_such, seconds, span
 
 if TYPE_CHECKING:
     from robolink.logging import Record
@@ -171,3 +171,25 @@ class Expecting:
         if there is not None:
             return f"{name} has the type {there}, not {kind.__ros_type__}"
         return no_such("service", name, known.items(), when)
+
+
+class Failures:
+    """Failures of a system's programs, of which the test hears at its next wait, once."""
+
+    def __init__(self, stage: Stage, story: Story) -> None:
+        self._stage, self._story, self._reported = stage, story, 0
+
+    def are_new(self) -> bool:
+        """True if a program failed that the test has not heard of."""
+        return len(self._stage.failures) > self._reported
+
+    def raise_new(self) -> NoReturn:
+        """Raise NodeFailure with all new ones, or what a callback of the test's own node raised."""
+        __tracebackhide__ = True
+        failures = self._stage.failures[self._reported :]
+        self._reported = len(self._stage.failures)
+        for each in failures:
+            is_own = each.program == self._story.graph.own_name.strip("/")
+            if each.error is not None and (is_own or not isinstance(each.error, Exception)):
+                raise each.error  # what a callback of the test's own says, it says itself; so does pytest.skip()
+        raise NodeFailure(self._story.failures_text(failures)) from failures[0].error

@@ -149,7 +149,7 @@ def system(request: pytest.FixtureRequest) -> Iterator[System]:
         item.stash[_SYSTEM], item.stash[_HAS_FAILED] = made, False
         folder = item.config.getoption(RECORD)
         if folder:
-            made.record_for_failure(Path(folder), item.name)
+            made.bags.record_for_failure(Path(folder), item.name)
         yield made
         made.check()
         if item.stash[_HAS_FAILED]:
@@ -189,7 +189,7 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[Any]) -> 
     elif report.failed:
         if not isinstance(error, ExpectationError):  # which says so itself
             report.sections.append(("robolink", made.story.whole()))
-        report.sections += [("robolink", f"the bag of this test: {each}") for each in made.keep_bags()]
+        report.sections += [("robolink", f"the bag of this test: {each}") for each in made.bags.keep()]
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:

@@ -2,28 +2,44 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from robolink.constants import MOST_SEED
 from robolink.interfaces import find
+from robolink.simulate.robots import robots_of, worlds_of
+from robolink.testing.bags import BagRecording, Bags
+from robolink.testing.clock import SystemClock
+from robolink.testing.conversation import Conversation
+from robolink.testing.expectations import ClosedError, ExpectationError
+from robolink.testing.expecting import Expecting, Failures
 from robolink.testing.node_names import Named, full
-from robolink.testing.stage import Startable, Wanted, startable
-from robolink.testing.system_bags import SystemWithBags
+from robolink.testing.parameters import Parameters
+from robolink.testing.robots import RemoteRobots, SimulatedRobot, chosen
+from robolink.testing.stage import Failure, Startable, Wanted, startable
+from robolink.testing.stages import make_stage
+from robolink.testing.story import Story
 
 if TYPE_CHECKING:
+    from robolink.bag.playing.playback import Playback
     from robolink.logging import Record
     from robolink.message import Message
+    from robolink.node import Node
     from robolink.qos import QoSProfile
     from robolink.task import Future
+    from robolink.testing.faults import Faults
+    from robolink.world_node import Simulation
 
 T = TypeVar("T")
+SystemT = TypeVar("SystemT", bound="System")
 
 PATIENCE = 5.0
 """Default timeout of everything a test waits for, in seconds of the system's time."""
 
 
-class System(SystemWithBags):
+class System:
     """A system of nodes under test, on a network and a clock of their own.
 
     With `transport` ``memory`` all nodes live in this process, and their time passes only while the test waits: a
@@ -31,9 +47,48 @@ class System(SystemWithBags):
     processes in real time. Relative names are resolved as by a node in ``/``; times are in seconds.
 
     A program that fails by itself fails the test at its next wait, with a NodeFailure, unless `allow_failures`.
-    Every method that lets time pass may raise NodeFailure, and after `close` every method that starts, publishes or
-    waits raises ClosedError.
+    Every method that lets time pass may raise NodeFailure, and ValueError for a time that is negative or not finite.
+    After `close` every method that starts, publishes or waits raises ClosedError.
     """
+
+    def __init__(
+        self, seed: int = 0, *, transport: str = "memory", replay: str = "", allow_failures: bool = False
+    ) -> None:
+        """Create a system without programs.
+
+        Args:
+            seed: Seed of all chance: faults, `random`, numpy, the simulated world. From 0 to 2**32 - 1.
+            transport: ``memory`` for one process in virtual time, ``zenoh`` for processes in real time.
+            replay: Command that repeats the test, for the text of a failure; default ``System(seed=...)``.
+            allow_failures: True keeps programs that fail from failing the test; `failures` has them all the same.
+
+        Raises:
+            ValueError: if `seed` is out of range, or `transport` is another word.
+        """
+        if not isinstance(seed, int) or not 0 <= seed <= MOST_SEED:
+            raise ValueError(f"expected a seed from 0 to {MOST_SEED}, got {seed!r}")
+        self.seed, self.allow_failures = seed, allow_failures
+        self._is_closed = False
+        self._stage = make_stage(transport, seed)
+        self.clock = SystemClock(self)
+        self.story = Story(self._stage, replay or f"System(seed={seed})")
+        """Log of the system for the text of a failure; `story.whole()` returns all of it as text."""
+        self.bags = Bags(self._stage, self.story.recorder)
+        self._conversation = Conversation(self._stage.node, self.story)
+        self._expecting = Expecting(self._stage, self.story, self._conversation, self._run_until)
+        self._failures = Failures(self._stage, self.story)
+        self._parameters = Parameters(self._stage, self.story.graph, self._expecting)
+        self._elsewhere = [] if self.virtual else RemoteRobots(self.story.recorder).robots
+
+    @property
+    def virtual(self) -> bool:
+        """True if time is virtual: it passes only while the test waits."""
+        return self._stage.virtual
+
+    @property
+    def node(self) -> Node:
+        """The test's own node, ``/test``, for publishers, subscriptions and clients. Faults concern it, too."""
+        return self._stage.node
 
     # Programs
 
@@ -121,35 +176,64 @@ class System(SystemWithBags):
         self._begin()
 
     def crash(self, node: str | Named) -> None:
-        """End a node's program at once, as `kill -9` does. This is no failure of the test.
-
-        Args:
-            node: The node, or its name (with its namespace, where the name alone is not unique).
-
-        Raises:
-            NotFoundError: if no program has such a node, or several have.
-        """
+        """End the program of `node` at once, as `kill -9` does, which is not a failure. Raises what `stop` raises."""
         __tracebackhide__ = True
         self._stage.crash(self._stage.program_of(node))
         self._begin()
 
     def restart(self, node: str | Named) -> Any:
-        """Start a node's program again with all that it was started with; one that still runs is ended first.
+        """Start the program of `node` again as it was started, ended first if it still runs; return the new node.
 
-        Args:
-            node: The node, or its name (with its namespace, where the name alone is not unique).
-
-        Returns:
-            The new node, as `start` returns it.
-
-        Raises:
-            NotFoundError: if no program has such a node, or several have.
+        Raises what `stop` and `start` raise.
         """
         __tracebackhide__ = True
         self._check_open()
         started = self._stage.restart(self._stage.program_of(node))
         self._begin()
         return started
+
+    @property
+    def programs(self) -> list[str]:
+        """Names of the system's programs, ended ones included: that of the node, if one program alone has it."""
+        return self._stage.programs
+
+    @property
+    def failures(self) -> list[Failure]:
+        """Programs that ended and should not have, oldest first: each with `program`, `time_ns`, `why` and `error`."""
+        return list(self._stage.failures)
+
+    @property
+    def logs(self) -> list[Record]:
+        """All log records so far: each with `message`, `name` (the logger's), `severity` and `stamp_ns`."""
+        return list(self._stage.logs)
+
+    # The graph
+
+    @property
+    def nodes(self) -> list[str]:
+        """Full names of all nodes, without the test's own, sorted."""
+        return self.story.graph.nodes()
+
+    @property
+    def topics(self) -> dict[str, str]:
+        """Types of all topics by name, without /rosout and /parameter_events, which every node has.
+
+        Several types on one topic are separated by a comma.
+        """
+        return self.story.graph.topics()
+
+    @property
+    def services(self) -> dict[str, str]:
+        """Types of all services by name, without those for parameters and types, which every node has."""
+        return self.story.graph.services()
+
+    def publishers(self, topic: str) -> list[str]:
+        """Return the full names of the nodes that publish `topic`, without the test's own."""
+        return list(self.story.graph.ends(self.node.resolve_topic_name(topic)).publishers)
+
+    def subscribers(self, topic: str) -> list[str]:
+        """Return the full names of the nodes that subscribe to `topic`, without the test's own."""
+        return list(self.story.graph.ends(self.node.resolve_topic_name(topic)).subscribers)
 
     # Messages
 
@@ -210,8 +294,6 @@ class System(SystemWithBags):
 
         Raises:
             ExpectationError: if no such message came in time; the text has the last messages of the topics concerned.
-            NodeFailure: if a program failed meanwhile.
-            ValueError: if `within` is negative or not finite.
         """
         __tracebackhide__ = True
         return self._expecting.message(topic, predicate, within, type)
@@ -234,8 +316,6 @@ class System(SystemWithBags):
 
         Raises:
             ExpectationError: as soon as such a message comes.
-            NodeFailure: if a program failed meanwhile.
-            ValueError: if `during` is negative or not finite.
         """
         __tracebackhide__ = True
         self._expecting.no_message(topic, predicate, during, type)
@@ -252,8 +332,6 @@ class System(SystemWithBags):
 
         Raises:
             ExpectationError: if it did not hold in time.
-            NodeFailure: if a program failed meanwhile.
-            ValueError: if `within` is negative or not finite.
         """
         __tracebackhide__ = True
         self._expecting.condition(condition, within)
@@ -268,8 +346,6 @@ class System(SystemWithBags):
 
         Raises:
             ExpectationError: if it was not done in time.
-            NodeFailure: if a program failed meanwhile.
-            ValueError: if `within` is negative or not finite.
         """
         __tracebackhide__ = True
         result = self._expecting.result(future, within)
@@ -291,8 +367,6 @@ class System(SystemWithBags):
 
         Raises:
             ExpectationError: if no such line came in time.
-            NodeFailure: if a program failed meanwhile.
-            ValueError: if `within` is negative or not finite.
         """
         __tracebackhide__ = True
         return self._expecting.log_line(words, within)
@@ -310,8 +384,6 @@ class System(SystemWithBags):
 
         Raises:
             ExpectationError: if there is no such service, or no response in time.
-            NodeFailure: if a program failed meanwhile.
-            ValueError: if `within` is negative or not finite.
         """
         __tracebackhide__ = True
         self._check_open()
@@ -336,7 +408,7 @@ class System(SystemWithBags):
         return self._parameters.value_of(full(node), name, within)
 
     def set_parameter(self, node: str | Named, name: str, value: Any, within: float = PATIENCE) -> None:
-        """Set a node's parameter.
+        """Set a node's parameter. Raises what `parameter` raises, and one error more.
 
         Args:
             node: The node, or its full name.
@@ -345,11 +417,184 @@ class System(SystemWithBags):
             within: Timeout in seconds of each service call, if the node lives in another process.
 
         Raises:
-            NotFoundError: if there is no such node.
-            ParameterNotDeclaredException: if the node has not declared it, with the nearest name that it has.
             InvalidParameterValueException: if the node refuses the value, with its reason.
-            ExpectationError: if the node did not answer in time.
         """
         __tracebackhide__ = True
         self._begin()
         self._parameters.set_value(full(node), name, value, within)
+
+    # Bags
+
+    def play(
+        self,
+        bag: str | PathLike[str],
+        topics: Sequence[str] | None = None,
+        *,
+        exclude: Sequence[str] = (),
+        rate: float = 1.0,
+        start_offset: float = 0.0,
+        duration: float | None = None,
+        loop: bool = False,
+        clock: float = 0.0,
+        remappings: Mapping[str, str] | None = None,
+    ) -> Playback:
+        """Play a bag into the system, by a node ``rosbag2_player``, from now on while time passes.
+
+        In virtual time the messages keep their distances to the nanosecond, so that each run is the same.
+
+        Args:
+            bag: The bag: a folder, or one .mcap or .db3 file.
+            topics: Topics to play; None is all.
+            exclude: Topics to leave out.
+            rate: Seconds of the bag in a second of the system.
+            start_offset: Point of the bag to begin at, in seconds from its start.
+            duration: Length of what is played, in seconds of the bag; None is all.
+            loop: True to begin again at the end.
+            clock: Messages on /clock in a second, for nodes with `use_sim_time`; 0 for none.
+            remappings: New names by old names, as ``{"/scan": "/front/scan"}``.
+
+        Returns:
+            The playback, to `pause`, `resume`, `seek`, `play_next` or `stop`; `is_over` is true after its end.
+
+        Raises:
+            BagError: (a ValueError) if the bag cannot be read.
+            PlayError: (a ValueError) if a value is out of range, or nothing is selected.
+        """
+        __tracebackhide__ = True
+        self._check_open()
+        options = {"rate": rate, "loop": loop, "start_offset": start_offset, "duration": duration, "clock_rate": clock}
+        playback = self.bags.play(bag, topics, exclude, remappings or {}, **options)
+        self._begin()
+        return playback
+
+    def record(self, path: str | PathLike[str] | None = None, topics: Sequence[str] | None = None) -> BagRecording:
+        """Record the system into a bag from now on, until `stop` of what is returned, or the end of the system.
+
+        Nobody in the system sees it. The bag of a test that fails is kept, and the failure says where.
+
+        Args:
+            path: Folder of the bag, which must not be there yet. None makes one, which a test that passes deletes.
+            topics: Topics to record; None is all.
+
+        Returns:
+            The recording: `path`, `messages` and `stop()`; also for a `with`.
+
+        Raises:
+            BagError: (a ValueError) if the folder is there already.
+            OSError: if it cannot be made.
+        """
+        __tracebackhide__ = True
+        self._check_open()
+        return self.bags.record(path, topics)
+
+    # Faults, and the simulated world
+
+    @property
+    def faults(self) -> Faults:
+        """Fault injection: lost and late messages, partitions, crashes, wrong clocks."""
+        return self._stage.faults
+
+    def robot(self, name: str | None = None) -> SimulatedRobot:
+        """Return a robot of the simulated world in its true state, which no sensor noise changes.
+
+        Args:
+            name: Name of the robot; in a namespace ``one/robot``, or the last part where it is unique. None is the only
+                robot of the world.
+
+        Returns:
+            The robot, with `pose`, `twist`, `contacts`, `driven` (in m) and `area` (the box in which it has been, with
+            `width` and `height` in m). It follows the world as time passes.
+
+        Raises:
+            NotFoundError: if there is no world, no such robot, or several that may be meant.
+        """
+        __tracebackhide__ = True
+        elsewhere = ((each.name, each) for each in self._elsewhere)
+        return chosen([*robots_of(self._stage.nodes()), *elsewhere], name)
+
+    def simulations(self) -> list[Simulation]:
+        """Return the simulated worlds of this process with their shapes, for pictures; none with ``zenoh``."""
+        return [each for _, each in worlds_of(self._stage.nodes())]
+
+    # Time
+
+    @property
+    def time(self) -> float:
+        """Seconds since the beginning of the system."""
+        return self.story.time
+
+    def run(self, seconds: float) -> None:
+        """Let time pass.
+
+        Args:
+            seconds: Duration in seconds of the system's time.
+        """
+        __tracebackhide__ = True
+        self._run_until(lambda: False, seconds)
+        self._begin()
+
+    def check(self) -> None:
+        """Raise NodeFailure if a program has failed since the test waited last. Lets no time pass."""
+        __tracebackhide__ = True
+        self._run_until(lambda: True, 0.0)
+
+    def check_faults(self) -> None:
+        """Raise ExpectationError if a fault had no effect: a test with it would pass whatever the nodes do.
+
+        Such a fault names what never existed, or its time came and it met nothing. Faults with wildcards are not
+        checked. The end of a test, and of a `with`, calls this by itself.
+        """
+        __tracebackhide__ = True
+        self._check_open()
+        if in_vain := self._stage.faults_in_vain():
+            raise ExpectationError(self.story.failure_text("\n".join(in_vain)))
+
+    def _run_until(self, condition: Callable[[], bool], within: float) -> bool:
+        """Let time pass until a condition holds; True if it does. Raises NodeFailure if a program fails first."""
+        __tracebackhide__ = True
+        self._check_open()
+        if not (math.isfinite(within) and within >= 0):
+            raise ValueError(f"expected seconds, 0 or more, got {within!r}")
+        begin = self.time
+        met = self._stage.run_until(lambda: self._has_failed() or condition(), within)
+        self._conversation.hear()
+        if self._has_failed():
+            self._failures.raise_new()
+        if self.time > begin:
+            self._parameters.check_given()
+        return met
+
+    def _begin(self) -> None:
+        """Make only messages from now on count; earlier ones are already in the lists that are kept."""
+        self._conversation.hear()
+        self._expecting.begin()
+
+    def _check_open(self) -> None:
+        """Raise ClosedError if the system is closed."""
+        __tracebackhide__ = True
+        if self._is_closed:
+            raise ClosedError("this system is closed: it lasts as long as its `with`, or the test whose fixture it is")
+
+    def _has_failed(self) -> bool:
+        return not self.allow_failures and self._failures.are_new()
+
+    # The end
+
+    def close(self) -> None:
+        """End all programs and release everything. Safe to call twice."""
+        self.bags.close()
+        self._is_closed = True
+        self._conversation.close()
+        self.story.recorder.close()
+        self._stage.close()
+
+    def __enter__(self: SystemT) -> SystemT:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        __tracebackhide__ = True
+        try:
+            if kind is None and not self._is_closed:
+                self.check_faults()
+        finally:
+            self.close()

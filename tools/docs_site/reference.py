@@ -33,7 +33,6 @@ API = (
 """Modules whose public classes and functions are described."""
 
 PARTS = (
-    "robolink.testing.system_",
     "robolink.executors.executor",
 )
 """Modules of the classes that are parts of one in `API`, whose methods are described as its own."""
