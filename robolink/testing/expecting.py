@@ -12,9 +12,8 @@ if TYPE_CHECKING:
     from robolink.logging import Record
     from robolink.message import Message
     from robolink.task import Future
-    from robolink.testing.conversation import Conversation
     from robolink.testing.stage import Stage
-    from robolink.testing.story import Story
+    from robolink.testing.story import Conversation, Story
 
 T = TypeVar("T")
 
@@ -122,7 +121,7 @@ class Expecting:
         begin = self._story.time
         if not self._run_until(lambda: future.done() or future.cancelled(), within):
             raise ExpectationError(self._story.failure_text(f"the future was not done {span(begin, begin + within)}"))
-        return cast(T, future.result())
+        return cast("T", future.result())
 
     def log_line(self, words: str, within: float) -> Record:
         """Return the next log record with these words, behind the one that was found last."""

@@ -22,11 +22,9 @@ from robolink.message import type_hash
 from robolink.node import Node
 from robolink.simulate.settings import numpy_seeded
 from robolink.supervisor.rules import Step, is_orderly
-from robolink.testing.faults import Faults
+from robolink.testing.faults import Faults, ProgramFaults
 from robolink.testing.launching import entry_of
-from robolink.testing.node_faults import ProgramFaults
-from robolink.testing.node_names import Named, full
-from robolink.testing.stage import Failure, Wanted
+from robolink.testing.stage import Failure, Named, Wanted, full
 from robolink.text.names import meant, the_one
 from robolink.transport.memory import MemoryTransport
 

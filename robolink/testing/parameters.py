@@ -16,14 +16,14 @@ from robolink.parameter_client import AsyncParameterClient
 from robolink.parameters.rules import WrittenParameter
 from robolink.simulate.undeclared import is_among
 from robolink.testing.expectations import ExpectationError
-from robolink.testing.node_names import Named
+from robolink.testing.stage import Named
 from robolink.text.names import meant
 
 if TYPE_CHECKING:
     from robolink.node import Node
     from robolink.testing.expecting import Expecting
-    from robolink.testing.graph_view import GraphView
     from robolink.testing.stage import Stage
+    from robolink.testing.story import GraphView
 
 PATIENCE = 5.0
 """Timeout of a node's answer about its declared parameters, in seconds."""

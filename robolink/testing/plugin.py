@@ -99,7 +99,7 @@ def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> 
 
     if not compat.activate():
         return None
-    from robolink.testing.launch_collector import LaunchTestModule
+    from robolink.testing.launch_tests import LaunchTestModule
 
     return LaunchTestModule.from_parent(parent, path=module_path)
 

@@ -23,8 +23,7 @@ from robolink.system import clocks, waits
 from robolink.testing.expectations import NodeFailure, OnlyInMemoryError
 from robolink.testing.faults import Faults
 from robolink.testing.launching import entry_of
-from robolink.testing.node_names import Named, full
-from robolink.testing.stage import Failure, Wanted
+from robolink.testing.stage import Failure, Named, Wanted, full
 from robolink.testing.supervisor_thread import Launch
 from robolink.text.names import the_one
 from robolink.transport.free_domain import free_domain

@@ -6,9 +6,7 @@ import inspect
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
-
-from robolink.testing.node_names import Named
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 if TYPE_CHECKING:
     from robolink.launch.entry import System as LaunchSystem
@@ -18,6 +16,25 @@ if TYPE_CHECKING:
     from robolink.testing.faults import Faults
     from robolink.testing.recorder import Topic
     from robolink.transport import Transport
+
+
+@runtime_checkable
+class Named(Protocol):
+    """Protocol of a node or its stand-in."""
+
+    def get_fully_qualified_name(self) -> str:
+        """Return the node's namespace and name."""
+
+
+def full(node: str | Named) -> str:
+    """Return the name of a node with its leading slash. Raises TypeError for any other object."""
+    __tracebackhide__ = True
+    if isinstance(node, str):
+        return f"/{node.strip('/')}"
+    if isinstance(node, Named) and not isinstance(node, type):
+        return node.get_fully_qualified_name()
+    raise TypeError(f"expected a node or its name, got {node!r}")
+
 
 Startable: TypeAlias = "type[Node] | Callable[[], object] | str | Path"
 """A Node class, a name as `robolink run` finds it, a file, or a main() of one."""
@@ -123,3 +140,16 @@ class Stage(Protocol):
 
     def close(self) -> None:
         """End all programs and leave the network."""
+
+
+def make_stage(transport: str, seed: int) -> Stage:
+    """Make the runner of a transport. Raises ValueError for another name than memory and zenoh."""
+    if transport == "zenoh":
+        from robolink.testing.processes import Processes  # late, as below: a test needs one of the two
+
+        return Processes()
+    if transport == "memory":
+        from robolink.testing.one_process import OneProcess
+
+        return OneProcess(seed)
+    raise ValueError(f"no transport '{transport}' for tests: expected memory or zenoh")

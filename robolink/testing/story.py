@@ -5,23 +5,32 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from robolink.testing.expectations import ExpectationError, FailureText, nothing_came, seconds, too_early
-from robolink.testing.graph_view import EVERYBODYS_TOPICS, GraphView
-from robolink.testing.recorder import Recorder, Topic
-from robolink.testing.timeline import (
+from robolink.testing.expectations import (
     BACKGROUND,
     MOST_LOGS,
     MOST_OF_BACKGROUND,
     MOST_OF_ONE,
     MOST_OF_OTHERS,
+    Ends,
     Event,
+    ExpectationError,
+    FailureText,
     logs_of,
     messages_of,
+    nothing_came,
+    seconds,
+    too_early,
 )
+from robolink.testing.recorder import Recorder, Topic
 from robolink.text.names import near
+from robolink.wire import EndpointKind
 
 if TYPE_CHECKING:
     from robolink.message import Message
+    from robolink.node import Node
+    from robolink.publisher import Publisher
+    from robolink.qos import QoSProfile
+    from robolink.testing.recorder import TopicQueue
     from robolink.testing.stage import Failure, Stage
 
 
@@ -135,3 +144,95 @@ def _checked(given: type[Message], topic: Topic) -> type[Message]:
         there = topic.type_name + (" of another definition" if given.__ros_type__ == topic.type_name else "")
         raise ExpectationError(f"{topic.name} has the type {there}, not {given.__ros_type__}")
     return given
+
+
+EVERYBODYS_TOPICS = ("/parameter_events", "/rosout")
+"""Topics that every node has."""
+EVERYBODYS_SERVICES = ("rcl_interfaces/", "type_description_interfaces/")
+"""Prefixes of the types of services that every node has."""
+
+
+class GraphView:
+    """The graph as one node sees it, without that node and without what every node has."""
+
+    def __init__(self, own: Node) -> None:
+        self._own, self._graph = own, own.context.graph
+        self.own_name = own.get_fully_qualified_name()
+
+    def nodes(self) -> list[str]:
+        """Return the full names of all nodes, sorted."""
+        return sorted({each.full_node_name for each in self._graph.nodes()} - {self.own_name})
+
+    def topics(self) -> dict[str, str]:
+        """Return the types of all topics by name; several types of one topic are separated by a comma."""
+        named = {name: (self.ends(name), types) for name, types in self._own.get_topic_names_and_types()}
+        return {
+            name: ", ".join(types)
+            for name, (ends, types) in named.items()
+            if (ends.publishers or ends.subscribers) and name not in EVERYBODYS_TOPICS
+        }
+
+    def services(self) -> dict[str, str]:
+        """Return the types of all services by name."""
+        return {
+            each.name: each.type_name
+            for each in self._graph.endpoints(EndpointKind.SERVICE)
+            if each.full_node_name != self.own_name and not each.type_name.startswith(EVERYBODYS_SERVICES)
+        }
+
+    def ends(self, name: str) -> Ends:
+        """Return the nodes that publish a topic and those that subscribe to it."""
+        publishers = self._graph.endpoints(EndpointKind.PUBLISHER, name=name)
+        subscriptions = self._graph.endpoints(EndpointKind.SUBSCRIPTION, name=name)
+        return Ends(
+            tuple(sorted({each.full_node_name for each in publishers} - {self.own_name})),
+            tuple(sorted({each.full_node_name for each in subscriptions} - {self.own_name})),
+            tuple(sorted({each.type_name for each in (*publishers, *subscriptions)})),
+        )
+
+    def heard_by_publishers_of(self, name: str) -> list[str]:
+        """Return the topics to which the publishers of a topic subscribe: the inputs that it is made of."""
+        publishers = set(self.ends(name).publishers)
+        subscriptions = self._graph.endpoints(EndpointKind.SUBSCRIPTION)
+        return sorted({each.name for each in subscriptions if each.full_node_name in publishers} - {*EVERYBODYS_TOPICS})
+
+
+class Conversation:
+    """Publishers of the test's own node, and the lists that fill with messages for the test."""
+
+    def __init__(self, node: Node, story: Story) -> None:
+        self._node, self._story = node, story
+        self._kept: list[tuple[TopicQueue, list[Any], type[Message] | None]] = []
+        self._publishers: dict[tuple[str, type[Message]], Publisher[Any]] = {}
+
+    def publish(self, topic: str, message: Message, qos: QoSProfile | int) -> None:
+        """Publish a message. Raises TypeError if `message` is not a message."""
+        __tracebackhide__ = True
+        if not isinstance(topic, str) or isinstance(message, type) or not hasattr(message, "__ros_fields__"):
+            raise TypeError(f"publish takes a topic and a message, got {topic!r} and {message!r}")
+        key = (self._node.resolve_topic_name(topic), type(message))
+        if key not in self._publishers:
+            self._publishers[key] = self._node.create_publisher(type(message), key[0], qos)
+        self._publishers[key].publish(message)
+        self._story.note_said(key[0])
+
+    def keep(self, topic: str, given: type[Message] | None) -> list[Any]:
+        """Return a list that fills at each `hear` with what is published from now on, of the class `given` if any."""
+        heard: list[Any] = []
+        self._kept.append((self._story.recorder.listen(self._node.resolve_topic_name(topic)), heard, given))
+        self.hear()
+        return heard
+
+    def hear(self) -> None:
+        """Move messages that have arrived into the lists."""
+        for queue, heard, given in self._kept:
+            heard.extend(self._story.decoded(topic, sample.payload, given) for topic, sample in queue.take())
+
+    @property
+    def topics(self) -> list[str]:
+        """The topics that are recorded, then those that the test publishes."""
+        return [*(queue.name for queue, _, _ in self._kept), *(name for name, _ in self._publishers)]
+
+    def close(self) -> None:
+        """Stop recording."""
+        self._kept.clear()

@@ -12,15 +12,12 @@ from robolink.interfaces import find
 from robolink.simulate.robots import robots_of, worlds_of
 from robolink.testing.bags import BagRecording, Bags
 from robolink.testing.clock import SystemClock
-from robolink.testing.conversation import Conversation
 from robolink.testing.expectations import ClosedError, ExpectationError
 from robolink.testing.expecting import Expecting, Failures
-from robolink.testing.node_names import Named, full
 from robolink.testing.parameters import Parameters
 from robolink.testing.robots import RemoteRobots, SimulatedRobot, chosen
-from robolink.testing.stage import Failure, Startable, Wanted, startable
-from robolink.testing.stages import make_stage
-from robolink.testing.story import Story
+from robolink.testing.stage import Failure, Named, Startable, Wanted, full, make_stage, startable
+from robolink.testing.story import Conversation, Story
 
 if TYPE_CHECKING:
     from robolink.bag.playing.playback import Playback

@@ -19,9 +19,8 @@ from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.message.one_line import WIDTH, short
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.serialization import deserialize_message
-from robolink.testing.expectations import Ends, no_such, nothing_came, seconds
+from robolink.testing.expectations import Ends, Event, messages_of, no_such, nothing_came, seconds, table
 from robolink.testing.recorder import KEPT, Recorder
-from robolink.testing.timeline import Event, messages_of, table
 from robolink.text.names import near
 from robolink.transport.memory import Bus, MemoryTransport
 from tests.support.filled import filled
