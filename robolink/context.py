@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from robolink.graph.graph import Graph
-    from robolink.running.platform import Driver
+    from robolink.running.defaults import Driver
     from robolink.running.ports import Loop
     from robolink.transport.base import Transport
 

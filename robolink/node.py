@@ -21,9 +21,8 @@ from robolink.exceptions import NodeNameNonExistentError as NodeNameNonExistentE
 from robolink.exceptions import NotInitializedException
 from robolink.executors import Executor as Executor
 from robolink.expand_topic_name import expand_topic_name
-from robolink.graph.endpoint import Owner
+from robolink.graph.endpoint import Disagreements, Owner
 from robolink.graph.graph import Graph, NamesAndTypes, names_and_types
-from robolink.graph.type_mismatch import Disagreements
 from robolink.guard_condition import GuardCondition as GuardCondition
 from robolink.impl.rcutils_logger import RcutilsLogger
 from robolink.interfaces.rcl_interfaces.msg import ListParametersResult, Log, ParameterEvent, ParameterValue

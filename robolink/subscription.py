@@ -22,8 +22,8 @@ from robolink.logging import get_logger
 from robolink.message import Message, decoder, message_type
 from robolink.qos import QoSProfile
 from robolink.running.backlog import Backlog, Gaps, Sequence
-from robolink.running.callback_arguments import takes_arguments
 from robolink.running.entity import ANY_TIME, SUBSCRIPTION, Receiver
+from robolink.running.execution import takes_arguments
 from robolink.running.inbox import Inbox
 from robolink.system.terminal import shown
 from robolink.text.callbacks import wanted

@@ -16,7 +16,7 @@ from robolink.running.execution import ShutdownException as ShutdownException
 from robolink.running.execution import TimeoutException as TimeoutException
 from robolink.running.execution import TimeoutObject as TimeoutObject
 from robolink.running.execution import await_or_execute as await_or_execute
-from robolink.running.spinners import limit
+from robolink.running.waiting import limit
 from robolink.system import waits
 from robolink.task import Future
 from robolink.task import Task as Task

@@ -9,20 +9,18 @@ from contextlib import AbstractContextManager, contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser, NotInitializedException
-from robolink.running.deadlock_warning import DeadlockWarning
 from robolink.running.defaults import get_defaults
 from robolink.running.entity import Entity
 from robolink.running.execution import (
     ConditionReachedException,
     ShutdownException,
+    TaskRunner,
     TimeoutException,
     TimeoutObject,
 )
 from robolink.running.ready_queue import ReadyQueue
-from robolink.running.spinners import Spinners
 from robolink.running.spun_nodes import SpunNodes
-from robolink.running.task_runner import TaskRunner
-from robolink.running.waiting import Waiting
+from robolink.running.waiting import DeadlockWarning, Spinners, Waiting
 from robolink.task import Future, Task
 from robolink.utilities import get_default_context
 

@@ -1,10 +1,18 @@
 """Fault injection into a network, nodes and clocks, drawn from a seed: read from YAML, or added while a system runs."""
 
-from robolink.faults.description import ClockFault, Crash, FaultsDescription, MessageFault, Partition
+from robolink.faults.description import (
+    ClockFault,
+    Crash,
+    FaultReport,
+    FaultsDescription,
+    MessageFault,
+    Partition,
+    Unmet,
+    Why,
+)
 from robolink.faults.file import check_nodes, read_faults
 from robolink.faults.injector import Injector
 from robolink.faults.network import FaultyNetwork
-from robolink.faults.report import FaultReport, Unmet, Why
 from robolink.faults.transport import FaultyTransport
 
 __all__ = [

@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from robolink.faults.description import MessageFault
-from robolink.faults.report import FaultReport
+from robolink.faults.description import FaultReport, MessageFault
 
 NEVER = 1 << 62
 """Time in ns that is later than any run ends."""

@@ -1,8 +1,13 @@
-"""Data model of a faults file: faults of messages, connections, nodes and clocks, and their times."""
+"""Faults of messages, connections, nodes and clocks: as a file describes them, their patterns, and their reports."""
 
 from __future__ import annotations
 
-from typing import Annotated, TypeAlias
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from enum import Enum, auto
+from functools import lru_cache
+from typing import Annotated, NamedTuple, TypeAlias
 
 import msgspec
 
@@ -95,3 +100,95 @@ class FaultsDescription(msgspec.Struct, forbid_unknown_fields=True, frozen=True)
     partitions: list[Partition] = []
     crashes: list[Crash] = []
     clocks: list[ClockFault] = []
+
+
+@dataclass
+class FaultReport:
+    """Counts of a `fault`, spelled as in its file: messages that it `met`, and those `lost`, `doubled` or `late`."""
+
+    fault: str
+    met: int = 0
+    lost: int = 0
+    doubled: int = 0
+    late: int = 0
+
+    def __str__(self) -> str:
+        """Return the effects and the number of messages as a line."""
+        done = [f"{count} {what}" for what in ("lost", "doubled", "late") if (count := getattr(self, what))]
+        return f"{self.fault}: {', '.join(done) or 'nothing'} of {self.met}"
+
+
+class Why(Enum):
+    """Reasons why a fault had no effect so far, the gravest first."""
+
+    WRONG_NAME = auto()
+    """Nothing ever had this name: most such names are misspelt."""
+    IN_VAIN = auto()
+    """The named things existed, and no message came that it could concern."""
+    WILD = auto()
+    """Like IN_VAIN, but it has wildcards, which may match nothing."""
+    TOO_EARLY = auto()
+    """The run ended before its time."""
+
+
+class Unmet(NamedTuple):
+    """A fault that had no effect so far: `text`, a line for people, and `why`, the reason."""
+
+    text: str
+    why: Why
+
+
+_ALLOWED = re.compile(r"/?[A-Za-z0-9_*]+(?:/[A-Za-z0-9_*]+)*", re.ASCII)
+_PARTS = re.compile(r"(\*\*/|/\*\*|\*\*|\*)")
+_WILD = {"**/": "(?:[^/]+/)*", "/**": "(?:/[^/]+)*", "**": ".*", "*": "[^/]*"}
+
+
+def listed(names: str | Sequence[str]) -> tuple[str, ...]:
+    """Return one name, or several, as a tuple."""
+    return (names,) if isinstance(names, str) else tuple(names)
+
+
+def mistake_in(pattern: str) -> str | None:
+    """Return what is wrong with a name; None if nothing is."""
+    if _ALLOWED.fullmatch(pattern) is None:
+        return f"'{pattern}' is not a name: it has a-z, A-Z, digits, _ and /, and * or ** for what may stand there"
+    return None
+
+
+def is_pattern(name: str) -> bool:
+    """True if a name has wildcards."""
+    return "*" in name
+
+
+def exact(names: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the names without wildcards."""
+    return tuple(each for each in listed(names) if not is_pattern(each))
+
+
+def has_pattern(names: str | Sequence[str]) -> bool:
+    """True if some of the names have wildcards."""
+    return any(map(is_pattern, listed(names)))
+
+
+@lru_cache(maxsize=256)
+def matcher(patterns: tuple[str, ...]) -> Callable[[str], bool]:
+    """Return a function from a name to a bool: True if the name matches a pattern, or if there are no patterns.
+
+    The slash in front does not matter. `*` stands for any letters of one token, `**` for any tokens.
+
+    >>> matcher(("/robot*/scan", "**/odom"))("/robot1/scan")
+    True
+    """
+    if not patterns:
+        return lambda name: True
+    regex = re.compile("|".join(_regex(each.lstrip("/")) for each in patterns))
+    return lambda name: regex.fullmatch(name.lstrip("/")) is not None
+
+
+def fits_any(patterns: tuple[str, ...], names: Iterable[str]) -> bool:
+    """True if one of the names matches one of the patterns; False if there are no patterns."""
+    return bool(patterns) and any(map(matcher(patterns), names))
+
+
+def _regex(pattern: str) -> str:
+    return "".join(_WILD.get(part) or re.escape(part) for part in _PARTS.split(pattern))

@@ -7,10 +7,20 @@ from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
 from robolink.exceptions import NotFoundError, RobolinkError
-from robolink.faults.description import ClockFault, Crash, FaultsDescription, MessageFault, Partition
+from robolink.faults.description import (
+    ClockFault,
+    Crash,
+    FaultReport,
+    FaultsDescription,
+    MessageFault,
+    Partition,
+    Unmet,
+    Why,
+    fits_any,
+    has_pattern,
+    listed,
+)
 from robolink.faults.network import FaultyNetwork, Scheduler, spelled
-from robolink.faults.patterns import fits_any, has_pattern, listed
-from robolink.faults.report import FaultReport, Unmet, Why
 from robolink.faults.transport import FaultyTransport
 from robolink.running.timebase import SkewedTime, TimeBase
 from robolink.transport.memory import Bus

@@ -3,19 +3,40 @@
 from __future__ import annotations
 
 import functools
+import random
 from collections.abc import Callable, Sequence
+from hashlib import blake2b
 from typing import NamedTuple, Protocol
 
 import msgspec
 
 from robolink.faults.delivery import Link, LinkFault, Window, window
-from robolink.faults.description import ClockFault, Crash, MessageFault, Partition
-from robolink.faults.patterns import exact, fits_any, has_pattern, listed, matcher
-from robolink.faults.report import FaultReport, Unmet, Why
-from robolink.faults.streams import uniform
+from robolink.faults.description import (
+    ClockFault,
+    Crash,
+    FaultReport,
+    MessageFault,
+    Partition,
+    Unmet,
+    Why,
+    exact,
+    fits_any,
+    has_pattern,
+    listed,
+    matcher,
+)
 from robolink.text.names import near
 from robolink.transport.memory import Bus
 from robolink.wire import parse_key
+
+
+def uniform(seed: int, *names: str) -> Callable[[], float]:
+    """Return a function that draws from [0, 1), its numbers determined by the seed and the names alone.
+
+    Only `random` of Python's Mersenne Twister is used, which is the same in every version and on every machine.
+    """
+    text = "\0".join((str(seed), *names))
+    return random.Random(int.from_bytes(blake2b(text.encode(), digest_size=16).digest(), "big")).random
 
 
 class Scheduler(Protocol):

@@ -1,16 +1,21 @@
-"""Endpoint: a publisher, subscription, service or client on the wire, with its keys, its token and its matches."""
+"""Endpoints: publishers, subscriptions, services and clients on the wire, and raw ones for tools.
+
+Each has its keys, its token and its matches, and warns of another type at the other end. Tools listen to and send
+messages undecoded.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
+
+import msgspec
 
 from robolink.exceptions import RobolinkError, TransportClosedError
-from robolink.graph.type_mismatch import Disagreements
 from robolink.logging import get_logger
 from robolink.message import import_numpy_for, type_hash, type_name
 from robolink.message.description import has_buffer_fields
-from robolink.qos import QoSProfile
+from robolink.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from robolink.running.ports import ContextLike
 from robolink.transport.base import Handle
 from robolink.wire import (
@@ -29,6 +34,57 @@ from robolink.wire import (
 
 if TYPE_CHECKING:
     from robolink.graph.graph import Graph
+    from robolink.transport.base import Sink
+
+MOST_TOLD = 10
+"""Most warnings for one topic of a node; a system in which all is wrong must not drown in them."""
+
+_ACTS = {
+    EndpointKind.PUBLISHER: "publishes it",
+    EndpointKind.SUBSCRIPTION: "subscribes to it",
+    EndpointKind.SERVICE: "serves it",
+    EndpointKind.CLIENT: "calls it",
+}
+_SHOWN = len("RIHS01_") + 8
+
+
+class Disagreements:
+    """Warnings that one node has logged: of each other node and type one, under the name of a topic or service.
+
+    On this wire the type is a part of where messages are sent: two ends that differ in it never meet, in silence.
+    Only the graph's followers call it: one at a time.
+    """
+
+    def __init__(self, logger_name: str) -> None:
+        self._logger_name = logger_name
+        self._told: dict[str, set[tuple[str, frozenset[str]]]] = {}
+
+    def tell(self, own: EndpointToken, other: EndpointToken) -> None:
+        """Log one warning about an end that will never meet this one, unless that has been done."""
+        told = self._told.setdefault(own.name, set())
+        pair = (other.full_node_name, frozenset((own.type_name + own.type_hash, other.type_name + other.type_hash)))
+        if pair in told or len(told) >= MOST_TOLD:
+            return
+        told.add(pair)
+        end = "" if len(told) < MOST_TOLD else " (no more of these are told)"
+        get_logger(self._logger_name).warning(_explained(own, other) + end)
+
+
+def _explained(own: EndpointToken, other: EndpointToken) -> str:
+    same_node = (own.session, own.node_id) == (other.session, other.node_id)
+    node = "it also" if same_node else other.full_node_name
+    here, there = _ACTS[own.kind], _ACTS[other.kind]
+    if own.type_name != other.type_name:
+        return (
+            f"{own.name}: this node {here} as {own.type_name}, but {node} {there} as {other.type_name}:"
+            " nothing gets from one to the other; give both the same type, or one of them another name"
+        )
+    package = own.type_name.partition("/")[0]
+    return (
+        f"{own.name}: this node {here} as {own.type_name}, and so {node} {there}, but the two definitions of that"
+        f" type differ ({own.type_hash[:_SHOWN]}… here, {other.type_hash[:_SHOWN]}… there): nothing gets from one"
+        f" to the other; bring both to the same version of {package}"
+    )
 
 
 class GraphContext(ContextLike, Protocol):
@@ -164,3 +220,114 @@ class Endpoint:
         for handle in (*self._following, self._announced):
             if handle is not None:
                 handle.close()
+
+
+ALL_BEST_EFFORT = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.BEST_EFFORT)
+"""Profile of tools that listen to what others publish: every message counts, and nobody waits for the tool."""
+
+
+def keys_of(publisher: EndpointToken) -> set[str]:
+    """Return the keys on which a publisher's messages may come."""
+    key = format_key(DataKey(publisher.domain, publisher.name, publisher.type_name, publisher.type_hash))
+    return {key, buffer_key(key)} if publisher.names_backends else {key}
+
+
+def listen(owner: Owner, publisher: EndpointToken, keys: Iterable[str], qos: QoSProfile, sink: Sink) -> list[Handle]:
+    """Subscribe to keys of a publisher, and announce the subscription as one of a node's.
+
+    Args:
+        owner: Node that listens.
+        publisher: Publisher whose topic, type and hash the subscription has, and is announced with.
+        keys: Those of `keys_of(publisher)` that are not listened to yet.
+        qos: Quality of service of the subscription.
+        sink: Function that gets each arrival, on any thread; it must only enqueue.
+
+    Returns:
+        The handles that end it.
+    """
+    context = owner.context
+    declared = [context.transport.subscribe(key, qos, sink) for key in sorted(keys)]
+    token = EndpointToken(
+        publisher.domain,
+        context.transport.session_id,
+        owner.node_id,
+        context.next_id(),
+        EndpointKind.SUBSCRIPTION,
+        owner.enclave,
+        owner.namespace,
+        owner.node_name,
+        publisher.name,
+        publisher.type_name,
+        publisher.type_hash,
+        qos,
+        CPU_BACKEND if publisher.names_backends else "",
+    )
+    return [*declared, context.graph.announce(token)]
+
+
+class RawPublisher:
+    """Publisher of a topic of which only the type's name and hash are known.
+
+    Args:
+        owner: Node that publishes.
+        topic: Full name of the topic.
+        type_name: Name of its type.
+        type_hash: Hash of its type (RIHS01_...).
+        qos: Quality of service.
+    """
+
+    def __init__(self, owner: Owner, topic: str, type_name: str, type_hash: str, qos: QoSProfile) -> None:
+        context = owner.context
+        domain = context.get_domain_id()
+        token = EndpointToken(
+            domain,
+            context.transport.session_id,
+            owner.node_id,
+            context.next_id(),
+            EndpointKind.PUBLISHER,
+            owner.enclave,
+            owner.namespace,
+            owner.node_name,
+            topic,
+            type_name,
+            type_hash,
+            qos,
+            "",
+        )
+        text = format_token(token)
+        self._attachment = attachments(gid_of(text), context.time.now)
+        self._outlet = context.transport.advertise(format_key(DataKey(domain, topic, type_name, type_hash)), qos)
+        self._announced = context.graph.announce(token, text)
+
+    def publish(self, data: bytes) -> None:
+        """Send a serialized message."""
+        self._outlet.put(data, self._attachment())
+
+    def destroy(self) -> None:
+        """End the publisher."""
+        self._announced.close()
+        self._outlet.close()
+
+
+ArrivalType: TypeAlias = Callable[[Any, Any], Any]
+"""Class of arrivals: `functools.partial(arrival_type, target)` is the sink of a subscription."""
+
+
+def timed_arrival(put: Callable[[Any], object], clock: Callable[[], int]) -> ArrivalType:
+    """Return a new class of arrivals; making one of it stamps it, and queues it.
+
+    The time is taken where the network hands a message over, not where it is handled: a queue that is long because the
+    reader is slow changes no figure. As in `running.inbox`, it is C from end to end: the class's default factory reads
+    the clock, and its `__post_init__` is a queue's `put`.
+
+    Args:
+        put: Function of a queue, in C, that is called with each arrival: it has the fields `target`, `content` (for
+            `Transport.read`) and `at`.
+        clock: Function, in C, that returns the time in ns.
+    """
+    return msgspec.defstruct(
+        "Arrival",
+        ["target", "content", ("at", int, msgspec.field(default_factory=clock))],
+        namespace={"__post_init__": put},
+        gc=False,
+    )

@@ -11,8 +11,8 @@ from robolink.host.participants import HostedInbox, ParkedInbox, ProgramLike
 from robolink.host.threads import HostedPool
 from robolink.logging import get_logger_level, set_logger_level
 from robolink.node_parts import rosout
+from robolink.running.defaults import Platform
 from robolink.running.inbox import Inbox, Sweeper
-from robolink.running.platform import Platform
 from robolink.running.timebase import TimeBase
 
 if TYPE_CHECKING:

@@ -1,14 +1,20 @@
-"""Wait of an executor for work: it blocks until an entity can be taken from the ready queue, or it is to end."""
+"""Wait of an executor for work, the threads that spin it, and the warning of a deadlock."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, Protocol
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, Protocol
 
 from robolink.running.entity import Entity
-from robolink.running.execution import ConditionReachedException, TimeoutException, TimeoutObject
+from robolink.running.execution import ConditionReachedException, TimeoutException, TimeoutObject, logger_of
 from robolink.running.ready_queue import ReadyQueue, earlier
 from robolink.running.timebase import TimeBase
+from robolink.system.waits import wait_for
+
+if TYPE_CHECKING:
+    from robolink.running.ports import SpunNode
 
 POLL_NS = 1_000_000
 """Polling period, in nanoseconds, of a coroutine that awaits something foreign, which wakes no executor."""
@@ -25,7 +31,7 @@ class Ending(Protocol):
 
 
 class Waiting:
-    """Waits at a ready queue, and takes from it; an executor with threads puts its own ways of both in place."""
+    """Waits at a ready queue for an entity to take; an executor with threads puts its own ways of both in place."""
 
     def __init__(self, queue: ReadyQueue[Entity], time: TimeBase) -> None:
         self._queue, self._inbox, self._time = queue, queue.inbox, time
@@ -88,3 +94,81 @@ class Waiting:
             return None  # also whoever spins without waiting gets them done
         wake_at = earlier(deadline, next_timer)
         return self.pause(self._inbox, earlier(wake_at, self._time.steady() + POLL_NS) if postponed else wake_at)
+
+
+class Spinners:
+    """Idents of the threads that spin; one that spins within its own callback is in it twice."""
+
+    def __init__(self, lock: threading.RLock) -> None:
+        self.threads: list[int] = []
+        self._left = threading.Condition(lock)
+
+    def tell(self) -> None:
+        """Wake whoever waits in `wait_for_others`."""
+        with self._left:
+            self._left.notify_all()
+
+    def wait_for_others(self, timeout_sec: float | None) -> bool:
+        """Wait until no other thread spins; False if some still do after `timeout_sec` seconds."""
+        return wait_for(self._left, lambda: {*self.threads} <= {threading.get_ident()}, limit(timeout_sec))
+
+    @contextmanager
+    def counting_this(self, inside: bool) -> Iterator[None]:
+        """Count the calling thread as one that spins, if it is inside a callback of another executor."""
+        thread = threading.get_ident()
+        if inside:
+            self.threads.append(thread)
+        try:
+            yield
+        finally:
+            if inside:
+                self.threads.remove(thread)
+
+
+def limit(timeout_sec: float | None) -> float | None:
+    """Return the limit of a wait as rclpy spells it: a negative one is none."""
+    return None if timeout_sec is None or timeout_sec < 0 else timeout_sec
+
+
+_HELD = (
+    "a callback spins and waits without a timeout_sec: {} is ready, but cannot run before that callback has returned, "
+    "since their callback group runs one at a time. Return instead of spinning, give the spin a timeout_sec, or give "
+    "one of the two a callback group of its own"
+)
+
+
+class DeadlockWarning:
+    """Logs once what is ready in a queue and held back by the callback that spins in the calling thread."""
+
+    def __init__(self, queue: ReadyQueue[Entity], nodes: Iterable[SpunNode]) -> None:
+        self._queue, self._nodes = queue, nodes
+        self._has_warned = False
+
+    def watching(self, stop: Callable[[], bool] | None, is_held_here: Callable[[Entity], bool]) -> Callable[[], bool]:
+        """Return `stop`, or never, for a callback that spins without an end: it warns as well.
+
+        Who spins until a future is done is told only of a service that is asked from here: that future may hang on it.
+        """
+
+        def look() -> bool:
+            with self._queue.lock:
+                kept = () if self._has_warned else (*self._queue.blocked, *self._queue.ready)
+                waiting = [each for each in kept if is_held_here(each)]
+            held = next((each for each in waiting if stop is None or self._is_asked_here(each.origin)), None)
+            if held is not None:
+                self._has_warned = True
+                logger_of(held).warning(_HELD.format(_named(held.origin)))
+            return False
+
+        return look if stop is None else lambda: stop() or look()
+
+    def _is_asked_here(self, entity: Entity) -> bool:
+        """Return whether it is a service whose answer a client of one of the nodes waits for."""
+        name = getattr(entity, "service_name", None)
+        return any(each.service_name == name and each.is_waiting for node in self._nodes for each in node.clients)
+
+
+def _named(entity: Entity) -> str:
+    kind = type(entity).__name__.lower()
+    name = getattr(entity, "topic_name", None) or getattr(entity, "service_name", None)
+    return f"the {kind} of {name}" if name else f"a {kind}"

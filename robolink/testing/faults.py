@@ -10,10 +10,18 @@ import msgspec
 
 from robolink import logging
 from robolink.faults import FaultReport, Injector, read_faults
-from robolink.faults.description import ClockFault, Crash, MessageFault, Partition
+from robolink.faults.description import (
+    ClockFault,
+    Crash,
+    MessageFault,
+    Partition,
+    fits_any,
+    is_pattern,
+    listed,
+    mistake_in,
+)
 from robolink.faults.file import mistakes_of
 from robolink.faults.injector import Fault
-from robolink.faults.patterns import fits_any, is_pattern, listed, mistake_in
 from robolink.testing.stage import Named
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink import logging
-from robolink.faults.report import Why
+from robolink.faults.description import Why
 from robolink.host import Host, Program
 from robolink.host.call_sites import is_users
 from robolink.host.supervision import Supervision

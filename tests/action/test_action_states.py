@@ -10,9 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink import Context, Node, VirtualTime
-from robolink.action.cancel import goals_to_cancel
 from robolink.action.server import ActionServer, ServerGoalHandle
-from robolink.action.states import ACTIVE, ENDED, NAMES, GoalEvent, is_cancelable, next_status
+from robolink.action.states import ACTIVE, ENDED, NAMES, GoalEvent, goals_to_cancel, is_cancelable, next_status
 from robolink.exceptions import RCLError
 from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatus
 from robolink.interfaces.action_msgs.srv import CancelGoal

@@ -7,7 +7,7 @@ import time
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.action.statuses import Statuses
+from robolink.action.states import Statuses
 from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
 from robolink.interfaces.builtin_interfaces.msg import Time
 from robolink.interfaces.unique_identifier_msgs.msg import UUID

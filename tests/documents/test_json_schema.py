@@ -11,8 +11,8 @@ import pytest
 
 from robolink.cli.main import main
 from robolink.documents.yamlfile import parse
-from robolink.faults.schema import MEANINGS as faults_meanings
-from robolink.faults.schema import faults_schema
+from robolink.faults.file import MEANINGS as faults_meanings
+from robolink.faults.file import faults_schema
 from robolink.launch.reading.description import MEANINGS as launch_meanings
 from robolink.launch.reading.description import launch_schema
 from robolink.sim.schema import MEANINGS as world_meanings

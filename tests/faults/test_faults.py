@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from robolink.faults import MessageFault, Partition
-from robolink.faults.streams import uniform
+from robolink.faults.network import uniform
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.wire import (
     NodeToken,

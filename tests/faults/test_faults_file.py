@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from robolink.documents.yamlfile import spell
 from robolink.exceptions import DocumentError
 from robolink.faults import FaultsDescription, MessageFault, check_nodes, read_faults
-from robolink.faults.patterns import matcher
+from robolink.faults.description import matcher
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "configs" / "faults").glob("*.yaml"))
 

@@ -10,7 +10,7 @@ import pytest
 
 from robolink import Context, Node, VirtualTime
 from robolink.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-from robolink.graph.type_mismatch import MOST_TOLD
+from robolink.graph.endpoint import MOST_TOLD
 from robolink.impl.log_output import Record
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.interfaces.std_srvs.srv import SetBool, Trigger

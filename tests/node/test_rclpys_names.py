@@ -11,8 +11,8 @@ import pytest
 import robolink
 from robolink import Context, Node, init
 from robolink.action import ActionClient, ActionServer
-from robolink.action.client_goal_handle import ClientGoalHandle
-from robolink.action.server_goal_handle import ServerGoalHandle
+from robolink.action.client import ClientGoalHandle
+from robolink.action.server import ServerGoalHandle
 from robolink.client import Client
 from robolink.exceptions import InvalidNamespaceException, RCLError
 from robolink.executors import SingleThreadedExecutor

@@ -32,9 +32,7 @@ API = (
 )
 """Modules whose public classes and functions are described."""
 
-PARTS = (
-    "robolink.executors.executor",
-)
+PARTS = ("robolink.executors.executor",)
 """Modules of the classes that are parts of one in `API`, whose methods are described as its own."""
 
 ABOUT = {
@@ -252,7 +250,7 @@ def _files() -> Iterator[str]:
 
 
 def _schemas() -> list[dict[str, Any]]:
-    from robolink.faults.schema import faults_schema
+    from robolink.faults.file import faults_schema
     from robolink.launch.reading.description import launch_schema
     from robolink.sim.schema import world_schema
 

@@ -9,7 +9,7 @@ from robolink.bag.playing.offers import offered
 from robolink.bag.playing.types import class_of
 from robolink.bag.topic import BagTopic
 from robolink.exceptions import RobolinkError
-from robolink.graph.sending import RawPublisher
+from robolink.graph.endpoint import RawPublisher
 from robolink.node import Node
 from robolink.publisher import Publisher
 from robolink.qos import QoSProfile

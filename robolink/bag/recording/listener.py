@@ -16,11 +16,10 @@ from robolink.bag.recording.settings import RecordSettings
 from robolink.bag.recording.topics import RecordedTopic
 from robolink.bag.selection import Selection
 from robolink.exceptions import RobolinkError, TransportClosedError
+from robolink.graph.endpoint import ALL_BEST_EFFORT, ArrivalType, keys_of, listen
 from robolink.graph.graph import EVERY
-from robolink.graph.listening import ALL_BEST_EFFORT, keys_of, listen
 from robolink.message import type_hash, type_name
 from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from robolink.running.timed_arrivals import ArrivalType
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken
 
 if TYPE_CHECKING:

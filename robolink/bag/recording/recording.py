@@ -19,10 +19,9 @@ from robolink.bag.recording.writing import WritableBag, Writing
 from robolink.bag.selection import Selection
 from robolink.bag.writer import BagWriter
 from robolink.exceptions import RobolinkError
-from robolink.graph.listening import ALL_BEST_EFFORT
+from robolink.graph.endpoint import ALL_BEST_EFFORT, timed_arrival
 from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.message import type_hash, type_name
-from robolink.running.timed_arrivals import timed_arrival
 from robolink.system import clocks, waits
 from robolink.time_source import CLOCK_TOPIC
 from robolink.wire import DataKey, format_key

@@ -21,7 +21,7 @@ def show_faults_schema(asked: bool) -> None:
     """Print the schema of faults files, if that is asked, and end."""
     if asked:
         from robolink.documents.json_schema import text_of
-        from robolink.faults.schema import faults_schema
+        from robolink.faults.file import faults_schema
 
         say(text_of(faults_schema()).removesuffix("\n"))
         raise typer.Exit

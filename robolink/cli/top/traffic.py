@@ -13,9 +13,8 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.exceptions import RobolinkError, TransportClosedError
+from robolink.graph.endpoint import ALL_BEST_EFFORT, keys_of, listen, timed_arrival
 from robolink.graph.graph import EVERY
-from robolink.graph.listening import ALL_BEST_EFFORT, keys_of, listen
-from robolink.running.timed_arrivals import timed_arrival
 from robolink.system import clocks, waits
 from robolink.wire import EndpointKind, EndpointToken, is_attachment, unpack_attachment
 

@@ -12,8 +12,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import RobolinkError
-from robolink.graph.listening import ALL_BEST_EFFORT, keys_of, listen
-from robolink.running.timed_arrivals import timed_arrival
+from robolink.graph.endpoint import ALL_BEST_EFFORT, keys_of, listen, timed_arrival
 from robolink.system import clocks, waits
 from robolink.transport.base import Handle
 from robolink.wire import EndpointKind, EndpointToken

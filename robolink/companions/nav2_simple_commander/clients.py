@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from robolink.action import ActionClient
-from robolink.action.client_goal_handle import ClientGoalHandle
+from robolink.action.client import ClientGoalHandle
 from robolink.client import Client
 from robolink.exceptions import ROSInterruptException
 from robolink.interfaces.nav2_msgs import action

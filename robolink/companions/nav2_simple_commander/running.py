@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from robolink.action.client_goal_handle import ClientGoalHandle
+from robolink.action.client import ClientGoalHandle
 from robolink.companions.nav2_simple_commander.servers import Servers
 from robolink.companions.nav2_simple_commander.tasks import RESULTS, RunningTask, TaskResult, poses_in, time_of
 from robolink.exceptions import ServiceError

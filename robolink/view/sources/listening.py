@@ -5,10 +5,8 @@ from __future__ import annotations
 import functools
 from collections.abc import Iterable, Mapping
 
-from robolink.graph.endpoint import Owner
-from robolink.graph.listening import ALL_BEST_EFFORT, keys_of, listen
+from robolink.graph.endpoint import ALL_BEST_EFFORT, ArrivalType, Owner, keys_of, listen
 from robolink.qos import DurabilityPolicy, QoSProfile
-from robolink.running.timed_arrivals import ArrivalType
 from robolink.transport.base import Handle
 from robolink.transport.history import latched_depth
 from robolink.view.channels import Channel, Kept

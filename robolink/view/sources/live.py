@@ -17,9 +17,9 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from robolink.exceptions import RobolinkError
+from robolink.graph.endpoint import timed_arrival
 from robolink.graph.graph import EVERY
 from robolink.node import Node
-from robolink.running.timed_arrivals import timed_arrival
 from robolink.system import clocks
 from robolink.time_source import CLOCK_TOPIC
 from robolink.topic_or_service_is_hidden import topic_or_service_is_hidden
