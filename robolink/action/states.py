@@ -1,4 +1,4 @@
-"""State machine of goals: how an event leads from one to the next, which goals a cancel request means, and their list."""
+"""State machine of goals: how an event leads from one to the next, which goals a cancel means, and their list."""
 
 from __future__ import annotations
 

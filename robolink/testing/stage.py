@@ -140,16 +140,3 @@ class Stage(Protocol):
 
     def close(self) -> None:
         """End all programs and leave the network."""
-
-
-def make_stage(transport: str, seed: int) -> Stage:
-    """Make the runner of a transport. Raises ValueError for another name than memory and zenoh."""
-    if transport == "zenoh":
-        from robolink.testing.processes import Processes  # late, as below: a test needs one of the two
-
-        return Processes()
-    if transport == "memory":
-        from robolink.testing.one_process import OneProcess
-
-        return OneProcess(seed)
-    raise ValueError(f"no transport '{transport}' for tests: expected memory or zenoh")

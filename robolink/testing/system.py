@@ -16,7 +16,8 @@ from robolink.testing.expectations import ClosedError, ExpectationError
 from robolink.testing.expecting import Expecting, Failures
 from robolink.testing.parameters import Parameters
 from robolink.testing.robots import RemoteRobots, SimulatedRobot, chosen
-from robolink.testing.stage import Failure, Named, Startable, Wanted, full, make_stage, startable
+from robolink.testing.stage import Failure, Named, Startable, Wanted, full, startable
+from robolink.testing.stages import make_stage
 from robolink.testing.story import Conversation, Story
 
 if TYPE_CHECKING:
@@ -213,10 +214,7 @@ class System:
 
     @property
     def topics(self) -> dict[str, str]:
-        """Types of all topics by name, without /rosout and /parameter_events, which every node has.
-
-        Several types on one topic are separated by a comma.
-        """
+        """Types of all topics by name, several with commas, without /rosout and /parameter_events of every node."""
         return self.story.graph.topics()
 
     @property
